@@ -53,6 +53,7 @@ class Spot(NamedTuple):
     """The wall under the middle of a cell."""
 
     facet: int  # -1 where there is no wall
+    height: tuple  # (6,) m, of the nodes of the facet, see ``wall.heights``
     r: float  # place on the facet
     s: float
     penetration: float  # m, negative above the wall
@@ -109,28 +110,74 @@ def place_of(touch, face, row, column):
 
 
 @inlined
-def spot_under(touch, face, place):
-    """The wall under a place (m) of the face."""
-    surface, y = touch.surface, place[1] if face.axis == 2 else place[2]
-    facet, r, s, penetration = -1, 0.0, 0.0, -np.inf
-    share, by_x, by_y = 0.0, 0.0, 0.0
-    cell_bin = wall.bin_under(surface.search, face.wall, place[0], y)
-    if cell_bin >= 0:
-        facet, r, s, outside = wall.facet_under(surface, cell_bin, place[0], y)
-        if facet >= 0:
-            height = wall.heights(
-                surface, touch.displacement, face.axis, wall.nodes_of(surface, facet)
-            )
-            level = place[1] if face.axis == 1 else place[2]
-            penetration = face.sign * (
-                level - wall.blend(wall.functions(surface.quadratic, r, s), height)
-            )
-            share, by_x, by_y = wall.cover(
-                surface.search, cell_bin, place[0], y, face.size, outside
-            )
-            if share == 0.0:
-                facet = -1
-    return Spot(facet, r, s, penetration, share, by_x, by_y)
+def no_spot():
+    """No wall."""
+    height = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return Spot(-1, height, 0.0, 0.0, -np.inf, 0.0, 0.0, 0.0)
+
+
+@inlined
+def spot_under(touch, face, place, last):
+    """The wall under a place (m) of the face, searched first on the facet of the ``last`` spot."""
+    surface = touch.surface
+    level, y = (place[1], place[2]) if face.axis == 1 else (place[2], place[1])
+    facet, height, r, s = last.facet, last.height, 0.0, 0.0
+    share, by_x, by_y, outside = 1.0, 0.0, 0.0, np.inf
+    if facet >= 0 and not surface.by_border[facet]:
+        r, s, outside = wall.local(surface, facet, place[0], y)
+    if outside > wall.INSIDE:
+        facet = -1
+        cell_bin = wall.bin_under(surface.search, face.wall, place[0], y)
+        if cell_bin >= 0:
+            facet, r, s, outside = wall.facet_under(surface, cell_bin, place[0], y)
+            if facet >= 0:
+                if surface.by_border[facet]:
+                    share, by_x, by_y = wall.cover(
+                        surface.search, cell_bin, place[0], y, face.size, outside
+                    )
+                nodes = wall.nodes_of(surface, facet)
+                height = wall.heights(surface, touch.displacement, face.axis, nodes)
+    if share == 0.0:
+        facet = -1
+    penetration = -np.inf
+    if facet >= 0:
+        weight = wall.functions(surface.quadratic, r, s)
+        penetration = face.sign * (level - wall.blend(weight, height))
+    return Spot(facet, height, r, s, penetration, share, by_x, by_y)
+
+
+@inlined
+def nearest_wall(touch, face):
+    """Bound (m) of the wall under a face along its normal: no point of it is nearer to the face;
+    infinity where there is no wall."""
+    search, surface = touch.surface.search, touch.surface
+    wide = 3 - face.axis
+    half_x = abs(face.along[0]) + abs(face.across[0])
+    half_y = abs(face.along[wide]) + abs(face.across[wide])
+    low, high = search.low[face.wall], search.per_length[face.wall]
+    first = _bin(face.middle[0] - half_x, low[0], high[0], search.bins[face.wall, 0])
+    last = _bin(face.middle[0] + half_x, low[0], high[0], search.bins[face.wall, 0])
+    left = _bin(face.middle[wide] - half_y, low[1], high[1], search.bins[face.wall, 1])
+    right = _bin(face.middle[wide] + half_y, low[1], high[1], search.bins[face.wall, 1])
+    least, most, by_border = np.inf, -np.inf, False
+    for i in range(first, last + 1):
+        for j in range(left, right + 1):
+            cell_bin = search.first_bin[face.wall] + i * search.bins[face.wall, 1] + j
+            by_border = by_border or search.first_edge[cell_bin] < search.first_edge[cell_bin + 1]
+            for k in range(search.first_facet[cell_bin], search.first_facet[cell_bin + 1]):
+                nodes = wall.nodes_of(surface, search.facet[k])
+                height = wall.heights(surface, touch.displacement, face.axis, nodes)
+                lower, upper = wall.extremes(surface.quadratic, height, face.sign)
+                least, most = min(least, lower), max(most, upper)
+    if by_border and least < most:
+        # The wall is continued by half a cell, at most a quarter of a facet.
+        least -= 0.5 * (most - least)
+    return least
+
+
+@inlined
+def _bin(place, low, per_length, count):
+    return min(max(int((place - low) * per_length), 0), count - 1)
 
 
 @inlined
@@ -139,8 +186,7 @@ def press(touch, friction, face, place, spot):
     surface, centre = touch.surface, touch.pose.centre
     nodes = wall.nodes_of(surface, spot.facet)
     weight = wall.functions(surface.quadratic, spot.r, spot.s)
-    height = wall.heights(surface, touch.displacement, face.axis, nodes)
-    slope_x, slope_y = wall.slopes(surface, spot.facet, spot.r, spot.s, height)
+    slope_x, slope_y = wall.slopes(surface, spot.facet, spot.r, spot.s, spot.height)
     # Outward gradient of the penetration.
     g = _in_frame(face.axis, -face.sign * slope_x, face.sign, -face.sign * slope_y)
     push = touch.interface_stiffness * face.area * spot.share * spot.penetration
@@ -248,9 +294,10 @@ def probe(touch, face):
     """Of the cells of a face over the wall: largest penetration (m) inside the
     wall, and largest of all."""
     cells, inside, behind = touch.surface.cells, 0.0, 0.0
+    spot = no_spot()
     for row in range(cells[face.number, 0]):
         for column in range(cells[face.number, 1]):
-            spot = spot_under(touch, face, place_of(touch, face, row, column))
+            spot = spot_under(touch, face, place_of(touch, face, row, column), spot)
             if spot.facet >= 0:
                 behind = max(behind, spot.penetration)
                 if spot.penetration < touch.surface.thickness:

@@ -36,6 +36,8 @@ import numpy as np
 from tipoff.highfi.contact.cells import (
     Touch,
     face_of,
+    nearest_wall,
+    no_spot,
     place_of,
     press,
     probe,
@@ -140,16 +142,19 @@ def _forces_of_face(touch, friction, face):
 
 @inlined
 def _forces_of_cells(touch, friction, face):
-    """Forces of all cells of a face; the least gap (m), zero where a cell has no wall."""
-    cells, thickness, gap = touch.surface.cells, touch.surface.thickness, np.inf
+    """Forces of all cells of a face; no cell is nearer to its wall than the gap (m) returned."""
+    cells, thickness = touch.surface.cells, touch.surface.thickness
+    wall, deepest, spot = nearest_wall(touch, face), -np.inf, no_spot()
     for row in range(cells[face.number, 0]):
         for column in range(cells[face.number, 1]):
             place = place_of(touch, face, row, column)
-            spot = spot_under(touch, face, place)
-            gap = min(gap, -spot.penetration if spot.facet >= 0 else 0.0)
-            if spot.facet >= 0 and 0.0 < spot.penetration < thickness:
-                press(touch, friction, face, place, spot)
-    return gap
+            depth = face.sign * place[face.axis] - wall
+            deepest = max(deepest, depth)
+            if depth > 0.0:
+                spot = spot_under(touch, face, place, spot)
+                if spot.facet >= 0 and 0.0 < spot.penetration < thickness:
+                    press(touch, friction, face, place, spot)
+    return max(0.0, -deepest)
 
 
 @inlined

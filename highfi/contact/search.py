@@ -71,6 +71,14 @@ def build(wall: np.ndarray, planes: Sequence[Plane]) -> Search:
     )
 
 
+def by_border(search: Search, facets: int) -> np.ndarray:
+    """``Surface.by_border`` of so many facets: those over bins with pieces of the border."""
+    found = np.zeros(facets, dtype=np.bool_)
+    has_edges = np.diff(search.first_edge) > 0
+    found[search.facet[np.repeat(has_edges, np.diff(search.first_facet))]] = True
+    return found
+
+
 class _Bins(NamedTuple):
     """Bins of one wall."""
 

@@ -46,12 +46,14 @@ def build(
         [_cells(faces, face, corners[group], cells) for face, group in enumerate(found)]
     )
     wall, planes = _planes(facets, points, corners, faces, found, counts)
+    built = search.build(wall, planes)
     return Surface(
         places=points,
         facets=facets,
         map=_maps(corners, found),
         quadratic=True if facets.shape[1] == 6 else None,
-        search=search.build(wall, planes),
+        by_border=search.by_border(built, len(facets)),
+        search=built,
         cells=counts,
         share=_share(points, facets, faces, found, counts),
         groups=group_faces([np.unique(facets[group]) for group in found], clamped),

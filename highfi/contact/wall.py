@@ -44,8 +44,7 @@ def facet_under(surface, cell_bin, x, y):
     found, best, first, second = -1, np.inf, 0.0, 0.0
     for k in range(search.first_facet[cell_bin], search.first_facet[cell_bin + 1]):
         facet = search.facet[k]
-        r, s = _local(surface.quadratic, surface.map[facet], x, y)
-        outside = _outside(surface.quadratic, r, s)
+        r, s, outside = local(surface, facet, x, y)
         if outside < best:
             found, best, first, second = facet, outside, r, s
             if outside <= INSIDE:
@@ -54,7 +53,14 @@ def facet_under(surface, cell_bin, x, y):
 
 
 @inlined
-def _local(quadratic, row, x, y):
+def local(surface, facet, x, y):
+    """(r, s) of a place (m) on a facet, and how far in (r, s) it is outside."""
+    r, s = _mapped(surface.quadratic, surface.map[facet], x, y)
+    return r, s, _outside(surface.quadratic, r, s)
+
+
+@inlined
+def _mapped(quadratic, row, x, y):
     dx, dy = x - row[0], y - row[1]
     first, second = row[2] * dx + row[3] * dy, row[4] * dx + row[5] * dy
     r, s = first, second
@@ -127,6 +133,20 @@ def heights(surface, displacement, axis, nodes):
         fifth,
         sixth,
     )
+
+
+@inlined
+def extremes(quadratic, height, sign):
+    """Bounds of ``sign`` times the height over a facet, by its nodes or, for six of them, by the
+    control points of the quadratic (Farin, Curves and Surfaces for CAGD, chapter 17)."""
+    a, b, c, d = sign * height[0], sign * height[1], sign * height[2], sign * height[3]
+    low, high = min(min(a, b), min(c, d)), max(max(a, b), max(c, d))
+    if quadratic is not None:
+        p = 2.0 * d - 0.5 * (a + b)
+        q = 2.0 * sign * height[4] - 0.5 * (b + c)
+        r = 2.0 * sign * height[5] - 0.5 * (c + a)
+        low, high = min(min(a, b), min(c, p), min(q, r)), max(max(a, b), max(c, p), max(q, r))
+    return low, high
 
 
 @inlined

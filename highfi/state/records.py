@@ -91,6 +91,8 @@ class Surface(NamedTuple):
     facets: np.ndarray  # (m,k) node numbers: four corners, or the six nodes of a triangle
     map: np.ndarray  # (m,8) from the plane of the wall into the facet, see ``contact.wall``
     quadratic: bool | None  # True: six nodes; None: four corners
+    # (m,) whether a cell with its middle on the facet, or nearest to it, may overlap the border
+    by_border: np.ndarray
     search: Search
     cells: np.ndarray  # (f,2) cells along the length and along the width of each face
     share: np.ndarray  # (n,) m2, area of pad that a node carries at most, see ``step_limit``
