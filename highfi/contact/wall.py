@@ -201,7 +201,8 @@ def cover(search, cell_bin, x, y, size, outside):
     the wall, and the slopes of the share (1/m). ``outside``: of the place, see ``facet_under``.
 
     With lengths in cells, the share is one half and the distance from the border. So it is
-    continuous, and exact where a straight border runs along an edge of the cell.
+    continuous, and exact where a straight border runs along an edge of the cell; at a corner of the
+    wall it is off by up to a fifth.
     """
     least, by_x, by_y = np.inf, 0.0, 0.0
     for k in range(search.first_edge[cell_bin], search.first_edge[cell_bin + 1]):

@@ -131,6 +131,12 @@ def penetration(offset, face, place, turn):
 
 
 @inlined
+def forward(face, drift, swing):
+    """Rate (m/s) of ``along``, from the rates of the pose."""
+    return drift[0] + swing[0] * face[0] + swing[1] * face[1] + swing[2] * face[2]
+
+
+@inlined
 def across(face, place, turn):
     """Place (m) of the centre of ``face`` on the axis across rail and normal, in platform axes."""
     if face[NORMAL_Y] == 0.0:

@@ -217,14 +217,12 @@ def _quantity(is_compliant, system, loop, number, kind):
     place, turn = relative_pose(system.platform, body, base)
     if kind == SIDE:
         return across(face, place, turn) - face[SIDE_MIDDLE]
+    if kind == ALONG:
+        return along(face, place, turn)
     if is_compliant is not None:
-        if kind == ALONG:
-            return place[0] + face[0]
         return depth_in_compliance(
             system.compliance, system.faces, number, loop.touching, place, turn, state
         )
-    if kind == ALONG:
-        return along(face, place, turn)
     row = stick_slip.row_of(system.sticking, loop.stick, number)
     motions = (body, base)
     return _quantity_on_springs(

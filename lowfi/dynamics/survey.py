@@ -9,6 +9,7 @@ from tipoff.lowfi.contact.springs import (
     across,
     along,
     approach,
+    forward,
     load,
     penetration,
     relative_motion,
@@ -68,9 +69,7 @@ def _survey_springs(laws, sticking, faces, platform, payload, loop):
             out[i, MODE], out[i, DEPTH], out[i, PULL] = OPEN, p, 1.0
             out[i, ALONG] = along(faces[i], place, turn)
             out[i, CLOSING] = approach(laws.thermal_offset, faces[i], place, turn, drift, swing)
-            out[i, FORWARD] = (
-                drift[0] + swing[0] * faces[i, 0] + swing[1] * faces[i, 1] + swing[2] * faces[i, 2]
-            )
+            out[i, FORWARD] = forward(faces[i], drift, swing)
             out[i, SIDE] = across(faces[i], place, turn) - faces[i, SIDE_MIDDLE]
             out[i, SIDEWAYS] = sideways(faces[i], drift, swing)
             if p > 0.0:

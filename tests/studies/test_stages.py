@@ -47,7 +47,7 @@ def test_ablation_takes_every_effect_away_once():
     for effect in effects:
         assert scene.replace(lines[f"without {effect}"]).absent_effects() == [effect]
     assert scene.replace(lines["as the scene asks"]).hash == scene.hash
-    assert len(scene.replace(lines["no effect"]).absent_effects()) == len(effects) == 10
+    assert len(scene.replace(lines["no effect"]).absent_effects()) == len(effects)
     assert "without friction" not in ablation.variants(scene.replace({"friction": None}))
     assert "without thermal" not in ablation.variants(
         scene.replace({"rail.material.expansion": None})

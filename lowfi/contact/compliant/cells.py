@@ -17,7 +17,7 @@ import numpy as np
 
 from tipoff.kernels.jit import inlined, kernel
 from tipoff.lowfi.contact.compliant.record import ASIDE, BY_ETA, BY_XI, DEPTH, DRIFT, MIDDLE, SHIFT
-from tipoff.lowfi.contact.springs import penetration
+from tipoff.lowfi.contact.springs import along, penetration
 from tipoff.lowfi.system import NORMAL_Y, NORMAL_Z
 
 # in xi, half the travel over which the place of a pad on the wall comes to rest as the pad begins
@@ -34,9 +34,7 @@ def take_lever(compliance, faces, face, place, turn):
     lever[BY_XI] = half[0] * (y * turn[3] + z * turn[6])
     # a face along y is wide along z, and the other way round
     lever[BY_ETA] = half[1] * (y * turn[5] + z * turn[7])
-    middle = (
-        place[0] + turn[0] * faces[face, 0] + turn[1] * faces[face, 1] + turn[2] * faces[face, 2]
-    )
+    middle = along(faces[face], place, turn)
     lever[MIDDLE] = middle
     over_end, by_end = eased((middle - compliance.end) / half[0] + 1.0)
     over_start, by_start = eased((compliance.start - middle) / half[0] + 1.0)

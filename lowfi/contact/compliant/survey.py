@@ -10,7 +10,15 @@ from tipoff.lowfi.contact.compliant.loads import energy as energy_of_rail
 from tipoff.lowfi.contact.compliant.modes import speed_at
 from tipoff.lowfi.contact.compliant.record import ASIDE, DRIFT, MIDDLE, SHIFT
 from tipoff.lowfi.contact.compliant.solution import follow, solve
-from tipoff.lowfi.contact.springs import across, approach, relative_motion, relative_pose, sideways
+from tipoff.lowfi.contact.springs import (
+    across,
+    along,
+    approach,
+    forward,
+    relative_motion,
+    relative_pose,
+    sideways,
+)
 from tipoff.lowfi.contact.wall_ends import (
     ALONG,
     CLOSING,
@@ -85,7 +93,8 @@ def survey(compliance, faces, platform, payload, touching, state, out):
                 p, xi, eta = _deepest(compliance, faces, face, count, touching, place, turn, state)
                 out[face, MODE], out[face, DEPTH] = PRESSING if p > 0.0 else OPEN, p
                 out[face, CLOSING] = _approach(compliance, faces, face, xi, eta, drift, swing)
-                out[face, ALONG], out[face, FORWARD] = place[0] + faces[face, 0], drift[0]
+                out[face, ALONG] = along(faces[face], place, turn)
+                out[face, FORWARD] = forward(faces[face], drift, swing)
                 out[face, SIDE] = across(faces[face], place, turn) - faces[face, SIDE_MIDDLE]
                 out[face, SIDEWAYS] = sideways(faces[face], drift, swing)
     return total
@@ -93,8 +102,8 @@ def survey(compliance, faces, platform, payload, touching, state, out):
 
 @kernel
 def longest_step_at_ends(compliance, faces, platform, payload, touching, state):
-    """Longest step (s) where a ``touching`` face (f,) is near an end of the rail. The rate at which
-    it loses energy jumps as it begins to overhang and kinks with every row of cells that leaves,
+    """Longest step (s) where a ``touching`` face (f,) is near an end of the rail. The push of the
+    end jumps as it begins to overhang and kinks with every row of cells that leaves,
     which no error estimate sees; and its last strip leaves at once. So a step ends there at the
     latest, and where a face that comes over an end is wholly over it, and is a quarter of a cell
     long at most."""
@@ -103,24 +112,25 @@ def longest_step_at_ends(compliance, faces, platform, payload, touching, state):
         slot.frame(platform, state),
     )
     place, turn = relative_pose(platform, body, base)
-    drift, _ = relative_motion(platform, body, base, place, turn)
+    drift, swing = relative_motion(platform, body, base, place, turn)
     longest = np.inf
     for face in range(touching.size):
         if touching[face]:
             take_lever(compliance, faces, face, place, turn)
             half, middle = compliance.half[face, 0], compliance.workspace.lever[face, MIDDLE]
-            ahead = compliance.end - middle if drift[0] > 0.0 else middle - compliance.start
-            behind = middle - compliance.start if drift[0] > 0.0 else compliance.end - middle
+            speed = forward(faces[face], drift, swing)
+            ahead = compliance.end - middle if speed > 0.0 else middle - compliance.start
+            behind = middle - compliance.start if speed > 0.0 else compliance.end - middle
             way = (
                 np.inf
                 if compliance.workspace.lever[face, DRIFT] == 0.0
-                else 0.5 * half / compliance.node.size
+                else 0.25 * half / compliance.node.size
             )
             for to in (ahead - half, ahead + half * (1.0 - LAST_STRIP)):
                 way = min(way, to + _THERE) if to > 0.0 else way
             if half - behind > _THERE:
                 way = min(way, half - behind + _THERE)
-            longest = min(longest, way / abs(drift[0]))
+            longest = min(longest, way / abs(speed))
     return longest
 
 

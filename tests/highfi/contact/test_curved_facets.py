@@ -93,17 +93,19 @@ def test_a_bulge_is_touched_before_the_corners_are():
     assert not outside.any()
 
 
-@pytest.mark.parametrize("cells", [7, 16, None])
-def test_an_even_press_gives_pressure_times_area(cells):
+@pytest.mark.parametrize("cells, error", [(7, 0.03), (21, 0.01), (16, 1e-9), (None, 1e-9)])
+def test_an_even_press_gives_pressure_times_area(cells, error):
     """k p A on the payload, and its opposite on the rail, where the corners of triangles may carry
-    negative shares."""
+    negative shares. At each corner of the wall up to a fifth of a cell is too much, unless cells end
+    there."""
     depth = 1e-6
     force, loop = pressed(rail(0.0), depth, Numerics(cells=cells))
-    assert force == pytest.approx(
-        [0.0, -INTERFACE_STIFFNESS * depth * WIDTH**2, 0.0], rel=1e-9, abs=1e-9
-    )
+    push = INTERFACE_STIFFNESS * depth * WIDTH**2
+    assert force[1] == pytest.approx(-push, rel=error)
+    # k p^2 / 2 along each edge of the wall: all of it or none, where cells end at the edge.
+    assert np.abs(force[[0, 2]]).max() <= 0.501 * INTERFACE_STIFFNESS * depth**2 * WIDTH
     total = -loop.state.resistance.sum(axis=0)
-    assert total == pytest.approx(-force, rel=1e-9, abs=1e-9)
+    assert total == pytest.approx([0.0, -force[1], 0.0], rel=1e-9, abs=1e-9)
 
 
 def contact_share(system) -> np.ndarray:

@@ -216,13 +216,13 @@ def test_back_into_the_mouth(given):
         gained = run.energy[:, ledger.ENTRIES.index("kinetic")].max() - 0.5 * 9.9 * (36.0 + 0.01)
         assert gained <= 0.5 * STIFFNESS * 5e-7**2 * 1.01
         assert depth == 5e-7 or not run.pad_force.any()
-    # Control: where nothing else moves across the rail, that energy is the whole transverse energy,
-    # and it was created.
+    # Control: where nothing else moves across the rail, that energy is the whole transverse energy.
+    # Springs create it, compliant walls take it from the motion along the rail.
     asked = thrown_back(5e-7)
     run = unwatched_on(asked, handmade(asked, {}) if given else None)
-    assert (
-        run.status == "diverged" and "came from nothing" in run.message and run.outcome.rate is None
-    )
+    created = run.status == "diverged" and "came from nothing" in run.message
+    assert created != given
+    assert given or run.outcome.rate is None
 
 
 def unwatched_on(asked, compliance):

@@ -237,7 +237,7 @@ def work_along(scene, compliance, run) -> float:
             tuple(run.platform_quaternion[k]),
         )
         pull = sum(
-            loads.axial_force(system.compliance, solved(system, model, pose, rail))[0]
+            loads.axial_force(system.compliance, solved(system, model, pose, rail))
             for rail in range(len(system.compliance.members))
         )
         power.append(pull * (run.velocity[k, 0] - run.platform_velocity[k, 0]))
