@@ -35,10 +35,13 @@ class DamageError(ValueError):
     sentence."""
 
     def __init__(self, path: str | Path, reason: str):
-        self.reason = reason
+        self.path, self.reason = path, reason
         super().__init__(
             f"{path} {reason}; remove it, and the command that wrote it writes it again"
         )
+
+    def __reduce__(self):
+        return type(self), (self.path, self.reason)
 
 
 @contextmanager

@@ -54,10 +54,13 @@ class CheckpointError(RuntimeError):
     """A file that cannot be resumed; ``reason`` continues a sentence that begins with its path."""
 
     def __init__(self, path: Path, reason: str):
-        self.reason = reason
+        self.path, self.reason = path, reason
         super().__init__(
             f"{path} {reason}; remove it, or run without resuming, to start from the beginning"
         )
+
+    def __reduce__(self):
+        return type(self), (self.path, self.reason)
 
 
 class Checkpoint:

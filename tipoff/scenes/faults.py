@@ -31,6 +31,10 @@ class SceneError(InputError):
         count = "1 fault" if len(faults) == 1 else f"{len(faults)} faults"
         super().__init__("\n".join([f"{count} in the scene"] + [f"  {fault}" for fault in faults]))
 
+    def __reduce__(self):
+        # As it comes back from another process; by default it would take the message for the faults.
+        return type(self), (self.faults,)
+
 
 def within(key: str, given: str, expected: str) -> PydanticCustomError:
     """A fault of ``key``, for a validator of the whole table."""
