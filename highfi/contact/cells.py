@@ -148,17 +148,17 @@ def spot_under(touch, face, place, last):
 
 @inlined
 def nearest_wall(touch, face):
-    """Bound (m) of the wall under a face along its normal: no point of it is nearer to the face;
+    """Bound (m) of the wall under a face along the outward normal: no point of the wall is lower;
     infinity where there is no wall."""
     search, surface = touch.surface.search, touch.surface
     wide = 3 - face.axis
     half_x = abs(face.along[0]) + abs(face.across[0])
     half_y = abs(face.along[wide]) + abs(face.across[wide])
-    low, high = search.low[face.wall], search.per_length[face.wall]
-    first = _bin(face.middle[0] - half_x, low[0], high[0], search.bins[face.wall, 0])
-    last = _bin(face.middle[0] + half_x, low[0], high[0], search.bins[face.wall, 0])
-    left = _bin(face.middle[wide] - half_y, low[1], high[1], search.bins[face.wall, 1])
-    right = _bin(face.middle[wide] + half_y, low[1], high[1], search.bins[face.wall, 1])
+    low, scale = search.low[face.wall], search.per_length[face.wall]
+    first = _bin(face.middle[0] - half_x, low[0], scale[0], search.bins[face.wall, 0])
+    last = _bin(face.middle[0] + half_x, low[0], scale[0], search.bins[face.wall, 0])
+    left = _bin(face.middle[wide] - half_y, low[1], scale[1], search.bins[face.wall, 1])
+    right = _bin(face.middle[wide] + half_y, low[1], scale[1], search.bins[face.wall, 1])
     least, most, by_border = np.inf, -np.inf, False
     for i in range(first, last + 1):
         for j in range(left, right + 1):
@@ -170,8 +170,9 @@ def nearest_wall(touch, face):
                 lower, upper = wall.extremes(surface.quadratic, height, face.sign)
                 least, most = min(least, lower), max(most, upper)
     if by_border and least < most:
-        # The wall is continued by half a cell, at most a quarter of a facet.
-        least -= 0.5 * (most - least)
+        # Cells over the border see the wall continued by half a cell; twice that far is safe.
+        reach = face.size[0] * scale[0] + face.size[1] * scale[1]
+        least -= reach * (most - least)
     return least
 
 
@@ -291,8 +292,8 @@ def _note_nodes(touch, nodes):
 
 @kernel
 def probe(touch, face):
-    """Of the cells of a face over the wall: largest penetration (m) inside the
-    wall, and largest of all."""
+    """Of the cells of a face over the wall: largest penetration (m) inside the wall, and largest of
+    all."""
     cells, inside, behind = touch.surface.cells, 0.0, 0.0
     spot = no_spot()
     for row in range(cells[face.number, 0]):

@@ -54,9 +54,11 @@ from tipoff.kernels.jit import inlined, kernel
 # m/s across the rail: a face this far from every facet is skipped until it could arrive
 FASTEST_APPROACH = 10.0
 ROUNDED = 1e-6  # m: no edge of a pad or a wall is sharper
-# m: over this length on either side a face comes over the first points of its wall, which deforms
-# by less
+# m: over this length on either side of its border a face comes over its wall, which deforms by less
 _ENTRY = 1e-4
+# m: a face farther from its wall waits as if it were this far, because it may slide over another part
+# of the wall meanwhile
+_FARTHEST = 1e-3
 # m/s along the wall: a face this far from the border is skipped until it could arrive
 _FASTEST_SLIDE = 1000.0
 
@@ -142,7 +144,8 @@ def _forces_of_face(touch, friction, face):
 
 @inlined
 def _forces_of_cells(touch, friction, face):
-    """Forces of all cells of a face; no cell is nearer to its wall than the gap (m) returned."""
+    """Forces of all cells of a face; no cell is nearer to its wall than the gap (m) returned, which
+    is at most ``_FARTHEST``."""
     cells, thickness = touch.surface.cells, touch.surface.thickness
     wall, deepest, spot = nearest_wall(touch, face), -np.inf, no_spot()
     for row in range(cells[face.number, 0]):
@@ -154,7 +157,7 @@ def _forces_of_cells(touch, friction, face):
                 spot = spot_under(touch, face, place, spot)
                 if spot.facet >= 0 and 0.0 < spot.penetration < thickness:
                     press(touch, friction, face, place, spot)
-    return max(0.0, -deepest)
+    return min(max(0.0, -deepest), _FARTHEST)
 
 
 @inlined

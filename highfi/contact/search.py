@@ -18,9 +18,8 @@ class Plane(NamedTuple):
     corners: np.ndarray  # (m,3 or 4,2) m, X and place across of their corners
     on_border: np.ndarray  # (m,) whether an edge of the facet may be part of the border
     ends: np.ndarray  # (e,2,2) m, ends of the pieces of the border of the whole wall
-    overlap: (
-        float  # m, largest distance at which a cell with its middle beyond the border is over it
-    )
+    # m, largest distance from the border at which a cell with its middle beyond it is over the wall
+    overlap: float
 
 
 def facet_maps(corners: np.ndarray) -> np.ndarray:

@@ -7,6 +7,7 @@ import pytest
 from tests.highfi import tets
 from tests.highfi.blocks import block
 from tests.highfi.support import loop_on
+from tipoff.highfi.contact.pads import FASTEST_APPROACH
 from tipoff.highfi.dynamics.step import evaluate
 from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
 from tipoff.highfi.numerics import Numerics
@@ -118,6 +119,8 @@ def test_forces_are_slopes_of_the_stored_energy(kind, where):
     place, turn = np.array([x - 0.1, 6e-6, z]), np.array([0.3e-3, -0.2e-3, 0.15e-3])
     far = place - [0.0, 1.0, 0.0]
     assert pad.energy(far, turn) == 0.0
+    # However far away, it waits no longer than a millimetre takes.
+    assert 0 <= pad.loop.active.wait[0] <= 1e-3 / (FASTEST_APPROACH * pad.loop.stepping.dt_s)
     elastic = pad.resistance()
     stored = pad.energy(place, turn)
     load, on_rail = pad.loop.state.load[0].copy(), elastic - pad.resistance()
@@ -148,6 +151,34 @@ def test_forces_are_slopes_of_the_stored_energy(kind, where):
         assert on_rail[node, 1] == pytest.approx(force, abs=2e-6 * scale)
     assert on_rail[:, [0, 2]] == pytest.approx(0.0, abs=1e-9 * scale)
     assert on_rail.sum(axis=0)[1] == pytest.approx(-load["normal_force"][1], rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["bricks", "twisted", "tetrahedra"])
+def test_a_wall_that_tilts_is_met_where_it_is(kind):
+    """On a wall of linear displacement each cell has the exact gap, whatever the facets: force and
+    moment are sums over the cells by hand."""
+    pad = Pressed(kind, relief=0.0)
+    points, touched = pad.loop.system.rail.points, pad.touched
+    tilt_x, tilt_z = 2e-5, -3e-5
+    field = 1e-6 + tilt_x * points[touched, 0] + tilt_z * points[touched, 2]
+    pad.loop.state.displacement[:] = 0.0
+    pad.loop.state.displacement[touched, 1] = field
+    place = np.array([0.003 - 0.1, 6e-6, 0.0007])
+    stored = pad.energy(place)
+    cells = pad.loop.system.surface.cells[0]
+    x, z = (
+        middle + half * ((2.0 * np.arange(count) + 1.0) / count - 1.0)
+        for middle, half, count in zip((0.003, 0.0207), (0.008, 0.005), cells)
+    )
+    depth = 5e-6 - (1e-6 + tilt_x * x[:, None] + tilt_z * z)
+    assert (depth > 0.0).all()
+    push = STIFFNESS * 0.016 * 0.010 / depth.size * depth
+    load = pad.loop.state.load[0]
+    assert stored == pytest.approx(0.5 * (push * depth).sum(), rel=1e-9)
+    expected = push.sum() * np.array([tilt_x, -1.0, tilt_z])
+    assert load["normal_force"] == pytest.approx(expected, rel=1e-9)
+    about_z = -(push * (x - place[0])[:, None]).sum() - expected[0] * 0.05
+    assert load["moment"][2] == pytest.approx(about_z, rel=1e-9)
 
 
 def combined(small: np.ndarray, turn: np.ndarray) -> np.ndarray:
