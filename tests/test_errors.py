@@ -1,23 +1,25 @@
 """Errors that come back from another process say what they said there."""
 
-import pickle
-
-import pytest
+from concurrent.futures import ProcessPoolExecutor
 
 from tipoff.files import DamageError
 from tipoff.highfi.dynamics.checkpoint import CheckpointError
 from tipoff.scenes.faults import Fault, SceneError
 
-
-@pytest.mark.parametrize(
-    "error",
-    [
-        SceneError([Fault("a", "b", "1 m", "2 m"), Fault("a", "c", "nothing", "this key")]),
-        CheckpointError("run.npz", "is damaged"),
-        DamageError("run.npz", "is damaged"),
-    ],
-    ids=lambda error: type(error).__name__,
+ERRORS = (
+    SceneError([Fault("a", "b", "1 m", "2 m"), Fault("a", "c", "nothing", "this key")]),
+    CheckpointError("run.npz", "is damaged"),
+    DamageError("run.npz", "is damaged"),
 )
-def test_an_error_survives_the_way_from_a_process(error):
-    again = pickle.loads(pickle.dumps(error))
-    assert type(again) is type(error) and str(again) == str(error) and vars(again) == vars(error)
+
+
+def fail(number: int):
+    raise ERRORS[number]
+
+
+def test_errors_come_back_from_a_process_as_they_were():
+    with ProcessPoolExecutor(1) as pool:
+        for number, error in enumerate(ERRORS):
+            again = pool.submit(fail, number).exception()
+            assert type(again) is type(error)
+            assert str(again) == str(error) and vars(again) == vars(error)
