@@ -260,13 +260,7 @@ class _Patches:
         positive, and (m,p,t) under one of each field of temperature around X = ``middle`` (m);
         frequencies (n,) rad/s of the lowest modes and their displacement (m,p,n); the terms of a
         ``joint`` where there are modes."""
-        operator = assembly.build(
-            self._rail,
-            material.density,
-            material.youngs_modulus,
-            material.poisson_ratio,
-            joint=joint,
-        )
+        operator = assembly.of_material(self._rail, material, joint=joint)
         clamped, loads = Clamped(operator), self._loads()
         load, held = thermal.of_each_field(self._rail, operator, material, middle)
         warm = loads.T @ clamped.displaced(load, held)

@@ -47,13 +47,7 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     rails, MeshError for warm rails that nothing holds."""
     model = scene_model.build(scene)
     material = scene.rail.material
-    operator = assembly.build(
-        mesh,
-        material.density,
-        material.youngs_modulus,
-        material.poisson_ratio,
-        joint=scene.rail.joint(),
-    )
+    operator = assembly.of_material(mesh, material, joint=scene.rail.joint())
     moving = np.where(operator.free, operator.mass, 0.0)
     frame, origin, offset = None, np.zeros(3), np.zeros(3)
     if model.platform is not None:

@@ -89,13 +89,7 @@ def lowest_of(
     for solid, _ in pieces.distinct(mesh):
         if not solid.surfaces["mount"].size:
             continue
-        operator = assembly.build(
-            solid,
-            material.density,
-            material.youngs_modulus,
-            material.poisson_ratio,
-            joint=joint,
-        )
+        operator = assembly.of_material(solid, material, joint=joint)
         if not operator.free.any():
             continue
         clamped = Clamped(operator)

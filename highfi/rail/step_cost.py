@@ -43,9 +43,7 @@ def ratio(
 
 def largest_step(mesh: RailMesh, material: MaterialTable) -> float:
     """Step (s) at which every element of a mesh is stable, whatever is held."""
-    part = assembly.build(
-        mesh, material.density, material.youngs_modulus, material.poisson_ratio, fixed=()
-    )
+    part = assembly.of_material(mesh, material, fixed=())
     return stable_step.critical_step(stable_step.element_bound(part))
 
 

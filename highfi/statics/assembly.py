@@ -20,6 +20,7 @@ from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.statics import mounts
 from tipoff.kernels.memory import aligned
 from tipoff.scenes.effects.mount_stiffness import MountStiffness
+from tipoff.scenes.rail import MaterialTable
 
 _SAME_SHAPE = 1e-9  # of the thinnest element: node coordinates that differ by less make one class
 _FORMULATION = {8: hexahedron, 10: tetrahedron}  # by the nodes of an element
@@ -77,6 +78,23 @@ def build(
         mass=mass,
         free=free,
         joints=joints,
+    )
+
+
+def of_material(
+    mesh: RailMesh,
+    material: MaterialTable,
+    joint: MountStiffness | None = None,
+    fixed: tuple[str, ...] = ("mount",),
+) -> Operator:
+    """``build`` for the ``material`` of a scene."""
+    return build(
+        mesh,
+        material.density,
+        material.youngs_modulus,
+        material.poisson_ratio,
+        fixed=fixed,
+        joint=joint,
     )
 
 

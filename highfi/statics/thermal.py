@@ -35,13 +35,7 @@ def displacement(
     Raises MeshError where one has no mount."""
     found = np.empty_like(mesh.points)
     for nodes, rail in zip(pieces.nodes(mesh), pieces.pieces(mesh)):
-        operator = assembly.build(
-            rail,
-            material.density,
-            material.youngs_modulus,
-            material.poisson_ratio,
-            joint=joint,
-        )
+        operator = assembly.of_material(rail, material, joint=joint)
         found[nodes] = (
             of_fields(rail, operator, material, Clamped(operator), thermal.middle) @ thermal.amounts
         )

@@ -23,9 +23,7 @@ def test_baseline_is_central_differences_on_the_assembled_matrix():
     mesh = highfi.prepare(scene, Numerics(element_size=0.016))
     loop = CsrLoop(mesh, scene.rail.material, 1e-8, most=10**6)
     material = scene.rail.material
-    operator = assembly.build(
-        mesh, material.density, material.youngs_modulus, material.poisson_ratio, fixed=()
-    )
+    operator = assembly.of_material(mesh, material, fixed=())
     displacement, velocity = loop.displacement.copy(), loop.velocity.copy()
     for _ in range(3):
         velocity = velocity - 1e-8 * (assembly.sparse(operator) @ displacement) / np.repeat(

@@ -16,9 +16,7 @@ class CsrLoop:
     def __init__(self, mesh: RailMesh, material, step: float, most: int):
         used, local = np.unique(mesh.cells[:most], return_inverse=True)
         part = RailMesh(mesh.points[used], local.reshape(-1, 8), {})
-        operator = assembly.build(
-            part, material.density, material.youngs_modulus, material.poisson_ratio, fixed=()
-        )
+        operator = assembly.of_material(part, material, fixed=())
         self.elements, self.step, self.stiffness = len(part.cells), step, assembly.sparse(operator)
         self.inverse_mass = np.repeat(1.0 / operator.mass, 3)
         self.displacement, self.velocity = (

@@ -28,9 +28,7 @@ class _Rail:
         scene = _scene()
         material = scene.rail.material
         mesh = highfi.prepare(scene, highfi.Numerics(element_size=_SIZE))
-        self.operator = assembly.build(
-            mesh, material.density, material.youngs_modulus, material.poisson_ratio
-        )
+        self.operator = assembly.of_material(mesh, material)
         self.stiffness = assembly.sparse(self.operator)
         self.mass = np.repeat(self.operator.mass, 3)
         self.free = np.repeat(self.operator.free, 3)

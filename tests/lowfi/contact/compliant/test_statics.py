@@ -249,9 +249,7 @@ def pressed_elements(scene, face, travel, aside=0.0, points_per_edge=4):
     nodes, place = np.unique(wall[where], return_inverse=True)
     seen = np.zeros((spring.size, nodes.size))
     np.put_along_axis(seen, place.reshape(len(where), -1), sign * shape[which], axis=1)
-    operator = assembly.build(
-        rail, material.density, material.youngs_modulus, material.poisson_ratio
-    )
+    operator = assembly.of_material(rail, material)
     assert operator.free[nodes].all()
     free = np.repeat(operator.free, 3)
     unit = np.zeros((free.size, nodes.size))  # one force at each node that the pad can load
