@@ -222,13 +222,11 @@ def _errors(row: dict) -> str:
 
 def summary(rows: list[dict], words: str = "") -> str:
     """How many of the ``words`` conditions agree."""
-    passed, doubtful, free = (
-        sum(row["passes"] for row in rows),
-        sum(not row["reference_converged"] for row in rows),
-        sum(row["passes"] and not row["touches"] for row in rows),
-    )
+    agreeing = [row for row in rows if row["passes"] and row["reference_converged"]]
+    free = sum(not row["touches"] for row in agreeing)
+    doubtful = sum(not row["reference_converged"] for row in rows)
     return (
-        f"{passed} of {len(rows)} {words}conditions pass all three gates"
+        f"{len(agreeing)} of {len(rows)} {words}conditions agree"
         + (f", {free} of them without contact" if free else "")
         + (f"; for {doubtful} the reference is not converged" if doubtful else "")
     )
