@@ -95,6 +95,22 @@ def loop_on(scene, mesh: RailMesh, numerics: Numerics = Numerics()) -> Loop:
     return Loop(scene, system, choose(system, scene, numerics))
 
 
+def assert_same_bits(one, other, *more: str) -> None:
+    """That two trajectories are equal to the bit, in ``more`` fields too."""
+    names = (
+        "position",
+        "velocity",
+        "quaternion",
+        "rate",
+        "platform_velocity",
+        "pad_force",
+        "energy",
+        "transverse_energy",
+    )
+    for name in (*names, *more):
+        np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
+
+
 class Stopped(Exception):
     """Ends a run after the part that a test needs."""
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.highfi.support import tiny
+from tests.highfi.support import assert_same_bits, tiny
 from tipoff import highfi
 from tipoff.highfi import Numerics
 from tipoff.highfi.dynamics.step_size import choose
@@ -49,16 +49,4 @@ def test_threads_do_not_change_a_bit(kernel):
     alone = run(kernel)
     assert np.abs(alone.pad_force).max() > 0.0
     shared = run(kernel, threads=3)
-    for name in (
-        "position",
-        "velocity",
-        "quaternion",
-        "rate",
-        "platform_velocity",
-        "pad_force",
-        "energy",
-        "transverse_energy",
-    ):
-        np.testing.assert_array_equal(
-            getattr(shared, name), getattr(alone, name), err_msg=f"{name}"
-        )
+    assert_same_bits(shared, alone)

@@ -9,7 +9,7 @@ import pytest
 from tests.highfi.blocks import block
 from tests.highfi.dynamics import test_elastic as test_kernels
 from tests.highfi.dynamics.test_damping import scene
-from tests.highfi.support import COARSE, begun, loop_on, tiny
+from tests.highfi.support import COARSE, assert_same_bits, begun, loop_on, tiny
 from tests.highfi.tets import split
 from tipoff import highfi
 from tipoff.highfi import Numerics
@@ -202,8 +202,7 @@ def test_threads_and_a_resume_do_not_change_a_bit(tmp_path, kernel):
     restore(second, saved)
     second.integrate(None)
     result = second.trajectory({}, test_kernels.NUMERICS)
-    for name in ("position", "rate", "platform_velocity", "pad_force", "transverse_energy"):
-        np.testing.assert_array_equal(getattr(result, name), getattr(expected, name), err_msg=name)
+    assert_same_bits(result, expected)
 
 
 @pytest.mark.slow
