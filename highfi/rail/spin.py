@@ -1,14 +1,14 @@
 """How fast a platform may turn before its rails are no longer linear in its frame.
 
 Rails are linear elastic in the frame of the platform. Centrifugal load on the deformed rail is taken
-into account, the stiffening by the tension that it causes is not. For a beam that turns at W with a
+into account. The stiffening by the tension that it causes is not. For a beam that turns at W with a
 lowest frequency w at rest
 
     w(W)^2 = w^2 + k W^2,   k = 1.193 for a cantilever clamped on the axis, across the plane of turning
 
 (Southwell and Gough 1921; Leissa, Applied Mechanics Reviews 34 (1981) 629), so what is left out is of
 the relative size (W / w)^2 of the stiffness, and larger where the clamp is far from the axis. A scene
-is refused where that exceeds ``MOST``.
+is refused where this ratio exceeds ``MOST``.
 """
 
 import numpy as np
@@ -52,9 +52,9 @@ def expected_rate(scene: Scene) -> float:
 
 
 def rate_never_checked(scene: Scene, mesh: RailMesh) -> float:
-    """Rate (rad/s) of the platform that is surely within the limit: that for a strip as thin as one
-    element and as long as the rail, held at one end, which no rail on rigid mounts is softer than.
-    Zero on joints, which may be as soft as they like."""
+    """Rate (rad/s) of the platform that is within the limit for any rail of this length. It belongs
+    to a strip as thin as one element and held at one end: no rail on rigid mounts is softer. Zero
+    on joints, whose stiffness has no lower bound."""
     if scene.rail.joint() is not None:
         return 0.0
     material = scene.rail.material

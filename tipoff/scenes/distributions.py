@@ -75,8 +75,8 @@ class Uniform(_Limits):
 
 
 class LogUniform(_Limits):
-    """The logarithm from that of ``low`` to that of ``high`` alike: of a number that is known to an
-    order of magnitude."""
+    """All values of the logarithm between ``low`` and ``high`` are equally likely. It suits a
+    number known to an order of magnitude."""
 
     distribution: Literal["log-uniform"]
     provenance: str = ""

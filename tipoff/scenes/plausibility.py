@@ -122,8 +122,8 @@ def _of_mounts(rail) -> list[str]:
 
 
 def _of_joints(table) -> list[str]:
-    """Joints under the mounts in a wrong unit, or stiffer in shear than along their normal, which
-    no contact of asperities is (``scenes.effects.mount_stiffness``)."""
+    """Joints under the mounts that seem to be in a wrong unit, or are stiffer in shear than along
+    their normal. No contact of asperities is (``scenes.effects.mount_stiffness``)."""
     if table is None:
         return []
     keys, joint = "rail.mount_stiffness.normal, rail.mount_stiffness.shear", table.record()

@@ -71,7 +71,7 @@ def test_interface_stiffness_and_contact_cells_are_compared_with_the_nominal_run
     assert changes == {8: 0.0, 16: 0.0, 32: 0.0}
     assert summary.lines(found)[2:4] == [
         "interface stiffness, times 0.25 to 16: a settled rate changes by up to 0.04 deg/s",
-        "Contact cells along each edge of a pad, 8 to 32: a settled rate changes by up to 0 deg/s",
+        "contact cells along each edge of a pad, 8 to 32: a settled rate changes by up to 0 deg/s",
     ]
 
 

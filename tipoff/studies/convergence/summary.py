@@ -15,7 +15,7 @@ def lines(found: dict) -> list[str]:
         *refinements(found),
         *_changes("interface stiffness, times", "factor", found["interface_stiffness"]),
         *_changes(
-            "Contact cells along each edge of a pad,", "cells_per_edge", found["contact_cells"]
+            "contact cells along each edge of a pad,", "cells_per_edge", found["contact_cells"]
         ),
         *_ripple(found["ripple"]),
         *([equal_accuracy.sentence(equal)] if equal else []),
