@@ -114,11 +114,24 @@ def test_a_chaotic_reference_is_not_judged(study, monkeypatch):
     grow, the same difference is a miss."""
     settle(monkeypatch, lambda factor: 0.3 * (factor == 4.0), grows=5.0)
     found = rows(study)
-    assert [row["verdict"] for row in found] == ["agrees", "agrees", interface.CHAOTIC]
+    assert [row["verdict"] for row in found[:2]] == ["agrees", "agrees"]
+    assert found[2]["chaotic"] and found[2]["verdict"].endswith("x limit; reference chaotic")
+    assert "2 of 2" not in page.stiffnesses(found) and "at 4 times" not in page.stiffnesses(found)
     (whole,) = interface.combined([agreeing()], found)
-    assert whole["passes"] and [item["verdict"] for item in whole["interface"]][2] == (
-        interface.CHAOTIC
-    )
+    assert whole["passes"] and not whole.get("chaotic")
+
+
+def test_a_miss_where_the_reference_is_chaotic_says_both(study, monkeypatch):
+    """It is still no agreement. Control: without growth the row is a plain miss."""
+    missing = agreeing() | {"passes": False, "verdict": "misses: rate L2 2 x limit"}
+    for grows, words in ((5.0, "; reference chaotic"), (0.0, "")):
+        settle(monkeypatch, lambda factor: 0.3, grows=grows)
+        (row,) = interface.combined([missing], rows(study))
+        assert row["verdict"] == missing["verdict"] + words
+        assert not row["passes"] and row["chaotic"] is bool(words)
+        said = page.summary([row | {"touches": True}])
+        assert said.startswith("0 of 1 conditions agree")
+        assert ("1 misses where the reference is chaotic" in said) is bool(words)
 
 
 def test_verdicts_are_on_the_page_in_markdown_and_in_the_terminal(study, monkeypatch):

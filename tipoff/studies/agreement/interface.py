@@ -60,13 +60,14 @@ def rows(study: Study, request: Callable[..., Run], context: Context) -> list[di
     for row in missed:
         row["chaotic"] = chaotic[row["condition"], row["factor"]]
         if row["chaotic"]:
-            row["verdict"] = CHAOTIC
+            row["verdict"] = f"{row['verdict']}; {CHAOTIC}"
     return found
 
 
 def combined(agreement: Sequence[dict], found: Sequence[dict]) -> list[dict]:
     """Rows of the agreement table with the verdicts at each factor under ``interface``. A condition
-    agrees where it does at every factor at which it is judged."""
+    agrees where it does at every factor at which it is judged. A miss remains a miss where the
+    reference is chaotic, and its verdict says so."""
     return [
         _combined(row, [item for item in found if item["condition"] == row["condition"]])
         for row in agreement
@@ -80,7 +81,11 @@ def _combined(row: dict, own: list[dict]) -> dict:
         if item["reference_converged"] and not item["passes"] and not item["chaotic"]
     ]
     verdicts_of = [{"factor": item["factor"], "verdict": item["verdict"]} for item in own]
-    if not (row["passes"] and row["reference_converged"] and misses):
+    if not row["passes"]:
+        chaotic = any(item["chaotic"] for item in own if item["factor"] == 1.0)
+        verdict = f"{row['verdict']}; {CHAOTIC}" if chaotic else row["verdict"]
+        return row | {"interface": verdicts_of, "chaotic": chaotic, "verdict": verdict}
+    if not (row["reference_converged"] and misses):
         return row | {"interface": verdicts_of}
     where = ", ".join(f"{item['factor']:g}" for item in misses)
     return row | {

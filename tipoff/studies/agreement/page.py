@@ -90,12 +90,15 @@ def _notes(document: dict) -> tuple[str, ...]:
 
 
 def judged(rows: list[dict], name: str, notes: tuple[str, ...] = ()) -> Table:
-    """A table of agreement rows: good, bad, or with a reference that is not converged."""
-    kinds = [
-        "doubt" if not row["reference_converged"] else "good" if row["passes"] else "bad"
-        for row in rows
-    ]
+    """A table of agreement rows: good, bad, or with a reference that is not converged or chaotic."""
+    kinds = [_kind(row) for row in rows]
     return Table(_HEADS, [_agreement_row(row) for row in rows], notes, "", name, kinds, dense=True)
+
+
+def _kind(row: dict) -> str:
+    if not row["reference_converged"] or row.get("chaotic"):
+        return "doubt"
+    return "good" if row["passes"] else "bad"
 
 
 def _simpler(document: dict) -> Fold:
@@ -156,14 +159,7 @@ def interface(found: list[dict]) -> list[Part]:
         )
         for item in found
     ]
-    kinds = [
-        "doubt"
-        if not item["reference_converged"] or item["chaotic"]
-        else "good"
-        if item["passes"]
-        else "bad"
-        for item in found
-    ]
+    kinds = [_kind(item) for item in found]
     note = (
         "Both models on the coarse mesh; changes of the largest settled rate from factor 1. The "
         "interface stiffness is a property of the launcher: it moves both models alike. A condition "
@@ -225,10 +221,12 @@ def summary(rows: list[dict], words: str = "") -> str:
     agreeing = [row for row in rows if row["passes"] and row["reference_converged"]]
     free = sum(not row["touches"] for row in agreeing)
     doubtful = sum(not row["reference_converged"] for row in rows)
+    chaotic = sum(bool(row.get("chaotic")) for row in rows)
     return (
         f"{len(agreeing)} of {len(rows)} {words}conditions agree"
         + (f", {free} of them without contact" if free else "")
         + (f"; for {doubtful} the reference is not converged" if doubtful else "")
+        + (f"; {chaotic} misses where the reference is chaotic" if chaotic else "")
     )
 
 
