@@ -2,7 +2,7 @@
 
 from tipoff.highfi.contact import cells
 from tipoff.highfi.dynamics import damping, loads, mounts
-from tipoff.highfi.dynamics.step import advance
+from tipoff.highfi.dynamics.step import ADVANCE, Task, perform
 from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.numerics import Numerics
@@ -31,4 +31,4 @@ def compiled_effects(scene: Scene, numerics: Numerics | None = None) -> dict[str
     numerics = numerics or Numerics()
     system = build(scene, numerics, prepare(scene, numerics))
     loop = Loop(scene, system, choose(system, scene, numerics))
-    return effects(advance, (*loop.arguments(), loop.book, loop.team, 0, 0, 0), LAWS)
+    return effects(perform, (*loop.arguments(), 0, Task(ADVANCE, 0, 0, 0.0)), LAWS)

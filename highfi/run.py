@@ -11,8 +11,7 @@ import numpy as np
 
 from tipoff.highfi.dynamics import ending, linear_range, observe, samples
 from tipoff.highfi.dynamics.checkpoint import Checkpoint, restore
-from tipoff.highfi.dynamics.loads import body_force_in_frame, thrust_load
-from tipoff.highfi.dynamics.step import advance, evaluate, kick_bodies
+from tipoff.highfi.dynamics.step import ADVANCE, EVALUATE, KICK, OPEN, Task, perform
 from tipoff.highfi.dynamics.step_size import Stepping, choose
 from tipoff.highfi.dynamics.system import System, build, initial_state
 from tipoff.highfi.faults import fault
@@ -23,9 +22,7 @@ from tipoff.highfi.rail.fit import check_fit
 from tipoff.highfi.rail.memory_check import check_before, check_mesh
 from tipoff.highfi.rail.scene_mesh import geometry, make_mesh
 from tipoff.highfi.state import records
-from tipoff.highfi.state.nodes import kick_nodes
-from tipoff.highfi.state.pose import pose_in_frame
-from tipoff.highfi.state.threads import processors, team_of
+from tipoff.highfi.state.threads import Team, processors, team_of
 from tipoff.highfi.stress import monitor, peak
 from tipoff.kernels import rotation
 from tipoff.mechanics import comoving, ledger, models, outcome
@@ -174,9 +171,11 @@ class Loop:
             dt=self.stepping.dt_s,
         )
 
-    def arguments(self) -> tuple[records.Constants, records.State, records.Active]:
-        """Records that most kernels take, in their order."""
-        return self.constants(), self.state, self.active
+    def arguments(
+        self,
+    ) -> tuple[records.Constants, records.State, records.Active, np.ndarray, Team]:
+        """Records that the time loop takes, in their order."""
+        return self.constants(), self.state, self.active, self.book, self.team
 
     def begin(self) -> None:
         """First forces, velocities set back to -1/2 so that they pass through the given ones at t =
@@ -184,9 +183,9 @@ class Loop:
 
         Compiles the kernels.
         """
-        evaluate(*self.arguments(), self.team)
+        self.evaluate()
         self.kick(-0.5 * self.stepping.dt_s)
-        ending.begin(self.constants(), self.state, self.book)
+        self._perform(OPEN)
         self.advance_steps(0)
         self._check(keep=True)
 
@@ -239,8 +238,7 @@ class Loop:
 
         def part(thread):
             began = clock.thread_time()
-            damping = advance(*self.arguments(), self.book, self.team, thread, self.steps, count)
-            return damping, clock.thread_time() - began
+            return self._perform(ADVANCE, thread, steps=count), clock.thread_time() - began
 
         others = [self.pool.submit(part, thread) for thread in range(1, self.team.size)]
         self.damping = max(self.damping, part(0)[0])
@@ -297,15 +295,17 @@ class Loop:
         warm = self.system.warm
         return self.state.displacement if warm is None else self.state.displacement + warm
 
-    def kick(self, step: float) -> None:
-        """Advance the velocities of nodes and bodies alone, over ``step`` (s), by the present forces."""
-        constants, state = self.constants(), self.state
-        pose = pose_in_frame(state, constants.payload, constants.frame)
-        thrust = thrust_load(constants, state, self.steps * constants.dt)
-        kick_bodies(constants, state, pose, thrust, step)
-        acceleration = body_force_in_frame(constants.body_force, pose)
-        inverse_mass = constants.rail.inverse_mass
-        kick_nodes(inverse_mass, state.velocity, state.resistance, acceleration, step)
+    def evaluate(self) -> None:
+        """Forces at the present places of rails at rest in their frame."""
+        self._perform(EVALUATE)
+
+    def kick(self, span: float) -> None:
+        """Advance the velocities of nodes and bodies alone, over ``span`` (s), by the present forces."""
+        self._perform(KICK, span=span)
+
+    def _perform(self, kind: int, thread: int = 0, steps: int = 0, span: float = 0.0) -> float:
+        task = Task(kind, self.steps, steps, span)
+        return perform(*self.arguments(), thread, task)
 
     def _motion(self) -> outcome.Motion:
         return samples.motion(

@@ -12,7 +12,7 @@ from tipoff.highfi.dynamics.system import System
 from tipoff.highfi.state.pose import triple
 from tipoff.highfi.state.records import Exit
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import entry, inlined, kernel
+from tipoff.kernels.jit import inlined, kernel
 from tipoff.mechanics import ending as books
 from tipoff.mechanics.ending import (
     AT_EXIT,
@@ -57,7 +57,7 @@ def found(system: System, book: np.ndarray) -> tuple[str, Outcome]:
     return books.found(whole)
 
 
-@entry(forceinline=True)
+@inlined
 def begin(constants, state, book):
     """Begin the ``book`` at ignition, with the velocities of half a step before."""
     _fill(constants.frame, constants, state, book, 0.0)

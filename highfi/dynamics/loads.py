@@ -9,7 +9,7 @@ from tipoff.highfi.contact.pads import friction_power
 from tipoff.highfi.state.pose import body_matrix, body_rate, triple
 from tipoff.highfi.state.records import AXIAL, TOTAL
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import entry, inlined, kernel
+from tipoff.kernels.jit import inlined, kernel
 from tipoff.scenes.effects.thrust import magnitude
 
 
@@ -28,7 +28,7 @@ def _offset_line(offset):
     return offset.direction, offset.arm
 
 
-@entry(forceinline=True)
+@inlined
 def thrust_load(constants, state, time):
     """Thrust force (N), moment about the payload's mass centre (N m) and point of application (m),
     in inertial axes."""
@@ -41,7 +41,7 @@ def thrust_load(constants, state, time):
     return force, rotation.cross(lever, force), (p[0] + lever[0], p[1] + lever[1], p[2] + lever[2])
 
 
-@entry
+@kernel
 def body_force_in_frame(body_force, pose):
     """Acceleration (m/s2) by the body force in frame axes; zero without one."""
     acceleration = (0.0, 0.0, 0.0)

@@ -19,12 +19,17 @@ damping (``mounts``), which have a resultant; all nodes of the rail then move.
 
 All threads of the team move and load nodes and search contact; before that the first one moves the
 bodies.
+
+Python calls one entry, ``perform``, with a ``Task``: the code that unpacks the records for an entry
+takes a second to compile.
 """
+
+from typing import NamedTuple
 
 from tipoff.highfi.contact.pads import collect_contact, contact_forces
 from tipoff.highfi.dynamics.damping import begin_damping, collect_damping
 from tipoff.highfi.dynamics.elastic import elastic_force, finish_load, hold_blocks, move_and_load
-from tipoff.highfi.dynamics.ending import follow
+from tipoff.highfi.dynamics.ending import begin, follow
 from tipoff.highfi.dynamics.loads import (
     accelerate,
     add_external_impulse,
@@ -33,15 +38,46 @@ from tipoff.highfi.dynamics.loads import (
     thrust_load,
 )
 from tipoff.highfi.dynamics.mounts import collect_mounts
+from tipoff.highfi.state.nodes import kick_nodes
 from tipoff.highfi.state.pose import drift_body, pose_in_frame, small_turn, triple
 from tipoff.highfi.state.threads import barrier, reset_queue
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import entry, inlined, kernel
 
+EVALUATE, KICK, OPEN, ADVANCE = range(4)
+
+
+class Task(NamedTuple):
+    """What ``perform`` does."""
+
+    kind: int  # EVALUATE, KICK, OPEN or ADVANCE
+    first_step: int  # number of the step to begin with, whose places are the present ones
+    steps: int = 0  # to advance by
+    span: float = 0.0  # s, of a kick
+
 
 @entry
-def evaluate(constants, state, active, team):
-    """All forces at the present places of rails at rest in their frame, by one thread."""
+def perform(constants, state, active, book, team, thread, task):
+    """Do the ``task`` as one ``thread`` of ``team``.
+
+    EVALUATE: all forces at the present places of rails at rest in their frame. KICK: advance all
+    velocities, but no place, by the present forces. OPEN: begin the ``book`` (``mechanics.ending``)
+    at ignition, with the velocities of half a step before. ADVANCE: take steps; all threads of the
+    team must be called. Returns the largest step * friction damping / mass of a node in them.
+    """
+    if task.kind == ADVANCE:
+        return _advance(constants, state, active, book, team, thread, task)
+    if task.kind == EVALUATE:
+        _evaluate(constants, state, active, team)
+    elif task.kind == KICK:
+        _kick(constants, state, task)
+    else:
+        begin(constants, state, book)
+    return 0.0
+
+
+@inlined
+def _evaluate(constants, state, active, team):
     rail = constants.rail
     elastic_force(rail, state.displacement, state.resistance, state.turning, state.mounting, team)
     begin_damping(state.history, state)
@@ -50,6 +86,16 @@ def evaluate(constants, state, active, team):
     reset_queue(team)
     contact_forces(constants.interface_stiffness, constants, state, active, pose, team)
     collect(constants.interface_stiffness, constants, state, active)
+
+
+@inlined
+def _kick(constants, state, task):
+    pose = pose_in_frame(state, constants.payload, constants.frame)
+    thrust = thrust_load(constants, state, task.first_step * constants.dt)
+    _kick_bodies(constants, state, pose, thrust, task.span)
+    acceleration = body_force_in_frame(constants.body_force, pose)
+    inverse_mass = constants.rail.inverse_mass
+    kick_nodes(inverse_mass, state.velocity, state.resistance, acceleration, task.span)
 
 
 @inlined
@@ -76,8 +122,8 @@ def _less(a, b):
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
-@entry(forceinline=True)
-def kick_bodies(constants, state, pose, thrust, dt):
+@inlined
+def _kick_bodies(constants, state, pose, thrust, dt):
     """Advance all velocities but those of the nodes over ``dt`` by the present forces; counts the
     external impulse."""
     load, total, moment = state.load[0], triple(state.reaction), triple(state.reaction[3:])
@@ -155,22 +201,17 @@ def _drift_frame(frame, drive, state, pose, dt):
             state.rail_momentum[i] += momentum[i]
 
 
-@entry
-def advance(constants, state, active, book, team, thread, first_step, steps):
-    """Take ``steps`` steps from step number ``first_step``, as one ``thread`` of ``team``; all its
-    threads must be called.
-
-    Returns the largest step * friction damping / mass of a node. ``book`` (``mechanics.ending``)
-    follows the payload off the rail. On entry and on return forces are those of the present places
-    and work is counted up to the present time.
-    """
+@inlined
+def _advance(constants, state, active, book, team, thread, task):
+    """``book`` follows the payload off the rail. On entry and on return forces are those of the
+    present places and work is counted up to the present time."""
     rail, frame, dt = constants.rail, constants.frame, constants.dt
     damping = 0.0
-    for n in range(first_step, first_step + steps):
+    for n in range(task.first_step, task.first_step + task.steps):
         if thread == 0:
             pose = pose_in_frame(state, constants.payload, frame)
             thrust = thrust_load(constants, state, n * dt)
-            kick_bodies(constants, state, pose, thrust, dt)
+            _kick_bodies(constants, state, pose, thrust, dt)
             pose = pose_in_frame(state, constants.payload, frame)
             add_work(constants, state, active, pose, thrust, dt)
             drift_bodies(constants, state, pose)

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import entry, kernel
+from tipoff.kernels.jit import kernel
 
 
 class Pose(NamedTuple):
@@ -61,7 +61,7 @@ def frame_matrix(platform_state, frame):
     return turn
 
 
-@entry
+@kernel
 def pose_in_frame(state, payload, frame):
     """Pose of the payload at this instant, with the velocities of the half step."""
     base = frame_matrix(state.platform, frame)

@@ -16,26 +16,33 @@ from tipoff.mechanics import ending as books
 # What ``integrate`` returns: all samples taken; exit, settled window and jam are known; or why it
 # stopped before.
 SAMPLED, ENDED, UNDERFLOW, OUT_OF_STEPS, NOT_FINITE, STRUCK, LOST_ENERGY = range(7)
+NOT_BEGUN = -1  # in the place of the number of samples
 
 
 def ready(system, state: np.ndarray, first_step: float) -> Loop:
-    """A loop that has taken no sample of ``system`` yet, at ``state`` (STATE_SIZE,) and before a
-    first step of ``first_step`` (s). Rails are at rest, or as modes at the end of ``state`` say."""
+    """A loop of ``system`` that ``integrate`` begins at ``state`` (STATE_SIZE,) with a first step of
+    ``first_step`` (s). Rails are at rest, or as modes at the end of ``state`` say."""
     loop = allocate(system)
-    reset(system, state, first_step, loop)
+    loop.start[: state.size] = state
+    loop.clock.wanted, loop.counts.samples = first_step, NOT_BEGUN
     return loop
 
 
-@entry
+@kernel
 def reset(system, state, first_step, loop):
     """Bring a used loop back to the start of a run."""
+    loop.start[:] = 0.0
+    slot.copy(state, loop.start, state.size)
+    _begin(system, first_step, loop)
+
+
+@kernel
+def _begin(system, first_step, loop):
+    """Begin a run at ``loop.start``."""
     _reset_clock(loop.clock, first_step)
     _reset_counts(loop.counts)
     _reset_audit(loop.audit)
-    loop.start[:] = 0.0
-    loop.end[:] = 0.0
-    slot.copy(state, loop.start, state.size)
-    slot.copy(state, loop.end, state.size)
+    slot.copy(loop.start, loop.end, loop.start.size)
     _reset_compliance(system.compliance)
     loop.engaged[:] = False
     loop.depth_left[:] = 0.0
@@ -91,6 +98,8 @@ def integrate(system, plan, tolerance, marks, loop, sampling, rows, forces):
     """Take samples up to ``sampling.number`` into ``rows`` (n, SAMPLE_SIZE) and ``forces`` (n, f,
     3), and after the last one go on to the end of the scene; fewer, when the settled window is
     complete or a jam is found. The steps then end at the same instant, whatever is sampled."""
+    if loop.counts.samples == NOT_BEGUN:
+        _begin(system, loop.clock.wanted, loop)
     clock, counts, end, ended = (
         loop.clock,
         loop.counts,

@@ -35,7 +35,7 @@ COUNTS = np.dtype(
         ("rejected", "i8"),
         ("events", "i8"),
         ("evaluations", "i8"),  # of the right-hand side
-        ("samples", "i8"),  # taken so far
+        ("samples", "i8"),  # taken so far; -1 before the run has begun
         ("striking_face", "i8"),  # face that strikes an edge of its wall, or -1
     ],
     align=True,

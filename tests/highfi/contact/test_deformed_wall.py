@@ -8,7 +8,6 @@ from tests.highfi import tets
 from tests.highfi.blocks import block
 from tests.highfi.support import loop_on
 from tipoff.highfi.contact.pads import FASTEST_APPROACH
-from tipoff.highfi.dynamics.step import evaluate
 from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
 from tipoff.highfi.numerics import Numerics
 from tipoff.kernels import rotation
@@ -94,7 +93,7 @@ class Pressed:
         state.payload.position[:] = place
         state.payload.quaternion[:] = rotation.exponential(np.array(turn))
         self.loop.active.wait[:] = 0
-        evaluate(*self.loop.arguments(), self.loop.team)
+        self.loop.evaluate()
         return float(state.load["stored"][0])
 
     def resistance(self) -> np.ndarray:

@@ -62,9 +62,11 @@ def test_resumed_run_ends_in_the_same_bits(tolerance, tmp_path):
     # Control: with the state alone kept, and not the size of the next step and the stages, it ends
     # elsewhere.
     poor = stopped_run(tolerance, last, tmp_path / "run.npz")
-    fresh = integrate.ready(poor.system, poor.loop.end, poor.interval)
-    fresh.clock.now, fresh.counts.samples = poor.loop.clock.now, last + 1
-    fresh.counts.segment = poor.loop.counts.segment
-    poor.loop = fresh
+    kept, rows, forces = poor.loop, poor.rows.copy(), poor.forces.copy()
+    poor.loop = integrate.ready(poor.system, kept.end, poor.interval)
+    poor.begin()
+    poor.loop.clock.now, poor.loop.counts.samples = kept.clock.now, last + 1
+    poor.loop.counts.segment = kept.counts.segment
+    poor.rows, poor.forces = rows, forces
     poor.integrate(None)
     assert poor.taken == len(whole.time) and not np.array_equal(poor.trajectory().rate, whole.rate)

@@ -15,7 +15,6 @@ from tests.studies.shown import html
 from tests.studies.synthetic import flight
 from tipoff import scenes
 from tipoff.highfi import Numerics
-from tipoff.highfi.dynamics.step import evaluate
 from tipoff.highfi.stress import monitor
 from tipoff.highfi.stress.peak import STRESS, no_peak
 from tipoff.mechanics.trajectory import Trajectory
@@ -118,7 +117,7 @@ def test_contact_pressure_comes_to_the_force_on_the_pads(size, off):
     # look.
     loop.active.wait[:] = 0
     loop.state.payload.position[1] += loop.scene.contact.clearance + 30e-6
-    evaluate(*loop.arguments(), loop.team)
+    loop.evaluate()
     mesh, frame = loop.system.mesh, frames.Camera(loop).take(loop)
     share = np.zeros(len(mesh.points))
     for name, facets in mesh.surfaces.items():
