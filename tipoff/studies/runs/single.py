@@ -1,7 +1,7 @@
 """One run of one condition in one model; prints the result."""
 
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
-from tipoff.studies.agreement import kept
+from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.core import models, words
@@ -10,6 +10,7 @@ from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import FAILED, Study, StudyError
 from tipoff.studies.cost import choice
 from tipoff.studies.cost import stage as cost
+from tipoff.studies.runs import disturbed
 from tipoff.studies.runs.stage import row
 
 
@@ -69,6 +70,8 @@ def result_of(study: Study, condition: str, request: Run, quiet: bool) -> dict:
     calibrated, modes = request.calibration is not None, getattr(request.numerics, "modes", 0)
     result = row(condition, found, study.relative(study.store.path(request)))
     result["agreement"] = kept.words(study, request.model, condition, calibrated, modes)
+    if request.fidelity == "lowfi" and found.outcome.rate is not None:
+        result["disturbed"] = disturbed.of(request, found, study.settings.clearance_change)
     if not quiet:
         print("\n".join(lines(result, model(request), study)))
     return result | {
@@ -120,6 +123,9 @@ def lines(result: dict, made_with: str, study: Study) -> list[str]:
             f"{1e3 * result['peak_stress_time_s']:.4g} ms after ignition"
         )
         text += [f"  warning       {warning}" for warning in result["warnings"]]
+    if "disturbed" in result:
+        limit = verdicts.gates(study.scene)["settled_rate_error_deg_s"]
+        text += disturbed.lines(result["disturbed"], limit)
     text.append(f"  agreement     {result['agreement']}")
     text.append(f"  took          {result['wall_s']:.3g} s, {result['steps']} steps")
     text.append(f"  trajectory    {study.path(result['trajectory'])}")
