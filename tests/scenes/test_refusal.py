@@ -16,7 +16,12 @@ BAD = {
     "payload.inertia": (
         "payload__inertia",
         {"xx": "1 kg*m**2", "yy": "1 kg*m**2", "zz": "3 kg*m**2"},
-        "triangle inequality",
+        "triangle inequality I1 + I2 >= I3 (its principal moments are 1, 1, 3 kg m2)",
+    ),
+    "platform.inertia": (
+        "platform__inertia",
+        {"xx": "1 kg*m**2", "yy": "1 kg*m**2", "zz": "1 kg*m**2", "xy": "2 kg*m**2"},
+        "positive definite inertia tensor (its principal moments are -1, 1, 3 kg m2)",
     ),
     "payload.size.1": ("payload__size", ["1 m", "0 m", "1 m"], "greater than 0"),
     "payload.colour": ("payload__colour", "red", "no such key"),

@@ -21,10 +21,13 @@ class InertiaTensor(Table):
     @model_validator(mode="after")
     def _physical(self):
         moments = np.linalg.eigvalsh(tensor(self))
+        given = f"its principal moments are {', '.join(f'{each:.6g}' for each in moments)} kg m2"
         if moments[0] <= 0.0:
-            raise ValueError("a positive definite inertia tensor")
+            raise ValueError(f"a positive definite inertia tensor ({given})")
         if moments[0] + moments[1] < moments[2] * (1.0 - 1e-12):
-            raise ValueError("principal moments that satisfy the triangle inequality I1 + I2 >= I3")
+            raise ValueError(
+                f"principal moments that satisfy the triangle inequality I1 + I2 >= I3 ({given})"
+            )
         return self
 
 

@@ -130,6 +130,17 @@ def test_measured_points_are_interpolated(tmp_path):
     assert thrust.shortest_feature(record) == pytest.approx(np.diff(time).min(), rel=1e-12)
 
 
+def test_a_time_that_stands_twice_is_a_jump(tmp_path):
+    """Both sides of it act: the points of a constant push give its record."""
+    time, force = np.array([2e-3, 2e-3, 12e-3, 12e-3]), np.array([0.0, 500.0, 500.0, 0.0])
+    found = table(kind="measured", file=curve_file(tmp_path, time, force))
+    pushed = table(kind="constant", force=500.0, start=2e-3, duration=10e-3)
+    for ours, theirs in zip(found.record().curve, pushed.record().curve):
+        assert np.array_equal(ours, theirs)
+    assert found.requested() == pytest.approx(pushed.requested(), rel=1e-14)
+    assert thrust.impulse(found.record(), DURATION) == pytest.approx(5.0, rel=1e-14)
+
+
 @pytest.mark.parametrize("use", ["curve", "fit"])
 def test_the_fit_recovers_a_gaussian(tmp_path, use):
     time = np.linspace(0.0, 0.03, 121)

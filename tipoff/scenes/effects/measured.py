@@ -14,7 +14,8 @@ _HEADER = ["time_s", "force_N"]
 
 
 class MeasuredCurve(NamedTuple):
-    """Times (s, strictly increasing, >= 0) and forces (N), each (n,) with n >= 2."""
+    """Times (s, >= 0) and forces (N), each (n,) with n >= 2. Times increase; one that stands twice is
+    a jump, from the first force to the second."""
 
     time: np.ndarray
     force: np.ndarray
@@ -33,8 +34,8 @@ class GaussianFit(NamedTuple):
 
 
 def read_curve(path: str | Path) -> MeasuredCurve:
-    """Read a CSV with header ``time_s,force_N``. Raises ValueError naming everything that is wrong
-    with the table."""
+    """Read a CSV with header ``time_s,force_N``. A time in two rows is a jump. Raises ValueError
+    naming everything that is wrong with the table."""
     try:
         table = list(csv_file.lines(path))
     except SceneError as error:
@@ -47,12 +48,15 @@ def read_curve(path: str | Path) -> MeasuredCurve:
         csv_file.numbers(str(path), name, place, table[1:]) for place, name in enumerate(_HEADER)
     )
     wrong = [f"{f.expected} ({f.key}: {f.given})" for f in wrong_times + wrong_forces]
-    if time.size < 2:
-        wrong.append("at least two rows")
+    if np.unique(time).size < 2:
+        wrong.append("at least two different times")
     if (time < 0.0).any():
         wrong.append("times that are not negative")
-    if (np.diff(time[np.isfinite(time)]) <= 0.0).any():
+    steps = np.diff(time[np.isfinite(time)])
+    if (steps < 0.0).any():
         wrong.append("times in increasing order")
+    if ((steps[1:] == 0.0) & (steps[:-1] == 0.0)).any():
+        wrong.append("no time in more than two rows (two are a jump)")
     if wrong:
         raise ValueError("a curve with " + ", ".join(wrong))
     return MeasuredCurve(time, force)
@@ -73,7 +77,10 @@ def fit_gaussian(curve: MeasuredCurve) -> GaussianFit:
 
     centre = np.trapezoid(force * time, time) / total
     width = math.sqrt(
-        max(np.trapezoid(force * (time - centre) ** 2, time) / total, np.diff(time).min() ** 2)
+        max(
+            np.trapezoid(force * (time - centre) ** 2, time) / total,
+            np.diff(np.unique(time)).min() ** 2,
+        )
     )
     start = (total / (width * math.sqrt(2.0 * math.pi)), centre, width)
     try:
