@@ -208,7 +208,11 @@ def stiffnesses(found: list[dict]) -> str:
     for factor in dict.fromkeys(item["factor"] for item in found):
         own = [item for item in judged_rows if item["factor"] == factor]
         agree = sum(item["passes"] for item in own)
-        parts.append(f"{agree} of {len(own)} judged conditions agree at {factor:g} times")
+        parts.append(
+            f"{agree} of {len(own)} judged conditions agree at {factor:g} times"
+            if own
+            else f"none is judged at {factor:g} times"
+        )
     return ", ".join(parts)
 
 
