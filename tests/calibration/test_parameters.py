@@ -67,9 +67,18 @@ def test_static_friction_keeps_its_ratio():
     assert parameters.overrides(scene, values)["friction.static"] == pytest.approx(0.15)
 
 
+def test_another_law_without_friction_has_its_own_parameters():
+    free = parameters.free(with_law("hunt-crossley", friction=False))
+    assert [item.name for item in free] == [
+        "contact.force",
+        "contact.exponent",
+        "contact.dissipation",
+    ]
+
+
+@pytest.mark.slow
 def test_another_law_without_friction_fits_its_own_curves():
-    """Hunt-Crossley, start 40 % off in force; one condition of three impacts. Each further law
-    would only compile its kernels again."""
+    """Hunt-Crossley, start 40 % off in force; one condition of three impacts."""
     truth = with_law("hunt-crossley", friction=False).replace({"agreement.fitted": ["phi60"]})
     free = parameters.free(truth)
     wrong = {item.name: item.read(truth) for item in free}

@@ -42,7 +42,7 @@ def test_friction_takes_energy_and_the_step_is_below_the_limit(result):
     "change",
     [
         {"thrust__reaction": "exhaust"},
-        {"platform": None, "gravity__z": "-9.80665 m/s**2"},
+        pytest.param({"platform": None, "gravity__z": "-9.80665 m/s**2"}, marks=pytest.mark.slow),
         pytest.param({"platform": None}, marks=pytest.mark.slow),
         pytest.param({"friction": None}, marks=pytest.mark.slow),
         pytest.param({"gravity__y": "9.80665 m/s**2"}, marks=pytest.mark.slow),

@@ -28,7 +28,7 @@ ADDED = {
     },
 }
 ON_RAILS = ("compliance", "modes", "thermal")  # effects that need the compliance of the rails
-FOUND = ("friction", "sticking")  # the time loops without the others are compiled here alone
+FOUND = ("sticking",)  # its time loop is compiled by other tests too
 PACKAGE = b"6tipoff5lowfi7contact9compliant"  # as machine code names it
 COUNT = """
 import numba

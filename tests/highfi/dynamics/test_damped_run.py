@@ -103,7 +103,7 @@ def test_a_rail_that_turns_with_its_frame_is_not_damped():
 
 
 @pytest.mark.case("X20")
-@pytest.mark.parametrize("kernel", ["columns", "elements"])
+@pytest.mark.parametrize("kernel", ["columns", pytest.param("elements", marks=pytest.mark.slow)])
 def test_threads_and_a_resume_do_not_change_a_bit(tmp_path, kernel):
     """One thread makes the whole run; the run that is resumed ends with three."""
     whole, half, second = (test_kernels.begun(kernel, threads, **DAMPED) for threads in (1, 1, 3))

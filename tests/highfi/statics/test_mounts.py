@@ -97,13 +97,19 @@ def extrapolated(joint):
 @pytest.mark.case("O53")
 def test_soft_mounts_against_quadratic_hexahedra(rail):
     """Where the joints carry most of the deflection, it and the first four frequencies are within
-    1 % at 2 mm. Control: a twentieth more stiffness is not, nor are rigid mounts, at whose edges
-    every mesh converges slowly."""
+    1 % at 2 mm. Control: a twentieth more stiffness is not."""
     exact, (deflection, frequencies) = extrapolated(SOFT), solved(rail, SOFT)
     assert deflection == pytest.approx(exact.deflection, rel=0.01)
     assert frequencies == pytest.approx(exact.frequencies, rel=0.01)
     stiffer, _ = solved(rail, MountStiffness(*(1.05 * part for part in SOFT)))
     assert stiffer < 0.98 * exact.deflection
+
+
+@pytest.mark.case("O53")
+@pytest.mark.slow
+def test_rigid_mounts_converge_slowly(rail):
+    """At the edges of rigid strips every mesh does: at 2 mm they are further from the quadratic
+    elements than soft ones are."""
     exact, (deflection, frequencies) = extrapolated(None), solved(rail, None)
     assert deflection < 0.97 * exact.deflection
     assert frequencies.max() > 1.01 * exact.frequencies.max()
