@@ -93,7 +93,8 @@ def row_depth(compliance, face, xi, displacement):
 @kernel
 def press(compliance, face):
     """Fill the face's force (p,) N and its moments, sums over the pressed cells of k dA xi'^i
-    eta'^j."""
+    eta'^j. Returns the smallest |p| (m) of all cells over the wall: while p changes by less, the
+    same cells press."""
     force, moment, lever = (
         compliance.workspace.force[face],
         compliance.workspace.moment[face],
@@ -104,6 +105,7 @@ def press(compliance, face):
     stiffness = compliance.interface_stiffness * 4.0 * half[0] * abs(half[1]) / (count * count)
     force[:] = 0.0
     moment[:] = 0.0
+    slack = np.inf
     for row in range(count):
         xi = compliance.node[row]
         weight = stiffness * cover(compliance, half[0], lever[MIDDLE], row)[0]
@@ -117,6 +119,7 @@ def press(compliance, face):
             for column in range(count):
                 eta = compliance.node[column] + lever[ASIDE]
                 p = level + eta * (tilt + eta * bend) - relief * compliance.crown[column]
+                slack = min(slack, abs(p))
                 if p > 0.0:
                     square = eta * eta
                     f0, f1, f2 = f0 + p, f1 + p * eta, f2 + p * square
@@ -131,6 +134,20 @@ def press(compliance, face):
                 x = xi + lever[SHIFT]
                 _add_force(force, weight, x, f0, f1, f2)
                 _add_moments(moment, weight, x, (m0, m1, m2, m3, m4))
+    return slack
+
+
+@inlined
+def largest_change(compliance, face, change):
+    """Bound (m) of the change of p in any cell of a face by a ``change`` (p,) of the displacement of
+    its wall."""
+    lever = compliance.workspace.lever[face]
+    xi, eta = 1.0 + abs(lever[SHIFT]), 1.0 + abs(lever[ASIDE])
+    return (
+        abs(change[0])
+        + xi * (abs(change[1]) + xi * abs(change[3]))
+        + eta * (abs(change[2]) + xi * abs(change[4]) + eta * abs(change[5]))
+    )
 
 
 @inlined
@@ -175,6 +192,21 @@ def deepest(compliance, face, displacement):
             if p > largest:
                 largest, along, across = p, compliance.node[row], compliance.node[column]
     return largest, along, across
+
+
+@kernel
+def deepest_at_rest(compliance, face):
+    """The same where the wall has no displacement: p is a sum of a part along and a part across the
+    pad."""
+    lever, relief = compliance.workspace.lever[face], compliance.relief[face]
+    along, across, by_xi, by_eta = 0.0, 0.0, -np.inf, -np.inf
+    for i in range(compliance.node.size):
+        place, crown = compliance.node[i], relief * compliance.crown[i]
+        if lever[BY_XI] * place - crown > by_xi:
+            along, by_xi = place, lever[BY_XI] * place - crown
+        if lever[BY_ETA] * place - crown > by_eta:
+            across, by_eta = place, lever[BY_ETA] * place - crown
+    return lever[DEPTH] + by_xi + by_eta, along, across
 
 
 @kernel

@@ -33,6 +33,8 @@ class Workspace(NamedTuple):
     slope: np.ndarray  # (w, w) 1/N, its derivative along the rail
     matrix: np.ndarray  # (w, w)
     right: np.ndarray  # (w, 3 m + n)
+    answers: np.ndarray  # (3 m, 18) to the rigid motions of the faces (``step_limit``)
+    slack: np.ndarray  # (m,) m, smallest |p| of a cell of the faces in ``order``
 
 
 class Modes(NamedTuple):
@@ -186,4 +188,6 @@ def _workspace(faces: int, members: int, modes: int) -> Workspace:
         slope=zeros((wide, wide)),
         matrix=zeros((wide, wide)),
         right=zeros((wide, 3 * members + modes)),
+        answers=zeros((3 * members, 18)),
+        slack=zeros((members,)),
     )

@@ -7,14 +7,15 @@ piecewise linear equations.
 F is the flexibility without the modes, W q the displacement by the modes
 (``lowfi.contact.compliant.modes``), T the thermal offset
 (``lowfi.contact.compliant.thermal_offset``). P is the gradient of a convex potential, so the
-solution is unique. While the set of pressed cells does not change the equations are linear, and the
-last correction is exact. The first guess is the displacement of the solution before."""
+solution is unique. While the set of pressed cells does not change the equations are linear, and a
+whole correction is exact: it is the last one where it cannot change the set. The first guess is the
+displacement of the solution before."""
 
 import numpy as np
 
 from tipoff.kernels.jit import inlined, kernel
 from tipoff.lowfi.contact.compliant import thermal_offset
-from tipoff.lowfi.contact.compliant.cells import eased, press, take_lever
+from tipoff.lowfi.contact.compliant.cells import eased, largest_change, press, take_lever
 from tipoff.lowfi.contact.compliant.modes import evaluate, offset
 from tipoff.mechanics.rail_compliance import PATTERNS, POWERS
 
@@ -98,10 +99,10 @@ def stiffness(moment, a, b):
 
 @kernel
 def _correct(compliance, count, share):
-    """Take ``share`` of one correction; its largest size (m)."""
+    """Take ``share`` of one correction; its largest size (m), or zero where it is exact."""
     workspace = compliance.workspace
     for i in range(count):
-        press(compliance, workspace.order[i])
+        workspace.slack[i] = press(compliance, workspace.order[i])
     wide = count * PATTERNS
     fill_matrix(workspace, count)
     for row in range(wide):
@@ -118,16 +119,18 @@ def _correct(compliance, count, share):
             - offset(compliance.modes, face, a)
         )
     eliminate(workspace.matrix, workspace.right, wide, 1)
-    largest = 0.0
+    largest, exact = 0.0, share == 1.0
     for i in range(count):
         face = workspace.order[i]
+        changes = workspace.right[i * PATTERNS : (i + 1) * PATTERNS, 0]
+        exact = exact and largest_change(compliance, face, changes) < workspace.slack[i]
         for a in range(PATTERNS):
-            change = share * workspace.right[i * PATTERNS + a, 0]
+            change = share * changes[a]
             largest = max(largest, abs(change))
             workspace.displacement[face, a] += change
             for b in range(PATTERNS):
                 workspace.force[face, b] -= stiffness(workspace.moment[face], a, b) * change
-    return largest if largest == largest else 0.0  # what is not a number stays so
+    return 0.0 if exact or largest != largest else largest  # what is not a number stays so
 
 
 @kernel

@@ -24,6 +24,8 @@ from tipoff.lowfi.contact.step_limit import friction_damping
 from tipoff.mechanics.rail_compliance import PATTERNS
 
 _RIGID = 3  # depth, tilt along, tilt across
+# Columns of ``Workspace.answers``: force, moment and rate of the payload, then those of the platform.
+_FORCE, _MOMENT, _RATE, _OF_PLATFORM = 0, 3, 6, 9
 
 
 @kernel
@@ -161,19 +163,53 @@ def _own(workspace, face, rigid, other):
 
 @kernel
 def _trace(compliance, faces, platform, payload, count, body, base):
+    answers, number = compliance.workspace.answers, count * _RIGID
+    for k in range(number):
+        wrench = _wrench(
+            compliance, faces, compliance.workspace.order[k // _RIGID], k % _RIGID, body, base
+        )
+        _answer_of_body(payload.inverse_inertia, body, wrench, answers[k, :_OF_PLATFORM])
+        _answer_of_platform(platform, base, wrench, answers[k, _OF_PLATFORM:])
+    inverse_mass = 1.0 / payload.mass + _inverse_mass(platform)
     total = 0.0
-    for i in range(count):
-        for a in range(_RIGID):
-            first = _wrench(compliance, faces, compliance.workspace.order[i], a, body, base)
-            for j in range(count):
-                for b in range(_RIGID):
-                    second = _wrench(
-                        compliance, faces, compliance.workspace.order[j], b, body, base
-                    )
-                    total += _answer(compliance.workspace, i, a, j * _RIGID + b) * _met(
-                        platform, payload, body, base, first, second
-                    )
+    for k in range(number):
+        for j in range(number):
+            first, second = answers[k], answers[j]
+            mobility = inverse_mass * _dot(first[_FORCE:], second[_FORCE:])
+            mobility += _dot(first[_MOMENT:], second[_RATE:])
+            mobility += _dot(first[_OF_PLATFORM + _MOMENT :], second[_OF_PLATFORM + _RATE :])
+            total += _answer(compliance.workspace, k // _RIGID, k % _RIGID, j) * mobility
     return abs(total)
+
+
+@inlined
+def _dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inlined
+def _inverse_mass(platform):
+    value = 0.0
+    if platform is not None:
+        value = 1.0 / platform.mass
+    return value
+
+
+@inlined
+def _answer_of_body(inverse_inertia, body, wrench, out):
+    """Force, moment about the mass centre, and the rate that it gives the body per second."""
+    moment = _moment(body, wrench)
+    rate = rotation.angular_velocity(body.turn, inverse_inertia, moment)
+    for i in range(3):
+        out[_FORCE + i], out[_MOMENT + i], out[_RATE + i] = wrench[0][i], moment[i], rate[i]
+
+
+@inlined
+def _answer_of_platform(platform, base, wrench, out):
+    if platform is None:
+        out[:] = 0.0
+    if platform is not None:
+        _answer_of_body(platform.inverse_inertia, base, wrench, out)
 
 
 @inlined
@@ -200,23 +236,6 @@ def _by_slope(workspace, face, rigid):
     if rigid == 0:
         return u[2] + lever[SHIFT] * u[4] + 2.0 * lever[ASIDE] * u[5]
     return u[4] if rigid == 1 else 2.0 * u[5]
-
-
-@kernel
-def _met(platform, payload, body, base, first, second):
-    """g_a . M^-1 g_b of two wrenches on both bodies."""
-    total = _of_body(payload.mass, payload.inverse_inertia, body, first, second)
-    if platform is not None:
-        total += _of_body(platform.mass, platform.inverse_inertia, base, first, second)
-    return total
-
-
-@inlined
-def _of_body(mass, inverse_inertia, body, first, second):
-    a, b = _moment(body, first), _moment(body, second)
-    return rotation.dot(first[0], second[0]) / mass + rotation.dot(
-        a, rotation.angular_velocity(body.turn, inverse_inertia, b)
-    )
 
 
 @inlined

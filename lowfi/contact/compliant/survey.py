@@ -5,7 +5,7 @@ import numpy as np
 from tipoff.kernels.jit import inlined, kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant import thermal_offset
-from tipoff.lowfi.contact.compliant.cells import deepest, take_lever
+from tipoff.lowfi.contact.compliant.cells import deepest, deepest_at_rest, take_lever
 from tipoff.lowfi.contact.compliant.loads import energy as energy_of_rail
 from tipoff.lowfi.contact.compliant.modes import speed_at
 from tipoff.lowfi.contact.compliant.record import ASIDE, DRIFT, MIDDLE, SHIFT
@@ -47,10 +47,12 @@ def depth(compliance, faces, face, touching, place, turn, state):
 def _deepest(compliance, faces, face, count, touching, place, turn, state):
     """The same after ``solve``, and xi and eta of the deepest cell. A face past the end gets the
     depth it would have there, so that a contact in the step in which it leaves is found."""
-    if not touching[face]:
-        take_lever(compliance, faces, face, place, turn)
     displacement = compliance.workspace.displacement[face]
     if not touching[face]:
+        take_lever(compliance, faces, face, place, turn)
+        if count == 0 and compliance.modes is None and compliance.thermal_offset is None:
+            displacement[:] = 0.0
+            return deepest_at_rest(compliance, face)
         follow(compliance, face, place[0] + faces[0, 0], count, state, displacement)
     return deepest(compliance, face, displacement)
 

@@ -213,6 +213,26 @@ def test_any_pose_is_solved(reference):
     assert worst < 1e-12
 
 
+def test_the_deepest_cell_of_a_wall_at_rest(reference):
+    """By rows and columns alone it is the one that a search of all cells finds, also past the
+    ends."""
+    _, model, system = reference
+    random, compliance = np.random.default_rng(2), system.compliance
+    nothing = np.zeros(PATTERNS)
+    for size in 10.0 ** random.uniform(-7.0, -2.7, 200):
+        offset = random.choice((-1.0, 1.0), 2) * CLEARANCE + size * random.standard_normal(2)
+        pose = relative(
+            model, random.uniform(-0.01, 0.22), offset, 5.0 * size * random.standard_normal(3)
+        )
+        state = state_of(model, pose)
+        place, turn = seen_from_platform(system.platform, system.payload, state)
+        for face in range(len(system.faces)):
+            cells.take_lever(compliance, system.faces, face, place, turn)
+            depth, *where = cells.deepest(compliance, face, nothing)
+            found, *there = cells.deepest_at_rest(compliance, face)
+            assert found == pytest.approx(depth, rel=1e-12, abs=1e-17) and there == where
+
+
 def pressed_elements(scene, face, travel, aside=0.0, points_per_edge=4):
     """Force (N) as a function of the depth (m) a crowned pad face is pressed into the rail of
     elements of 4 mm, ``aside`` (m) of where it stands midway between the rails: interface stiffness
