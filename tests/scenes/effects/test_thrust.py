@@ -130,6 +130,7 @@ def test_measured_points_are_interpolated(tmp_path):
     assert thrust.shortest_feature(record) == pytest.approx(np.diff(time).min(), rel=1e-12)
 
 
+@pytest.mark.case("X27")
 def test_a_time_that_stands_twice_is_a_jump(tmp_path):
     """Both sides of it act: the points of a constant push give its record."""
     time, force = np.array([2e-3, 2e-3, 12e-3, 12e-3]), np.array([0.0, 500.0, 500.0, 0.0])
