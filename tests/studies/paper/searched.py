@@ -12,7 +12,9 @@ from tipoff.studies.render import document
 
 BASE = scenes.load("reference")
 COUNT = len(inputs.UNKNOWNS)
-SMALL = paper.Options(1, solutions.Plan(points=6, descents=1, pool=1, hops=1, kept=3))
+SMALL = paper.Options(
+    1, solutions.Plan(points=6, descents=1, pool=1, hops=1, kept=3, steps=(3, 2, 2))
+)
 
 
 def stub(admissible: tuple[int, ...] = (2, 0)):

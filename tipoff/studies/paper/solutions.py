@@ -37,21 +37,22 @@ _SOME = 0.25  # chance of an input to be among those that move, in every other h
 _INSIDE = 1e-3  # of the bounds: least squares cannot start on a bound
 # of the bounds: above the scatter of runs at the middle tolerance, below the size of a basin
 _DIFFERENCE = 5e-4
-_LONG, _SHORT, _LAST = 25, 12, 25  # steps of a descent: of a point drawn, of a hop, of the end
 _WORK = {"point": 0.02, "descent": 2.0, "hop": 1.0, "end": 10.0}  # shares of the time, in hops
 
 
 @dataclass(frozen=True)
 class Plan:
     """Size of a search: ``points`` drawn, ``descents`` from the best of them, ends in the ``pool``,
-    ``hops``, admissible points ``kept``; ``tolerances`` (relative error of a step) of drawn points,
-    of descents and of the reported end."""
+    ``hops``, admissible points ``kept``; ``steps`` of a descent from a point drawn, from a hop, and
+    of the last one; ``tolerances`` (relative error of a step) of drawn points, of descents and of
+    the reported end."""
 
     points: int = 2000
     descents: int = 24
     pool: int = 6
     hops: int = 250
     kept: int = 40
+    steps: tuple[int, int, int] = (25, 12, 25)
     tolerances: tuple[float, float, float] = (1e-3, 1e-4, 1e-5)
 
 
@@ -92,7 +93,7 @@ def run(
     points = generator.random((plan.points, len(UNKNOWNS)))
     order = np.argsort([walk.first(point) for point in points], kind="stable")
     pool = sorted(
-        (walk.end(points[number], _LONG, "descent") for number in order[: plan.descents]),
+        (walk.end(points[number], plan.steps[0], "descent") for number in order[: plan.descents]),
         key=lambda end: end.misfit,
     )
     pool = pool[: plan.pool]
@@ -100,11 +101,11 @@ def run(
         place = min(int(generator.exponential(1.5)), len(pool) - 1)  # better ones more often
         moves = generator.choice(_MOVES) * generator.standard_normal(len(UNKNOWNS))
         some = generator.random(len(UNKNOWNS)) < generator.choice([_SOME, 1.0])
-        end = walk.end(np.clip(pool[place].shares + moves * some, 0.0, 1.0), _SHORT, "hop")
+        end = walk.end(np.clip(pool[place].shares + moves * some, 0.0, 1.0), plan.steps[1], "hop")
         if end.misfit < pool[place].misfit:
             pool[place] = end
             pool.sort(key=lambda item: item.misfit)
-    best = min((walk.last(end) for end in pool), key=lambda end: end.misfit).shares
+    best = min((walk.last(end, plan.steps[2]) for end in pool), key=lambda end: end.misfit).shares
     return Search(
         stress,
         seed,
@@ -163,7 +164,7 @@ class _Walk:
         self._book(kind)
         return found
 
-    def last(self, end: _End) -> _End:
+    def last(self, end: _End, steps: int) -> _End:
         """Descent with all residuals, or ``end`` itself where that is better."""
 
         def every(point: np.ndarray) -> np.ndarray:
@@ -171,7 +172,7 @@ class _Walk:
                 self.middle.rates(point), self.middle.changed(point), self.stress
             )
 
-        found = self._judged(_down(every, end.shares, _LAST))
+        found = self._judged(_down(every, end.shares, steps))
         self._book("end")
         return min(end, found, key=lambda item: item.misfit)
 
