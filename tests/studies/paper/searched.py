@@ -1,10 +1,17 @@
 """Searches for the paper's inputs that take no time, for tests of what is made of their ends."""
 
+import copy
+import shutil
+from pathlib import Path
+
 import numpy as np
+import pytest
 
 from tests.studies.shown import html
 from tipoff import scenes
 from tipoff.studies import published
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study
 from tipoff.studies.paper import inputs, solutions
 from tipoff.studies.paper import page as section
 from tipoff.studies.paper import stage as paper
@@ -38,6 +45,20 @@ def stub(admissible: tuple[int, ...] = (2, 0)):
         )
 
     return run
+
+
+def studied(folder: Path, run, options: paper.Options) -> dict:
+    """Result of the stage in ``folder``, with ``run`` in place of a search."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(solutions, "run", run)
+        return paper.run(Study(BASE, folder, Settings(workers=1)), options)
+
+
+def copied(made: tuple[Path, dict], folder: Path) -> tuple[Study, dict]:
+    """A study in ``folder`` with the files and the result of another one; drawing its figures takes
+    a second."""
+    shutil.copytree(made[0], folder, dirs_exist_ok=True)
+    return Study(BASE, folder, Settings(workers=1)), copy.deepcopy(made[1])
 
 
 def page(found: dict) -> str:

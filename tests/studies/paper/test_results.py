@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray
 
-from tests.studies.paper.searched import BASE, COUNT, SMALL, page, shown, stub
+from tests.studies.paper.searched import BASE, COUNT, SMALL, copied, page, shown, stub, studied
 from tipoff import lowfi
 from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.batch import Case
@@ -25,13 +25,19 @@ from tipoff.studies.populations import answers
 PHI = ("phi0", "phi15", "phi35", "phi60", "phi90")
 
 
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Folder and result of a study of two starts whose searches take no time, three of four with
+    admissible points."""
+    folder = tmp_path_factory.mktemp("paper")
+    return folder, studied(folder, stub(admissible=(3, 1)), dataclasses.replace(SMALL, starts=2))
+
+
 @pytest.fixture
-def quick(tmp_path, monkeypatch):
-    """A study of two starts whose searches take no time, three of four with admissible points, and
-    its result."""
+def quick(made, tmp_path, monkeypatch):
+    """A copy of it: the study and its result."""
     monkeypatch.setattr(solutions, "run", stub(admissible=(3, 1)))
-    study = Study(BASE, tmp_path, Settings(workers=1))
-    return study, paper.run(study, dataclasses.replace(SMALL, starts=2))
+    return copied(made, tmp_path)
 
 
 def _opened(study):

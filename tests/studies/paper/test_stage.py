@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from tests.studies.paper.searched import BASE, COUNT, SMALL, page, shown, stub
+from tests.studies.paper.searched import BASE, COUNT, SMALL, copied, page, shown, stub, studied
 from tipoff import lowfi, scenes
 from tipoff.files import write_json
 from tipoff.lowfi.numerics import Numerics
@@ -92,12 +92,18 @@ def test_catalogue_scene_gives_the_printed_rates():
     assert np.abs(misfit.nine(rates(BASE))).max() > 3.0
 
 
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Folder and result of a study of searches that take no time."""
+    folder = tmp_path_factory.mktemp("paper")
+    return folder, studied(folder, stub(), SMALL)
+
+
 @pytest.fixture
-def quick(tmp_path, monkeypatch):
-    """A study of searches that take no time, its result."""
+def quick(made, tmp_path, monkeypatch):
+    """A copy of it: the study and its result."""
     monkeypatch.setattr(solutions, "run", stub())
-    study = Study(BASE, tmp_path, Settings(workers=1))
-    return study, paper.run(study, SMALL)
+    return copied(made, tmp_path)
 
 
 def test_three_measures_are_drawn_by_pairs(quick):
