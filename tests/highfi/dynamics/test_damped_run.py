@@ -109,7 +109,7 @@ def test_threads_and_a_resume_do_not_change_a_bit(tmp_path, kernel):
     whole, half, second = (test_kernels.begun(kernel, threads, **DAMPED) for threads in (1, 1, 3))
     expected = finished(whole)
     assert np.abs(expected.pad_force).max() > 1.0 and expected.energy[-1, ENTRY] > 0.0
-    for _ in range(45):
+    for _ in range(30):
         half.advance_one_sample()
     kept = Checkpoint(tmp_path / "run", 0.0, half, test_kernels.NUMERICS)
     kept.write(half)
@@ -125,7 +125,7 @@ def test_a_resume_that_forgets_the_step_before_is_seen(tmp_path):
     """Control: with the history left as a run begins, the resumed run goes another way."""
     expected = finished(test_kernels.begun("columns", **DAMPED))
     half, second = (test_kernels.begun("columns", **DAMPED) for _ in range(2))
-    for _ in range(45):
+    for _ in range(30):
         half.advance_one_sample()
     kept = Checkpoint(tmp_path / "run", 0.0, half, test_kernels.NUMERICS)
     kept.write(half)

@@ -16,7 +16,7 @@ NUMERICS = Numerics(element_size=0.008)
 def begun(kernel: str, threads: int = 1, **overrides) -> Loop:
     """A run on the extruded rails of ``tiny`` at its first sample; "elements" makes the loop forget
     that they are extruded."""
-    scene = tiny(duration="9 ms", contact__clearance="0.05 mm", **overrides)
+    scene = tiny(duration="5 ms", contact__clearance="0.01 mm", **overrides)
     system = build(scene, NUMERICS, highfi.prepare(scene, NUMERICS))
     assert system.rail.columns is not None
     if kernel == "elements":
