@@ -104,7 +104,7 @@ def provenance(
 ) -> dict[str, str]:
     """Text and hashes on the source of the constants."""
     assert scene.contact is not None  # or there was nothing to fit
-    exponent = constants.get("contact.exponent", 1.0)
+    exponent, stiffness = constants.get("contact.exponent", 1.0), constants.get("contact.stiffness")
     ends = "; ".join(
         f"{value:.6g} at " + ", ".join(f"{share:.4f}" for share in shares)
         for value, shares in found.basins
@@ -112,8 +112,9 @@ def provenance(
     return {
         "scene": scene.name,
         "scene_hash": scene.hash,
-        "contact_law": f"{scene.contact.law}, k = {constants['contact.stiffness']:.6g} "
-        f"N/m^{exponent:.6g}",
+        "contact_law": "compliant contact"
+        if stiffness is None
+        else f"{scene.contact.law}, k = {stiffness:.6g} N/m^{exponent:.6g}",
         "references": ", ".join(f"{name}: {item.source}" for name, item in references.items()),
         "search": f"{plan.points} Sobol' points, {plan.starts} starts of CMA-ES, least squares; "
         f"{evaluations} evaluations; "

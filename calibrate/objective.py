@@ -23,8 +23,7 @@ from tipoff import lowfi
 from tipoff.calibration.curves import Curves
 from tipoff.calibration.faults import CalibrationError
 from tipoff.calibration.parameters import Parameter, overrides
-from tipoff.mechanics.models import SPRINGS
-from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.variation import Variations
@@ -126,7 +125,8 @@ class Objective:
 
     ``over`` applies a function to every condition, in order: ``map``, or that of a pool of threads,
     since the surrogate's kernels release the interpreter. The result has the same bits with both.
-    ``compliance`` is rigid, where the rails are warm.
+    Runs are on compliant contact with a rail ``compliance``, on springs without one or, where the
+    rails are warm, with a rigid one.
     """
 
     def __init__(
@@ -138,6 +138,7 @@ class Objective:
         over: Callable = map,
         compliance: RailCompliance | None = None,
     ):
+        self.model = model_of(scene, compliance)
         self.scene, self.targets, self.parameters = scene, targets, parameters
         self.numerics, self.over, self.compliance = numerics, over, compliance
         self.variations = {name: Variations(wanted.scene) for name, wanted in targets.items()}
@@ -160,7 +161,7 @@ class Objective:
                 self.targets[name],
                 lowfi.run(
                     self.variations[name].of(changed),
-                    SPRINGS,
+                    self.model,
                     numerics=self.numerics,
                     compliance=self.compliance,
                 ),

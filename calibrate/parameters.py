@@ -1,5 +1,5 @@
-"""The parameters of a fit: their physical meaning, their bounds, and the overrides of a scene that
-they make.
+"""The parameters of a fit of springs: their physical meaning, their bounds, and the overrides of a
+scene that they make. Those of compliant contact are in ``calibration.compliant``.
 
 Stiffnesses k in N/m^e of different exponents are not comparable, so the fit varies the elastic
 force at the reference penetration p_r = 0.02 mm (loads of 60 to 180 N press a rail of 3e-8 to 1e-7 m/N by 2
@@ -27,6 +27,8 @@ REFERENCE_PENETRATION = 2e-5  # m
 # one) over a^2/(E t^3).
 _SOFT, _STIFF = 1.25, 4.2
 _MARGIN = 10.0  # factor from a static estimate to the range of a point contact in impact
+# Parameters that are keys of a scene themselves.
+_PLAIN = ("contact.interface_stiffness", "contact.clearance", "rail.mount_stiffness.factor")
 
 
 @dataclass(frozen=True)
@@ -67,7 +69,7 @@ def free(scene: Scene) -> list[Parameter]:
         "linear": [_force, _damping],
     }[_contact(scene).law]
     if scene.friction is not None:
-        found = [*found, _friction]
+        found = [*found, friction]
     return [make(scene) for make in found]
 
 
@@ -80,12 +82,13 @@ def held(scene: Scene) -> list[Parameter]:
 def overrides(scene: Scene, values: dict[str, float]) -> dict[str, float]:
     """Dotted overrides (SI) of ``scene`` for values of parameters by name; k is set together with
     e, whose unit it carries."""
-    found = {}
+    found = {name: value for name, value in values.items() if name in _PLAIN}
     contact = _contact(scene)
-    exponent = values.get("contact.exponent", contact.exponent)
-    if contact.law != "linear":
-        found["contact.exponent"] = exponent
-    found["contact.stiffness"] = values["contact.force"] / REFERENCE_PENETRATION**exponent
+    if "contact.force" in values:
+        exponent = values.get("contact.exponent", contact.exponent)
+        if contact.law != "linear":
+            found["contact.exponent"] = exponent
+        found["contact.stiffness"] = values["contact.force"] / REFERENCE_PENETRATION**exponent
     if "contact.dissipation" in values:
         found["contact.dissipation"] = values["contact.dissipation"]
     if "contact.damping" in values:
@@ -216,7 +219,8 @@ def _dissipation(scene: Scene) -> Parameter:
     )
 
 
-def _friction(scene: Scene) -> Parameter:
+def friction(scene: Scene) -> Parameter:
+    """The coefficient of friction of a scene that has it."""
     return Parameter(
         "friction.dynamic",
         "1",

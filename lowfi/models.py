@@ -29,15 +29,19 @@ def require(
             faults.append(
                 ("compliance", "no rail compliance", "tipoff.compliance(scene), or model='springs'")
             )
-        if calibration is not None:
+        if calibration is not None and calibration.is_of_springs:
+            faults.append(
+                ("calibration", "constants of springs", "none, or those of a fit on this model")
+            )
+    else:
+        if calibration is not None and not calibration.is_of_springs:
             faults.append(
                 (
                     "calibration",
-                    "constants of springs",
-                    "none: compliant contact has no fitted constants",
+                    "constants of compliant contact",
+                    "none, or those of a fit on this model",
                 )
             )
-    else:
         if model_of(scene, compliance) == COMPLIANT:
             faults.append(
                 (

@@ -9,7 +9,7 @@ from tipoff import highfi, lowfi
 from tipoff.calibration import rail_compliance
 
 SCENE = tipoff.load("tiny")
-CALIBRATION = SimpleNamespace()
+CALIBRATION = SimpleNamespace(is_of_springs=True)
 
 
 @pytest.fixture

@@ -120,14 +120,22 @@ def calibrate(
     references: "Mapping[str, Trajectory | Curves]",
     progress: Callable[[float], None] | None = None,
     seed: int = 0,
+    model: str = "springs",
+    compliance: RailCompliance | None = None,
 ) -> Calibration:
-    """Constants of ``springs``, fitted to runs of the reference or to other curves, by the name of
-    their condition. Raises CalibrationError or SceneError."""
+    """Constants of a surrogate ``model``, fitted to runs of the reference or to other curves, by
+    the name of their condition. On compliant contact these are interface and mount stiffness,
+    clearance and friction; the rail ``compliance`` is computed if it is not given. Raises
+    CalibrationError or SceneError."""
     from tipoff import calibration
 
-    compliance = _pressed(scene, "springs", None)
+    _require(scene, model, SURROGATES)
     return calibration.run(
-        scene, dict(references), progress=progress, seed=seed, compliance=compliance
+        scene,
+        dict(references),
+        progress=progress,
+        seed=seed,
+        compliance=_pressed(scene, model, compliance),
     )
 
 
@@ -149,8 +157,9 @@ def _pressed(
     rails."""
     if scene.contact is None:
         return given
-    if model == COMPLIANT:  # checked first, since the compliance takes seconds
-        _require_none(scene, model, calibration=calibration)
+    if model == COMPLIANT:
+        if calibration is not None and calibration.is_of_springs:  # before seconds of statics
+            _require_none(scene, model, calibration=calibration)
         return given or compliance(scene)
     return compliance(scene).rigid() if given is None and scene.thermal is not None else given
 

@@ -49,6 +49,11 @@ class Calibration:
             }
         )
 
+    @property
+    def is_of_springs(self) -> bool:
+        """Whether these are constants of contact springs, and not of compliant contact."""
+        return "contact.stiffness" in self.constants
+
     def save(self, path: str | Path) -> None:
         """Write TOML with its digest, atomically. Raises ValueError for a NaN (an interval without
         an end is inf)."""

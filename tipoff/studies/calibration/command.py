@@ -68,31 +68,23 @@ def calibrate(
 
       tipoff calibrate --reference phi15=test15.csv --reference phi60=test60.csv --settled-from "44 ms"
 
+    They fit the constants of springs or, with --model compliant, interface and mount stiffness,
+    clearance and friction; these are printed as --set options of the other commands.
+
     A file has the columns time (from ignition, at any instants), velocity_x (inertial, along the
     rail), rate_x, rate_y and rate_z (inertial, in payload body axes). Units are in the header,
     rate_x \\[deg/s], or in the second line. Other columns are ignored.
     """
 
     def work() -> dict:
-        from tipoff.scenes.faults import Fault, SceneError
+        from tipoff.mechanics.models import SPRINGS
         from tipoff.studies.calibration import stage
 
         start = quantity("--settled-from", settled_from, "s")
         files = stage.named(reference or [], condition, start)
         study = study_of(scene, out, set_, element_size=element_size, workers=workers)
-        if files and model is SurrogateName.compliant:
-            raise SceneError(
-                [
-                    Fault(
-                        "--reference",
-                        "option",
-                        "given",
-                        "none with --model compliant: only springs are fitted to curves",
-                    )
-                ]
-            )
         return (
-            stage.from_files(study, files, start)
+            stage.from_files(study, files, start, model.value if model else SPRINGS)
             if files
             else stage.of_models(study, model and model.value)
         )

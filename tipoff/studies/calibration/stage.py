@@ -14,9 +14,10 @@ import numpy as np
 
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.scenes import overrides
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
-from tipoff.scenes.scene import NOMINAL
+from tipoff.scenes.scene import NOMINAL, Scene
 from tipoff.studies.calibration import compliance, forecast
 from tipoff.studies.core.progress import Board, say
 from tipoff.studies.core.stage import Stage
@@ -108,10 +109,14 @@ def named(
 
 
 def from_files(
-    study: Study, files: list[tuple[str, str]], settled_from: float | None = None
+    study: Study,
+    files: list[tuple[str, str]],
+    settled_from: float | None = None,
+    model: str = SPRINGS,
 ) -> dict:
-    """The calibration as JSON values, from CSV files (condition, path) that ``Curves.read_csv``
-    reads; writes ``curves/calibration.toml``.
+    """The calibration of a ``model`` as JSON values, from CSV files (condition, path) that
+    ``Curves.read_csv`` reads; writes ``curves/calibration.toml``, on compliant contact
+    ``curves/calibration-compliant.toml``.
 
     Raises SceneError listing every fault of every file, CalibrationError for curves that do not fit
     the scene.
@@ -135,14 +140,17 @@ def from_files(
 
     def make() -> tuple[dict, list[Path]]:
         say(f"  {forecast.search(study, len(references))}")
-        return fit(study, references, study.path(f"curves/{FILE}"))
+        return fit(study, references, study.path(f"{stage}.toml"), model)
 
+    stage = "curves/calibration" + f"-{COMPLIANT}" * (model == COMPLIANT)
     sources = {name: item.source for name, item in references.items()}
-    return study.stage("curves/calibration", study.key(__name__, sources), make)
+    return study.stage(stage, study.key(__name__, sources), make)
 
 
-def fit(study: Study, references: dict, path: Path) -> tuple[dict, list[Path]]:
-    """Fit the constants to ``references`` (condition: run or curves) and write them to ``path``: the
+def fit(
+    study: Study, references: dict, path: Path, model: str = SPRINGS
+) -> tuple[dict, list[Path]]:
+    """Fit the constants of a ``model`` to ``references`` (condition: run or curves) and write them to ``path``: the
     calibration as plain values, and the files written. Raises CalibrationError."""
     from tipoff import calibration
 
@@ -151,7 +159,9 @@ def fit(study: Study, references: dict, path: Path) -> tuple[dict, list[Path]]:
             study.scene,
             references,
             progress=board.callback("calibrate"),
-            compliance=rigid_walls(study, references),
+            compliance=study.rail_compliance(study.condition(next(iter(references))))
+            if model == COMPLIANT
+            else rigid_walls(study, references),
             workers=study.settings.workers,
         )
         board.finished("calibrate", f"objective {found.objective:.4g}")
@@ -184,11 +194,25 @@ def lines(document: dict, folder: Path) -> list[str]:
         for name, value, unit, ends in found
     ]
     text += [f"  weak          {words}" for words in document["weak_directions"]]
+    if "contact.stiffness" not in document["constants"]:
+        text += [to_use(document["constants"])]
     return [
         f"fitted to {', '.join(document['conditions'])}: objective {document['objective']:.4g}",
         *text,
         f"  calibration   {folder / document['calibration']}",
     ]
+
+
+def to_use(constants: dict[str, float]) -> str:
+    """Constants of compliant contact as options of the other commands."""
+    given = [
+        f'--set {key}="{value:.6g} {unit}"'
+        if unit not in (None, "", "dimensionless")
+        else f"--set {key}={value:.6g}"
+        for key, value in constants.items()
+        for unit in (overrides.unit(Scene, key),)
+    ]
+    return "  use           " + " ".join(given)
 
 
 def _compliance(document: dict, folder: Path) -> list[str]:

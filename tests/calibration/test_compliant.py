@@ -1,0 +1,127 @@
+"""Constants of compliant contact: hidden values are found again from the surrogate's own curves, and
+what the curves do not determine is named."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from tests.calibration.support import write_curves
+from tests.highfi.support import tiny
+from tests.lowfi.compliance import reference_compliance
+from tipoff import calibration, highfi, lowfi, scenes
+from tipoff.calibration import compliant, parameters
+from tipoff.calibration.search import Plan
+from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.scenes import SceneError
+from tipoff.studies.calibration import stage
+from tipoff.studies.cli import app
+
+CONDITIONS = ("phi15", "phi35", "phi60")
+SCENE = scenes.load("reference").replace({"agreement.fitted": list(CONDITIONS)})
+TRUTH = {
+    "contact.interface_stiffness": 4.1e12,
+    "contact.clearance": 0.262e-3,
+    "friction.static": 0.13,
+    "friction.dynamic": 0.13,
+}
+SMALL = Plan(points=64, starts=2, evaluations=80, polish=15)
+ON_JOINTS = {
+    "rail.mount_stiffness.normal": "1e13 N/m**3",
+    "rail.mount_stiffness.shear": "5e12 N/m**3",
+}
+
+
+def curves(scene: scenes.Scene, compliance: RailCompliance) -> dict:
+    return {name: lowfi.run(scene.condition(name), compliance=compliance) for name in CONDITIONS}
+
+
+@pytest.fixture(scope="module")
+def found():
+    compliance = reference_compliance()
+    truth = curves(SCENE.replace(TRUTH), compliance)
+    return calibration.run(SCENE, truth, plan=SMALL, compliance=compliance)
+
+
+def test_hidden_values_are_found(found):
+    """Interface stiffness, 2.3 times the scene's, hardly shows in the curves: its direction is weak,
+    and it has no interval."""
+    values = dict(zip(found.parameters, found.values))
+    assert values["contact.clearance"] == pytest.approx(0.262e-3, rel=1e-5)
+    assert values["friction.dynamic"] == pytest.approx(0.13, rel=1e-4)
+    assert values["contact.interface_stiffness"] == pytest.approx(4.1e12, rel=1e-2)
+    assert found.objective < 1e-8
+    (weak,) = found.weak_directions
+    assert weak.startswith("+1.00 contact.interface_stiffness")
+    bounded = [np.isfinite(ends).all() for ends in found.intervals]
+    assert bounded == [False, True, True]
+
+
+def test_the_constants_run_on_the_model_they_were_fitted_to(found):
+    compliance, scene = reference_compliance(), SCENE.condition("phi35")
+    given = lowfi.run(scene, compliance=compliance, calibration=found)
+    applied = lowfi.run(found.apply(scene), compliance=compliance)
+    np.testing.assert_array_equal(given.rate, applied.rate)
+    nominal = lowfi.run(scene, compliance=compliance)
+    assert np.abs(nominal.rate - given.rate).max() > 1e-3
+    with pytest.raises(SceneError, match="constants of compliant contact"):
+        lowfi.run(scene, "springs", calibration=found)
+    with pytest.raises(SceneError, match="constants of springs"):
+        springs = parameters.overrides(SCENE, {"contact.force": 100.0})
+        lowfi.run(scene, compliance=compliance, calibration=replaced(found, springs))
+
+
+def replaced(found, constants):
+    return dataclasses.replace(found, constants=constants)
+
+
+def test_parameters_are_those_that_the_scene_has():
+    names = [item.name for item in compliant.free(SCENE)]
+    assert names == ["contact.interface_stiffness", "contact.clearance", "friction.dynamic"]
+    bolted = SCENE.replace(ON_JOINTS | {"friction": "absent"})
+    free = compliant.free(bolted)
+    assert [item.name for item in free] == [*names[:2], "rail.mount_stiffness.factor"]
+    for share in (0.0, 0.5, 1.0):
+        values = {item.name: item.value(share) for item in free}
+        again = bolted.replace(parameters.overrides(bolted, values))
+        assert {item.name: item.read(again) for item in free} == pytest.approx(values, rel=1e-12)
+
+
+@pytest.mark.slow
+def test_a_hidden_stiffness_of_the_mounts_is_found():
+    """1.7 times the scene's. Mounts and interface are springs in series, so that only what both
+    give together is sure: both weak directions mix them."""
+    scene = SCENE.replace(ON_JOINTS)
+    compliance = highfi.condense(scene, 0.008)
+    hidden = TRUTH | {"rail.mount_stiffness.factor": 1.7}
+    plan = Plan(points=64, starts=2, evaluations=120, polish=20)
+    truth = curves(scene.replace(hidden), compliance)
+    found = calibration.run(scene, truth, plan=plan, compliance=compliance)
+    values = dict(zip(found.parameters, found.values))
+    assert values["rail.mount_stiffness.factor"] == pytest.approx(1.7, rel=0.02)
+    assert values["contact.clearance"] == pytest.approx(0.262e-3, rel=1e-5)
+    for weak in found.weak_directions:
+        assert "rail.mount_stiffness.factor" in weak and "contact.interface_stiffness" in weak
+
+
+def test_the_command_fits_curves_and_prints_the_options_to_use(tmp_path, monkeypatch):
+    monkeypatch.setattr(calibration, "run", quick(calibration.run))
+    run = lowfi.run(tiny(), compliance=highfi.condense(tiny(), 0.008))
+    file = write_curves(tmp_path / "test.csv", run)
+    asked = ["calibrate", "--scene", "tiny", "--model", "compliant", "--out", str(tmp_path)]
+    asked += ["--element-size", "8", "--reference", str(file)]
+    said = CliRunner().invoke(app, asked)
+    assert said.exit_code == 0, said.output
+    assert (tmp_path / "tiny/curves/calibration-compliant.toml").is_file()
+    assert '--set contact.interface_stiffness="' in said.stdout
+    assert "--set friction.dynamic=" in said.stdout
+    constants = {"contact.clearance": 2.5e-4, "friction.dynamic": 0.1}
+    assert stage.to_use(constants) == (
+        '  use           --set contact.clearance="0.00025 m" --set friction.dynamic=0.1'
+    )
+
+
+def quick(run):
+    """The search in a few evaluations: the command is tested, not the fit."""
+    return lambda *given, **named: run(*given, **named, plan=Plan(4, 1, 4, polish=1))
