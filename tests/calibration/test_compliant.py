@@ -26,7 +26,7 @@ TRUTH = {
     "friction.static": 0.13,
     "friction.dynamic": 0.13,
 }
-SMALL = Plan(points=64, starts=2, evaluations=80, polish=15)
+SMALL = Plan(points=32, starts=1, evaluations=80, polish=15)
 ON_JOINTS = {
     "rail.mount_stiffness.normal": "1e13 N/m**3",
     "rail.mount_stiffness.shear": "5e12 N/m**3",

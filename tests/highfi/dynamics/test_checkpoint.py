@@ -171,6 +171,7 @@ found.save(sys.argv[2])
 """
 
 
+@pytest.mark.slow
 def test_killed_again_and_again_it_ends_with_the_same_bits(tmp_path):
     """SIGKILL at seeded moments, first in the set-up, then in the integration. Each process begins
     where the file of the one before ends."""

@@ -59,6 +59,7 @@ def test_ledgers_close_and_momenta_are_kept(change):
     assert force > 1e-11 * payload and moment > 1e-9 * payload * np.linalg.norm(found.position[-1])
 
 
+@pytest.mark.slow
 def test_a_rail_that_turns_with_its_frame_is_not_damped():
     """Started suddenly, a bar at 20 rad/s swings about rho w^2 L^3 / (3 E), and damping by mass
     ends that. It takes no more than the energy of the swing. Control: on the velocity in space it

@@ -42,7 +42,7 @@ def test_columns_and_elements_carry_the_same_run():
 
 
 @pytest.mark.case("X20")
-@pytest.mark.parametrize("kernel", ["columns", "elements"])
+@pytest.mark.parametrize("kernel", [pytest.param("columns", marks=pytest.mark.slow), "elements"])
 def test_threads_do_not_change_a_bit(kernel):
     """Three threads divide the four rails inside a rail, so that their shares depend on each
     other."""

@@ -148,8 +148,9 @@ def test_an_arm_of_ten_metres_is_refused_at_a_slow_rate():
         "rail__mounts": [{"start": "0 mm", "end": "20 mm"}],
         "initial": {"platform_rate": {"z": 0.2}},
     }
+    coarse = highfi.Numerics(element_size=0.016)
     with pytest.raises(SceneError, match=r"turns at 0.2 rad/s, expected at most 0\.\d+ rad/s"):
-        highfi.prepare(tiny(**arm), COARSE)
+        highfi.prepare(tiny(**arm), coarse)
 
 
 def test_the_reaction_to_the_thrust_counts():

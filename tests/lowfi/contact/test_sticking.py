@@ -247,6 +247,7 @@ def test_fast_faces_only_slide():
     assert other == pytest.approx(one, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_same_bits_in_an_ensemble():
     slippery = WEDGED | {"friction.static": 0.3, "friction.dynamic": 0.2, "thrust.peak": "10 kN"}
     base = load("sensitive").condition("phi35").replace(slippery)

@@ -307,6 +307,7 @@ def test_a_pad_half_over_the_end_moves_in_and_out():
     )
 
 
+@pytest.mark.slow
 def test_ensembles_end_as_single_runs_do():
     """Status, message and outcome of each row, bit for bit."""
     depths = (-1e-5, 1e-3, 3.9e-3, 0.02)
