@@ -1,9 +1,9 @@
-"""The parameters of a fit on compliant contact: what nobody measured on the launcher, and what its
-statics cannot give.
+"""The parameters of a fit on compliant contact. They are usually not measured, and the statics of the
+rail do not give them.
 
 The interface stiffness is known to a factor (``docs/interface_stiffness.md``), as is the stiffness
-of bolted mounts (``docs/mount_stiffness.md``); friction and clearance are known to a tolerance. The
-rail compliance itself comes from the finite elements and is not fitted.
+of bolted mounts (``docs/mount_stiffness.md``). Friction and clearance are known to a tolerance. The
+rail compliance comes from the finite elements and is not fitted.
 """
 
 from tipoff.calibration.parameters import Parameter, friction
@@ -11,13 +11,16 @@ from tipoff.mechanics.joint_terms import LEAST, MOST
 from tipoff.scenes.effects.contact import ContactTable
 from tipoff.scenes.scene import Scene
 
-_INTERFACE = 16.0  # either way, from a polymer to ground metal
+_INTERFACE = 16.0  # either way
 
 
 def free(scene: Scene) -> list[Parameter]:
-    """The parameters of the fit of ``scene``, which has contact: interface stiffness and clearance,
-    stiffness of the mounts where they are no rigid clamps, and friction if there is any."""
-    found = [_interface_stiffness(scene), _clearance(scene)]
+    """The parameters of the fit of ``scene``, which has contact: interface stiffness, clearance
+    where there is any, stiffness of the mounts where they are no rigid clamps, and friction if there
+    is any."""
+    found = [_interface_stiffness(scene)]
+    if _contact(scene).clearance > 0.0:
+        found.append(_clearance(scene))
     if scene.rail.mount_stiffness is not None:
         found.append(_mounts())
     return [*found, friction(scene)] if scene.friction is not None else found
@@ -36,8 +39,8 @@ def _interface_stiffness(scene: Scene) -> Parameter:
         stiffness / _INTERFACE,
         stiffness * _INTERFACE,
         True,
-        f"{_INTERFACE:g} times less or more than the scene's: published values of one pair of "
-        "surfaces differ by as much",
+        f"{_INTERFACE:g} times less to {_INTERFACE:g} times more than the scene's: roughness and "
+        "pressure change it by two orders of magnitude (docs/interface_stiffness.md)",
         lambda s: _contact(s).interface_stiffness,
     )
 

@@ -23,6 +23,7 @@ from tipoff import lowfi
 from tipoff.calibration.curves import Curves
 from tipoff.calibration.faults import CalibrationError
 from tipoff.calibration.parameters import Parameter, overrides
+from tipoff.mechanics.models import COMPLIANT
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
@@ -155,6 +156,8 @@ class Objective:
         """Residuals by condition."""
         self.evaluations += 1
         changed = overrides(self.scene, self.values(shares))
+        if self.compliance is not None and self.model == COMPLIANT:
+            self.compliance.of(self.scene.replace(changed))  # once, and not in each thread
 
         def one(name: str) -> Parts:
             return compare(

@@ -34,7 +34,7 @@ def require(
                 ("calibration", "constants of springs", "none, or those of a fit on this model")
             )
     else:
-        if calibration is not None and not calibration.is_of_springs:
+        if calibration is not None and calibration.is_of_compliant_contact:
             faults.append(
                 (
                     "calibration",

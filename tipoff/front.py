@@ -33,8 +33,8 @@ def run(
     """Solve ``scene`` in a ``model``: ``compliant``, ``springs`` or ``finite-elements``.
 
     ``compliance`` is that of the rail, for the model ``compliant``; computed where it is not given.
-    ``calibration`` contains constants of ``springs``. ``numerics`` are fields of ``lowfi.Numerics`` or
-    ``highfi.Numerics``, such as ``element_size=2e-3`` (m) or ``modes=4``. ``progress`` is called
+    ``calibration`` contains constants that were fitted on the same model. ``numerics`` are fields of
+    ``lowfi.Numerics`` or ``highfi.Numerics``, such as ``element_size=2e-3`` (m) or ``modes=4``. ``progress`` is called
     with the fraction of the duration done. Raises SceneError, every fault listed, and ValueError
     for numerics that are out of range; a failure of the run is the ``status`` of the result.
     """
@@ -128,15 +128,12 @@ def calibrate(
     clearance and friction; the rail ``compliance`` is computed if it is not given. Raises
     CalibrationError or SceneError."""
     from tipoff import calibration
+    from tipoff.lowfi import models
 
     _require(scene, model, SURROGATES)
-    return calibration.run(
-        scene,
-        dict(references),
-        progress=progress,
-        seed=seed,
-        compliance=_pressed(scene, model, compliance),
-    )
+    found = _pressed(scene, model, compliance)
+    models.require(scene, model, found, None, None)
+    return calibration.run(scene, dict(references), progress=progress, seed=seed, compliance=found)
 
 
 def compare(reference: Trajectory, surrogate: Trajectory) -> "Difference":

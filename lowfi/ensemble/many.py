@@ -50,6 +50,8 @@ def run_many(
     ``wall_s``.
     """
     require(scene, model, compliance, calibration, numerics)
+    if model == COMPLIANT and calibration is not None:  # before a row, which may vary a constant
+        scene, calibration = calibration.apply(scene), None
     source, numerics = (
         Drawn(table) if isinstance(table, Uncertainty) else Listed(table),
         numerics or Numerics(),

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+import tipoff
 from tests.calibration.support import write_curves
 from tests.highfi.support import tiny
 from tests.lowfi.compliance import reference_compliance
@@ -86,6 +87,34 @@ def test_parameters_are_those_that_the_scene_has():
         values = {item.name: item.value(share) for item in free}
         again = bolted.replace(parameters.overrides(bolted, values))
         assert {item.name: item.read(again) for item in free} == pytest.approx(values, rel=1e-12)
+
+
+def test_without_clearance_there_is_none_to_fit():
+    scene = SCENE.replace({"contact.clearance": 0.0})
+    names = [item.name for item in compliant.free(scene)]
+    assert names == ["contact.interface_stiffness", "friction.dynamic"]
+
+
+def test_a_compliance_of_another_model_is_refused():
+    """Before any run: the model is the one that was named."""
+    compliance = reference_compliance()
+    with pytest.raises(SceneError, match="a rail compliance"):
+        tipoff.calibrate(SCENE, {}, compliance=compliance)
+    with pytest.raises(SceneError, match="no rail compliance"):
+        tipoff.calibrate(SCENE, {}, model="compliant", compliance=compliance.rigid())
+
+
+def test_rows_of_an_ensemble_vary_what_was_fitted(found):
+    compliance = reference_compliance()
+    row = {"contact.clearance": 0.24e-3}
+    (rate,) = lowfi.run_many(SCENE, [row], compliance=compliance, calibration=found).rate.values
+    alone = lowfi.run(found.apply(SCENE).replace(row), compliance=compliance).outcome.rate
+    np.testing.assert_array_equal(rate, alone)
+
+
+def test_constants_of_rigid_mounts_are_left_out(found):
+    more = replaced(found, found.constants | {"rail.mount_stiffness.factor": 2.0})
+    assert more.apply(SCENE).hash == found.apply(SCENE).hash
 
 
 @pytest.mark.slow

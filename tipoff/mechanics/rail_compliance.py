@@ -24,6 +24,7 @@ holds for the nominal stiffness, and ``RailCompliance.of`` gives it for the fact
 """
 
 import hashlib
+import threading
 import zipfile
 import zlib
 from dataclasses import MISSING, dataclass, fields, replace
@@ -44,6 +45,7 @@ MODES = 20  # of each rail, kept beside its compliance
 PATTERNS = 6  # phi: all products of powers of xi and eta up to the second degree
 POWERS = np.array([[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]])  # of xi and eta
 
+_KEEPING = threading.Lock()
 _KEPT_FACTORS = 4  # compliances at other factors that are kept
 _JOINTS = "joints."  # before the names of their arrays in a file
 
@@ -82,11 +84,14 @@ class RailCompliance:
         factor = _factor(scene)
         if factor == 1.0:
             return self
-        if factor not in self._at_factors:
-            while len(self._at_factors) >= _KEPT_FACTORS:
-                self._at_factors.pop(next(iter(self._at_factors)))
-            self._at_factors[factor] = self._at(factor)
-        return self._at_factors[factor]
+        found = self._at_factors.get(factor)
+        if found is None:
+            found = self._at(factor)
+            with _KEEPING:  # threads share a compliance
+                while len(self._at_factors) >= _KEPT_FACTORS:
+                    self._at_factors.pop(next(iter(self._at_factors)))
+                self._at_factors[factor] = found
+        return found
 
     @cached_property
     def _at_factors(self) -> dict[float, "RailCompliance"]:

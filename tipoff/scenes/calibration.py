@@ -11,6 +11,22 @@ from tipoff import toml
 from tipoff.files import DamageError, is_sealed, require_whole, sealed
 from tipoff.scenes.scene import Scene
 
+# Clearance and friction belong to both surrogates.
+_OF_SPRINGS = {
+    f"contact.{name}"
+    for name in ("stiffness", "exponent", "damping", "damping_depth", "dissipation")
+}
+_OF_COMPLIANT_CONTACT = {"contact.interface_stiffness", "rail.mount_stiffness.factor"}
+
+
+def _has(scene: Scene, key: str) -> bool:
+    """Whether no table on the way to the dotted ``key`` is absent. One that does not exist is left
+    to the scene to refuse."""
+    table: object = scene
+    for name in key.split(".")[:-1]:
+        table = getattr(table, name, "unknown")
+    return table is not None
+
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
@@ -42,17 +58,18 @@ class Calibration:
         """``scene`` with the calibrated constants; constants of an effect the scene lacks are left
         out."""
         return scene.replace(
-            {
-                key: value
-                for key, value in self.constants.items()
-                if getattr(scene, key.split(".")[0], "unknown") is not None
-            }
+            {key: value for key, value in self.constants.items() if _has(scene, key)}
         )
 
     @property
     def is_of_springs(self) -> bool:
-        """Whether these are constants of contact springs, and not of compliant contact."""
-        return "contact.stiffness" in self.constants
+        """Whether some of these constants belong to contact springs alone."""
+        return not _OF_SPRINGS.isdisjoint(self.constants)
+
+    @property
+    def is_of_compliant_contact(self) -> bool:
+        """Whether some of these constants belong to compliant contact alone."""
+        return not _OF_COMPLIANT_CONTACT.isdisjoint(self.constants)
 
     def save(self, path: str | Path) -> None:
         """Write TOML with its digest, atomically. Raises ValueError for a NaN (an interval without

@@ -1,4 +1,4 @@
-"""Contact of the surrogate from the finite elements: rail compliance, constants of springs."""
+"""Contact of the surrogate from the finite elements: rail compliance, constants fitted to curves."""
 
 from tipoff.studies.calibration import command
 from tipoff.studies.question import Contents, Entry, Result, Section

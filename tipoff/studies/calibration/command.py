@@ -52,7 +52,9 @@ def calibrate(
     ] = None,
     model: Annotated[
         SurrogateName | None,
-        typer.Option("--model", help="Calibrate only this model; default: both."),
+        typer.Option(
+            "--model", help="Calibrate only this model; default: both, with --reference springs."
+        ),
     ] = None,
     element_size: ElementSize = None,
     workers: Workers = None,

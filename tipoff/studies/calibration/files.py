@@ -1,4 +1,4 @@
-"""Constants of springs from a file of the user."""
+"""Fitted constants from a file of the user."""
 
 from pathlib import Path
 

@@ -1,8 +1,8 @@
 """Stage ``calibration``: constants of springs, fitted to the reference on the fitted conditions.
-Compliant contact is not fitted: its compliance is from statics (``studies.calibration.compliance``).
+The compliance of compliant contact is from statics (``studies.calibration.compliance``).
 
-Curves of another code or of a test can replace the reference. The result is then in a separate
-folder, so that other stages, which compare with the reference, do not replace it.
+Curves of another code or of a test can replace the reference, and fit either surrogate. The result is
+then in a separate folder, so that other stages, which compare with the reference, do not replace it.
 """
 
 import math
@@ -139,7 +139,8 @@ def from_files(
         raise SceneError(faults)
 
     def make() -> tuple[dict, list[Path]]:
-        say(f"  {forecast.search(study, len(references))}")
+        if model == SPRINGS:
+            say(f"  {forecast.search(study, len(references))}")
         return fit(study, references, study.path(f"{stage}.toml"), model)
 
     stage = "curves/calibration" + f"-{COMPLIANT}" * (model == COMPLIANT)
@@ -190,16 +191,16 @@ def lines(document: dict, folder: Path) -> list[str]:
         document["parameters"], document["values"], document["units"], document["intervals"]
     )
     text = [
-        f"  {name:22}{value:.5g}{'' if unit == '1' else f' {unit}'}, {interval(ends)}"
+        f"  {name:28}{value:.5g}{'' if unit == '1' else f' {unit}'}, {interval(ends)}"
         for name, value, unit, ends in found
     ]
     text += [f"  weak          {words}" for words in document["weak_directions"]]
-    if "contact.stiffness" not in document["constants"]:
-        text += [to_use(document["constants"])]
+    file = f"  calibration   {folder / document['calibration']}"
+    is_of_springs = "contact.stiffness" in document["constants"]
+    text += [file if is_of_springs else to_use(document["constants"])]
     return [
         f"fitted to {', '.join(document['conditions'])}: objective {document['objective']:.4g}",
         *text,
-        f"  calibration   {folder / document['calibration']}",
     ]
 
 
