@@ -43,7 +43,7 @@ def test_a_negative_clearance_is_left_out_and_free_flight_has_none():
     assert found["by_clearance_deg_s"] > 0.0
     free = REFERENCE.replace({"contact": None, "friction": None})
     found = disturbed.of(Run("lowfi", "free", free, lowfi.Numerics()), lowfi.run(free), 1e-6)
-    assert found["by_clearance_deg_s"] is None and found["by_tolerance_deg_s"] < 1e-6
+    assert "by_clearance_deg_s" not in found and found["by_tolerance_deg_s"] < 1e-6
 
 
 @pytest.mark.parametrize("condition, warned", [("phi60", False), ("h8", True)])
@@ -51,3 +51,9 @@ def test_a_sensitive_run_says_so(condition, warned):
     words = disturbed.lines(moved(condition)[0], 0.1)
     assert "deg/s by 1 µm of clearance" in words[0]
     assert any("warning       sensitive" in line for line in words) is warned
+
+
+def test_a_disturbed_run_that_does_not_settle_is_a_warning():
+    words = disturbed.lines(moved("phi60")[0] | {"by_clearance_deg_s": None}, 0.1)
+    assert "1 µm of clearance: does not settle" in words[0]
+    assert "1 µm of clearance keeps the run from settling" in words[1]

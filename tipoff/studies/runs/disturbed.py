@@ -14,11 +14,13 @@ TOLERANCE = 1e-10  # relative, of a step
 
 
 def of(run: Run, nominal: Trajectory, clearance_change: float) -> dict[str, float | None]:
-    """Largest changes of a settled rate (deg/s) by ``clearance_change`` (m) either way and by
-    ``TOLERANCE``. None: a run does not settle where the other does, or ``run`` has no contact."""
+    """Largest changes of a settled rate (deg/s) by ``clearance_change`` (m) either way, absent
+    without contact, and by ``TOLERANCE``; None where the disturbed run does not settle."""
     tight = replace(run.numerics, relative_tolerance=TOLERANCE)
-    by_tolerance = _change(nominal, replace(run, numerics=tight))
-    by_clearance = None
+    found: dict[str, float | None] = {
+        "tolerance": TOLERANCE,
+        "by_tolerance_deg_s": _change(nominal, replace(run, numerics=tight)),
+    }
     if run.scene.contact is not None:
         clearance = run.scene.contact.clearance
         changed = [value for sign in (1, -1) if (value := clearance + sign * clearance_change) >= 0]
@@ -26,13 +28,9 @@ def of(run: Run, nominal: Trajectory, clearance_change: float) -> dict[str, floa
             _change(nominal, replace(run, scene=run.scene.replace({"contact.clearance": value})))
             for value in changed
         ]
-        by_clearance = None if None in changes else largest(changes)
-    return {
-        "clearance_change_m": clearance_change,
-        "by_clearance_deg_s": by_clearance,
-        "tolerance": TOLERANCE,
-        "by_tolerance_deg_s": by_tolerance,
-    }
+        found["clearance_change_m"] = clearance_change
+        found["by_clearance_deg_s"] = None if None in changes else largest(changes)
+    return found
 
 
 def _change(nominal: Trajectory, changed: Run) -> float | None:
@@ -40,18 +38,21 @@ def _change(nominal: Trajectory, changed: Run) -> float | None:
 
 
 def lines(found: dict, limit: float) -> list[str]:
-    """The result of ``of`` as text, with a warning above ``limit`` (deg/s)."""
-    causes = [
-        (f"tolerance {found['tolerance']:g}", found["by_tolerance_deg_s"]),
-        (f"{1e6 * found['clearance_change_m']:g} µm of clearance", found["by_clearance_deg_s"]),
+    """The result of ``of`` as text, with a warning where a change is above ``limit`` (deg/s) or the
+    run does not settle."""
+    changes = {f"tolerance {found['tolerance']:g}": found["by_tolerance_deg_s"]}
+    if "by_clearance_deg_s" in found:
+        cause = f"{1e6 * found['clearance_change_m']:g} µm of clearance"
+        changes[cause] = found["by_clearance_deg_s"]
+    words = [
+        f"{cause}: does not settle" if value is None else f"{value:.2g} deg/s by {cause}"
+        for cause, value in changes.items()
     ]
-    moved = [(cause, value) for cause, value in causes if value is not None]
-    if not moved:
-        return []
-    words = ", ".join(f"{value:.2g} deg/s by {cause}" for cause, value in moved)
-    cause, most = max(moved, key=lambda item: item[1])
-    warning = (
-        f"  warning       sensitive: {cause} moves a rate by {most:.2g} deg/s. Use an ensemble "
-        "instead of a single run"
-    )
-    return [f"  sensitivity   {words}"] + [warning] * (most > limit)
+    warnings = [
+        f"  warning       sensitive: {cause} "
+        + ("keeps the run from settling" if value is None else f"moves a rate by {value:.2g} deg/s")
+        + ". Use an ensemble instead of a single run"
+        for cause, value in changes.items()
+        if value is None or value > limit
+    ]
+    return [f"  sensitivity   {', '.join(words)}", *warnings]
