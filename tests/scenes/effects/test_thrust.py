@@ -142,6 +142,15 @@ def test_a_time_that_stands_twice_is_a_jump(tmp_path):
     assert thrust.impulse(found.record(), DURATION) == pytest.approx(5.0, rel=1e-14)
 
 
+@pytest.mark.case("X27")
+def test_the_force_before_a_jump_counts(tmp_path):
+    """A ramp of 20 us that ends in a jump to nothing has its peak at the jump, and burns out there."""
+    time, force = np.array([1e-3, 1.02e-3, 1.02e-3, 2e-3]), np.array([0.0, 1000.0, 0.0, 0.0])
+    record = table(kind="measured", file=curve_file(tmp_path, time, force)).record()
+    assert thrust.peak(record, DURATION) == pytest.approx(1000.0, rel=1e-9)
+    assert thrust.burnout(record, 0.5, DURATION) == pytest.approx(1.02e-3, rel=1e-12)
+
+
 @pytest.mark.parametrize("use", ["curve", "fit"])
 def test_the_fit_recovers_a_gaussian(tmp_path, use):
     time = np.linspace(0.0, 0.03, 121)

@@ -131,7 +131,8 @@ def _grid(thrust: Thrust, duration: float) -> tuple[np.ndarray, np.ndarray]:
             + np.linspace(-8.0, 8.0, 801) * thrust.pulses.widths[:, None]
         )
     else:
-        near = _curve(thrust).times
+        times = _curve(thrust).times
+        near = np.append(times, np.nextafter(times, -np.inf))  # both sides of a jump
     time = np.union1d(np.linspace(0.0, duration, 1001), near[(near > 0.0) & (near < duration)])
     return time, np.abs(sample(thrust, time))
 
