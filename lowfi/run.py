@@ -46,8 +46,8 @@ def run(
 
     The ``model`` is ``compliant``: pads press on the rail ``compliance`` (``tipoff.compliance``)
     through the interface stiffness of the reference; or ``springs``: the scene's contact law at
-    each pad face, with the constants of a ``calibration`` if one is given, and a rigid
-    ``compliance`` where the rails are warm. ``progress`` is called with the fraction of the
+    each pad face, and a rigid ``compliance`` where the rails are warm. A ``calibration`` replaces
+    constants that were fitted on the same model. ``progress`` is called with the fraction of the
     duration done. A run whose ledgers do not close as promised is run again at tighter tolerances,
     as message and cost report; one that keeps breaking a promise is diverged. Raises SceneError,
     every fault listed, before the first step; a later failure is the status of the result."""

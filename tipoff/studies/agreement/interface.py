@@ -7,7 +7,8 @@ compliance of that same mesh, so that the mesh is no part of their difference.
 
 A condition is judged at a stiffness where the reference is converged and not chaotic. Chaos is
 looked for where the models miss a limit: there the reference also runs with 1 um more and less
-clearance.
+clearance. A miss at the nominal stiffness stays a miss of the condition, chaotic or not, and its
+verdict says which.
 """
 
 from collections.abc import Callable, Sequence

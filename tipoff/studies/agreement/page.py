@@ -163,7 +163,7 @@ def interface(found: list[dict]) -> list[Part]:
     note = (
         "Both models on the coarse mesh; changes of the largest settled rate from factor 1. The "
         "interface stiffness is a property of the launcher: it moves both models alike. A condition "
-        "agrees where it does at every factor."
+        "agrees where it does at every factor at which it is judged."
     )
     return [
         f"Other values of the interface stiffness: {stiffnesses(found)}.",
@@ -230,7 +230,7 @@ def summary(rows: list[dict], words: str = "") -> str:
         f"{len(agreeing)} of {len(rows)} {words}conditions agree"
         + (f", {free} of them without contact" if free else "")
         + (f"; for {doubtful} the reference is not converged" if doubtful else "")
-        + (f"; {chaotic} misses where the reference is chaotic" if chaotic else "")
+        + (f"; {chaotic} of the misses are where the reference is chaotic" if chaotic else "")
     )
 
 

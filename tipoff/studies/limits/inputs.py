@@ -62,7 +62,9 @@ def _cases(options: Options) -> int:
             Fault("--confidence", "value", f"{options.confidence:g}", "0.5 or more and less than 1")
         )
     if options.draws is not None and options.model != SPRINGS:
-        expected = f"used with --model {SPRINGS} alone; compliant contact has no fitted constants"
+        expected = (
+            f"used with --model {SPRINGS} alone; the constants of compliant contact are not drawn"
+        )
         faults.append(Fault("--draws", "option", str(options.draws), expected))
     elif options.draws is not None and not 0 <= options.draws <= _MOST_DRAWS:
         faults.append(Fault("--draws", "value", str(options.draws), f"0 to {_MOST_DRAWS}"))

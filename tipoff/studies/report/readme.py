@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 from tipoff.files import read_json, write_text
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
+from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.studies.agreement import growth_page, rails_page
 from tipoff.studies.agreement.other_rails import beside
 from tipoff.studies.agreement.page import by_factor
@@ -52,7 +52,7 @@ def section(folder: Path) -> str:
         *by_factor(agreement["interface"]),
         *_growth(agreement["growth"]),
         _speed(agreement),
-        *_equal(refined, cost),
+        *_equal(refined),
     ]
     parts += [_rails(found)] if (found := beside(folder)) else []
     parts += [_blind(blind)] if blind is not None else []
@@ -140,21 +140,13 @@ def _speed(agreement: dict) -> str:
     )
 
 
-def _equal(refined: dict | None, cost: dict | None) -> list[Part]:
+def _equal(refined: dict | None) -> list[Part]:
     """The speed-up on the mesh whose uncertainty is as small as the error of the surrogate, where
-    the error of the reference was studied; and on the nearest mesh, where cost was."""
+    the error of the reference was studied."""
     if refined is None or refined["equal_accuracy"] is None:
         return []
     sentence = equal_accuracy.sentence(refined["equal_accuracy"])
-    near = [
-        f"\nWhat equal accuracy means decides: by its distance from the finest mesh of the cost "
-        f"table, whatever that is itself sure of,\n{row['mesh'].split(',')[0]} would do, "
-        f"{row['ratio']:,.0f} times. The mesh of the paragraph above is the one that every other "
-        "table stands on."
-        for row in (cost["matched"] if cost else ())
-        if row["model"] == COMPLIANT
-    ]
-    return [f"{sentence[0].upper()}{sentence[1:]} (`make convergence`)." + "".join(near)]
+    return [f"{sentence[0].upper()}{sentence[1:]} (`make convergence`)."]
 
 
 def _rails(found: list[dict]) -> Table:
