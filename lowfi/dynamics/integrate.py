@@ -52,7 +52,7 @@ def _begin(system, first_step, loop):
     loop.after[:] = 0.0
     books.reset(loop.book)
     _reset_stick(loop.stick)
-    survey(system, loop)
+    survey(system, loop, solved=False)
     update_engaged(system, loop)  # pads may press from the start
     stick_slip.update(system.sticking, system, loop)
 

@@ -51,12 +51,20 @@ def observe(system, loop, row, forces):
     _rails(system.compliance, state, row)
     slot.copy(state[WORK:], row[WORKS:], WORK_SIZE)
     slot.copy(state[IMPULSE:], row[GIVEN:], 6)
-    total = 0.0
-    for value in row:
-        total += abs(value)
+    finite = _is_finite(row)
     for i in range(forces.shape[0]):
-        total += abs(forces[i, 0]) + abs(forces[i, 1]) + abs(forces[i, 2])
-    return np.isfinite(total)
+        finite &= _is_finite(forces[i])
+    return finite
+
+
+@inlined
+def _is_finite(values):
+    """Whether all ``values`` (n,) are finite; without a branch, which would cost more than the
+    numbers."""
+    found = True
+    for value in values:
+        found &= abs(value) < np.inf
+    return found
 
 
 @inlined
@@ -151,24 +159,33 @@ def _observe_compliance(compliance, system, loop, body, base, forces):
     left, whatever is sampled."""
     energy = 0.0
     if compliance is not None:
-        workspace, state = compliance.workspace, loop.work
         # Before the first step no face is known to touch, and every face may press.
         touching = loop.touching if loop.counts.steps > 0 else loop.engaged
-        _copy_rows(workspace.displacement, workspace.saved_displacement)
-        place, turn = relative_pose(system.platform, body, base)
-        for rail in range(compliance.members.shape[0]):
-            count = solve(compliance, system.faces, rail, touching, place, turn, state)
-            energy += energy_in_compliance(compliance, count)
-            for k in range(count):
-                i = workspace.order[k]
-                if workspace.force[i, 0] > 0.0:
-                    pad = compliant_load(
-                        compliance, system.friction, system.platform, system.faces, i, body, base
-                    )
-                    aside, _ = wall_force(compliance, system.faces, i, body, base)
-                    for j in range(3):
-                        forces[i, j] = pad.normal[j] + pad.drag[j] + aside[j]
-        _copy_rows(workspace.saved_displacement, workspace.displacement)
+        if touching.any():
+            workspace = compliance.workspace
+            _copy_rows(workspace.displacement, workspace.saved_displacement)
+            energy = _observe_pressed(compliance, system, touching, loop.work, body, base, forces)
+            _copy_rows(workspace.saved_displacement, workspace.displacement)
+    return energy
+
+
+@kernel
+def _observe_pressed(compliance, system, touching, state, body, base, forces):
+    """Fill ``forces`` of the ``touching`` faces (f,); the energy (J) stored under them."""
+    energy, workspace = 0.0, compliance.workspace
+    place, turn = relative_pose(system.platform, body, base)
+    for rail in range(compliance.members.shape[0]):
+        count = solve(compliance, system.faces, rail, touching, place, turn, state)
+        energy += energy_in_compliance(compliance, count)
+        for k in range(count):
+            i = workspace.order[k]
+            if workspace.force[i, 0] > 0.0:
+                pad = compliant_load(
+                    compliance, system.friction, system.platform, system.faces, i, body, base
+                )
+                aside, _ = wall_force(compliance, system.faces, i, body, base)
+                for j in range(3):
+                    forces[i, j] = pad.normal[j] + pad.drag[j] + aside[j]
     return energy
 
 

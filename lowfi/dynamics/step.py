@@ -64,13 +64,13 @@ def step(system, plan, tolerance, loop):
             counts.rejected += 1
             clock.wanted = dt * (max(_SHRINK, _SAFETY * ratio**-0.2) if ratio < np.inf else _SHRINK)
             continue
-        clock.rate = rate_bound(system, loop, loop.end, 0.0)
+        clock.rate = rate_bound(system, loop, loop.end, solved=True)  # by the last stage
         limit = STABLE_RADIUS / max(rate, clock.rate)
         if dt > limit * (1.0 + 1e-12):
             counts.rejected += 1
             clock.wanted = _SAFETY * limit
             continue
-        survey(system, loop)
+        survey(system, loop, solved=True)
         smooth = ratio <= _SPARE and keeps_law(loop)
         span, face = _cut_at_event(system, loop, dt)
         if face >= 0:  # touches as the step begins, by rounding on the wrong side
@@ -115,7 +115,7 @@ def _begin(system, plan, loop):
     _release(system.is_compliant, system, loop, left, 1.0)
     changed = update_touching(loop) or changed
     if changed:
-        clock.rate = rate_bound(system, loop, loop.start, 0.0)
+        clock.rate = rate_bound(system, loop, loop.start, solved=False)
     _release(system.is_compliant, system, loop, left, -1.0)
     if counts.steps == 0:
         audit.open_books(system.ledger, system.is_compliant, system, loop)
@@ -155,28 +155,30 @@ def _longest_at_ends(is_compliant, system, loop):
 
 @inlined
 def _within_predicted_limit(system, loop, dt):
-    """``dt`` (s), less where the proven limit will have fallen below it by the end of such a step:
-    a guess that saves attempts."""
+    """``dt`` (s), less where the proven limit of springs will have fallen below it by the end of
+    such a step: a guess that saves attempts."""
     touching = False
     for touches in loop.touching:
         touching = touching or touches
     while touching:
-        limit = STABLE_RADIUS / rate_bound(system, loop, loop.start, 0.7 * dt)
+        limit = STABLE_RADIUS / fastest_rate(
+            system.contact, system, loop.touching, loop.stick, loop.start, 0.7 * dt
+        )
         touching = dt > limit
         dt = max(0.7 * dt, limit) if touching else dt
     return dt
 
 
 @inlined
-def rate_bound(system, loop, state, ahead):
-    """Bound (1/s) of the eigenvalues of the contact at ``state``, or a guess of it a time ``ahead``
-    (s) later."""
-    rate = fastest_rate(system.contact, system, loop.touching, loop.stick, state, ahead)
-    return max(rate, _rate_on_compliance(system.is_compliant, system, loop, state))
+def rate_bound(system, loop, state, solved):
+    """Bound (1/s) of the eigenvalues of the contact at ``state``, for which compliant contact may
+    be ``solved`` already."""
+    rate = fastest_rate(system.contact, system, loop.touching, loop.stick, state, 0.0)
+    return max(rate, _rate_on_compliance(system.is_compliant, system, loop, state, solved))
 
 
 @inlined
-def _rate_on_compliance(is_compliant, system, loop, state):
+def _rate_on_compliance(is_compliant, system, loop, state, solved):
     rate = 0.0
     if is_compliant is not None:
         stiffness, damping = stiffness_and_damping(
@@ -187,6 +189,7 @@ def _rate_on_compliance(is_compliant, system, loop, state):
             system.payload,
             loop.touching,
             state,
+            solved,
         )
         rate = 0.5 * damping + np.sqrt(0.25 * damping * damping + stiffness)
     return rate
@@ -214,7 +217,7 @@ def _cut_at_event(system, loop, dt):
             slot.modal_size(system.compliance),
             loop.end,
         )
-        survey(system, loop)
+        survey(system, loop, solved=False)
     return span, -1
 
 

@@ -38,20 +38,22 @@ from tipoff.scenes.effects.contact import stored_energy
 
 
 @inlined
-def survey(system, loop):
-    """Fill ``loop.after`` at ``loop.end``, and the energy (J) stored in compliant contact. A face
-    off its wall gets the mode it would have there."""
+def survey(system, loop, solved):
+    """Fill ``loop.after`` at ``loop.end``, for which compliant contact may be ``solved`` already,
+    and the energy (J) stored in it. A face off its wall gets the mode it would have there."""
     faces, platform, payload = system.faces, system.platform, system.payload
     _survey_springs(system.contact, system.sticking, faces, platform, payload, loop)
-    loop.audit.in_compliance = _survey_compliance(system.compliance, faces, platform, payload, loop)
+    loop.audit.in_compliance = _survey_compliance(
+        system.compliance, faces, platform, payload, loop, solved
+    )
 
 
 @inlined
-def _survey_compliance(compliance, faces, platform, payload, loop):
+def _survey_compliance(compliance, faces, platform, payload, loop, solved):
     energy = 0.0
     if compliance is not None:
         energy = survey_compliance(
-            compliance, faces, platform, payload, loop.touching, loop.end, loop.after
+            compliance, faces, platform, payload, loop.touching, loop.end, solved, loop.after
         )
     return energy
 

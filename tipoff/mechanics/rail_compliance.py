@@ -115,17 +115,18 @@ class RailCompliance:
         )
 
     def cubic(self, modes: int = 0) -> tuple[np.ndarray, np.ndarray]:
-        """Flexibility (s-1,f,f,p,p,4) without the part of the first ``modes``, and their shapes
-        (s-1,f,n,p,4), between stations: coefficients of the rising powers of the distance (m) from
+        """Flexibility (s-1,f,f,4,p p) without the part of the first ``modes``, and their shapes
+        (s-1,f,n,4,p), between stations: coefficients of the rising powers of the distance (m) from
         the one before. Raises ValueError as ``residual`` does."""
         if modes not in self._cubics:
             flexibility, shape = (
                 cubic(self.travel, table)
                 for table in (self.residual(modes), self.shape[..., :modes])
             )
+            between = flexibility.transpose(0, 1, 3, 5, 2, 4)
             self._cubics[modes] = (
-                np.ascontiguousarray(flexibility.transpose(0, 1, 3, 2, 4, 5)),
-                np.ascontiguousarray(shape.transpose(0, 1, 3, 2, 4)),
+                np.ascontiguousarray(between.reshape(*between.shape[:4], PATTERNS**2)),
+                np.ascontiguousarray(shape.transpose(0, 1, 3, 4, 2)),
             )
         return self._cubics[modes]
 

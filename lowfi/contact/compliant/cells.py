@@ -16,10 +16,19 @@ the rows.
 import numpy as np
 
 from tipoff.kernels.jit import inlined, kernel
-from tipoff.lowfi.contact.compliant.record import ASIDE, BY_ETA, BY_XI, DEPTH, DRIFT, MIDDLE, SHIFT
+from tipoff.lowfi.contact.compliant.record import (
+    ASIDE,
+    BY_ETA,
+    BY_XI,
+    DEPTH,
+    DRIFT,
+    MIDDLE,
+    SHIFT,
+)
 from tipoff.lowfi.contact.springs import along, penetration
 from tipoff.lowfi.system import NORMAL_Y, NORMAL_Z
 
+_NO_FORCE, _NO_MOMENTS = (0.0,) * 6, (0.0,) * 15
 # in xi, half the travel over which the place of a pad on the wall comes to rest as the pad begins
 # to overhang an end
 _EASED = 0.1
@@ -92,27 +101,18 @@ def row_depth(compliance, face, xi, displacement):
 
 @kernel
 def press(compliance, face):
-    """Fill the face's force (p,) N and its moments, sums over the pressed cells of k dA xi'^i
-    eta'^j. Returns the smallest |p| (m) of all cells over the wall: while p changes by less, the
-    same cells press."""
-    force, moment, lever = (
-        compliance.workspace.force[face],
-        compliance.workspace.moment[face],
-        compliance.workspace.lever[face],
-    )
-    relief, half = compliance.relief[face], compliance.half[face]
-    count = compliance.node.size
+    """Fill the face's force (p,) N and stiffness (p, p) N/m. Returns the smallest |p| (m) of all
+    cells over the wall: while p changes by less, the same cells press."""
+    workspace, half, relief = compliance.workspace, compliance.half[face], compliance.relief[face]
+    lever, count = workspace.lever[face], compliance.node.size
     stiffness = compliance.interface_stiffness * 4.0 * half[0] * abs(half[1]) / (count * count)
-    force[:] = 0.0
-    moment[:] = 0.0
-    slack = np.inf
+    force, moments, slack = _NO_FORCE, _NO_MOMENTS, np.inf
     for row in range(count):
-        xi = compliance.node[row]
-        weight = stiffness * cover(compliance, half[0], lever[MIDDLE], row)[0]
+        xi, weight = compliance.node[row], stiffness
+        if lever[DRIFT] != 0.0:  # else all of the face is over the wall
+            weight *= cover(compliance, half[0], lever[MIDDLE], row)[0]
         if weight > 0.0:
-            level, tilt, bend = row_depth(
-                compliance, face, xi, compliance.workspace.displacement[face]
-            )
+            level, tilt, bend = row_depth(compliance, face, xi, workspace.displacement[face])
             level -= relief * compliance.crown[row]
             f0, f1, f2 = 0.0, 0.0, 0.0
             m0, m1, m2, m3, m4 = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -132,9 +132,67 @@ def press(compliance, face):
                     )
             if m0 > 0.0:
                 x = xi + lever[SHIFT]
-                _add_force(force, weight, x, f0, f1, f2)
-                _add_moments(moment, weight, x, (m0, m1, m2, m3, m4))
+                force = _with_force(force, weight, x, f0, f1, f2)
+                moments = _with_moments(moments, weight, x, (m0, m1, m2, m3, m4))
+    _fill_row(workspace.force[face], force)
+    _fill_stiffness(workspace.stiffness[face], moments)
     return slack
+
+
+@inlined
+def _with_force(force, weight, x, f0, f1, f2):
+    """``force`` with that of one more row of cells."""
+    return (
+        force[0] + weight * f0,
+        force[1] + weight * x * f0,
+        force[2] + weight * f1,
+        force[3] + weight * x * x * f0,
+        force[4] + weight * x * f1,
+        force[5] + weight * f2,
+    )
+
+
+@inlined
+def _with_moments(moments, weight, x, sums):
+    """``moments`` with those of one more row of cells: sums over pressed cells of k dA xi'^i eta'^j
+    with i + j up to 4, in the order of i, then j."""
+    m0, m1, m2, m3, m4 = sums
+    first, second = weight * x, weight * x * x
+    third, fourth = second * x, second * x * x
+    return (
+        moments[0] + weight * m0,
+        moments[1] + weight * m1,
+        moments[2] + weight * m2,
+        moments[3] + weight * m3,
+        moments[4] + weight * m4,
+        moments[5] + first * m0,
+        moments[6] + first * m1,
+        moments[7] + first * m2,
+        moments[8] + first * m3,
+        moments[9] + second * m0,
+        moments[10] + second * m1,
+        moments[11] + second * m2,
+        moments[12] + third * m0,
+        moments[13] + third * m1,
+        moments[14] + fourth * m0,
+    )
+
+
+@inlined
+def _fill_stiffness(stiffness, moments):
+    """K_ab from the moments; the patterns are 1, xi', eta', xi'^2, xi' eta' and eta'^2."""
+    m00, m01, m02, m03, m04, m10, m11, m12, m13, m20, m21, m22, m30, m31, m40 = moments
+    _fill_row(stiffness[0], (m00, m10, m01, m20, m11, m02))
+    _fill_row(stiffness[1], (m10, m20, m11, m30, m21, m12))
+    _fill_row(stiffness[2], (m01, m11, m02, m21, m12, m03))
+    _fill_row(stiffness[3], (m20, m30, m21, m40, m31, m22))
+    _fill_row(stiffness[4], (m11, m21, m12, m31, m22, m13))
+    _fill_row(stiffness[5], (m02, m12, m03, m22, m13, m04))
+
+
+@inlined
+def _fill_row(row, values):
+    row[0], row[1], row[2], row[3], row[4], row[5] = values
 
 
 @inlined
@@ -148,25 +206,6 @@ def largest_change(compliance, face, change):
         + xi * (abs(change[1]) + xi * abs(change[3]))
         + eta * (abs(change[2]) + xi * abs(change[4]) + eta * abs(change[5]))
     )
-
-
-@inlined
-def _add_force(force, weight, x, f0, f1, f2):
-    force[0] += weight * f0
-    force[1] += weight * x * f0
-    force[2] += weight * f1
-    force[3] += weight * x * x * f0
-    force[4] += weight * x * f1
-    force[5] += weight * f2
-
-
-@inlined
-def _add_moments(moment, weight, x, sums):
-    power = weight
-    for i in range(5):
-        for j in range(5 - i):
-            moment[i, j] += power * sums[j]
-        power *= x
 
 
 @kernel

@@ -87,11 +87,9 @@ def axial_force(compliance, count):
         for a in range(PATTERNS):
             total = 0.0
             for j in range(count):
+                other = workspace.force[workspace.order[j]]
                 for b in range(PATTERNS):
-                    total += (
-                        workspace.slope[i * PATTERNS + a, j * PATTERNS + b]
-                        * workspace.force[workspace.order[j], b]
-                    )
+                    total += workspace.slope[i, j, a * PATTERNS + b] * other[b]
             pull += force[a] * (0.5 * total + slope(compliance.modes, face, a))
     return pull
 

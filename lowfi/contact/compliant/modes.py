@@ -34,13 +34,15 @@ def evaluate(modes, rail, face, station, way, changes, state):
         modes.slope[face, :] = 0.0
         modes.speed[face, :] = 0.0
         for i in range(count):
+            c = modes.cubic[station, face, i]
             for a in range(PATTERNS):
-                c = modes.cubic[station, face, i, a]
-                value = c[0] + way * (c[1] + way * (c[2] + way * c[3]))
+                value = c[0, a] + way * (c[1, a] + way * (c[2, a] + way * c[3, a]))
                 modes.shape[face, i, a] = value
                 modes.offset[face, a] += state[first + i] * value
                 modes.slope[face, a] += (
-                    state[first + i] * changes * (c[1] + way * (2.0 * c[2] + way * 3.0 * c[3]))
+                    state[first + i]
+                    * changes
+                    * (c[1, a] + way * (2.0 * c[2, a] + way * 3.0 * c[3, a]))
                 )
                 modes.speed[face, a] += state[rates + i] * value
 

@@ -16,7 +16,6 @@ CELLS = 10  # along each edge of a pad face
 # far xi on the wall is ahead of xi on the pad, and by how much more per metre of travel; X (m) of the
 # middle; how far eta on the wall is beyond eta on the pad.
 DEPTH, BY_XI, BY_ETA, SHIFT, DRIFT, MIDDLE, ASIDE, LEVER_SIZE = range(8)
-DEGREES = 5  # of the moments of pressed cells: products of two patterns reach the fourth power
 
 
 class Workspace(NamedTuple):
@@ -27,10 +26,10 @@ class Workspace(NamedTuple):
     displacement: np.ndarray  # (f, p) m, of the walls; the first guess of the next solution
     saved_displacement: np.ndarray  # (f, p) m, a copy
     force: np.ndarray  # (f, p) N
-    moment: np.ndarray  # (f, DEGREES, DEGREES) N/m
+    stiffness: np.ndarray  # (f, p, p) N/m, of the pressed cells: K of ``solution``
     order: np.ndarray  # (m,) numbers of the faces that are solved for together
-    flexibility: np.ndarray  # (w, w) m/N, between these faces
-    slope: np.ndarray  # (w, w) 1/N, its derivative along the rail
+    flexibility: np.ndarray  # (m, m, p p) m/N, between these faces
+    slope: np.ndarray  # (m, m, p p) 1/N, its derivative along the rail
     matrix: np.ndarray  # (w, w)
     right: np.ndarray  # (w, 3 m + n)
     answers: np.ndarray  # (3 m, 18) to the rigid motions of the faces (``step_limit``)
@@ -44,7 +43,7 @@ class Modes(NamedTuple):
     drag: np.ndarray  # (r, n) 1/s, damping rates
     cubic: (
         np.ndarray
-    )  # (s-1, f, n, p, 4) 1/kg^0.5, shapes between stations, as ``Compliance.cubic``
+    )  # (s-1, f, n, 4, p) 1/kg^0.5, shapes between stations, as ``Compliance.cubic``
     shape: np.ndarray  # (f, n, p) 1/kg^0.5, workspace: shapes at the faces
     offset: np.ndarray  # (f, p) m, workspace: displacement
     slope: np.ndarray  # (f, p) workspace: its derivative along the rail
@@ -54,7 +53,7 @@ class Modes(NamedTuple):
 class ThermalOffset(NamedTuple):
     """Displacement of warm walls without load."""
 
-    cubic: np.ndarray  # (s-1, f, p, 4) m, between stations, as ``Compliance.cubic``
+    cubic: np.ndarray  # (s-1, f, 4, p) m, between stations, as ``Compliance.cubic``
     offset: np.ndarray  # (f, p) m, workspace: value under the faces
     slope: np.ndarray  # (f, p) workspace: its derivative along the rail
 
@@ -62,7 +61,7 @@ class ThermalOffset(NamedTuple):
 class Compliance(NamedTuple):
     """Compliant contact of f faces on r rails, with its statics at s stations."""
 
-    cubic: np.ndarray  # (s-1, f, f, p, p, 4) m/N, as powers of the distance (m) from a station
+    cubic: np.ndarray  # (s-1, f, f, 4, p p) m/N, as powers of the distance (m) from a station
     origin: float  # m, X of the first face at ignition: the first station
     spacing: float  # m, between stations
     members: np.ndarray  # (r, m) numbers of the faces on each rail; -1 fills up
@@ -116,7 +115,7 @@ def build(
     for row, rail in zip(members, rails):
         row[: rail.size] = rail
     edges = np.linspace(-1.0, 1.0, cells + 1)
-    crown = np.diff(edges**5) / (5.0 * np.diff(edges))
+    node, crown = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges**5) / (5.0 * np.diff(edges))
     flexibility, shape = found.cubic(modes)
     vibrating = _modes(found, shape, damping) if shape.size else None
     return Compliance(
@@ -131,7 +130,7 @@ def build(
         interface_stiffness=float(model.interface_stiffness),
         start=float(model.rail_start),
         end=float(model.rail_end),
-        node=0.5 * (edges[1:] + edges[:-1]),
+        node=node,
         crown=crown,
         modes=vibrating,
         thermal_offset=_thermal_offset(found, model),
@@ -144,7 +143,7 @@ def _thermal_offset(found: data.RailCompliance, model: Model) -> ThermalOffset |
         return None
     by_pattern = (model.faces.axis.size, data.PATTERNS)
     return ThermalOffset(
-        cubic=data.cubic(found.travel, found.moved(model.thermal.amounts)),
+        cubic=data.cubic(found.travel, found.moved(model.thermal.amounts)).swapaxes(-1, -2).copy(),
         offset=zeros(by_pattern),
         slope=zeros(by_pattern),
     )
@@ -182,10 +181,10 @@ def _workspace(faces: int, members: int, modes: int) -> Workspace:
         displacement=zeros(by_pattern),
         saved_displacement=zeros(by_pattern),
         force=zeros(by_pattern),
-        moment=zeros((faces, DEGREES, DEGREES)),
+        stiffness=zeros((faces, data.PATTERNS, data.PATTERNS)),
         order=np.zeros(members, dtype=np.int64),
-        flexibility=zeros((wide, wide)),
-        slope=zeros((wide, wide)),
+        flexibility=zeros((members, members, data.PATTERNS**2)),
+        slope=zeros((members, members, data.PATTERNS**2)),
         matrix=zeros((wide, wide)),
         right=zeros((wide, 3 * members + modes)),
         answers=zeros((3 * members, 18)),

@@ -17,25 +17,20 @@ from tipoff.kernels.jit import inlined, kernel
 from tipoff.lowfi.contact.compliant import thermal_offset
 from tipoff.lowfi.contact.compliant.cells import eased, largest_change, press, take_lever
 from tipoff.lowfi.contact.compliant.modes import evaluate, offset
-from tipoff.mechanics.rail_compliance import PATTERNS, POWERS
+from tipoff.mechanics.rail_compliance import PATTERNS
 
 _ARRIVED = 1e-14  # m, a correction that is rounding
 _MOST = 60  # corrections
 _CAREFUL = 12  # after so many, half corrections, which cannot cycle
-_XI, _ETA = POWERS.T.copy()
 
 
 @kernel
 def solve(compliance, faces, rail, touching, place, turn, state):
     """Number of ``touching`` (f,) faces on ``rail``; ``compliance.workspace`` holds them in
     ``order``, with lever, displacement and force. Of ``state`` only the modes are read."""
-    workspace, count = compliance.workspace, 0
-    for slot in range(compliance.members.shape[1]):
-        face = compliance.members[rail, slot]
-        if face >= 0 and touching[face]:
-            take_lever(compliance, faces, face, place, turn)
-            workspace.order[count] = face
-            count += 1
+    workspace, count = compliance.workspace, gather(compliance, rail, touching)
+    for i in range(count):
+        take_lever(compliance, faces, workspace.order[i], place, turn)
     if count > 0:
         take_flexibility(compliance, count, place[0] + faces[0, 0], state)
         for correction in range(_MOST):
@@ -43,6 +38,27 @@ def solve(compliance, faces, rail, touching, place, turn, state):
                 return count
         workspace.force[:] = np.nan  # no convergence; no step is accepted with it
     return count
+
+
+@inlined
+def gather(compliance, rail, touching):
+    """Fill ``order`` with the ``touching`` (f,) faces on ``rail``; their number."""
+    count = 0
+    for slot in range(compliance.members.shape[1]):
+        face = compliance.members[rail, slot]
+        if face >= 0 and touching[face]:
+            compliance.workspace.order[count] = face
+            count += 1
+    return count
+
+
+@inlined
+def solve_unless(solved, compliance, faces, rail, touching, place, turn, state):
+    """``solve``, or its number of faces and their order where all rails are already ``solved`` at
+    this ``state``."""
+    if solved:
+        return gather(compliance, rail, touching)
+    return solve(compliance, faces, rail, touching, place, turn, state)
 
 
 @inlined
@@ -79,22 +95,11 @@ def take_flexibility(compliance, count, place, state):
         )
         thermal_offset.evaluate(compliance.thermal_offset, workspace.order[i], station, s, changes)
         for j in range(count):
-            block = compliance.cubic[station, workspace.order[i], workspace.order[j]]
-            for a in range(PATTERNS):
-                for b in range(PATTERNS):
-                    c = block[a, b]
-                    workspace.flexibility[i * PATTERNS + a, j * PATTERNS + b] = c[0] + s * (
-                        c[1] + s * (c[2] + s * c[3])
-                    )
-                    workspace.slope[i * PATTERNS + a, j * PATTERNS + b] = changes * (
-                        c[1] + s * (2.0 * c[2] + s * 3.0 * c[3])
-                    )
-
-
-@inlined
-def stiffness(moment, a, b):
-    """K_ab of one face."""
-    return moment[_XI[a] + _XI[b], _ETA[a] + _ETA[b]]
+            c = compliance.cubic[station, workspace.order[i], workspace.order[j]]
+            block, slope = workspace.flexibility[i, j], workspace.slope[i, j]
+            for k in range(block.size):
+                block[k] = c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k]))
+                slope[k] = changes * (c[1, k] + s * (2.0 * c[2, k] + s * 3.0 * c[3, k]))
 
 
 @kernel
@@ -103,22 +108,21 @@ def _correct(compliance, count, share):
     workspace = compliance.workspace
     for i in range(count):
         workspace.slack[i] = press(compliance, workspace.order[i])
-    wide = count * PATTERNS
     fill_matrix(workspace, count)
-    for row in range(wide):
-        total = 0.0
-        for column in range(wide):
-            total += (
-                workspace.flexibility[row, column]
-                * workspace.force[workspace.order[column // PATTERNS], column % PATTERNS]
+    for i in range(count):
+        face = workspace.order[i]
+        for a in range(PATTERNS):
+            total = 0.0
+            for j in range(count):
+                force = workspace.force[workspace.order[j]]
+                for c in range(PATTERNS):
+                    total += workspace.flexibility[i, j, a * PATTERNS + c] * force[c]
+            workspace.right[i * PATTERNS + a, 0] = total - (
+                workspace.displacement[face, a]
+                - thermal_offset.offset(compliance.thermal_offset, face, a)
+                - offset(compliance.modes, face, a)
             )
-        face, a = workspace.order[row // PATTERNS], row % PATTERNS
-        workspace.right[row, 0] = total - (
-            workspace.displacement[face, a]
-            - thermal_offset.offset(compliance.thermal_offset, face, a)
-            - offset(compliance.modes, face, a)
-        )
-    eliminate(workspace.matrix, workspace.right, wide, 1)
+    eliminate(workspace.matrix, workspace.right, count * PATTERNS, 1)
     largest, exact = 0.0, share == 1.0
     for i in range(count):
         face = workspace.order[i]
@@ -129,22 +133,22 @@ def _correct(compliance, count, share):
             largest = max(largest, abs(change))
             workspace.displacement[face, a] += change
             for b in range(PATTERNS):
-                workspace.force[face, b] -= stiffness(workspace.moment[face], a, b) * change
+                workspace.force[face, b] -= workspace.stiffness[face, a, b] * change
     return 0.0 if exact or largest != largest else largest  # what is not a number stays so
 
 
 @kernel
 def fill_matrix(workspace, count):
     """1 + F K over the first ``count`` faces in order."""
-    wide = count * PATTERNS
-    for row in range(wide):
+    for i in range(count):
         for j in range(count):
-            moment = workspace.moment[workspace.order[j]]
-            for b in range(PATTERNS):
-                total = 1.0 if row == j * PATTERNS + b else 0.0
-                for c in range(PATTERNS):
-                    total += workspace.flexibility[row, j * PATTERNS + c] * stiffness(moment, c, b)
-                workspace.matrix[row, j * PATTERNS + b] = total
+            block, stiffness = workspace.flexibility[i, j], workspace.stiffness[workspace.order[j]]
+            for a in range(PATTERNS):
+                for b in range(PATTERNS):
+                    total = 1.0 if i == j and a == b else 0.0
+                    for c in range(PATTERNS):
+                        total += block[a * PATTERNS + c] * stiffness[c, b]
+                    workspace.matrix[i * PATTERNS + a, j * PATTERNS + b] = total
 
 
 @kernel
@@ -161,8 +165,9 @@ def eliminate(matrix, right, size, columns):
                 matrix[k, column], matrix[pivot, column] = matrix[pivot, column], matrix[k, column]
             for column in range(columns):
                 right[k, column], right[pivot, column] = right[pivot, column], right[k, column]
+        inverse = 1.0 / matrix[k, k]
         for row in range(k + 1, size):
-            factor = matrix[row, k] / matrix[k, k]
+            factor = matrix[row, k] * inverse
             for column in range(k + 1, size):
                 matrix[row, column] -= factor * matrix[k, column]
             for column in range(columns):
@@ -189,6 +194,8 @@ def follow(compliance, face, place, count, state, out):
         )
         for j in range(count):
             other = workspace.order[j]
+            c = compliance.cubic[station, face, other]
             for b in range(PATTERNS):
-                c = compliance.cubic[station, face, other, a, b]
-                out[a] += (c[0] + s * (c[1] + s * (c[2] + s * c[3]))) * workspace.force[other, b]
+                k = a * PATTERNS + b
+                value = c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k]))
+                out[a] += value * workspace.force[other, b]

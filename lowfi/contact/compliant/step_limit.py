@@ -18,7 +18,12 @@ from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant.loads import load
 from tipoff.lowfi.contact.compliant.modes import fastest
 from tipoff.lowfi.contact.compliant.record import ASIDE, SHIFT
-from tipoff.lowfi.contact.compliant.solution import eliminate, fill_matrix, solve, stiffness
+from tipoff.lowfi.contact.compliant.solution import (
+    eliminate,
+    fill_matrix,
+    solve_unless,
+    take_flexibility,
+)
 from tipoff.lowfi.contact.springs import along_width, outward, pad_point, relative_pose
 from tipoff.lowfi.contact.step_limit import friction_damping
 from tipoff.mechanics.rail_compliance import PATTERNS
@@ -29,8 +34,9 @@ _FORCE, _MOMENT, _RATE, _OF_PLATFORM = 0, 3, 6, 9
 
 
 @kernel
-def stiffness_and_damping(compliance, friction, faces, platform, payload, touching, state):
-    """Traces K (1/s2) and C (1/s) of all ``touching`` faces (f,) at ``state``."""
+def stiffness_and_damping(compliance, friction, faces, platform, payload, touching, state, solved):
+    """Traces K (1/s2) and C (1/s) of all ``touching`` faces (f,) at ``state``, for which all rails
+    may be ``solved`` already."""
     body, base = (
         slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD),
         slot.frame(platform, state),
@@ -38,7 +44,7 @@ def stiffness_and_damping(compliance, friction, faces, platform, payload, touchi
     place, turn = relative_pose(platform, body, base)
     springs, dampers, square, drag = 0.0, 0.0, 0.0, 0.0
     for rail in range(compliance.members.shape[0]):
-        count = solve(compliance, faces, rail, touching, place, turn, state)
+        count = solve_unless(solved, compliance, faces, rail, touching, place, turn, state)
         by_rail = fastest(compliance.modes, rail, count > 0, state)
         square, drag = max(square, by_rail[0]), max(drag, by_rail[1])
         for i in range(count):
@@ -49,6 +55,7 @@ def stiffness_and_damping(compliance, friction, faces, platform, payload, touchi
                     friction, now, platform, payload, body, base, outward(faces[face], base)
                 )
         if count > 0:
+            take_flexibility(compliance, count, place[0] + faces[0, 0], state)
             columns = _tangent(compliance, count)
             springs += _trace(
                 compliance, faces, platform, payload, count, body, base
@@ -62,23 +69,20 @@ def _tangent(compliance, count):
     columns of rigid motions."""
     workspace = compliance.workspace
     fill_matrix(workspace, count)
-    wide = count * PATTERNS
-    for row in range(wide):
+    for i in range(count):
         for j in range(count):
-            face = workspace.order[j]
+            face, block = workspace.order[j], workspace.flexibility[i, j]
             for rigid in range(_RIGID):
-                total = 0.0
-                for c in range(PATTERNS):
-                    column = j * PATTERNS + c
-                    total += workspace.flexibility[row, column] * _reaction(
-                        workspace, face, c, rigid
-                    )
-                workspace.right[row, j * _RIGID + rigid] = total
+                for a in range(PATTERNS):
+                    total = 0.0
+                    for c in range(PATTERNS):
+                        total += block[a * PATTERNS + c] * _reaction(workspace, face, c, rigid)
+                    workspace.right[i * PATTERNS + a, j * _RIGID + rigid] = total
     # dU = (1 + F K)^-1 F K e, dP = K (e - dU)
     eliminate(
         workspace.matrix,
         workspace.right,
-        wide,
+        count * PATTERNS,
         count * _RIGID + _add_modes(compliance.modes, workspace, count),
     )
     return count * _RIGID
@@ -92,13 +96,11 @@ def _add_modes(modes, workspace, count):
         number = modes.square.shape[1]
         for row in range(count * PATTERNS):
             for i in range(number):
-                total = 0.0
+                total, first = 0.0, row % PATTERNS * PATTERNS
                 for j in range(count):
-                    face = workspace.order[j]
+                    face, block = workspace.order[j], workspace.flexibility[row // PATTERNS, j]
                     for c in range(PATTERNS):
-                        total += workspace.flexibility[row, j * PATTERNS + c] * _pressure(
-                            modes, workspace, face, c, i
-                        )
+                        total += block[first + c] * _pressure(modes, workspace, face, c, i)
                 workspace.right[row, count * _RIGID + i] = total
     return number
 
@@ -108,7 +110,7 @@ def _pressure(modes, workspace, face, a, i):
     """dP_a by a unit of mode i on an otherwise rigid wall."""
     value = 0.0
     for b in range(PATTERNS):
-        value += stiffness(workspace.moment[face], a, b) * modes.shape[face, i, b]
+        value += workspace.stiffness[face, a, b] * modes.shape[face, i, b]
     return value
 
 
@@ -130,9 +132,9 @@ def _trace_of_modes(modes, workspace, count, first):
 @inlined
 def _reaction(workspace, face, a, rigid):
     """dP_a by a unit of a rigid motion on a wall at rest."""
-    value = stiffness(workspace.moment[face], a, rigid)
+    value = workspace.stiffness[face, a, rigid]
     if rigid > 0:
-        value -= _beyond(workspace, face, rigid) * stiffness(workspace.moment[face], a, 0)
+        value -= _beyond(workspace, face, rigid) * workspace.stiffness[face, a, 0]
     return value
 
 

@@ -9,7 +9,7 @@ from tipoff.lowfi.contact.compliant.cells import deepest, deepest_at_rest, take_
 from tipoff.lowfi.contact.compliant.loads import energy as energy_of_rail
 from tipoff.lowfi.contact.compliant.modes import speed_at
 from tipoff.lowfi.contact.compliant.record import ASIDE, DRIFT, MIDDLE, SHIFT
-from tipoff.lowfi.contact.compliant.solution import follow, solve
+from tipoff.lowfi.contact.compliant.solution import follow, solve, solve_unless
 from tipoff.lowfi.contact.springs import (
     across,
     along,
@@ -76,7 +76,7 @@ def _approach(compliance, faces, face, xi, eta, drift, swing):
 
 
 @kernel
-def survey(compliance, faces, platform, payload, touching, state, out):
+def survey(compliance, faces, platform, payload, touching, state, solved, out):
     """Fill ``out`` (f, SURVEY_SIZE), as ``lowfi.dynamics.survey`` does; the energy (J) stored under
     the ``touching`` faces (f,)."""
     body, base = (
@@ -87,7 +87,7 @@ def survey(compliance, faces, platform, payload, touching, state, out):
     drift, swing = relative_motion(platform, body, base, place, turn)
     total = 0.0
     for rail in range(compliance.members.shape[0]):
-        count = solve(compliance, faces, rail, touching, place, turn, state)
+        count = solve_unless(solved, compliance, faces, rail, touching, place, turn, state)
         total += energy_of_rail(compliance, count)
         for k in range(compliance.members.shape[1]):
             face = compliance.members[rail, k]

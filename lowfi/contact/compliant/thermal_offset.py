@@ -19,10 +19,10 @@ def evaluate(warm, face, station, s, changes):
 @inlined
 def fill(warm, face, station, s, changes):
     """The work of ``evaluate`` on rails that are warm."""
+    c = warm.cubic[station, face]
     for a in range(PATTERNS):
-        c = warm.cubic[station, face, a]
-        warm.offset[face, a] = c[0] + s * (c[1] + s * (c[2] + s * c[3]))
-        warm.slope[face, a] = changes * (c[1] + s * (2.0 * c[2] + s * 3.0 * c[3]))
+        warm.offset[face, a] = c[0, a] + s * (c[1, a] + s * (c[2, a] + s * c[3, a]))
+        warm.slope[face, a] = changes * (c[1, a] + s * (2.0 * c[2, a] + s * 3.0 * c[3, a]))
 
 
 @inlined

