@@ -1,7 +1,7 @@
 """Numerical choices of the rigid surrogate: what may be refined without changing the scene."""
 
 import math
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 
 from tipoff.mechanics.promises import RIGID, Promises
 from tipoff.mechanics.rail_compliance import MODES
@@ -56,7 +56,7 @@ class Numerics:
 
     def as_dict(self) -> dict:
         """Plain values, as written into results."""
-        return asdict(self)
+        return dict(vars(self))
 
 
 def promises_of(numerics: Numerics) -> Promises:

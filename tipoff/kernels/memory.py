@@ -1,5 +1,6 @@
 """Arrays that start on a cache line: a vector of eight numbers then never straddles two."""
 
+import math
 from typing import Literal
 
 import numpy as np
@@ -9,7 +10,7 @@ _CACHE_LINE = 64  # bytes
 
 def zeros(shape: tuple[int, ...], order: Literal["C", "F"] = "C") -> np.ndarray:
     """Zeros (float64) of ``shape``."""
-    size = 8 * int(np.prod(shape))
+    size = 8 * math.prod(shape)
     space = np.zeros(size + _CACHE_LINE, dtype=np.uint8)
     start = -space.ctypes.data % _CACHE_LINE
     return space[start : start + size].view(np.float64).reshape(shape, order=order)

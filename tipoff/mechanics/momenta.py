@@ -34,7 +34,7 @@ def errors(
     orbit = rotation.crosses(moved.position, own)
     lost = values - values[0] - (given - given[0])
     interval = moved.time[1] - moved.time[0] if moved.time.size > 1 else 0.0
-    pressed = interval * float(np.sqrt((forces**2).sum(axis=2)).sum())
+    pressed = interval * float(np.sqrt(np.einsum("nfi,nfi->nf", forces, forces)).sum())
     terms = max(_largest(own), _largest(values[:, :3]), _largest(given[:, :3])) + pressed
     reach = max(_largest(moved.position), _largest(moved.platform_position))
     linear = promises.scale(

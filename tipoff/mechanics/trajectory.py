@@ -41,6 +41,7 @@ _DIMENSIONS = {
     "wall_stress": ("time", "patch", "stress_component"),
 }
 _PLAIN = ("checks", "cost", "scene", "numerics", "versions", "stress")
+_CHECKED = ("checks", "cost", "numerics", "stress")  # not the scene, which is finite
 _STRESS = ("xx", "yy", "zz", "xy", "yz", "zx")
 _UNITS = {
     "position": "m",
@@ -144,9 +145,11 @@ class Trajectory:
                 raise ValueError(
                     f"{name} holds NaN or inf: a run must stop before it reaches a result"
                 )
-        plain = {name: getattr(self, name) for name in _PLAIN} | {"outcome": self.outcome._asdict()}
-        if not _is_finite(plain):
-            lost = [".".join(path) for path, number in _numbers(plain) if not math.isfinite(number)]
+        found = {name: getattr(self, name) for name in _CHECKED} | {
+            "outcome": self.outcome._asdict()
+        }
+        if not _is_finite(found):
+            lost = [".".join(path) for path, number in _numbers(found) if not math.isfinite(number)]
             raise ValueError(
                 f"{', '.join(lost)}: NaN or inf, which no result may hold (None says that there is "
                 f"no value)"

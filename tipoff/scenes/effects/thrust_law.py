@@ -11,6 +11,8 @@ import numpy as np
 from tipoff.kernels.jit import njit
 
 ROOT_TWO_PI = math.sqrt(2.0 * math.pi)
+# Widths around a pulse at which the thrust is looked at: of one alone, of one among others.
+_COARSE, _FINE = np.linspace(-8.0, 8.0, 17), np.linspace(-8.0, 8.0, 801)
 
 
 class Pulses(NamedTuple):
@@ -125,15 +127,15 @@ def _bisected(pulses, curve, level, above, below):
 def _grid(thrust: Thrust, duration: float) -> tuple[np.ndarray, np.ndarray]:
     """Times (s) in 0..duration that miss no pulse and no point of a curve, and the size of the
     thrust (N) there."""
-    if thrust.pulses is not None:
-        near = (
-            thrust.pulses.centres[:, None]
-            + np.linspace(-8.0, 8.0, 801) * thrust.pulses.widths[:, None]
-        )
-    else:
+    if thrust.pulses is None:
         times = _curve(thrust).times
         near = np.append(times, np.nextafter(times, -np.inf))  # both sides of a jump
-    time = np.union1d(np.linspace(0.0, duration, 1001), near[(near > 0.0) & (near < duration)])
+    elif thrust.pulses.centres.size == 1:  # it rises once and falls once
+        centre, width = thrust.pulses.centres[0], thrust.pulses.widths[0]
+        near = np.append(centre + _COARSE * width, (thrust.pulses.begin, thrust.pulses.end))
+    else:
+        near = thrust.pulses.centres[:, None] + _FINE * thrust.pulses.widths[:, None]
+    time = np.unique(np.append(near[(near > 0.0) & (near < duration)], (0.0, duration)))
     return time, np.abs(sample(thrust, time))
 
 
