@@ -142,6 +142,14 @@ def integrate(system, inertia, platform_inertia, dt, steps_per_sample, rows):
             rows[number, j] = state[j]
 
 
+@njit
+def slope_of(system, inertia, platform_inertia, time, state):
+    """Time derivative (26,) of ``state`` (26,), for integrators in Python."""
+    out = np.empty(_SIZE)
+    slope(system, inertia, platform_inertia, time, state, out)
+    return out
+
+
 @inlined
 def slope(system, inertia, platform_inertia, time, state, out):
     """Time derivative ``out`` of ``state`` (26,)."""

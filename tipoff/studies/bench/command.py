@@ -44,8 +44,8 @@ def bench(
 ) -> None:
     """Measure the speed of both solvers; writes bench/highfi.json and bench/lowfi.json.
 
-    The reference is compared with a SciPy matrix and NumPy on the same mesh, the surrogate with
-    plain Runge-Kutta at the same error.
+    The reference is compared with a SciPy matrix and NumPy on the same mesh; the surrogate, on
+    compliant contact and on springs, with plain Runge-Kutta and solve_ivp at the same error.
     """
 
     def work() -> dict:

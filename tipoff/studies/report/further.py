@@ -154,12 +154,13 @@ def _bench(rows: list[dict]) -> Table:
 
 
 def _surrogate(found: dict) -> Table:
-    many = found["ensemble"]
+    many = " and ".join(
+        f"{row['cpu_ms_per_case']:.3f} ms on {row['method']}" for row in found["ensembles"]
+    )
     columns: dict[str, Column | str] = {
         "error_percent": Column("error, %", form="g"),
-        "cpu_ms": Column("surrogate", form=".3f"),
-        "baseline_cpu_ms": Column("plain Runge-Kutta", form=".3f"),
-        "ratio": Column("ratio", form=".1f"),
+        "method": "method",
+        "cpu_ms": Column("time", form=".3f"),
         "run_cpu_ms": Column("with curves", form=".2f"),
     }
     return Table(
@@ -167,8 +168,8 @@ def _surrogate(found: dict) -> Table:
         [[row[name] for name in columns] for row in found["single"]],
         title="Speed of the surrogate (`make bench`), processor ms per case on one core at the "
         f"same error of the settled rate (95th percentile of {found['varied_cases']} varied "
-        f"cases); an ensemble of {many['cases']:,} takes {many['cpu_ms_per_case']:.3f} ms per case "
-        f"at {found['single'][0]['error_percent']:g} %, set-up included:",
+        f"cases); an ensemble of {found['ensembles'][0]['cases']:,} takes {many} per case at "
+        f"{found['single'][0]['error_percent']:g} %, set-up included:",
     )
 
 
