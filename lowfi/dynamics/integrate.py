@@ -81,9 +81,10 @@ def _reset_audit(audit):
 
 @inlined
 def _reset_compliance(compliance):
-    """Forget the displacement of the last run."""
+    """Forget the displacement of the last run, and how it followed the pads."""
     if compliance is not None:
         compliance.workspace.displacement[:] = 0.0
+        compliance.workspace.yielding[:] = 0.0
 
 
 @inlined

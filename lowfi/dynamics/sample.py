@@ -164,8 +164,10 @@ def _observe_compliance(compliance, system, loop, body, base, forces):
         if touching.any():
             workspace = compliance.workspace
             _copy_rows(workspace.displacement, workspace.saved_displacement)
+            _copy_rows(workspace.lever, workspace.saved_lever)
             energy = _observe_pressed(compliance, system, touching, loop.work, body, base, forces)
             _copy_rows(workspace.saved_displacement, workspace.displacement)
+            _copy_rows(workspace.saved_lever, workspace.lever)
     return energy
 
 

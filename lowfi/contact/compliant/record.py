@@ -25,6 +25,8 @@ class Workspace(NamedTuple):
     lever: np.ndarray  # (f, LEVER_SIZE)
     displacement: np.ndarray  # (f, p) m, of the walls; the first guess of the next solution
     saved_displacement: np.ndarray  # (f, p) m, a copy
+    saved_lever: np.ndarray  # (f, LEVER_SIZE), a copy
+    yielding: np.ndarray  # (f, 3, p) change of the displacement by one of depth, tilt along, across
     force: np.ndarray  # (f, p) N
     stiffness: np.ndarray  # (f, p, p) N/m, of the pressed cells: K of ``solution``
     order: np.ndarray  # (m,) numbers of the faces that are solved for together
@@ -180,6 +182,8 @@ def _workspace(faces: int, members: int, modes: int) -> Workspace:
         lever=zeros((faces, LEVER_SIZE)),
         displacement=zeros(by_pattern),
         saved_displacement=zeros(by_pattern),
+        saved_lever=zeros((faces, LEVER_SIZE)),
+        yielding=zeros((faces, 3, data.PATTERNS)),
         force=zeros(by_pattern),
         stiffness=zeros((faces, data.PATTERNS, data.PATTERNS)),
         order=np.zeros(members, dtype=np.int64),

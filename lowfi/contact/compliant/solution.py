@@ -9,7 +9,8 @@ F is the flexibility without the modes, W q the displacement by the modes
 (``lowfi.contact.compliant.thermal_offset``). P is the gradient of a convex potential, so the
 solution is unique. While the set of pressed cells does not change the equations are linear, and a
 whole correction is exact: it is the last one where it cannot change the set. The first guess is the
-displacement of the solution before."""
+displacement of the solution before, moved with the pad as at the end of the last step
+(``lowfi.contact.compliant.step_limit``)."""
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from tipoff.kernels.jit import inlined, kernel
 from tipoff.lowfi.contact.compliant import thermal_offset
 from tipoff.lowfi.contact.compliant.cells import eased, largest_change, press, take_lever
 from tipoff.lowfi.contact.compliant.modes import evaluate, offset
+from tipoff.lowfi.contact.compliant.record import BY_ETA, BY_XI, DEPTH
 from tipoff.mechanics.rail_compliance import PATTERNS
 
 _ARRIVED = 1e-14  # m, a correction that is rounding
@@ -30,7 +32,7 @@ def solve(compliance, faces, rail, touching, place, turn, state):
     ``order``, with lever, displacement and force. Of ``state`` only the modes are read."""
     workspace, count = compliance.workspace, gather(compliance, rail, touching)
     for i in range(count):
-        take_lever(compliance, faces, workspace.order[i], place, turn)
+        _move(compliance, faces, workspace.order[i], place, turn)
     if count > 0:
         take_flexibility(compliance, count, place[0] + faces[0, 0], state)
         for correction in range(_MOST):
@@ -38,6 +40,18 @@ def solve(compliance, faces, rail, touching, place, turn, state):
                 return count
         workspace.force[:] = np.nan  # no convergence; no step is accepted with it
     return count
+
+
+@inlined
+def _move(compliance, faces, face, place, turn):
+    """Fill the lever of a face, and guess how its wall follows."""
+    lever, displacement = compliance.workspace.lever[face], compliance.workspace.displacement[face]
+    depth, by_xi, by_eta = lever[DEPTH], lever[BY_XI], lever[BY_ETA]
+    take_lever(compliance, faces, face, place, turn)
+    yielding = compliance.workspace.yielding[face]
+    depth, by_xi, by_eta = lever[DEPTH] - depth, lever[BY_XI] - by_xi, lever[BY_ETA] - by_eta
+    for a in range(PATTERNS):
+        displacement[a] += depth * yielding[0, a] + by_xi * yielding[1, a] + by_eta * yielding[2, a]
 
 
 @inlined

@@ -65,8 +65,8 @@ def stiffness_and_damping(compliance, friction, faces, platform, payload, touchi
 
 @kernel
 def _tangent(compliance, count):
-    """Fill ``right`` with dU (w,) by a unit of each rigid motion, then of each mode; the number of
-    columns of rigid motions."""
+    """Fill ``right`` with dU (w,) by a unit of each rigid motion, then of each mode, and
+    ``yielding`` with that of each face by its own; the number of columns of rigid motions."""
     workspace = compliance.workspace
     fill_matrix(workspace, count)
     for i in range(count):
@@ -85,6 +85,12 @@ def _tangent(compliance, count):
         count * PATTERNS,
         count * _RIGID + _add_modes(compliance.modes, workspace, count),
     )
+    for i in range(count):
+        for rigid in range(_RIGID):
+            for a in range(PATTERNS):
+                workspace.yielding[workspace.order[i], rigid, a] = workspace.right[
+                    i * PATTERNS + a, i * _RIGID + rigid
+                ]
     return count * _RIGID
 
 
