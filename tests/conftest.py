@@ -7,6 +7,7 @@ gmsh does not load, which a rail drawn in CAD alone needs.
 """
 
 import functools
+import gc
 import os
 
 import pytest
@@ -15,6 +16,7 @@ from hypothesis import settings
 from tipoff.meshes import generator
 
 os.environ.setdefault("MPLBACKEND", "Agg")
+gc.set_threshold(100_000, 50, 50)  # tests hold much and leave little: a tenth of their time
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.register_profile("explore", deadline=None)
 settings.load_profile("repeatable")

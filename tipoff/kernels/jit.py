@@ -7,6 +7,7 @@ of the code that the module depends on (``sources``).
 """
 
 import functools
+import gc
 import hashlib
 from collections.abc import Callable
 from types import CodeType, FunctionType, SimpleNamespace
@@ -145,6 +146,33 @@ class _Part(CPUDispatcher):
         return self._caller(*arguments)
 
 
+_RARELY = 1_000_000  # objects
+
+
+class _Entry(CPUDispatcher):
+    """A kernel that Python calls, with all kernels that it calls."""
+
+    def __init__(self, function: Callable, **options: Any):
+        flags = {"nopython": True, "_nrt": False}
+        super().__init__(function, targetoptions=_OPTIONS | flags | options)
+        self.enable_caching()
+
+    def compile(self, signature):
+        """Compile for ``signature``. Numba makes millions of objects that live until it is done: a
+        seventh of its time would go into looking for unused ones."""
+        threshold = gc.get_threshold()
+        gc.set_threshold(_RARELY, *threshold[1:])
+        try:
+            return super().compile(signature)
+        finally:
+            gc.set_threshold(*threshold)
+
+
+def _entry(function: Callable | None = None, **options: Any) -> Callable:
+    """The decorator that makes an ``_Entry``, bare or with options."""
+    return functools.partial(_Entry, **options) if function is None else _Entry(function, **options)
+
+
 # error_model="numpy": division by zero gives inf, which reaches the status check, instead of an
 # exception inside a kernel.
 _OPTIONS = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
@@ -159,7 +187,7 @@ else:
     # For kernels that neither make nor return arrays: without reference counts, which cost more
     # than the arithmetic where records of arrays are handed from function to function, and half the
     # time to compile. ``entry`` is for those that Python calls, ``kernel`` for all others.
-    entry = functools.partial(njit, _nrt=False)
+    entry = _entry
     kernel = _Part
     # The same for what innermost loops call with whole records: each call would copy some hundred
     # words of array headers.
