@@ -88,7 +88,7 @@ def test_time_follows_elements_steps_and_speed(tmp_path):
     line = forecast.calibration(of, asked(of))
     assert (
         "5 reference runs to make, 2 at a time: about 1 min 40 s" in line
-        and "the search, about 30 s" in line
+        and "the search, about 35 s" in line
     )
     made = asked(of)[1]
     stored(of.store.path(made), ns_per_element_step=10.0, elements=19360, steps=170_000)

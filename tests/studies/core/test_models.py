@@ -55,9 +55,9 @@ def test_the_command_line_has_the_names_of_the_models():
     "given, fault",
     [
         (
-            ["--calibration", "c.toml"],
-            "--calibration: given c.toml, expected none with --model compliant: it is an option of "
-            "springs",
+            ["--model", "finite-elements", "--calibration", "c.toml"],
+            "--calibration: given c.toml, expected none with --model finite-elements: it is an "
+            "option of compliant and springs",
         ),
         (
             ["--model", "finite-elements", "--modes", "4"],

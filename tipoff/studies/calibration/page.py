@@ -1,4 +1,4 @@
-"""Calibrated springs on the page."""
+"""A calibration on the page."""
 
 from typing import TYPE_CHECKING
 
