@@ -222,7 +222,7 @@ def lines(document: dict, folder: Path) -> list[str]:
         document["parameters"], document["values"], document["units"], document["intervals"], wide
     )
     text = [
-        f"  {name:28}{value:.5g}{'' if unit == '1' else f' {unit}'}, {interval(ends)}"
+        f"  {name:30}{value:.5g}{'' if unit == '1' else f' {unit}'}, {interval(ends)}"
         + (f"; with model error {interval(wider)}" if wider and None not in ends else "")
         for name, value, unit, ends, wider in found
     ]
