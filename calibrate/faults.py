@@ -1,6 +1,6 @@
 """Checks of the input of a calibration, before the search."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from tipoff.calibration.curves import Curves
 from tipoff.mechanics.models import SPRINGS
@@ -14,7 +14,7 @@ class CalibrationError(InputError):
     """References or a scene that cannot be used for a fit; the message lists every fault."""
 
 
-def check(scene: Scene, references: dict[str, Trajectory | Curves]) -> None:
+def check(scene: Scene, references: Mapping[str, Trajectory | Curves]) -> None:
     """Raise CalibrationError listing every fault of the input; SceneError for a condition the scene
     does not have.
 

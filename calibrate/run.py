@@ -1,6 +1,6 @@
 """One calibration: free parameters, search, and the record with its evidence."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
@@ -32,7 +32,7 @@ WORKERS = 2  # threads
 
 def run(
     scene: Scene,
-    references: dict[str, Trajectory | Curves],
+    references: Mapping[str, Trajectory | Curves],
     numerics=None,
     progress: Callable[[float], None] | None = None,
     plan: Plan | None = None,

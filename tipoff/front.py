@@ -138,7 +138,7 @@ def calibrate(
     models.require(scene, model, found, None, None)
     return calibration.run(
         scene,
-        dict(references),
+        references,
         progress=progress,
         plan=calibration.Plan(seed=seed),
         compliance=found,

@@ -5,13 +5,11 @@ import numpy as np
 from tests.lowfi.compliance import reference_compliance
 from tipoff import calibration, lowfi, scenes
 from tipoff.calibration import Curves
-from tipoff.calibration.search import Plan
+from tipoff.calibration.recovery import LOCAL, noisy
 from tipoff.scenes.calibration import Calibration
 
 CONDITIONS = ("phi15", "phi35", "phi60")
 SCENE = scenes.load("reference").replace({"agreement.fitted": list(CONDITIONS)})
-# Least squares from the scene's values, beside a token of a global search.
-LOCAL = Plan(points=2, starts=1, evaluations=4, polish=8)
 CLEARANCE, STIFFNESS = "contact.clearance", "contact.interface_stiffness"
 FRICTION, LINE = "friction.dynamic", "thrust_offset.eccentricity.y"
 
@@ -27,15 +25,7 @@ def curves(
         scene = scene.replace(hidden) if isinstance(hidden, dict) else hidden.apply(scene)
         numerics = lowfi.Numerics(modes=modes)
         run = lowfi.run(scene, compliance=reference_compliance(), numerics=numerics)
-        exact = Curves.from_trajectory(run)
-        rate = exact.rate + noise * np.abs(exact.rate).max(axis=0) * generator.standard_normal(
-            exact.rate.shape
-        )
-        velocity = exact.velocity + noise * exact.velocity.max() * generator.standard_normal(
-            exact.time.size
-        )
-        settled = rate[exact.time >= exact.window_start].mean(axis=0)
-        found[name] = exact._replace(velocity=velocity, rate=rate, settled=settled)
+        found[name] = noisy(Curves.from_trajectory(run), noise, generator)
     return found
 
 

@@ -8,12 +8,13 @@ import pytest
 from typer.testing import CliRunner
 
 import tipoff
-from tests.calibration.noisy import LOCAL, inside
+from tests.calibration.noisy import inside
 from tests.calibration.support import write_curves
 from tests.highfi.support import tiny
 from tests.lowfi.compliance import reference_compliance
 from tipoff import calibration, highfi, lowfi, scenes
 from tipoff.calibration import compliant, parameters
+from tipoff.calibration.recovery import LOCAL
 from tipoff.calibration.search import Plan
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes import Calibration, SceneError

@@ -68,7 +68,7 @@ def test_the_size_of_a_known_error_is_found_and_noise_is_no_error():
     """The steps of a path, a twelfth of the variance of the noise, count in part as noise. Control:
     white noise alone leaves little error."""
     generator = np.random.default_rng(5)
-    found = [discrepancy.likeliest(lines(generator, DEVIATION)[0]) for _ in range(10)]
+    found = [discrepancy.likeliest(lines(generator, DEVIATION)[0]) for _ in range(6)]
     np.testing.assert_allclose(np.mean(found, axis=0), DEVIATION, rtol=0.1)
     alone = discrepancy.likeliest(lines(generator, 0.0)[0])
     assert alone[RATE] < 0.02 and alone[VELOCITY] < 0.02
@@ -76,13 +76,13 @@ def test_the_size_of_a_known_error_is_found_and_noise_is_no_error():
 
 @pytest.mark.case("O74")
 def test_intervals_with_model_error_cover_and_those_of_scatter_do_not():
-    """200 fits of two constants. The deviations of curves that are independent are added too, so
+    """100 fits of two constants. The deviations of curves that are independent are added too, so
     that more than 95 % are covered."""
     generator, hits = np.random.default_rng(6), np.zeros((2, 2))
-    for _ in range(200):
+    for _ in range(100):
         curves, error = lines(generator, DEVIATION)
         errors = discrepancy.likeliest(curves)
         for row, deviation in zip(hits, discrepancy.deviations(curves, errors, np.eye(2))):
             row += np.abs(error) <= 1.96 * deviation
     scatter, whole = hits
-    assert (whole >= 186).all() and (scatter < 100).all(), hits
+    assert (whole >= 93).all() and (scatter < 50).all(), hits
