@@ -34,7 +34,7 @@ def parameters(
     items = _candidates(scene, fit)
     stated = {item.name: _stated(scene, conditions, item.name) for item in items}
     items = [item for item in items if not stated[item.name]]
-    own = np.array([item.share(item.read(scene)) for item in items])
+    own = np.clip([item.share(item.read(scene)) for item in items], 0.0, 1.0)
     taken = determined(information(jacobian(make(items), own)))
     if not taken:
         raise CalibrationError(

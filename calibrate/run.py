@@ -109,7 +109,7 @@ def _of_compliant_contact(
     residuals = objective.parts(found.shares)
     vector = objective.joined(residuals)
     found = found._replace(value=float(vector @ vector))
-    at = np.append(found.shares, shares_in(scene, held))
+    at = np.append(found.shares, np.clip(shares_in(scene, held), 0.0, 1.0))
     slopes = jacobian(partial(refine.both, wide), at)
     matrix = information.information(slopes[: vector.size])
     inner = matrix[: len(free), : len(free)]
