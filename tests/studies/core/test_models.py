@@ -118,6 +118,7 @@ def test_the_error_comes_from_the_agreement_table(study, monkeypatch):
     assert "0.14 deg/s" in kept.words(study, SPRINGS, "phi15", calibrated=True)
     assert kept.words(study, SPRINGS, "phi15").startswith("not measured")
     assert kept.words(study, COMPLIANT, "phi15", modes=2).startswith("not measured")
+    assert kept.words(study, COMPLIANT, "phi15", calibrated=True).startswith("not measured")
     assert kept.words(study, FINITE_ELEMENTS, "phi15") == "the reference itself"
 
 
