@@ -1,9 +1,19 @@
 """The contact of the surrogate from the finite elements: rail compliance from statics, constants of
-springs from curves."""
+springs and parameters of compliant contact from curves."""
 
+from tipoff.calibration.choice import require_parameters
 from tipoff.calibration.curves import Curves
-from tipoff.calibration.faults import CalibrationError
+from tipoff.calibration.faults import CalibrationError, require_model
 from tipoff.calibration.rail_compliance import compliance
 from tipoff.calibration.run import run
+from tipoff.calibration.search import Plan
 
-__all__ = ["CalibrationError", "Curves", "compliance", "run"]
+__all__ = [
+    "CalibrationError",
+    "Curves",
+    "Plan",
+    "compliance",
+    "require_model",
+    "require_parameters",
+    "run",
+]

@@ -1,5 +1,5 @@
-"""The parameters of a fit on compliant contact. They are usually not measured, and the statics of the
-rail do not give them.
+"""Constants of compliant contact that a fit may find. They are usually not measured, and the statics
+of the rail do not give them.
 
 The interface stiffness is known to a factor (``docs/interface_stiffness.md``), as is the stiffness
 of bolted mounts (``docs/mount_stiffness.md``). Friction and clearance are known to a tolerance. The
@@ -12,18 +12,54 @@ from tipoff.scenes.effects.contact import ContactTable
 from tipoff.scenes.scene import Scene
 
 _INTERFACE = 16.0  # either way
+CLEARANCE = "contact.clearance"
+AXES = (f"{CLEARANCE}_y", f"{CLEARANCE}_z")
+KEYS = (
+    "contact.interface_stiffness",
+    CLEARANCE,
+    *AXES,
+    "rail.mount_stiffness.factor",
+    "friction.dynamic",
+)
 
 
 def free(scene: Scene) -> list[Parameter]:
-    """The parameters of the fit of ``scene``, which has contact: interface stiffness, clearance
-    where there is any, stiffness of the mounts where they are no rigid clamps, and friction if there
-    is any."""
-    found = [_interface_stiffness(scene)]
-    if _contact(scene).clearance > 0.0:
-        found.append(_clearance(scene))
+    """The constants of the contact of ``scene``: interface stiffness, clearance where there is any,
+    stiffness of the mounts where they are no rigid clamps, and friction if there is any; none without
+    contact."""
+    contact = scene.contact
+    if contact is None:
+        return []
+    found = [_interface_stiffness(contact)]
+    if contact.clearance > 0.0:
+        found.append(_clearance(CLEARANCE, contact.clearance, "", lambda c: c.clearance))
     if scene.rail.mount_stiffness is not None:
         found.append(_mounts())
     return [*found, friction(scene)] if scene.friction is not None else found
+
+
+def along_axes(scene: Scene) -> list[Parameter]:
+    """Clearances of the faces along y and along z, for a fit that tells them apart."""
+    contact = scene.contact
+    if contact is None:
+        return []
+    return [
+        _clearance(
+            name, contact.gaps()[axis], f" along {name[-1]}", lambda c, axis=axis: c.gaps()[axis]
+        )
+        for axis, name in enumerate(AXES, start=1)
+        if contact.gaps()[axis] > 0.0
+    ]
+
+
+def needs(name: str) -> str:
+    """What a scene needs to have the parameter ``name``."""
+    if name.startswith("initial.") or CLEARANCE in name:
+        return "a clearance above zero"
+    if name.startswith("payload.inertia."):
+        return "an inertia tensor that leaves room for changes"
+    table = "[rail.mount_stiffness]" if name.startswith("rail.") else f"[{name.split('.')[0]}]"
+    return f"the table {table}"
 
 
 def _contact(scene: Scene) -> ContactTable:
@@ -31,13 +67,12 @@ def _contact(scene: Scene) -> ContactTable:
     return scene.contact
 
 
-def _interface_stiffness(scene: Scene) -> Parameter:
-    stiffness = _contact(scene).interface_stiffness
+def _interface_stiffness(contact: ContactTable) -> Parameter:
     return Parameter(
         "contact.interface_stiffness",
         "N/m**3",
-        stiffness / _INTERFACE,
-        stiffness * _INTERFACE,
+        contact.interface_stiffness / _INTERFACE,
+        contact.interface_stiffness * _INTERFACE,
         True,
         f"{_INTERFACE:g} times less to {_INTERFACE:g} times more than the scene's: roughness and "
         "pressure change it by two orders of magnitude (docs/interface_stiffness.md)",
@@ -45,15 +80,15 @@ def _interface_stiffness(scene: Scene) -> Parameter:
     )
 
 
-def _clearance(scene: Scene) -> Parameter:
+def _clearance(name: str, own: float, where: str, read) -> Parameter:
     return Parameter(
-        "contact.clearance",
+        name,
         "m",
         0.0,
-        2.0 * _contact(scene).clearance,
+        2.0 * own,
         False,
-        "from none to twice the scene's",
-        lambda s: _contact(s).clearance,
+        f"from none to twice the scene's{where}",
+        lambda s: read(_contact(s)),
     )
 
 

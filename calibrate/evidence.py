@@ -15,6 +15,7 @@ from tipoff.scenes.scene import Scene
 
 _ON_BOUND = 1e-3  # share of the bounds; a value so close to a bound counts as on it
 _NOTHING = 1e-12  # rounding of the information matrix, of its largest eigenvalue
+_ALIKE = 0.1  # share of its information left, below which a parameter acts as others do
 
 
 def residuals(part: Parts, wanted: Target) -> dict[str, float]:
@@ -34,29 +35,20 @@ def weak_directions(
     held: list[Parameter],
     shares: np.ndarray,
     matrix: np.ndarray,
+    ratio: float = information.WEAK_RATIO,
 ) -> list[str]:
-    """Sentences on weak directions, on parameters that are held for that reason, and on values at a
-    bound.
+    """Sentences on weak directions (``information.weak``), on parameters that are held for that
+    reason, and on values at a bound.
 
     ``matrix`` is the information on free and held parameters together, in this order.
     """
     count = len(free)
     inner, names = matrix[:count, :count], [item.name for item in free]
-    largest = float(np.linalg.eigvalsh(matrix)[-1])
-    sentences = information.weak_directions(inner, names)
-    for index, item in enumerate(held, start=count):
-        left, alone = information.left_alone(matrix, index), matrix[index, index]
-        ratio = left / largest if largest > 0.0 else 0.0
-        reason = (
-            "at these constants it has no effect"
-            if ratio < _NOTHING
-            else (
-                f"of its information {alone:.2g} only {left:.2g} is left when the others are "
-                f"fitted again, "
-                f"{ratio:.1e} of the largest eigenvalue"
-            )
-        )
-        sentences.append(f"{item.name} held at {item.read(scene):.4g} {item.unit}: {reason}")
+    sentences = information.weak_directions(inner, names, ratio)
+    sentences += [
+        f"{item.name} held at {item.read(scene):.4g} {item.unit}: {_why(matrix, names, index)}"
+        for index, item in enumerate(held, start=count)
+    ]
     for item, share, bound in zip(free, shares, _on_bound(shares)):
         if bound:
             side = "lower" if share < 0.5 else "upper"
@@ -66,6 +58,23 @@ def weak_directions(
                 "not the curves, sets its value"
             )
     return sentences
+
+
+def _why(matrix: np.ndarray, names: list[str], index: int) -> str:
+    """Why the parameter ``index``, which is not among the first, the fitted ``names``, is held."""
+    fitted, alone = range(len(names)), matrix[index, index]
+    left = information.left_alone(matrix, index, fitted)
+    largest = float(np.linalg.eigvalsh(matrix)[-1])
+    if alone <= _NOTHING * largest:
+        return "at these constants it has no effect"
+    found = (
+        f"of its information {alone:.2g} only {left:.2g} is left when the others are fitted again"
+    )
+    alike = information.acts_as(matrix, index, fitted)
+    if left < _ALIKE * alone and alike.any():
+        like = information.combination(alike / np.linalg.norm(alike), names)
+        found += f", since it acts as {like}"
+    return f"{found}, {left / largest:.1e} of the largest eigenvalue"
 
 
 def intervals(
@@ -81,11 +90,17 @@ def intervals(
     # the objective, to which the matrix belongs
     squares = sum(float(part.vector() @ part.vector()) for part in parts) / len(parts)
     half = half_widths(matrix, squares, count, [item.vector for item in information.weak(matrix)])
-    determined = (half < 0.5) & ~_on_bound(shares)
+    return ends(free, shares, half), count
+
+
+def ends(free: list[Parameter], shares: np.ndarray, half: np.ndarray) -> list[list[float]]:
+    """Ends (SI) of intervals of half widths (p,) about the ``shares``; infinite for a parameter on a
+    bound, and where an interval is wider than the bounds."""
+    bounded = (half < 0.5) & ~_on_bound(shares)
     return [
-        [item.value(share - width), item.value(share + width)] if bounded else [-math.inf, math.inf]
-        for item, share, width, bounded in zip(free, shares.tolist(), half.tolist(), determined)
-    ], count
+        [item.value(share - width), item.value(share + width)] if inside else [-math.inf, math.inf]
+        for item, share, width, inside in zip(free, shares.tolist(), half.tolist(), bounded)
+    ]
 
 
 def _on_bound(shares: np.ndarray) -> np.ndarray:
@@ -98,28 +113,26 @@ def provenance(
     constants: dict[str, float],
     found: Found,
     plan: Plan,
-    seed: int,
     evaluations: int,
-    count: float,
+    intervals: str,
 ) -> dict[str, str]:
-    """Text and hashes on the source of the constants."""
-    assert scene.contact is not None  # or there was nothing to fit
+    """Text and hashes on the source of the constants, with what the ``intervals`` rest on."""
     exponent, stiffness = constants.get("contact.exponent", 1.0), constants.get("contact.stiffness")
-    ends = "; ".join(
+    basins = "; ".join(
         f"{value:.6g} at " + ", ".join(f"{share:.4f}" for share in shares)
         for value, shares in found.basins
     )
+    law = "compliant contact" if scene.contact is not None else "none"
+    if scene.contact is not None and stiffness is not None:
+        law = f"{scene.contact.law}, k = {stiffness:.6g} N/m^{exponent:.6g}"
     return {
         "scene": scene.name,
         "scene_hash": scene.hash,
-        "contact_law": "compliant contact"
-        if stiffness is None
-        else f"{scene.contact.law}, k = {stiffness:.6g} N/m^{exponent:.6g}",
+        "contact_law": law,
         "references": ", ".join(f"{name}: {item.source}" for name, item in references.items()),
         "search": f"{plan.points} Sobol' points, {plan.starts} starts of CMA-ES, least squares; "
         f"{evaluations} evaluations; "
-        f"seed {seed}",
-        "intervals": f"95 %, linear, from what the fit leaves, {count:.0f} independent residuals; "
-        f"model error is not in them",
-        "basins": f"each start ended at objective and shares of the bounds: {ends}",
+        f"seed {plan.seed}",
+        "intervals": f"95 %, linear, {intervals}",
+        "basins": f"each start ended at objective and shares of the bounds: {basins}",
     }

@@ -1,6 +1,9 @@
 """Checks of the input of a calibration, before the search."""
 
+from collections.abc import Mapping, Sequence
+
 from tipoff.calibration.curves import Curves
+from tipoff.mechanics.models import SPRINGS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.effects import thrust
 from tipoff.scenes.faults import InputError
@@ -11,17 +14,13 @@ class CalibrationError(InputError):
     """References or a scene that cannot be used for a fit; the message lists every fault."""
 
 
-def check(scene: Scene, references: dict[str, Trajectory | Curves]) -> None:
+def check(scene: Scene, references: Mapping[str, Trajectory | Curves]) -> None:
     """Raise CalibrationError listing every fault of the input; SceneError for a condition the scene
     does not have.
 
     Runs must cover ``agreement.fitted``; curves from elsewhere are fitted as they come.
     """
     faults = []
-    if scene.contact is None:
-        faults.append(
-            "contact: given no table, expected one: without contact there is nothing to fit"
-        )
     fitted = list(scene.agreement.fitted)
     if not references:
         faults.append(
@@ -39,9 +38,22 @@ def check(scene: Scene, references: dict[str, Trajectory | Curves]) -> None:
             f"references: {name} {words}" for words in _unfit(scene.condition(name), reference)
         ]
     if faults:
-        raise CalibrationError(
-            "\n".join([f"cannot calibrate {scene.name}"] + [f"  {fault}" for fault in faults])
+        raise CalibrationError("\n  ".join([f"cannot calibrate {scene.name}", *faults]))
+
+
+def require_model(scene: Scene, model: str, fit: Sequence[str] | None) -> None:
+    """Raise CalibrationError where springs cannot be fitted: without contact there are none, and
+    their law of contact says what is fitted."""
+    faults = []
+    if model == SPRINGS and scene.contact is None:
+        faults.append("contact: given no table, expected one: without contact there are no springs")
+    if model == SPRINGS and fit is not None:
+        faults.append(
+            f"fit: given {', '.join(fit)}, expected none with springs, whose law of contact says "
+            "what is fitted"
         )
+    if faults:
+        raise CalibrationError("\n  ".join([f"cannot calibrate {scene.name}", *faults]))
 
 
 def _unfit(scene: Scene, reference: Trajectory | Curves) -> list[str]:

@@ -6,7 +6,7 @@ change of sqrt(noise^2 / eigenvalue) along a direction changes the objective as 
 ``noise``.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +17,7 @@ DIFFERENCE_STEP = 1e-3
 # changes them by 0.5 % of their amplitude.
 WEAK_EIGENVALUE = (0.005 / 0.1) ** 2
 WEAK_RATIO = 1e-3
+ROUNDING = 1e-10  # of the largest eigenvalue: rounding of differences
 
 
 def jacobian(
@@ -46,8 +47,9 @@ class Weak(NamedTuple):
     vector: np.ndarray
 
 
-def weak(matrix: np.ndarray) -> list[Weak]:
-    """The weak directions of an information matrix (p,p), weakest first."""
+def weak(matrix: np.ndarray, ratio: float = WEAK_RATIO) -> list[Weak]:
+    """The weak directions of an information matrix (p,p), weakest first: below ``WEAK_EIGENVALUE``,
+    or below ``ratio`` of the largest eigenvalue."""
     values, vectors = np.linalg.eigh(matrix)
     values = np.maximum(values, 0.0)
     ratios = values / values[-1] if values[-1] > 0.0 else values
@@ -55,30 +57,32 @@ def weak(matrix: np.ndarray) -> list[Weak]:
         Weak(float(value), float(ratio), vector)
         for value, ratio, vector in zip(values, ratios, vectors.T)
     ]
-    return [item for item in found if item.ratio < WEAK_RATIO or item.eigenvalue < WEAK_EIGENVALUE]
+    return [item for item in found if item.ratio < ratio or item.eigenvalue < WEAK_EIGENVALUE]
 
 
-def weak_directions(matrix: np.ndarray, names: list[str]) -> list[str]:
-    """One sentence for every weak direction."""
+def weak_directions(matrix: np.ndarray, names: list[str], ratio: float = WEAK_RATIO) -> list[str]:
+    """One sentence for every weak direction, as in ``weak``."""
     return [
         f"{combination(item.vector, names)}: eigenvalue {item.eigenvalue:.2g}, {item.ratio:.1e} of "
         f"the largest"
-        for item in weak(matrix)
+        for item in weak(matrix, ratio)
     ]
 
 
-def left_alone(matrix: np.ndarray, index: int) -> float:
-    """Information on parameter ``index`` that is left when all others are fitted again: the Schur
-    complement of the others."""
-    others = np.delete(np.arange(len(matrix)), index)
-    cross = matrix[others, index]
-    return max(
-        0.0,
-        float(
-            matrix[index, index]
-            - cross @ np.linalg.pinv(matrix[np.ix_(others, others)], hermitian=True) @ cross
-        ),
-    )
+def left_alone(matrix: np.ndarray, index: int, others: Sequence[int] | None = None) -> float:
+    """Information on parameter ``index`` that is left when the ``others``, None for all, are fitted
+    again: their Schur complement."""
+    if others is None:
+        others = [other for other in range(len(matrix)) if other != index]
+    cross = matrix[list(others), index]
+    return max(0.0, float(matrix[index, index] - cross @ acts_as(matrix, index, others)))
+
+
+def acts_as(matrix: np.ndarray, index: int, others: Sequence[int]) -> np.ndarray:
+    """The changes (k,) of the ``others`` whose effect is closest to that of parameter ``index``."""
+    places = list(others)
+    inner = np.linalg.pinv(matrix[np.ix_(places, places)], hermitian=True)
+    return inner @ matrix[places, index]
 
 
 def combination(vector: np.ndarray, names: list[str]) -> str:

@@ -17,9 +17,9 @@ import numpy as np
 import scipy  # its parts load when they are first used
 
 from tipoff.calibration.correlation import correlation_time
+from tipoff.calibration.information import ROUNDING
 
 LEVEL = 0.95
-ROUNDING = 1e-10  # of the largest eigenvalue: rounding of differences where there is no information
 # of a unit vector, from which on a parameter belongs to a direction, as in
 # ``information.combination``
 PART = 0.1

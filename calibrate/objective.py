@@ -20,12 +20,14 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff import lowfi
+from tipoff.calibration import alignment
 from tipoff.calibration.curves import Curves
 from tipoff.calibration.faults import CalibrationError
 from tipoff.calibration.parameters import Parameter, overrides
 from tipoff.mechanics.models import COMPLIANT
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes import changes as added
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.variation import Variations
 
@@ -155,15 +157,17 @@ class Objective:
     def parts(self, shares: np.ndarray) -> dict[str, Parts]:
         """Residuals by condition."""
         self.evaluations += 1
-        changed = overrides(self.scene, self.values(shares))
+        values = self.values(shares)
+        constants, changes = overrides(self.scene, values), alignment.changes(values)
         if self.compliance is not None and self.model == COMPLIANT:
-            self.compliance.of(self.scene.replace(changed))  # once, and not in each thread
+            self.compliance.of(self.scene.replace(constants))  # once, and not in each thread
 
         def one(name: str) -> Parts:
+            wanted = self.targets[name]
             return compare(
-                self.targets[name],
+                wanted,
                 lowfi.run(
-                    self.variations[name].of(changed),
+                    self.variations[name].of(constants | added.overrides(wanted.scene, changes)),
                     self.model,
                     numerics=self.numerics,
                     compliance=self.compliance,
@@ -174,6 +178,17 @@ class Objective:
 
     def __call__(self, shares: np.ndarray) -> np.ndarray:
         """Residual vector r with J = r'r."""
-        return np.concatenate([part.vector() for part in self.parts(shares).values()]) / np.sqrt(
-            len(self.targets)
-        )
+        return self.joined(self.parts(shares))
+
+    def joined(self, parts: dict[str, Parts]) -> np.ndarray:
+        """Residual vector of the ``parts`` of all conditions."""
+        return np.concatenate([part.vector() for part in parts.values()]) / np.sqrt(len(parts))
+
+    def curves(self, parts: dict[str, Parts]) -> list[np.ndarray]:
+        """Differences (n,) of v_x (m/s) and of each rate (rad/s), four curves per condition."""
+        found = []
+        for name, part in parts.items():
+            wanted = self.targets[name]
+            root, (moving, turning, _) = np.sqrt(wanted.weights), wanted.amplitudes
+            found += [part.velocity * moving / root, *(part.rate * turning / root[:, None]).T]
+        return found

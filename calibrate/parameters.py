@@ -28,7 +28,13 @@ REFERENCE_PENETRATION = 2e-5  # m
 _SOFT, _STIFF = 1.25, 4.2
 _MARGIN = 10.0  # factor from a static estimate to the range of a point contact in impact
 # Parameters that are keys of a scene themselves.
-_PLAIN = ("contact.interface_stiffness", "contact.clearance", "rail.mount_stiffness.factor")
+_PLAIN = (
+    "contact.interface_stiffness",
+    "contact.clearance",
+    "contact.clearance_y",
+    "contact.clearance_z",
+    "rail.mount_stiffness.factor",
+)
 
 
 @dataclass(frozen=True)
@@ -36,7 +42,7 @@ class Parameter:
     """One coordinate of a fit: bounds in SI, searched on a logarithmic or linear scale, with the
     reason for its bounds.
 
-    ``read`` gives its value in a scene (SI).
+    ``read`` gives its value in a scene (SI), 0 for a change (``calibration.alignment``).
     """
 
     name: str
@@ -83,8 +89,8 @@ def overrides(scene: Scene, values: dict[str, float]) -> dict[str, float]:
     """Dotted overrides (SI) of ``scene`` for values of parameters by name; k is set together with
     e, whose unit it carries."""
     found = {name: value for name, value in values.items() if name in _PLAIN}
-    contact = _contact(scene)
     if "contact.force" in values:
+        contact = _contact(scene)
         exponent = values.get("contact.exponent", contact.exponent)
         if contact.law != "linear":
             found["contact.exponent"] = exponent
@@ -92,7 +98,7 @@ def overrides(scene: Scene, values: dict[str, float]) -> dict[str, float]:
     if "contact.dissipation" in values:
         found["contact.dissipation"] = values["contact.dissipation"]
     if "contact.damping" in values:
-        found["contact.damping"] = values["contact.damping"]
+        contact, found["contact.damping"] = _contact(scene), values["contact.damping"]
         if isinstance(contact, ImpactTable):
             depth = values.get("contact.damping_depth", contact.damping_depth)
             found |= {
@@ -105,6 +111,11 @@ def overrides(scene: Scene, values: dict[str, float]) -> dict[str, float]:
             "friction.static": values["friction.dynamic"] * _static_over_dynamic(scene),
         }
     return found
+
+
+def siblings(name: str) -> list[str]:
+    """The keys of a scene that the parameter ``name`` sets."""
+    return ["friction.dynamic", "friction.static"] if name == "friction.dynamic" else [name]
 
 
 def share_of_damping(depth: float) -> float:

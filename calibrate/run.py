@@ -1,16 +1,27 @@
 """One calibration: free parameters, search, and the record with its evidence."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 
 import numpy as np
 
-from tipoff.calibration import compliant, evidence, faults, parameters
+from tipoff.calibration import (
+    alignment,
+    choice,
+    evidence,
+    faults,
+    information,
+    parameters,
+    posterior,
+    refine,
+)
 from tipoff.calibration.curves import Curves
-from tipoff.calibration.information import information, jacobian
-from tipoff.calibration.objective import Objective, targets
-from tipoff.calibration.search import Plan, search
-from tipoff.mechanics.models import COMPLIANT
+from tipoff.calibration.information import jacobian
+from tipoff.calibration.objective import Objective, Parts, targets
+from tipoff.calibration.parameters import Parameter
+from tipoff.calibration.search import Found, Plan, search
+from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
@@ -21,77 +32,144 @@ WORKERS = 2  # threads
 
 def run(
     scene: Scene,
-    references: dict[str, Trajectory | Curves],
+    references: Mapping[str, Trajectory | Curves],
     numerics=None,
     progress: Callable[[float], None] | None = None,
-    seed: int = 0,
     plan: Plan | None = None,
     compliance: RailCompliance | None = None,
     workers: int = WORKERS,
+    fit: Sequence[str] | None = None,
 ) -> Calibration:
-    """Fit constants of the surrogate to ``references`` (condition name to reference run or curves)
-    of ``scene``: of ``springs`` those of the contact law (``parameters``), of ``compliant`` contact
-    on the rail ``compliance`` interface and mount stiffness, clearance and friction
-    (``calibration.compliant``).
+    """Fit parameters of the surrogate to ``references`` (condition name to reference run or curves)
+    of ``scene``: of ``springs`` the constants of the contact law (``parameters``); of ``compliant``
+    contact on the rail ``compliance``, or without contact, those under the names ``fit``, None for
+    those that the curves determine (``choice``).
 
     ``numerics`` are the surrogate's (lowfi.Numerics), ``progress`` is called with the fraction
-    done, ``plan`` sizes the search; the same seed gives the same bits, however many ``workers`` run
+    done, ``plan`` sizes the search; the same plan gives the same bits, however many ``workers`` run
     conditions in parallel. Springs on warm rails need their rigid ``compliance`` (``lowfi.run``).
     Raises CalibrationError for references that are missing, did not exit, are too short or do not
-    turn, SceneError for an unknown condition.
+    turn, and for names that cannot be fitted; SceneError for an unknown condition.
     """
     faults.check(scene, references)
-    model = model_of(scene, compliance)
     curves = {
         name: item if isinstance(item, Curves) else Curves.from_trajectory(item)
         for name, item in references.items()
     }
-    free, held = (
-        (compliant.free(scene), [])
-        if model == COMPLIANT
-        else (parameters.free(scene), parameters.held(scene))
-    )
-    plan = plan or Plan()
-    wanted = targets(scene, curves)
+    plan, wanted = plan or Plan(), targets(scene, curves)
     with ThreadPoolExecutor(workers) as pool:
-        objective = Objective(scene, wanted, free, numerics, pool.map, compliance)
-        found = search(objective, _shares(free, scene), plan, seed, progress)
-        residuals = objective.parts(found.shares)
-        wide = Objective(scene, wanted, free + held, numerics, pool.map, compliance)
-        matrix = information(jacobian(wide, np.append(found.shares, _shares(held, scene))))
-    values = objective.values(found.shares)
-    constants = parameters.overrides(scene, values)
+        make = partial(
+            Objective, scene, wanted, numerics=numerics, over=pool.map, compliance=compliance
+        )
+        if model_of(scene, compliance) == COMPLIANT:
+            return _of_compliant_contact(make, curves, plan, progress, fit)
+        faults.require_model(scene, SPRINGS, fit)
+        return _of_springs(make, curves, plan, progress)
+
+
+def _of_springs(make: Callable, curves: dict[str, Curves], plan: Plan, progress) -> Calibration:
+    scene = make([]).scene
+    free, held = parameters.free(scene), parameters.held(scene)
+    objective, wide = make(free), make(free + held)
+    found = search(objective, shares_in(scene, free), plan, progress)
+    residuals = objective.parts(found.shares)
+    at = np.append(found.shares, shares_in(scene, held))
+    matrix = information.information(jacobian(wide, at))
     inner = matrix[: len(free), : len(free)]
     ends, count = evidence.intervals(free, found.shares, inner, list(residuals.values()))
+    return _record(
+        objective,
+        found,
+        residuals,
+        inner,
+        intervals=ends,
+        weak_directions=evidence.weak_directions(scene, free, held, found.shares, matrix),
+        provenance=evidence.provenance(
+            scene,
+            curves,
+            parameters.overrides(scene, objective.values(found.shares)),
+            found,
+            plan,
+            objective.evaluations + wide.evaluations,
+            f"from what the fit leaves, {count:.0f} independent residuals; model error is not in "
+            "them",
+        ),
+    )
+
+
+def _of_compliant_contact(
+    make: Callable, curves: dict[str, Curves], plan: Plan, progress, fit: Sequence[str] | None
+) -> Calibration:
+    scene = make([]).scene
+    free, held, stated = choice.parameters(scene, curves, fit, make)
+    objective, wide = make(free), make(free + held)
+    own = shares_in(scene, free)
+    found = search(objective, own, plan, progress)
+    found = found._replace(shares=refine.refined(objective, found.shares))
+    residuals = objective.parts(found.shares)
+    vector = objective.joined(residuals)
+    found = found._replace(value=float(vector @ vector))
+    at = np.append(found.shares, np.clip(shares_in(scene, held), 0.0, 1.0))
+    slopes = jacobian(partial(refine.both, wide), at)
+    matrix = information.information(slopes[: vector.size])
+    inner = matrix[: len(free), : len(free)]
+    left = np.concatenate(objective.curves(residuals))
+    judged = posterior.of(
+        refine.curves(objective, left, slopes[vector.size :, : len(free)]), inner, found.shares, own
+    )
+    weak = evidence.weak_directions(scene, free, held, found.shares, matrix, information.ROUNDING)
+    return _record(
+        objective,
+        found if judged.asks else found._replace(shares=own),
+        residuals,
+        inner,
+        changed=judged.asks,
+        intervals=evidence.ends(free, found.shares, judged.half),
+        with_model_error=evidence.ends(free, found.shares, judged.half_with_model_error),
+        verdict=judged.words,
+        weak_directions=weak + stated,
+        provenance=evidence.provenance(
+            scene,
+            curves,
+            {},
+            found,
+            plan,
+            objective.evaluations + wide.evaluations,
+            judged.source,
+        ),
+    )
+
+
+def _record(
+    objective: Objective,
+    found: Found,
+    residuals: dict[str, Parts],
+    inner: np.ndarray,
+    changed: bool = True,
+    **evidence_found,
+) -> Calibration:
+    """The record of values ``found``; its constants are empty where the scene's are not ``changed``."""
+    values, free = objective.values(found.shares), objective.parameters
     return Calibration(
-        constants=constants,
+        constants=parameters.overrides(objective.scene, values) if changed else {},
+        changes=alignment.changes(values) if changed else {},
         parameters=[item.name for item in free],
         values=list(values.values()),
         units=[item.unit for item in free],
         lower=[item.lower for item in free],
         upper=[item.upper for item in free],
         justification=[item.justification for item in free],
-        intervals=ends,
         information=inner,
-        weak_directions=evidence.weak_directions(scene, free, held, found.shares, matrix),
         residuals={
-            name: evidence.residuals(part, wanted[name]) for name, part in residuals.items()
+            name: evidence.residuals(part, objective.targets[name])
+            for name, part in residuals.items()
         },
-        conditions=list(curves),
+        conditions=list(residuals),
         objective=found.value,
-        provenance=evidence.provenance(
-            scene,
-            curves,
-            constants,
-            found,
-            plan,
-            seed,
-            objective.evaluations + wide.evaluations,
-            count,
-        ),
+        **evidence_found,
     )
 
 
-def _shares(items: list[parameters.Parameter], scene: Scene) -> np.ndarray:
+def shares_in(scene: Scene, items: list[Parameter]) -> np.ndarray:
     """The scene's own values as shares of the bounds."""
     return np.array([item.share(item.read(scene)) for item in items])

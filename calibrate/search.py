@@ -3,7 +3,8 @@
 1. Sobol' points (scrambled by the seed) and the scene's own constants find the basins.
 2. CMA-ES (Hansen) from the best points that are apart from each other crosses jumps that would stop
    a gradient method.
-3. Trust-region least squares from the end of each converges faster than CMA-ES near the minimum.
+3. Trust-region least squares from the end of each, and from the scene's own constants, converges
+   faster than CMA-ES near the minimum.
    Starts that end in one point show that there is one basin.
 """
 
@@ -23,7 +24,7 @@ class Plan(NamedTuple):
 
     ``points``: Sobol' points, a power of two; ``starts`` of CMA-ES, at least ``apart`` from each
     other, with first step ``step`` and ``evaluations`` each; ``polish``: iterations of least
-    squares from each.
+    squares from each; ``seed`` of the points and of CMA-ES.
     """
 
     points: int = 128
@@ -32,6 +33,7 @@ class Plan(NamedTuple):
     apart: float = 0.2
     step: float = 0.1
     polish: int = 8
+    seed: int = 0
 
 
 class Found(NamedTuple):
@@ -46,7 +48,6 @@ def search(
     residuals: Callable[[np.ndarray], np.ndarray],
     first: np.ndarray,
     plan: Plan,
-    seed: int,
     progress: Callable[[float], None] | None = None,
 ) -> Found:
     """Minimise r'r over the unit cube; ``first`` (p,) is tried too. The same seed gives the same
@@ -56,14 +57,15 @@ def search(
     """
     counted = _Counted(residuals, evaluations(first.size, plan), progress)
     points = np.vstack(
-        [np.clip(first, 0.0, 1.0), qmc.Sobol(first.size, rng=seed).random(plan.points)]
+        [np.clip(first, 0.0, 1.0), qmc.Sobol(first.size, rng=plan.seed).random(plan.points)]
     )
     values = np.array([counted.square(point) for point in points])
-    generator = np.random.default_rng([seed, 1])
-    ends = [
-        _polish(counted, *_evolve(counted.square, start, plan, generator), plan)
-        for start in _apart(points, values, plan)
+    generator = np.random.default_rng([plan.seed, 1])
+    starts: list[tuple[float, np.ndarray]] = [(float(values[0]), points[0])] + [
+        _evolve(counted.square, float(values[index]), points[index], plan, generator)
+        for index in _apart(points, values, plan)
     ]
+    ends = [_polish(counted, *start, plan) for start in starts]
     basins = sorted(ends, key=lambda item: item[0])
     if progress:
         progress(1.0)
@@ -73,7 +75,8 @@ def search(
 def evaluations(parameters: int, plan: Plan | None = None) -> int:
     """Approximate number of evaluations of a search."""
     plan = plan or Plan()
-    return plan.points + 1 + plan.starts * (plan.evaluations + plan.polish * (2 * parameters + 1))
+    polish = plan.polish * (2 * parameters + 1)
+    return plan.points + 1 + polish + plan.starts * (plan.evaluations + polish)
 
 
 class _Counted:
@@ -94,22 +97,23 @@ class _Counted:
         return float(vector @ vector)
 
 
-def _apart(points: np.ndarray, values: np.ndarray, plan: Plan) -> list[np.ndarray]:
-    """Best points of which no two are closer than ``plan.apart`` in every coordinate."""
-    chosen: list[np.ndarray] = []
-    for index in np.argsort(values, kind="stable"):
-        if all(np.abs(points[index] - other).max() >= plan.apart for other in chosen):
-            chosen.append(points[index])
+def _apart(points: np.ndarray, values: np.ndarray, plan: Plan) -> list[int]:
+    """Numbers of the best points of which no two are closer than ``plan.apart`` in every
+    coordinate."""
+    chosen: list[int] = []
+    for index in np.argsort(values, kind="stable").tolist():
+        if all(np.abs(points[index] - points[other]).max() >= plan.apart for other in chosen):
+            chosen.append(index)
         if len(chosen) == plan.starts:
             break
     return chosen
 
 
 def _evolve(
-    objective, start: np.ndarray, plan: Plan, generator: np.random.Generator
+    objective, value: float, start: np.ndarray, plan: Plan, generator: np.random.Generator
 ) -> tuple[float, np.ndarray]:
-    """Value and point CMA-ES reaches from ``start``. It draws from ``generator`` only, never from
-    NumPy's global state."""
+    """Value and point CMA-ES reaches from ``start``, whose ``value`` is known. It draws from
+    ``generator`` only, never from NumPy's global state."""
     strategy = cma.CMAEvolutionStrategy(
         start,
         plan.step,
@@ -126,6 +130,8 @@ def _evolve(
     while not strategy.stop():
         candidates = strategy.ask()
         strategy.tell(candidates, [objective(np.asarray(candidate)) for candidate in candidates])
+    if strategy.result.fbest >= value:  # it never tries its start
+        return value, start
     return float(strategy.result.fbest), np.asarray(strategy.result.xbest)
 
 

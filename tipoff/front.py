@@ -122,18 +122,28 @@ def calibrate(
     seed: int = 0,
     model: str = "springs",
     compliance: RailCompliance | None = None,
+    fit: Sequence[str] | None = None,
 ) -> Calibration:
-    """Constants of a surrogate ``model``, fitted to runs of the reference or to other curves, by
-    the name of their condition. On compliant contact these are interface and mount stiffness,
-    clearance and friction; the rail ``compliance`` is computed if it is not given. Raises
-    CalibrationError or SceneError."""
+    """Parameters of a surrogate ``model``, fitted to runs of the reference or to other curves, by
+    the name of their condition. On compliant contact these are the parameters ``fit``
+    (``calibration.choice.every_name``), those of ``["all"]`` that the curves determine, or by
+    default those of interface and mount stiffness, clearance and friction that they determine; the
+    rail ``compliance`` is computed if it is not given. Raises CalibrationError or SceneError."""
     from tipoff import calibration
     from tipoff.lowfi import models
 
     _require(scene, model, SURROGATES)
+    calibration.require_model(scene, model, fit)
     found = _pressed(scene, model, compliance)
     models.require(scene, model, found, None, None)
-    return calibration.run(scene, dict(references), progress=progress, seed=seed, compliance=found)
+    return calibration.run(
+        scene,
+        references,
+        progress=progress,
+        plan=calibration.Plan(seed=seed),
+        compliance=found,
+        fit=fit,
+    )
 
 
 def compare(reference: Trajectory, surrogate: Trajectory) -> "Difference":

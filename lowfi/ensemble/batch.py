@@ -18,6 +18,7 @@ from tipoff.mechanics import comoving, ending, outcome
 from tipoff.mechanics import model as models
 from tipoff.mechanics.model import Built
 from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.scenes import changes
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.scene import Scene
@@ -61,6 +62,8 @@ class Family:
         constants = calibration.constants if calibration else {}
         self.calibrated_tables = {key.partition(".")[0] for key in constants}
         self.variations = Variations(calibrated)
+        self.changes = calibration.changes if calibration else {}
+        self.stated = Variations(scene) if self.changes else None
         self.base = models.built(calibrated)
         self.marks = outcome.milestones(calibrated, self.base.model)
 
@@ -92,7 +95,7 @@ class Family:
                 alone.append((number, row))
                 continue
             try:
-                built = models.built(self.variations.of(row), self.base)
+                built = models.built(self.variations.of(self._changed(row)), self.base)
                 self._require_compliance(built)
             except SceneError as error:
                 alone.append((number, _refused(error)))
@@ -101,6 +104,12 @@ class Family:
             group.rows.append((number, row))
             group.models.append(built.model)
         return list(groups.values()), alone
+
+    def _changed(self, row: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The overrides of a row with the changes of the calibration added to what it states."""
+        if self.stated is None:
+            return row
+        return {**row, **changes.overrides(self.stated.of(row), self.changes)}
 
     def _require_compliance(self, built: Built) -> None:
         scene, base = built.scene, self.base.scene

@@ -51,7 +51,7 @@ def run_many(
     """
     require(scene, model, compliance, calibration, numerics)
     if model == COMPLIANT and calibration is not None:  # before a row, which may vary a constant
-        scene, calibration = calibration.apply(scene), None
+        scene, calibration = calibration.split(scene)
     source, numerics = (
         Drawn(table) if isinstance(table, Uncertainty) else Listed(table),
         numerics or Numerics(),

@@ -25,7 +25,7 @@ class Ensemble(NamedTuple):
 
     scene: Scene
     source: Any  # of the cases (``lowfi.ensemble.rows``, ``lowfi.ensemble.table``)
-    calibration: Calibration | None  # constants of contact springs
+    calibration: Calibration | None  # constants of springs, changes of what rows state
     numerics: Numerics
     compliance: RailCompliance | None = None  # None for contact springs on rigid walls
 
@@ -39,7 +39,7 @@ class Ensemble(NamedTuple):
             "scene": self.scene.hash,
             "cases": self.source.identity,
             "numerics": self.numerics.as_dict(),
-            "calibration": self.calibration.constants if self.calibration else {},
+            "calibration": self.calibration.applied if self.calibration else {},
             "walls": self.compliance.hash if self.compliance else "",
             "chunk": stores.CHUNK,
         } | code()

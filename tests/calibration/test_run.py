@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
+import tipoff
 from tests.calibration.support import CONDITIONS, SMALL, TRUTH, own_curves, scene
 from tipoff import calibration, lowfi
 from tipoff.calibration import Curves, evidence, parameters
@@ -200,9 +201,15 @@ def test_refuses_a_diverged_reference():
         calibration.run(scene(), own_curves() | {"phi15": broken})
 
 
-def test_refuses_a_scene_without_contact_and_an_unknown_condition():
-    with pytest.raises(calibration.CalibrationError, match="contact"):
-        calibration.run(scene().replace({"contact": "absent"}), own_curves())
+def test_springs_need_contact_and_choose_no_parameters():
+    bare = scene().replace({"contact": "absent"})
+    with pytest.raises(calibration.CalibrationError, match="contact: given no table"):
+        tipoff.calibrate(bare, own_curves())
+    with pytest.raises(calibration.CalibrationError, match="fit: given friction.dynamic"):
+        calibration.run(scene(), own_curves(), fit=["friction.dynamic"])
+
+
+def test_refuses_an_unknown_condition():
     with pytest.raises(SceneError, match="phi16"):
         calibration.run(scene(), own_curves() | {"phi16": own_curves()["phi15"]})
 

@@ -39,6 +39,7 @@ STAGES = (
     "flight",
     "droptest",
     "paper",
+    "recovery",
 )
 
 

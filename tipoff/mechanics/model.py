@@ -199,8 +199,8 @@ def _plate(scene: Scene, nominal: Faces, platform: Platform | None) -> Plate:
 def _faces(scene: Scene, platform: Platform | None) -> Faces:
     """Faces with their centres measured from the nominal mass centre."""
     origin = platform.mass_centre if platform else (0.0, 0.0, 0.0)
-    clearance = scene.contact.clearance if scene.contact else 0.0
-    gap = scene.rail.gap(clearance)
+    gaps = scene.contact.gaps() if scene.contact else (0.0, 0.0, 0.0)
+    gap = scene.rail.gap(gaps[0])
     rows = []
     for index, pad in enumerate(scene.pads):
         corner = np.array(pad.position)
@@ -209,8 +209,8 @@ def _faces(scene: Scene, platform: Platform | None) -> Faces:
             across = 3 - axis
             centre = corner.copy()
             centre[across] -= np.sign(corner[across]) * pad.inset
-            # a shim, where the walls of a file have another distance from the pads
-            centre[axis] += sign * (gap - clearance)
+            # a shim, where walls as drawn have another distance from the pads
+            centre[axis] += sign * (gap - gaps[axis])
             wall = corner[axis] + sign * gap - origin[axis]
             rows.append(
                 (centre, axis, sign, pad.length / 2, pad.width / 2, pad.relief, wall, index)

@@ -2,13 +2,14 @@
 itself is in ``calibrate``."""
 
 import tomllib
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from tipoff import toml
 from tipoff.files import DamageError, is_sealed, require_whole, sealed
+from tipoff.scenes import changes as added
 from tipoff.scenes.scene import Scene
 
 # Clearance and friction belong to both surrogates.
@@ -32,11 +33,14 @@ def _has(scene: Scene, key: str) -> bool:
 class Calibration:
     """Constants found for a scene.
 
-    ``constants`` are dotted overrides in SI, applied to a scene by ``apply``. ``parameters`` name
-    the fitted coordinates (with ``values``, their 95 % ``intervals``, infinite where the curves do
-    not determine them and without model error, ``lower``, ``upper`` bounds and ``justification``);
-    ``information`` is the matrix (p,p) of the scaled parameters; ``weak_directions`` describe what
-    the curves do not determine; ``residuals`` are per condition.
+    ``constants`` are dotted overrides in SI, and ``changes`` amounts that are added to what a scene
+    states (``scenes.changes``); ``apply`` applies both. ``parameters`` name the fitted coordinates
+    (with ``values``, their 95 % ``intervals``, infinite where the curves do not determine them and
+    without model error, ``lower``, ``upper`` bounds and ``justification``); ``with_model_error`` are
+    the intervals that contain it, of a fit on compliant contact; ``information`` is the matrix (p,p)
+    of the scaled parameters; ``weak_directions`` describe what the curves do not determine;
+    ``residuals`` are per condition. ``verdict`` says whether the curves ask for other values than
+    the scene's, empty where that is not judged.
     """
 
     constants: dict[str, float]
@@ -53,13 +57,27 @@ class Calibration:
     objective: float
     provenance: dict[str, str] = field(default_factory=dict)
     intervals: list[list[float]] = field(default_factory=list)
+    changes: dict[str, float] = field(default_factory=dict)
+    with_model_error: list[list[float]] = field(default_factory=list)
+    verdict: str = ""
 
     def apply(self, scene: Scene) -> Scene:
-        """``scene`` with the calibrated constants; constants of an effect the scene lacks are left
-        out."""
-        return scene.replace(
-            {key: value for key, value in self.constants.items() if _has(scene, key)}
-        )
+        """``scene``, of a condition where there is one, with the calibrated constants and changes;
+        constants of an effect the scene lacks are left out."""
+        fitted = {key: value for key, value in self.constants.items() if _has(scene, key)}
+        return scene.replace(fitted | added.overrides(scene, self.changes))
+
+    def split(self, scene: Scene) -> "tuple[Scene, Calibration | None]":
+        """``scene`` with the calibrated constants, which a case of an ensemble may replace, and the
+        changes that are added to each case; None where there are none."""
+        if not self.changes:
+            return self.apply(scene), None
+        return replace(self, changes={}).apply(scene), replace(self, constants={})
+
+    @property
+    def applied(self) -> dict:
+        """What ``apply`` depends on, as JSON; the constants alone where nothing is added."""
+        return self.constants | ({"changes": self.changes} if self.changes else {})
 
     @property
     def is_of_springs(self) -> bool:

@@ -16,6 +16,7 @@ from tipoff.studies import (
     mesh,
     montecarlo,
     paper,
+    recovery,
     runs,
     sensitivity,
     stability,
@@ -47,6 +48,7 @@ QUESTIONS: tuple[Entry, ...] = (
     flight.QUESTION,
     droptest.QUESTION,
     paper.QUESTION,
+    recovery.QUESTION,
 )
 BENCHMARKS: tuple[Entry, ...] = (bench.ENTRY,)
 

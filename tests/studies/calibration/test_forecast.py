@@ -9,8 +9,9 @@ import h5py
 import pytest
 
 from tipoff import scenes
-from tipoff.calibration import parameters, search
+from tipoff.calibration import parameters, refine, search
 from tipoff.files import sealed, write_json
+from tipoff.mechanics.models import COMPLIANT
 from tipoff.studies.calibration import forecast, stage
 from tipoff.studies.core.settings import defaults
 from tipoff.studies.core.study import Study
@@ -88,7 +89,7 @@ def test_time_follows_elements_steps_and_speed(tmp_path):
     line = forecast.calibration(of, asked(of))
     assert (
         "5 reference runs to make, 2 at a time: about 1 min 40 s" in line
-        and "the search, about 30 s" in line
+        and "the search, about 35 s" in line
     )
     made = asked(of)[1]
     stored(of.store.path(made), ns_per_element_step=10.0, elements=19360, steps=170_000)
@@ -106,6 +107,19 @@ def test_a_calibration_on_curves_says_its_own(tmp_path):
         forecast.search(of, 2)
         == f"the search, about {forecast.span(0.02 * search.evaluations(len(free)))}"
     )
+
+
+def test_a_fit_on_compliant_contact_counts_its_own_runs_and_parameters(tmp_path):
+    """4 ms a run of this model, whatever springs take. Control: more parameters take longer."""
+    of = study(tmp_path)
+    for name, seconds in (("a-compliant-1", 0.004), ("b", 1.0)):
+        stored(of.folder / "lowfi" / f"{name}.nc", wall_s=seconds)
+    three = search.evaluations(3) + refine.evaluations(3)
+    expected = f"the search, about {forecast.span(0.008 * three)}"
+    assert forecast.search(of, 2, COMPLIANT) == expected
+    named = ["contact.clearance", "friction.dynamic", "thrust.arm"]
+    assert forecast.search(of, 2, COMPLIANT, named) == expected
+    assert forecast.search(of, 2, COMPLIANT, ["all"]) != expected
 
 
 def test_curves_are_fitted_after_the_time_was_said(tmp_path, capsys, monkeypatch):

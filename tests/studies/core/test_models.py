@@ -55,9 +55,9 @@ def test_the_command_line_has_the_names_of_the_models():
     "given, fault",
     [
         (
-            ["--calibration", "c.toml"],
-            "--calibration: given c.toml, expected none with --model compliant: it is an option of "
-            "springs",
+            ["--model", "finite-elements", "--calibration", "c.toml"],
+            "--calibration: given c.toml, expected none with --model finite-elements: it is an "
+            "option of compliant and springs",
         ),
         (
             ["--model", "finite-elements", "--modes", "4"],
@@ -118,6 +118,7 @@ def test_the_error_comes_from_the_agreement_table(study, monkeypatch):
     assert "0.14 deg/s" in kept.words(study, SPRINGS, "phi15", calibrated=True)
     assert kept.words(study, SPRINGS, "phi15").startswith("not measured")
     assert kept.words(study, COMPLIANT, "phi15", modes=2).startswith("not measured")
+    assert kept.words(study, COMPLIANT, "phi15", calibrated=True).startswith("not measured")
     assert kept.words(study, FINITE_ELEMENTS, "phi15") == "the reference itself"
 
 

@@ -1,5 +1,8 @@
 """Clearance and contact between pad faces and rail walls. Absent table: nothing touches.
 
+``clearance_y`` and ``clearance_z`` replace the ``clearance`` of the faces along that axis. The walls
+stay one ``clearance`` off the pads as drawn; shims on the faces make up the difference.
+
 With penetration p > 0 and closing speed q = dp/dt the normal force is F = max(0, raw), where raw
 is::
 
@@ -60,10 +63,19 @@ class PadLayerTable(Table):
 
 class _ContactTable(Table):
     clearance: NonNegativeLength
+    clearance_y: NonNegativeLength | None = Field(None, exclude_if=is_absent)
+    clearance_z: NonNegativeLength | None = Field(None, exclude_if=is_absent)
     exponent: PositiveNumber = 1.5
     stiffness: float
     interface_stiffness: InterfaceStiffness = 1.8e12
     pad_layer: PadLayerTable | None = Field(None, exclude_if=is_absent)
+
+    def gaps(self) -> tuple[float, float, float]:
+        """Clearance (m) of faces with a normal along x, y and z."""
+        y, z = (
+            self.clearance if own is None else own for own in (self.clearance_y, self.clearance_z)
+        )
+        return self.clearance, y, z
 
     def series_stiffness(self) -> float:
         """Pressure over approach (N/m3) of the interface and the layer of the pad in series."""

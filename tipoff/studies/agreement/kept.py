@@ -10,7 +10,7 @@ def rows(study: Study, model: str, calibrated: bool = False, modes: int = 0) -> 
     from tipoff.studies.agreement import stage as compare
 
     found = compare.stored(study.unrestricted())
-    if found is None or model == FINITE_ELEMENTS:
+    if found is None or model == FINITE_ELEMENTS or (calibrated and model == COMPLIANT):
         return []
     if model == COMPLIANT:
         return (

@@ -53,7 +53,18 @@ def calibrate(
     model: Annotated[
         SurrogateName | None,
         typer.Option(
-            "--model", help="Calibrate only this model; default: both, with --reference springs."
+            "--model",
+            help="Calibrate only this model; default: both, with --reference springs, with --fit "
+            "compliant.",
+        ),
+    ] = None,
+    fit: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--fit",
+            metavar="KEY",
+            help="Parameter of compliant contact to fit, such as contact.clearance; repeatable, or "
+            "several with commas; all: whatever the curves determine.",
         ),
     ] = None,
     element_size: ElementSize = None,
@@ -70,8 +81,17 @@ def calibrate(
 
       tipoff calibrate --reference phi15=test15.csv --reference phi60=test60.csv --settled-from "44 ms"
 
-    They fit the constants of springs or, with --model compliant, interface and mount stiffness,
-    clearance and friction; these are printed as --set options of the other commands.
+    They fit the constants of springs or, with --model compliant, those of interface and mount
+    stiffness, clearance and friction that the curves determine. --fit chooses among these and errors
+    of mounting, and without --reference fits to the reference itself:
+
+      tipoff calibrate --fit contact.clearance,friction.dynamic --fit thrust_offset.misalignment.y
+
+    Errors of mounting are changes, the same in all conditions and added to what each states:
+    initial.position.y and .z, initial.attitude.x, .y and .z, thrust_offset.misalignment.y and .z,
+    thrust_offset.eccentricity.y and .z, thrust.arm, mass_offset.eccentricity.y and .z,
+    payload.inertia.xy, .xz and .yz. contact.clearance_y and .clearance_z are clearances along one
+    axis. tipoff run and tipoff ensemble take the file as --calibration.
 
     A file has the columns time (from ignition, at any instants), velocity_x (inertial, along the
     rail), rate_x, rate_y and rate_z (inertial, in payload body axes). Units are in the header,
@@ -79,17 +99,19 @@ def calibrate(
     """
 
     def work() -> dict:
-        from tipoff.mechanics.models import SPRINGS
+        from tipoff.mechanics.models import COMPLIANT, SPRINGS
         from tipoff.studies.calibration import stage
 
         start = quantity("--settled-from", settled_from, "s")
         files = stage.named(reference or [], condition, start)
         study = study_of(scene, out, set_, element_size=element_size, workers=workers)
-        return (
-            stage.from_files(study, files, start, model.value if model else SPRINGS)
-            if files
-            else stage.of_models(study, model and model.value)
-        )
+        chosen = None if fit is None else [name.strip() for one in fit for name in one.split(",")]
+        default = SPRINGS if chosen is None else COMPLIANT
+        if files:
+            return stage.from_files(study, files, start, model.value if model else default, chosen)
+        if chosen is not None:
+            return stage.on_reference(study, model.value if model else default, chosen)
+        return stage.of_models(study, model and model.value)
 
     def lines(found: dict) -> list[str]:
         from tipoff.studies.calibration import stage

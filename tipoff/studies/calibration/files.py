@@ -2,18 +2,25 @@
 
 from pathlib import Path
 
+from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
 
 
-def constants(path: Path | None) -> Calibration | None:
+def constants(path: Path | None, model: str) -> Calibration | None:
     """The calibration in a file, or None without a file. Raises SceneError for one that cannot be
-    read."""
+    read or is of another ``model``."""
     if path is None:
         return None
     try:
-        return Calibration.load(path)
+        found = Calibration.load(path)
     except (OSError, ValueError, TypeError, KeyError) as fault:
         raise SceneError(
             [Fault(str(path), "file", str(fault), "a calibration written by tipoff calibrate")]
         ) from None
+    wrong = {COMPLIANT: found.is_of_springs, SPRINGS: found.is_of_compliant_contact}
+    if wrong.get(model, False):
+        given = f"constants of {SPRINGS if model == COMPLIANT else 'compliant contact'}"
+        expected = f"those of a fit on --model {model}"
+        raise SceneError([Fault(str(path), "calibration", given, expected)])
+    return found

@@ -23,6 +23,7 @@ from typing import Any, NamedTuple
 import numba
 
 from tipoff.files import read_json, require_whole
+from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
 from tipoff.studies.core.store import Run
@@ -33,7 +34,7 @@ PATIENCE = 1.0  # s
 _numba_settings: Any = numba.config
 # per element and step, the 2 mm mesh of the reference scene on one thread of an AMD EPYC
 _TYPICAL_NS = 11.0
-_TYPICAL_RUN = 3e-3  # s, the surrogate there
+_TYPICAL_RUNS = {SPRINGS: 3e-3, COMPLIANT: 6e-3}  # s, the surrogate there
 _STEP = 0.7  # dt sqrt(E / rho) / h of meshes of the built-in section
 _COMPILED = " and half a minute to compile, this once"
 _LOOKED_AT = 4  # stored runs, newest first
@@ -50,15 +51,25 @@ class Pace(NamedTuple):
     source: str = ""
 
 
-def calibration(study: Study, requested: Sequence[Run]) -> str:
-    """The line for a calibration on the reference runs ``requested``, found in a second at most."""
-    return _line(study, requested, lambda: _search(study, len(requested)), "the search", "about")
+def calibration(
+    study: Study,
+    requested: Sequence[Run],
+    model: str = SPRINGS,
+    fit: Sequence[str] | None = None,
+) -> str:
+    """The line for a calibration of a ``model`` on the reference runs ``requested``, found in a second
+    at most."""
+    count = len(requested)
+    return _line(study, requested, lambda: _search(study, count, model, fit), "the search", "about")
 
 
-def search(study: Study, conditions: int) -> str:
-    """The line for a calibration on curves of so many ``conditions``, found in a second at most."""
+def search(
+    study: Study, conditions: int, model: str = SPRINGS, fit: Sequence[str] | None = None
+) -> str:
+    """The line for a calibration of a ``model`` on curves of so many ``conditions``, with the
+    parameters ``fit``; found in a second at most."""
     importlib.import_module("tipoff.calibration")
-    return work("the search", in_time(lambda: _search(study, conditions)))
+    return work("the search", in_time(lambda: _search(study, conditions, model, fit)))
 
 
 def _line(
@@ -199,15 +210,18 @@ def _stored(path: Path) -> Pace | None:
         return None
 
 
-def _search(study: Study, conditions: int) -> float:
+def _search(
+    study: Study, conditions: int, model: str = SPRINGS, fit: Sequence[str] | None = None
+) -> float:
     """Seconds of the search over ``conditions``."""
-    from tipoff.calibration import parameters, search
+    from tipoff.calibration import choice, parameters, refine, search
 
-    return (
-        search.evaluations(len(parameters.free(study.scene)))
-        * conditions
-        * _surrogate(study.folder)
-    )
+    if model == SPRINGS:
+        evaluations = search.evaluations(len(parameters.free(study.scene)))
+    else:
+        count = choice.most(study.scene, fit)
+        evaluations = search.evaluations(count) + refine.evaluations(count)
+    return evaluations * conditions * _surrogate(study.folder, model)
 
 
 def _is_cold() -> bool:
@@ -215,21 +229,25 @@ def _is_cold() -> bool:
     return not any(Path(_numba_settings.CACHE_DIR).rglob("*.nbc"))
 
 
-def _surrogate(folder: Path) -> float:
-    """Seconds of one run on springs: the fastest of the newest stored runs, since the first ones
+def _surrogate(folder: Path, model: str) -> float:
+    """Seconds of one run of a ``model``: the fastest of the newest stored runs, since the first ones
     load kernels."""
     import h5py
 
     found = []
-    springs = [path for path in (folder / "lowfi").glob("*.nc") if "-compliant-" not in path.name]
-    for path in sorted(springs, key=_age)[:_LOOKED_AT]:
+    own = [
+        path
+        for path in (folder / "lowfi").glob("*.nc")
+        if ("-compliant-" in path.name) == (model == COMPLIANT)
+    ]
+    for path in sorted(own, key=_age)[:_LOOKED_AT]:
         try:
             require_whole(path)
             with h5py.File(path) as file:
                 found.append(json.loads(file.attrs["cost"])["wall_s"])
         except (OSError, KeyError, ValueError):
             pass
-    return min(found, default=_TYPICAL_RUN)
+    return min(found, default=_TYPICAL_RUNS[model])
 
 
 def _age(path: Path) -> float:

@@ -1,4 +1,4 @@
-"""Calibrated springs on the page."""
+"""A calibration on the page."""
 
 from typing import TYPE_CHECKING
 
@@ -33,7 +33,7 @@ def calibration(document: dict) -> list[Part]:
     )
     keys = ("parameters", "values", "intervals", "units", "lower", "upper", "justification")
     rows = [
-        (name, value, _interval(ends), *rest)
+        (name, value, interval(ends), *rest)
         for name, value, ends, *rest in zip(*(document[key] for key in keys))
     ]
     residuals = document["residuals"]
@@ -80,7 +80,8 @@ def calibration(document: dict) -> list[Part]:
     ]
 
 
-def _interval(ends: list[float | None]) -> str:
+def interval(ends: list[float | None]) -> str:
+    """An interval as text."""
     low, high = ends
     if low is None or high is None:
         return "not determined"

@@ -6,7 +6,7 @@ then in a separate folder, so that other stages, which compare with the referenc
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +14,9 @@ import numpy as np
 
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
-from tipoff.scenes import overrides
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
-from tipoff.scenes.scene import NOMINAL, Scene
+from tipoff.scenes.scene import NOMINAL
 from tipoff.studies.calibration import compliance, forecast
 from tipoff.studies.core.progress import Board, say
 from tipoff.studies.core.stage import Stage
@@ -25,6 +24,7 @@ from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study, StudyError, read, require_success
 
 FILE = "calibration.toml"
+_OF_COMPLIANT = f"calibration-{COMPLIANT}"
 
 
 def run(study: Study) -> dict:
@@ -55,6 +55,25 @@ def of_models(study: Study, model: str | None = None) -> dict:
     if model != SPRINGS:
         found["compliance"] = compliance.run(study)
     return found | ({"springs": run(study)} if model != COMPLIANT else {})
+
+
+def on_reference(study: Study, model: str, parameters: Sequence[str]) -> dict:
+    """The calibration of the ``model`` compliant, with these ``parameters``, on the reference's fitted
+    conditions as JSON values; writes ``calibration-compliant.toml``. Raises CalibrationError."""
+    from tipoff import calibration
+
+    calibration.require_model(study.scene, model, parameters)
+    calibration.require_parameters(study.scene, study.fitted(), parameters)
+    names, requested = study.fitted(), _requested(study)
+
+    def make() -> tuple[dict, list[Path]]:
+        say(f"  {forecast.calibration(study, requested, COMPLIANT, parameters)}")
+        references = dict(zip(names, study.store.fill("highfi", requested)))
+        require_success(references, "calibrate")
+        return fit(study, references, study.path(f"{_OF_COMPLIANT}.toml"), COMPLIANT, parameters)
+
+    key = study.key(__name__, [item.key for item in requested], list(parameters))
+    return study.stage(_OF_COMPLIANT, key, make)
 
 
 def _requested(study: Study) -> list[Run]:
@@ -113,16 +132,18 @@ def from_files(
     files: list[tuple[str, str]],
     settled_from: float | None = None,
     model: str = SPRINGS,
+    parameters: Sequence[str] | None = None,
 ) -> dict:
-    """The calibration of a ``model`` as JSON values, from CSV files (condition, path) that
-    ``Curves.read_csv`` reads; writes ``curves/calibration.toml``, on compliant contact
-    ``curves/calibration-compliant.toml``.
+    """The calibration of a ``model``, of these ``parameters`` where they are chosen, as JSON values,
+    from CSV files (condition, path) that ``Curves.read_csv`` reads; writes
+    ``curves/calibration.toml``, on compliant contact ``curves/calibration-compliant.toml``.
 
     Raises SceneError listing every fault of every file, CalibrationError for curves that do not fit
     the scene.
     """
     from tipoff import calibration
 
+    calibration.require_model(study.scene, model, parameters)
     names, references = [name for name, _ in files], {}
     faults = [
         Fault("--reference", name, "twice", "one file for a condition")
@@ -137,24 +158,32 @@ def from_files(
             faults += error.faults
     if faults:
         raise SceneError(faults)
+    if parameters is not None:
+        calibration.require_parameters(study.scene, list(references), parameters)
 
     def make() -> tuple[dict, list[Path]]:
-        if model == SPRINGS:
-            say(f"  {forecast.search(study, len(references))}")
-        return fit(study, references, study.path(f"{stage}.toml"), model)
+        say(f"  {forecast.search(study, len(references), model, parameters)}")
+        return fit(study, references, study.path(f"{stage}.toml"), model, parameters)
 
-    stage = "curves/calibration" + f"-{COMPLIANT}" * (model == COMPLIANT)
+    stage = f"curves/{_OF_COMPLIANT if model == COMPLIANT else 'calibration'}"
     sources = {name: item.source for name, item in references.items()}
-    return study.stage(stage, study.key(__name__, sources), make)
+    chosen = [] if parameters is None else [list(parameters)]
+    return study.stage(stage, study.key(__name__, sources, *chosen), make)
 
 
 def fit(
-    study: Study, references: dict, path: Path, model: str = SPRINGS
+    study: Study,
+    references: dict,
+    path: Path,
+    model: str = SPRINGS,
+    parameters: Sequence[str] | None = None,
 ) -> tuple[dict, list[Path]]:
-    """Fit the constants of a ``model`` to ``references`` (condition: run or curves) and write them to ``path``: the
-    calibration as plain values, and the files written. Raises CalibrationError."""
+    """Fit a ``model``, with these ``parameters`` where they are chosen, to ``references`` (condition:
+    run or curves) and write the record to ``path``: the calibration as plain values, and the files
+    written. Raises CalibrationError."""
     from tipoff import calibration
 
+    calibration.require_model(study.scene, model, parameters)
     with Board("calibrate", 1) as board:
         found = calibration.run(
             study.scene,
@@ -164,6 +193,7 @@ def fit(
             if model == COMPLIANT
             else rigid_walls(study, references),
             workers=study.settings.workers,
+            fit=parameters,
         )
         board.finished("calibrate", f"objective {found.objective:.4g}")
     found.save(path)
@@ -187,33 +217,22 @@ def lines(document: dict, folder: Path) -> list[str]:
     if "parameters" not in document:
         compliance = _compliance(document["compliance"], folder) if "compliance" in document else []
         return compliance + (lines(document["springs"], folder) if "springs" in document else [])
+    wide = document["with_model_error"] or [None] * len(document["values"])
     found = zip(
-        document["parameters"], document["values"], document["units"], document["intervals"]
+        document["parameters"], document["values"], document["units"], document["intervals"], wide
     )
     text = [
-        f"  {name:28}{value:.5g}{'' if unit == '1' else f' {unit}'}, {interval(ends)}"
-        for name, value, unit, ends in found
+        f"  {name:30}{value:.5g}{'' if unit == '1' else f' {unit}'}, {interval(ends)}"
+        + (f"; with model error {interval(wider)}" if wider and None not in ends else "")
+        for name, value, unit, ends, wider in found
     ]
     text += [f"  weak          {words}" for words in document["weak_directions"]]
-    file = f"  calibration   {folder / document['calibration']}"
-    is_of_springs = "contact.stiffness" in document["constants"]
-    text += [file if is_of_springs else to_use(document["constants"])]
+    text += [f"  verdict       {words}" for words in [document["verdict"]] if words]
     return [
         f"fitted to {', '.join(document['conditions'])}: objective {document['objective']:.4g}",
         *text,
+        f"  calibration   {folder / document['calibration']}",
     ]
-
-
-def to_use(constants: dict[str, float]) -> str:
-    """Constants of compliant contact as options of the other commands."""
-    given = [
-        f'--set {key}="{value:.6g} {unit}"'
-        if unit not in (None, "", "dimensionless")
-        else f"--set {key}={value:.6g}"
-        for key, value in constants.items()
-        for unit in (overrides.unit(Scene, key),)
-    ]
-    return "  use           " + " ".join(given)
 
 
 def _compliance(document: dict, folder: Path) -> list[str]:
@@ -236,11 +255,12 @@ def as_dict(found: Calibration) -> dict:
     """A calibration as JSON values."""
     return {
         "constants": found.constants,
+        "changes": found.changes,
+        "verdict": found.verdict,
         "parameters": found.parameters,
         "values": list(found.values),
-        "intervals": [
-            [end if math.isfinite(end) else None for end in ends] for ends in found.intervals
-        ],
+        "intervals": _finite(found.intervals),
+        "with_model_error": _finite(found.with_model_error),
         "units": found.units,
         "lower": list(found.lower),
         "upper": list(found.upper),
@@ -252,3 +272,7 @@ def as_dict(found: Calibration) -> dict:
         "objective": float(found.objective),
         "provenance": found.provenance,
     }
+
+
+def _finite(intervals: list[list[float]]) -> list[list[float | None]]:
+    return [[end if math.isfinite(end) else None for end in ends] for ends in intervals]

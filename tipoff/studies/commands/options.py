@@ -92,8 +92,8 @@ CalibrationFile = Annotated[
     typer.Option(
         "--calibration",
         metavar="FILE",
-        help="calibration.toml written by tipoff calibrate, with --model springs; default: the "
-        "constants of the scene.",
+        help="Calibration written by tipoff calibrate for the same model; default: the constants "
+        "of the scene.",
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON on standard output.")]

@@ -4,16 +4,20 @@ another model is bad input."""
 from pathlib import Path
 from typing import NamedTuple
 
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS
+from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SURROGATES
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.core.study import Study, StudyError
 
-_OWNERS = {"--calibration": SPRINGS, "--modes": COMPLIANT, "--checkpoint-every": FINITE_ELEMENTS}
+_OWNERS = {
+    "--calibration": SURROGATES,
+    "--modes": (COMPLIANT,),
+    "--checkpoint-every": (FINITE_ELEMENTS,),
+}
 
 
 class Options(NamedTuple):
-    """Options of a model: its ``name``, None for the default; the file of a ``calibration`` of
-    springs; the number of ``modes`` of each rail on compliant contact."""
+    """Options of a model: its ``name``, None for the default; the file of a ``calibration`` of a
+    surrogate; the number of ``modes`` of each rail on compliant contact."""
 
     name: str | None = None
     calibration: Path | None = None
@@ -38,10 +42,10 @@ def require(options: Options, **others: object) -> None:
             option,
             "option",
             str(value),
-            f"none with --model {options.model}: it is an option of {_OWNERS[option]}",
+            f"none with --model {options.model}: it is an option of {' and '.join(_OWNERS[option])}",
         )
         for option, value in given.items()
-        if value is not None and _OWNERS[option] != options.model
+        if value is not None and options.model not in _OWNERS[option]
     ]
     if faults:
         raise SceneError(faults)

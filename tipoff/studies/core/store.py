@@ -51,7 +51,7 @@ class Run:
     @property
     def key(self) -> str:
         """Hexadecimal digest of everything the result depends on."""
-        used = self.calibration.constants if self.calibration else None
+        used = self.calibration.applied if self.calibration else None
         return content_hash(
             self.fidelity,
             self.scene.hash,

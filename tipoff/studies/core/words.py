@@ -2,15 +2,14 @@
 
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
-from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
 
 
-def model(scene: Scene, fitted: Calibration | None, compliance: RailCompliance | None) -> str:
-    """The surrogate model with the origin of its constants. A ``compliance`` without flexibility
-    means springs on rigid walls, which warm rails have."""
+def model(scene: Scene, calibrated: bool, compliance: RailCompliance | None) -> str:
+    """The surrogate model with the origin of its constants, ``calibrated`` or the scene's. A
+    ``compliance`` without flexibility means springs on rigid walls, which warm rails have."""
     if scene.contact is None:
         return f"{COMPLIANT}, without contact"
     if compliance is not None and compliance.flexibility is not None:
-        return COMPLIANT
-    return f"{SPRINGS}, calibrated" if fitted else f"{SPRINGS}, with the scene's constants"
+        return f"{COMPLIANT}, calibrated" if calibrated else COMPLIANT
+    return f"{SPRINGS}, calibrated" if calibrated else f"{SPRINGS}, with the scene's constants"

@@ -48,7 +48,7 @@ def request(study: Study, options: Options) -> Ensemble:
     """The ensemble of the ``options``. Raises SceneError for bad input, before any rail compliance
     is computed, and StudyError where no model is named and the agreement table rejects the
     default."""
-    fitted = constants(options.model.calibration)
+    fitted = constants(options.model.calibration, options.model.model)
     changed = {
         name: value
         for name in ("cases", "seed", "sampling")
@@ -77,7 +77,10 @@ def request(study: Study, options: Options) -> Ensemble:
         if springs
         else study.rail_compliance(study.scene, judged=False)
     )
-    return Ensemble(study.scene, source, fitted, numerics, found)
+    scene = study.scene
+    if fitted is not None and not springs:  # before a case, which may vary a constant
+        scene, fitted = fitted.split(scene)
+    return Ensemble(scene, source, fitted, numerics, found)
 
 
 def run(study: Study, options: Options) -> dict:
@@ -104,7 +107,7 @@ def run(study: Study, options: Options) -> dict:
             )
     except StoreError as fault:
         raise StudyError(str(fault)) from fault
-    statistics = summary.of(ensemble, store)
+    statistics = summary.of(ensemble, store, options.model.calibration is not None)
     cost = {
         "cases": new,
         "wall_s": wall,

@@ -21,9 +21,10 @@ _VALUES: dict[str, tuple[str, Callable[[np.ndarray], np.ndarray]]] = {
 }
 
 
-def of(ensemble: Ensemble, store: Store) -> dict:
-    """Counts, and quantiles of the settled values with the method of their bounds. ``failed`` has
-    the first reasons where no case is ok."""
+def of(ensemble: Ensemble, store: Store, calibrated: bool) -> dict:
+    """Counts, and quantiles of the settled values with the method of their bounds; the model, whose
+    constants are ``calibrated`` or the scene's. ``failed`` has the first reasons where no case is
+    ok."""
     status, settled, failures = (
         store.column("status"),
         np.isfinite(store.column("exit_time")),
@@ -36,7 +37,7 @@ def of(ensemble: Ensemble, store: Store) -> dict:
         else {}
     )
     return {
-        "model": words.model(ensemble.scene, ensemble.calibration, ensemble.compliance),
+        "model": words.model(ensemble.scene, calibrated, ensemble.compliance),
         "counts": counts,
         "statuses": {
             name: int((status == code).sum()) for code, name in enumerate(columns.STATUSES)

@@ -42,7 +42,7 @@ class Surrogate(NamedTuple):
     @property
     def words(self) -> str:
         """The name of the model and the source of its constants."""
-        return words.model(self.scene, self.calibration, self.compliance)
+        return words.model(self.scene, self.calibration is not None, self.compliance)
 
     @property
     def name(self) -> str:

@@ -16,6 +16,8 @@ TOLERANCE = 1e-10  # relative, of a step
 def of(run: Run, nominal: Trajectory, clearance_change: float) -> dict[str, float | None]:
     """Largest changes of a settled rate (deg/s) by ``clearance_change`` (m) either way, absent
     without contact, and by ``TOLERANCE``; None where the disturbed run does not settle."""
+    if run.calibration is not None:  # its clearance is the one that is changed
+        run = replace(run, scene=run.calibration.apply(run.scene), calibration=None)
     tight = replace(run.numerics, relative_tolerance=TOLERANCE)
     found: dict[str, float | None] = {
         "tolerance": TOLERANCE,

@@ -22,20 +22,19 @@ def run(
     Raises SceneError for an unreadable calibration and for options of another model, StudyError
     where no model is named and the agreement table rejects the default on ``condition``.
     """
-    fitted, scene = constants(options.calibration), study.condition(condition)
+    fitted, scene = constants(options.calibration, options.model), study.condition(condition)
     if options.model == FINITE_ELEMENTS:
         return result_of(study, condition, study.highfi(condition), quiet)
     if options.model == SPRINGS:
         return result_of(study, condition, study.lowfi(condition, fitted), quiet)
     models.require_accepted(study, options.name, condition)
     # checks the number of modes before the rail compliance is computed
-    vibrating = study.lowfi(condition, modes=options.modes or 0)
+    vibrating = study.lowfi(condition, fitted, modes=options.modes or 0)
     if scene.contact is None:
         return result_of(study, condition, vibrating, quiet)
     found = study.rail_compliance(scene, judged=False)
-    return result_of(
-        study, condition, study.lowfi(condition, compliance=found, modes=options.modes or 0), quiet
-    )
+    request = study.lowfi(condition, fitted, compliance=found, modes=options.modes or 0)
+    return result_of(study, condition, request, quiet)
 
 
 def chosen(
@@ -86,7 +85,7 @@ def model(request: Run) -> str:
     if request.fidelity == "highfi":
         return f"{FINITE_ELEMENTS}, {1e3 * request.numerics.element_size:g} mm"
     found, modes = (
-        words.model(request.scene, request.calibration, request.compliance),
+        words.model(request.scene, request.calibration is not None, request.compliance),
         request.numerics.modes,
     )
     return found + (f", {modes} modes of each rail" if modes and request.model == COMPLIANT else "")

@@ -1,0 +1,120 @@
+"""Which parameters a fit on compliant contact has: those the user names, else those the curves
+determine, by the information matrix at the scene's own values. Candidates are the constants of
+contact, on request (``ALL``) errors of mounting too.
+
+From the matrix the parameter with the most information is taken, then the one with the most
+information left when those taken are fitted again, and so on: Cholesky's factorisation with diagonal
+pivoting (Golub and Van Loan, Matrix Computations, section 4.2). It ends where what is left changes
+the curves by less than 0.5 % over a tenth of the bounds (``information.WEAK_EIGENVALUE``). The others
+keep the scene's values. Of parameters that act alike, such as line of thrust and mass centre before
+any contact, one is taken.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+
+import numpy as np
+
+from tipoff.calibration import alignment, compliant
+from tipoff.calibration.faults import CalibrationError
+from tipoff.calibration.information import WEAK_EIGENVALUE, information, jacobian
+from tipoff.calibration.parameters import Parameter, siblings
+from tipoff.scenes.scene import Scene
+
+ALL = "all"
+
+
+def parameters(
+    scene: Scene, conditions: Iterable[str], fit: Sequence[str] | None, make: Callable
+) -> tuple[list[Parameter], list[Parameter], list[str]]:
+    """Parameters of the fit, candidates that are held at the scene's values, and sentences on what
+    is no candidate. ``fit`` is None for constants of contact, ``[ALL]`` for all parameters.
+    ``make`` gives the objective of a list of parameters."""
+    if fit is not None and list(fit) != [ALL]:
+        return named(scene, conditions, fit), [], []
+    items = _candidates(scene, fit)
+    stated = {item.name: _stated(scene, conditions, item.name) for item in items}
+    items = [item for item in items if not stated[item.name]]
+    own = np.clip([item.share(item.read(scene)) for item in items], 0.0, 1.0)
+    taken = determined(information(jacobian(make(items), own)))
+    if not taken:
+        raise CalibrationError(
+            f"cannot calibrate {scene.name}\n  fit: the curves determine none of "
+            f"{', '.join(item.name for item in items)}; name what to fit"
+        )
+    held = [item for number, item in enumerate(items) if number not in taken]
+    reasons = [reason for found in stated.values() for reason in found[:1]]
+    return [items[number] for number in taken], held, reasons
+
+
+def most(scene: Scene, fit: Sequence[str] | None) -> int:
+    """Largest number of parameters of a fit of ``scene``, as ``fit`` asks for."""
+    if fit is not None and list(fit) != [ALL]:
+        return len(fit)
+    return len(_candidates(scene, fit))
+
+
+def _candidates(scene: Scene, fit: Sequence[str] | None) -> list[Parameter]:
+    contact = compliant.free(scene)
+    return contact if contact and fit is None else [*contact, *alignment.free(scene)]
+
+
+def require_parameters(scene: Scene, conditions: Iterable[str], fit: Sequence[str]) -> None:
+    """Raise CalibrationError, every fault listed, where ``fit`` cannot be fitted to ``conditions``."""
+    if list(fit) != [ALL]:
+        named(scene, conditions, fit)
+
+
+def named(scene: Scene, conditions: Iterable[str], names: Sequence[str]) -> list[Parameter]:
+    """The parameters under ``names``. Raises CalibrationError listing every fault: no such parameter,
+    one named twice, a table the scene lacks, a constant that a fitted condition states itself."""
+    known = {item.name: item for item in [*compliant.free(scene), *alignment.free(scene)]}
+    known |= {item.name: item for item in compliant.along_axes(scene)}
+    faults = [] if names else ["fit: given nothing, expected at least one parameter"]
+    for name in dict.fromkeys(names):
+        if names.count(name) > 1:
+            faults.append(f"fit: {name} is named {names.count(name)} times")
+        if name not in every_name():
+            faults.append(f"fit: {name} is none of {', '.join(every_name())}")
+        elif name not in known:
+            faults.append(f"fit: {name} needs {compliant.needs(name)}, which the scene lacks")
+        else:
+            faults += [f"fit: {text}" for text in _stated(scene, conditions, name)]
+    if set(compliant.AXES) <= set(names) and compliant.CLEARANCE in names:
+        faults.append(
+            f"fit: {compliant.CLEARANCE} has no effect beside {' and '.join(compliant.AXES)}"
+        )
+    if faults:
+        raise CalibrationError("\n  ".join([f"cannot calibrate {scene.name}", *faults]))
+    return [known[name] for name in names]
+
+
+def every_name() -> list[str]:
+    """Names of all parameters that some scene has."""
+    return [*compliant.KEYS, *alignment.NAMES]
+
+
+def determined(matrix: np.ndarray) -> list[int]:
+    """Numbers of the parameters that the information ``matrix`` (p,p) determines, in its order."""
+    rest, taken = np.array(matrix), []
+    for _ in range(len(rest)):
+        best = int(np.argmax(np.diag(rest)))
+        if rest[best, best] < WEAK_EIGENVALUE:
+            break
+        taken.append(best)
+        column = rest[:, best] / np.sqrt(rest[best, best])
+        rest = rest - np.outer(column, column)
+        rest[taken, taken] = 0.0  # no rounding is taken again
+    return sorted(taken)
+
+
+def _stated(scene: Scene, conditions: Iterable[str], name: str) -> list[str]:
+    """Sentences on conditions that state the constant ``name``: one value cannot replace those of
+    several conditions. A change is added to what they state."""
+    if name in alignment.NAMES:
+        return []
+    return [
+        f"{name} is stated by condition {condition} itself ({key}), so one value cannot serve all"
+        for condition in conditions
+        for key in scene.conditions.get(condition, {})
+        if any(f"{other}.".startswith(f"{key}.") for other in siblings(name))
+    ]

@@ -1,0 +1,61 @@
+"""What a fit on compliant contact says about its parameters: half widths of the 95 % intervals
+without and with model error (``discrepancy``), and whether the curves ask for other values than the
+scene's.
+
+They do not where the scene's values are inside the interval with model error of every direction that
+is not weak, at a level of 1 - 0.05 / k for k directions, so that all hold together with 95 %
+(Bonferroni). The scene's values are kept then.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import scipy  # its parts load when they are first used
+
+from tipoff.calibration import discrepancy, information
+from tipoff.calibration.intervals import LEVEL, PART
+
+
+class Posterior(NamedTuple):
+    """Half widths (p,) in shares, infinite where the curves do not determine a parameter; whether the
+    curves ask for other values than the scene's, in ``words`` too; what the intervals rest on."""
+
+    half: np.ndarray
+    half_with_model_error: np.ndarray
+    asks: bool
+    words: str
+    source: str
+
+
+def of(
+    curves: Sequence[discrepancy.Curve], matrix: np.ndarray, shares: np.ndarray, own: np.ndarray
+) -> Posterior:
+    """The posterior about the fitted ``shares`` (p,), with the ``curves`` and the information
+    ``matrix`` (p,p) there; ``own`` (p,) are the scene's values."""
+    weak = information.weak(matrix, information.ROUNDING)
+    vectors = np.linalg.eigh(matrix)[1][:, len(weak) :]
+    if not vectors.size:
+        none = np.full(shares.size, np.inf)
+        words = "the curves determine none of these parameters; the scene's values are kept"
+        return Posterior(none, none, False, words, "without information")
+    seen = [curve._replace(slope=curve.slope @ vectors) for curve in curves]
+    errors = discrepancy.likeliest(seen)
+    scatter, whole = discrepancy.deviations(seen, errors, vectors)
+    along = discrepancy.deviations(seen, errors, np.eye(vectors.shape[1]))[1]
+    lost = np.any([np.abs(item.vector) >= PART for item in weak], axis=0) if weak else False
+    scatter, whole = (np.where(lost, np.inf, found) for found in (scatter, whole))
+    wide = scipy.stats.norm.ppf(1.0 - 0.5 * (1.0 - LEVEL) / along.size)
+    asks = bool((np.abs(vectors.T @ (own - shares)) > wide * along).any())
+    usual = scipy.stats.norm.ppf(0.5 + 0.5 * LEVEL)
+    return Posterior(
+        usual * scatter,
+        usual * whole,
+        asks,
+        "the curves ask for other values than the scene's"
+        if asks
+        else "nothing needs fitting: the scene's values are inside the 95 % intervals with model "
+        "error, and are kept",
+        f"from what the fit leaves as white noise; with model error of {100.0 * errors[0]:.2g} % in "
+        f"v_x and {100.0 * errors[1]:.2g} % in the rates at the end of a curve",
+    )

@@ -1,0 +1,53 @@
+"""Changes of numbers of a scene: amounts that are added to what the scene and its condition state.
+
+An error of mounting is common to all conditions, and each condition has a deviation of its own
+beside it. So such an error is added, where a constant replaces. The tables of a direction and of an
+eccentricity are polar; changes of them are components along y and z, which also have a meaning at
+zero::
+
+    misalignment   (y, z) = axial (cos radial, sin radial)
+    eccentricity   (y, z) = axial (sin radial, cos radial)
+
+A table that is absent counts as zero.
+"""
+
+import math
+from collections.abc import Mapping
+
+from tipoff.scenes.scene import Scene
+
+# whether the clock angle counts from +Y towards +Z, or from +Z towards +Y
+POLAR = {
+    "thrust_offset.misalignment": True,
+    "thrust_offset.eccentricity": False,
+    "mass_offset.eccentricity": False,
+}
+
+
+def overrides(scene: Scene, changes: Mapping[str, float]) -> dict[str, float]:
+    """Overrides (SI) of ``scene`` that add ``changes`` (SI) by dotted key; keys of a polar table end
+    on ``.y`` and ``.z``."""
+    found: dict[str, float] = {}
+    for key in changes:
+        table, _, _ = key.rpartition(".")
+        if table not in POLAR:
+            found[key] = stated(scene, key) + changes[key]
+        elif f"{table}.axial" not in found:
+            axial, radial = stated(scene, f"{table}.axial"), stated(scene, f"{table}.radial")
+            first, second = axial * math.cos(radial), axial * math.sin(radial)
+            along, aside = (
+                (f"{table}.y", f"{table}.z") if POLAR[table] else (f"{table}.z", f"{table}.y")
+            )
+            first, second = first + changes.get(along, 0.0), second + changes.get(aside, 0.0)
+            found[f"{table}.axial"] = math.hypot(first, second)
+            found[f"{table}.radial"] = math.atan2(second, first)
+    return found
+
+
+def stated(scene: Scene, key: str) -> float:
+    """The number (SI) under a dotted ``key``, 0 where a table on the way is absent. A key that no
+    scene has is left to the scene to refuse."""
+    found: object = scene
+    for part in key.split("."):
+        found = getattr(found, part, None)
+    return 0.0 if found is None else float(found)  # type: ignore[arg-type]

@@ -1,0 +1,63 @@
+"""Recovery of hidden values on the page and in the terminal."""
+
+from tipoff.studies.calibration.page import interval
+from tipoff.studies.render.document import Part
+from tipoff.studies.render.table import Column, Table, number
+
+
+def draw(found: dict) -> list[Part]:
+    """The section: coverage of the draws, rates of a held-out condition, the reference."""
+    asked, held, reference = found["asked"], found["held_out"], found["reference"]
+    draws = asked["draws"]
+    return [
+        Table(
+            (
+                "hidden parameter",
+                f"inside the 95 % interval, of {draws}",
+                f"inside with model error, of {draws}",
+                Column("median half width", form=".3g"),
+                "unit",
+            ),
+            [
+                (
+                    f"`{row['parameter']}`",
+                    row["covered"],
+                    row["covered_with_model_error"],
+                    row["half_width"],
+                    row["unit"],
+                )
+                for row in found["rows"]
+            ],
+            (
+                f"Curves of the surrogate on {', '.join(found['conditions'])} with "
+                f"{100.0 * asked['noise']:g} % of noise, fitted from the scene's values. Settled "
+                f"rates of {held['condition']}, which is held out, are within "
+                f"{number(held['fitted_deg_s'], '.2g')} deg/s of those with the hidden values; with "
+                f"the scene's values they are off by up to {number(held['scene_deg_s'], '.2g')} "
+                "deg/s.",
+            ),
+        ),
+        Table(
+            (
+                "hidden in the reference",
+                Column("hidden", form=".4g"),
+                Column("found", form=".4g"),
+                "95 % interval with model error",
+                "unit",
+            ),
+            [
+                (
+                    f"`{row['parameter']}`",
+                    row["hidden"],
+                    row["found"],
+                    interval(row["interval"]),
+                    row["unit"],
+                )
+                for row in reference["rows"]
+            ],
+            (
+                f"One run of the finite elements, {reference['condition']}, in elements of "
+                f"{1e3 * reference['element_size_m']:g} mm.",
+            ),
+        ),
+    ]
