@@ -5,6 +5,7 @@ from tipoff.kernels.jit import machine_code
 from tipoff.lowfi.contact import springs, stick_slip, thermal_offset
 from tipoff.lowfi.contact.compliant import modes, solution
 from tipoff.lowfi.dynamics import equations
+from tipoff.lowfi.dynamics.cases import alone
 from tipoff.lowfi.dynamics.integrate import integrate
 from tipoff.lowfi.dynamics.loop import Sampling
 from tipoff.lowfi.numerics import Numerics
@@ -47,7 +48,7 @@ def compiled_code(
 def _arguments(scene: Scene, numerics: Numerics | None, compliance: RailCompliance | None) -> tuple:
     """Arguments of ``integrate``."""
     begun = Run(scene, numerics or Numerics(), compliance)
-    sampling = Sampling(begun.interval, begun.last, 0, begun.whole)
+    sampling = Sampling(begun.interval, begun.last, 0, begun.whole, begun.rows, begun.forces)
     return (
         begun.system,
         begun.plan,
@@ -55,6 +56,5 @@ def _arguments(scene: Scene, numerics: Numerics | None, compliance: RailComplian
         begun.marks,
         begun.loop,
         sampling,
-        begun.rows,
-        begun.forces,
+        alone(begun.system, begun.loop.start, begun.tolerance.reach),
     )

@@ -8,7 +8,7 @@ import numpy as np
 from tipoff.lowfi import state, system
 from tipoff.lowfi.contact import thermal_offset, wall_ends
 from tipoff.lowfi.contact.compliant import record as compliance_record
-from tipoff.lowfi.dynamics import audit, balance, integrate, local_error, plan
+from tipoff.lowfi.dynamics import audit, balance, cases, integrate, local_error, plan
 from tipoff.lowfi.dynamics.loop import Sampling
 from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
 from tipoff.lowfi.models import require
@@ -135,7 +135,7 @@ class Run:
             compliance=compliance_record.under_pads(scene, model, compliance, numerics.modes),
             thermal_offset=thermal_offset.under_pads(scene, model, compliance),
         )
-        self.loop = integrate.ready(self.system, state.initial(model), plan.first_step(self.plan))
+        self.loop = integrate.ready(self.system, state.initial(model), self.plan.first)
         self.rows, self.forces = (
             np.zeros((self.end + 1, SAMPLE_SIZE)),
             np.zeros((self.end + 1, model.faces.axis.size, 3)),
@@ -157,16 +157,14 @@ class Run:
 
     def advance(self, number: int) -> None:
         """Take samples up to ``number``, fewer where exit or jam end the run."""
-        sampling = Sampling(self.interval, self.last, number, self.whole)
         status = integrate.integrate(
             self.system,
             self.plan,
             self.tolerance,
             self.marks,
             self.loop,
-            sampling,
-            self.rows,
-            self.forces,
+            Sampling(self.interval, self.last, number, self.whole, self.rows, self.forces),
+            cases.alone(self.system, self.loop.start, self.tolerance.reach),
         )
         self.taken = int(self.loop.counts.samples)
         if status == integrate.STRUCK:

@@ -5,8 +5,11 @@ import numpy as np
 from tipoff.kernels.jit import entry, inlined, kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.stick_slip import clear
-from tipoff.lowfi.dynamics import ending, stick_slip
+from tipoff.lowfi.contact.wall_ends import DEPTH
+from tipoff.lowfi.dynamics import audit, ending, stick_slip
+from tipoff.lowfi.dynamics.cases import BOOK, LEFT_OPEN, STEPS, system_of
 from tipoff.lowfi.dynamics.dormand_prince import interpolate
+from tipoff.lowfi.dynamics.local_error import with_reach
 from tipoff.lowfi.dynamics.loop import Loop, allocate
 from tipoff.lowfi.dynamics.sample import observe
 from tipoff.lowfi.dynamics.step import step
@@ -95,12 +98,50 @@ def _reset_stick(stick):
 
 
 @entry
-def integrate(system, plan, tolerance, marks, loop, sampling, rows, forces):
-    """Take samples up to ``sampling.number`` into ``rows`` (n, SAMPLE_SIZE) and ``forces`` (n, f,
-    3), and after the last one go on to the end of the scene; fewer, when the settled window is
-    complete or a jam is found. The steps then end at the same instant, whatever is sampled."""
-    if loop.counts.samples == NOT_BEGUN:
-        _begin(system, loop.clock.wanted, loop)
+def integrate(common, plan, tolerance, marks, loop, sampling, cases):
+    """Run ``cases`` of the ``common`` system. With samples, the one case goes on from where ``loop``
+    stands up to sample ``sampling.number``, or begins where it is ready; the result says why it
+    stopped. Without, each runs from its start until exit and jam are known or the scene ends, and
+    fills its row of ``cases.results``."""
+    status = SAMPLED
+    for n in range(cases.mass.size):
+        system = system_of(common, cases, n)
+        if sampling.number < 0:
+            reset(system, cases.start[n], plan.first, loop)
+        elif loop.counts.samples == NOT_BEGUN:
+            _begin(system, loop.clock.wanted, loop)
+        open_ = sampling.number < 0 and _presses(loop)
+        if not open_:
+            allowed = with_reach(tolerance, cases.reach[n])
+            status = _integrate(system, plan, allowed, marks, loop, sampling)
+        if sampling.number < 0:
+            _note(cases.results[n], loop, tolerance, open_ or status != ENDED)
+    return status
+
+
+@kernel
+def _note(result, loop, tolerance, left_open):
+    """Fill the ``result`` (RESULT_SIZE,) of a case. One whose ledgers need smaller steps is left
+    open."""
+    affordable = audit.usage(loop.audit, tolerance.total, tolerance.transverse) <= 1.0
+    result[LEFT_OPEN] = 1.0 if left_open or not affordable else 0.0
+    result[STEPS] = loop.counts.steps
+    slot.copy(loop.book, result[BOOK:], books.BOOK_SIZE)
+
+
+@kernel
+def _presses(loop):
+    for i in range(loop.engaged.size):
+        if loop.engaged[i] and loop.after[i, DEPTH] > 0.0:
+            return True
+    return False
+
+
+@kernel
+def _integrate(system, plan, tolerance, marks, loop, sampling):
+    """Take samples up to ``sampling.number``, and after the last one go on to the end of the scene;
+    fewer, when the settled window is complete or a jam is found. The steps then end at the same
+    instant, whatever is sampled."""
     clock, counts, end, ended = (
         loop.clock,
         loop.counts,
@@ -129,7 +170,7 @@ def integrate(system, plan, tolerance, marks, loop, sampling, rows, forces):
                 slot.modal_size(system.compliance),
                 loop.work,
             )
-        if not observe(system, loop, rows[taken], forces[taken]):
+        if not observe(system, loop, sampling.rows[taken], sampling.forces[taken]):
             return NOT_FINITE
         counts.samples += 1
     if not ended:

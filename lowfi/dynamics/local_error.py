@@ -62,6 +62,18 @@ def tolerance(numerics: Numerics, promised: Promises, reach: float) -> Tolerance
 
 
 @inlined
+def with_reach(tolerance, reach):
+    """``tolerance`` of a payload with another ``reach`` (m)."""
+    return Tolerance(
+        relative=tolerance.relative,
+        floor=tolerance.floor,
+        reach=reach,
+        total=tolerance.total,
+        transverse=tolerance.transverse,
+    )
+
+
+@inlined
 def error_ratio(tolerance, system, loop, dt):
     """Error of the step of ``dt`` (s) to ``loop.end`` over what is allowed; NaN where anything
     is."""

@@ -66,15 +66,18 @@ class Plan(NamedTuple):
     stops: np.ndarray  # (s,) s, instants a step must end at; the last is the end of the scene
     caps: np.ndarray  # (s,) s, longest step before each stop
     maximum_steps: int
+    first: float  # s, first step that is tried; error control corrects it in a few attempts
 
 
 class Sampling(NamedTuple):
-    """Which samples to take."""
+    """Which samples to take, and where to."""
 
     interval: float  # s, between samples
     last: int  # number of the last sample in the scene
-    number: int  # number of the sample to stop at
+    number: int  # number of the sample to stop at; -1 where none is taken
     whole: bool  # go on to the end of the scene, also when exit and jam are settled
+    rows: np.ndarray  # (n, SAMPLE_SIZE), of which those up to ``number`` are filled
+    forces: np.ndarray  # (n, f, 3) N, of each pad face on the payload
 
 
 class Loop(NamedTuple):

@@ -18,8 +18,7 @@ def make(model: Model, end: float, numerics: Numerics) -> Plan:
     """Plan of a run up to ``end`` (s)."""
     stops = np.append(thrust_law.corners(model.thrust, end), end)
     if model.thrust.pulses is None:
-        caps = np.full(stops.size, np.inf)
-        return Plan(stops=stops, caps=caps, maximum_steps=numerics.maximum_steps)
+        return _plan(stops, np.full(stops.size, np.inf), numerics)
     _, centres, widths, first, last = model.thrust.pulses
     begins, ends = (
         np.maximum(centres - _REACH * widths, first),
@@ -30,13 +29,13 @@ def make(model: Model, end: float, numerics: Numerics) -> Plan:
     middles = 0.5 * (stops + np.append(0.0, stops[:-1]))
     acting = (begins < middles[:, None]) & (middles[:, None] < ends)
     caps = np.where(acting, _SHARE * widths, np.inf).min(axis=1)
-    return Plan(stops=stops, caps=caps, maximum_steps=numerics.maximum_steps)
+    return _plan(stops, caps, numerics)
 
 
-def first_step(made: Plan) -> float:
-    """Size (s) of the first step that is tried; error control corrects it in a few attempts."""
-    return (
-        0.25 * float(made.caps[0])
-        if np.isfinite(made.caps[0])
-        else _FIRST_SHARE * float(made.stops[0])
+def _plan(stops: np.ndarray, caps: np.ndarray, numerics: Numerics) -> Plan:
+    return Plan(
+        stops=stops,
+        caps=caps,
+        maximum_steps=numerics.maximum_steps,
+        first=0.25 * float(caps[0]) if np.isfinite(caps[0]) else _FIRST_SHARE * float(stops[0]),
     )

@@ -10,8 +10,9 @@ import numpy as np
 from tipoff.lowfi import state, system
 from tipoff.lowfi.contact import thermal_offset
 from tipoff.lowfi.contact.compliant import record as compliance_record
-from tipoff.lowfi.dynamics import integrate, local_error, plan, unsampled
-from tipoff.lowfi.dynamics.loop import Plan
+from tipoff.lowfi.dynamics import cases, integrate, local_error, plan
+from tipoff.lowfi.dynamics.loop import Plan, Sampling
+from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
 from tipoff.lowfi.numerics import Numerics, promises_of
 from tipoff.lowfi.run import solved
 from tipoff.mechanics import comoving, ending, outcome
@@ -36,7 +37,7 @@ class Case(NamedTuple):
 
 
 class _Group(NamedTuple):
-    """Cases that share all records but those of ``unsampled.Cases``."""
+    """Cases that share all records but those of ``cases.Cases``."""
 
     built: Built
     marks: outcome.Milestones
@@ -79,7 +80,7 @@ class Family:
 
     def kernels(self, table: Sequence[Mapping[str, Any]]) -> list[Callable[[], np.ndarray]]:
         """Calls of the bare kernel for the groups of ``table``, set up beforehand: each returns the
-        results of ``lowfi.dynamics.unsampled``. For timing."""
+        results of ``lowfi.dynamics.cases``. For timing."""
         return [self._kernel(group) for group in self._grouped(table)[0]]
 
     def _grouped(
@@ -174,16 +175,21 @@ class Family:
             ),
             thermal_offset=thermal_offset.under_pads(scene, model, self.compliance),
         )
-        first = plan.first_step(group.plan)
-        loop, cases = integrate.ready(common, state.initial(model), first), _stacked(common, group)
-        results = np.zeros((len(group.models), unsampled.RESULT_SIZE))
+        loop = integrate.ready(common, state.initial(model), group.plan.first)
         allowed = local_error.tolerance(self.numerics, promises_of(self.numerics), 0.0)
+        nothing = Sampling(
+            interval=0.0,
+            last=-1,
+            number=-1,
+            whole=False,
+            rows=np.zeros((0, SAMPLE_SIZE)),
+            forces=np.zeros((0, model.faces.axis.size, 3)),
+        )
+        stacked = _stacked(common, group)
 
         def call() -> np.ndarray:
-            unsampled.run_cases(
-                common, group.plan, (allowed, first), group.marks, cases, loop, results
-            )
-            return results
+            integrate.integrate(common, group.plan, allowed, group.marks, loop, nothing, stacked)
+            return stacked.results
 
         return call
 
@@ -202,14 +208,14 @@ class Family:
     def _case(
         self, model: models.Model, row: Mapping[str, Any], result: np.ndarray, share: float
     ) -> Case:
-        if result[unsampled.LEFT_OPEN]:
+        if result[cases.LEFT_OPEN]:
             return self._run_whole(row)
-        status, found = ending.found(result[unsampled.BOOK :])
+        status, found = ending.found(result[cases.BOOK :])
         return Case(
             status,
             "",
             comoving.outcome(comoving.frame(model), found),
-            int(result[unsampled.STEPS]),
+            int(result[cases.STEPS]),
             share,
         )
 
@@ -246,19 +252,20 @@ def _content(record: Any) -> Any:
     return values.dtype.str, values.shape, values.tobytes()
 
 
-def _stacked(common: system.System, group: _Group) -> unsampled.Cases:
-    cases = group.models
-    centre = np.stack([model.faces.centre for model in cases])
-    faces = np.repeat(common.faces[None], len(cases), axis=0)
+def _stacked(common: system.System, group: _Group) -> cases.Cases:
+    of_cases = group.models
+    centre = np.stack([model.faces.centre for model in of_cases])
+    faces = np.repeat(common.faces[None], len(of_cases), axis=0)
     faces[:, :, system.CENTRE : system.CENTRE + 3] = centre
     # all cases of a group have one, or none has
-    offsets = [model.thrust_offset for model in cases if model.thrust_offset is not None]
-    return unsampled.Cases(
-        np.array([model.payload.mass for model in cases]),
-        np.stack([model.payload.inverse_inertia for model in cases]),
+    offsets = [model.thrust_offset for model in of_cases if model.thrust_offset is not None]
+    return cases.Cases(
+        np.array([model.payload.mass for model in of_cases]),
+        np.stack([model.payload.inverse_inertia for model in of_cases]),
         faces,
         np.array([offset.direction for offset in offsets]) if offsets else None,
         np.array([offset.arm for offset in offsets]) if offsets else None,
-        np.stack([state.initial(model) for model in cases]),
+        np.stack([state.initial(model) for model in of_cases]),
         np.sqrt((centre**2).sum(axis=2).max(axis=1)),
+        np.zeros((len(of_cases), cases.RESULT_SIZE)),
     )

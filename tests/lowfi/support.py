@@ -8,7 +8,7 @@ from tests import turning
 from tipoff import lowfi, scenes
 from tipoff.kernels import rotation
 from tipoff.lowfi import state
-from tipoff.lowfi.dynamics import integrate, plan
+from tipoff.lowfi.dynamics import integrate
 from tipoff.lowfi.run import Run
 
 G = 9.80665
@@ -91,9 +91,7 @@ def unwatched(asked: scenes.Scene, numerics: lowfi.Numerics, change=None) -> Run
     exit and no jam ends it."""
     run = Run(asked, numerics)
     if change is not None:
-        run.loop = integrate.ready(
-            run.system, change(state.initial(run.model)), plan.first_step(run.plan)
-        )
+        run.loop = integrate.ready(run.system, change(state.initial(run.model)), run.plan.first)
     run.whole = True
     run.begin()
     run.integrate(None)

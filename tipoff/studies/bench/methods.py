@@ -2,6 +2,7 @@
 coarse to fine, the ``error`` (%) at one, and a ``piece``: a call that solves all cases."""
 
 from collections.abc import Callable
+from typing import Protocol
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -13,8 +14,8 @@ from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.scene import Scene
 
-TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
-STEPS_S = tuple(4e-4 / 2.0 ** (0.5 * k) for k in range(14))
+TOLERANCES: tuple[float, ...] = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
+STEPS_S: tuple[float, ...] = tuple(4e-4 / 2.0 ** (0.5 * k) for k in range(14))
 _TIGHT = 1e-11
 _ABSOLUTE = 1e-3  # of the relative tolerance of solve_ivp, in SI: places of 1e-6 m count
 # s, longest step of solve_ivp: in free flight it would step over contacts and miss them.
@@ -77,10 +78,27 @@ class Population:
         return float(np.quantile(worst, 0.95) * 100.0)
 
 
+class Method(Protocol):
+    """A way to solve the cases of a population."""
+
+    name: str
+    settings: tuple[float, ...]  # from coarse to fine
+    unit: str  # of a setting
+
+    def error(self, setting: float, /) -> float:
+        """Error (%) at a setting."""
+        ...
+
+    def piece(self, setting: float, /) -> Callable:
+        """A call that solves every case."""
+        ...
+
+
 class Surrogate:
     """The surrogate on one model; a setting is a relative tolerance."""
 
-    settings, unit = TOLERANCES, "1"
+    settings: tuple[float, ...] = TOLERANCES
+    unit = "1"
 
     def __init__(self, population: Population):
         self.population, self.name = population, MODELS[population.model]
@@ -119,7 +137,8 @@ class Surrogate:
 class PlainRungeKutta:
     """Fixed steps on springs; a setting is a step (s)."""
 
-    name, settings, unit = "springs, plain Runge-Kutta", STEPS_S, "s"
+    name, unit = "springs, plain Runge-Kutta", "s"
+    settings: tuple[float, ...] = STEPS_S
 
     def __init__(self, population: Population):
         self.population = population
@@ -159,7 +178,8 @@ class PlainRungeKutta:
 class SolveIvp:
     """SciPy's ``solve_ivp`` (RK45) on springs; a setting is a relative tolerance."""
 
-    name, settings, unit = "springs, solve_ivp of SciPy", TOLERANCES, "1"
+    name, unit = "springs, solve_ivp of SciPy", "1"
+    settings: tuple[float, ...] = TOLERANCES
 
     def __init__(self, population: Population):
         self.population = population

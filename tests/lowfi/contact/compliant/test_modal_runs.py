@@ -20,7 +20,7 @@ from tests.lowfi.contact.compliant.test_runs import EFFECTS, RUB, TIGHT, on_spri
 from tipoff import lowfi
 from tipoff.lowfi import Numerics
 from tipoff.lowfi import state as slot
-from tipoff.lowfi.dynamics import integrate, plan
+from tipoff.lowfi.dynamics import integrate
 from tipoff.lowfi.run import Run
 from tipoff.mechanics import ledger
 from tipoff.mechanics.rail_compliance import PATTERNS
@@ -131,7 +131,7 @@ def test_a_rail_rings_out():
     modes = run.system.compliance.modes
     start = 1e-7 * np.random.default_rng(2).standard_normal(modes.square.size)
     begun = np.concatenate([run.loop.start[: slot.STATE_SIZE], start, 0.0 * start])
-    run.loop = integrate.ready(run.system, begun, plan.first_step(run.plan))
+    run.loop = integrate.ready(run.system, begun, run.plan.first)
     states, (square, drag) = sampled(run), (modes.square.ravel(), modes.drag.ravel())
     found, time = run.trajectory(), run.interval * np.arange(len(states))[:, None]
     fast = np.sqrt(square - 0.25 * drag**2)

@@ -1,0 +1,79 @@
+"""The cases that one call of the time loop runs: what differs between them, and their results.
+
+A run with curves is one case whose samples are taken. Cases of an ensemble have none; their results
+are those of ``lowfi.run``, bit for bit, or none: a case that fails, or whose pads press at ignition,
+needs a message too, and is left to ``lowfi.run``.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.kernels.jit import kernel
+from tipoff.lowfi.system import Body, System
+from tipoff.mechanics.ending import BOOK_SIZE
+from tipoff.scenes.effects.thrust_offset import ThrustOffset
+
+# Columns of the results: whether the case is left to ``lowfi.run``, steps, the book.
+LEFT_OPEN, STEPS, BOOK = range(3)
+RESULT_SIZE = BOOK + BOOK_SIZE
+
+
+class Cases(NamedTuple):
+    """What differs between n cases of f faces."""
+
+    mass: np.ndarray  # (n,) kg, of the payload
+    inverse_inertia: np.ndarray  # (n, 3, 3) 1/(kg m2), of the payload
+    faces: np.ndarray  # (n, f, FACE_SIZE)
+    direction: np.ndarray | None  # (n, 3) of the thrust; None without thrust offset
+    arm: np.ndarray | None  # (n, 3) m, of the thrust; None without thrust offset
+    start: np.ndarray  # (n, STATE_SIZE) state at ignition
+    reach: np.ndarray  # (n,) m, as in ``Tolerance``
+    results: np.ndarray  # (n, RESULT_SIZE) filled without samples
+
+
+def alone(system: System, start: np.ndarray, reach: float) -> Cases:
+    """The one case of ``system``."""
+    offset = system.thrust_offset
+    return Cases(
+        mass=np.array([system.payload.mass]),
+        inverse_inertia=system.payload.inverse_inertia[None],
+        faces=system.faces[None],
+        direction=None if offset is None else np.array([offset.direction]),
+        arm=None if offset is None else np.array([offset.arm]),
+        start=start[None],
+        reach=np.array([reach]),
+        results=np.zeros((1, RESULT_SIZE)),
+    )
+
+
+@kernel
+def system_of(common, cases, n):
+    """The ``common`` system with what differs in case ``n``."""
+    return System(
+        payload=Body(cases.mass[n], cases.inverse_inertia[n]),
+        platform=common.platform,
+        faces=cases.faces[n],
+        rail_start=common.rail_start,
+        rail_end=common.rail_end,
+        thrust=common.thrust,
+        reacts_on_platform=common.reacts_on_platform,
+        thrust_offset=_offset(cases.direction, cases.arm, n),
+        contact=common.contact,
+        compliance=common.compliance,
+        has_contact=common.has_contact,
+        is_compliant=common.is_compliant,
+        friction=common.friction,
+        sticking=common.sticking,
+        body_force=common.body_force,
+        ledger=common.ledger,
+    )
+
+
+@kernel
+def _offset(direction, arm, n):
+    if direction is not None:
+        return ThrustOffset(
+            (direction[n, 0], direction[n, 1], direction[n, 2]), (arm[n, 0], arm[n, 1], arm[n, 2])
+        )
+    return None
