@@ -57,8 +57,9 @@ def _in(unit: str, **bounds: float) -> tuple:
     return quantity(unit, **bounds).__metadata__
 
 
-NonNegativeRate = Annotated[float, *_in("rad/s", ge=0.0)]
-PositiveRate = Annotated[float, *_in("rad/s", gt=0.0)]
+_FASTEST = 1e6  # rad/s, which no gyro reaches
+NonNegativeRate = Annotated[float, *_in("rad/s", ge=0.0, le=_FASTEST)]
+PositiveRate = Annotated[float, *_in("rad/s", gt=0.0, le=_FASTEST)]
 PositiveAcceleration = Annotated[float, *_in("m/s**2", gt=0.0)]
 GSensitivity = Annotated[float, *_in("rad*s/m")]
 GSensitivityError = Annotated[float, *_in("rad*s/m", ge=0.0)]
