@@ -23,7 +23,7 @@ from pathlib import Path
 from tests.fuzz import attacks, cases
 
 SECONDS, BYTES = 20.0, 2**30
-_START = 60.0  # s for a process to load its libraries
+_START = 300.0  # s for a process to load its libraries and compile its kernels
 _SOLIDS = 100  # mutants of other kinds per mutant of a solid, which takes seconds
 
 
@@ -31,6 +31,8 @@ def worker() -> None:
     """Run the mutants that standard input names, a line each, and answer with a line of JSON."""
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what libraries print
+    with tempfile.TemporaryDirectory() as folder:
+        cases.outcome("step", 0, Path(folder))
     used = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
     _, hard = resource.getrlimit(resource.RLIMIT_DATA)
     print(json.dumps({"ready": True}), file=answers, flush=True)

@@ -95,6 +95,32 @@ def _is_large(scene: scenes.Scene) -> bool:
     return scene.rail.path().suffix in (".step", ".brep")
 
 
+def _step(rng: random.Random, folder: Path) -> None:
+    """A scene with other numbers and the same effects, hence the same kernels: the first forces of the
+    reference, and some steps of the surrogate."""
+    from tipoff import highfi, lowfi
+    from tipoff.highfi.dynamics.step_size import choose
+    from tipoff.highfi.dynamics.system import build
+    from tipoff.highfi.run import Loop
+
+    scene = scenes.load("tiny").condition("phi15")
+    numbers = [(key, old) for key, old in _dotted(scene.resolved()) if isinstance(old, float)]
+    scene = scene.replace(
+        {
+            key: old
+            * 10.0 ** rng.choice((-12, -6, -3, -1, 1, 3, 6, 12))
+            * rng.choice((1, 1, 1, -1))
+            for key, old in rng.sample(numbers, rng.choice(mutants.EDITS))
+        }
+    )
+    lowfi.run(scene, "springs", numerics=lowfi.Numerics(maximum_steps=200))
+    numerics = highfi.Numerics(element_size=8e-3)
+    system = build(scene, numerics, highfi.prepare(scene, numerics))
+    loop = Loop(scene, system, choose(system, scene, numerics))
+    loop.begin()
+    loop.advance_steps(1)
+
+
 def _override(rng: random.Random, folder: Path) -> None:
     scene = scenes.load(rng.choice(SCENES))
     keys = [key for key, _ in _dotted(scene.resolved())] + list(mutants.NAMES)
@@ -226,6 +252,7 @@ def _calibration(rng: random.Random, folder: Path) -> None:
 KINDS: dict[str, Callable[[random.Random, Path], None]] = {
     "scene": _scene,
     "override": _override,
+    "step": _step,
     "mesh": _mesh,
     "solid": _solid,
     "table": _table,
