@@ -24,6 +24,7 @@ from tests.fuzz import attacks, cases
 
 SECONDS, BYTES = 20.0, 2**30
 _START = 300.0  # s for a process to load its libraries and compile its kernels
+_SHOWN = 1500  # characters of a traceback
 _SOLIDS = 100  # mutants of other kinds per mutant of a solid, which takes seconds
 
 
@@ -44,7 +45,7 @@ def worker() -> None:
             try:
                 code = cases.outcome(kind, int(seed), Path(folder))
             except BaseException:
-                code, why = -1, traceback.format_exc()
+                code, why = -1, traceback.format_exc()[-_SHOWN:]
         grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 - before
         if grown > BYTES:
             code, why = -2, f"{grown / 1e9:.2g} GB"

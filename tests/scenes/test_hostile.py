@@ -74,6 +74,8 @@ def test_tables_of_a_program_are_bounded_too():
     assert refused(small(conditions={"x": deep}))[0].key == "tables"
     with pytest.raises(SceneError, match="no such key"):
         parse(small()).replace({"payload." + "a." * 5000 + "b": 1.0})
+    with pytest.raises(SceneError, match="tables"):
+        parse(small()).replace({"payload": deep})
     path = "a." * (DEEPEST - 4) + "b"
     assert refused(small(conditions={"x": {path: 1.0}}))[0].key.startswith("conditions.x")
 

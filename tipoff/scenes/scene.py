@@ -107,6 +107,7 @@ class Scene(Table):
 
         Raises SceneError listing every fault.
         """
+        keys.require_shallow(overrides, f"override of {self._source}")
         raw = keys.plain(self._raw)
         lost = keys.apply_all(raw, overrides, Scene)
         _mark(raw, overrides)
