@@ -21,6 +21,7 @@ from collections import Counter
 from pathlib import Path
 
 from tests.fuzz import attacks, cases
+from tipoff import scenes
 
 SECONDS, BYTES = 20.0, 2**30
 _START = 300.0  # s for a process to load its libraries and compile its kernels
@@ -32,8 +33,7 @@ def worker() -> None:
     """Run the mutants that standard input names, a line each, and answer with a line of JSON."""
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what libraries print
-    with tempfile.TemporaryDirectory() as folder:
-        cases.outcome("step", 0, Path(folder))
+    cases.take_steps(scenes.load("tiny").condition("phi15"))
     used = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
     _, hard = resource.getrlimit(resource.RLIMIT_DATA)
     print(json.dumps({"ready": True}), file=answers, flush=True)

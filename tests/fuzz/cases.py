@@ -96,25 +96,25 @@ def _is_large(scene: scenes.Scene) -> bool:
 
 
 def _step(rng: random.Random, folder: Path) -> None:
-    """A scene with other numbers and the same effects, hence the same kernels: the first forces of the
-    reference, and some steps of the surrogate."""
+    """A scene with other numbers and the same effects, hence the same kernels."""
+    scene = scenes.load("tiny").condition("phi15")
+    numbers = [(key, old) for key, old in _dotted(scene.resolved()) if isinstance(old, float)]
+    change = {
+        key: old * 10.0 ** rng.choice((-12, -6, -3, -1, 1, 3, 6, 12)) * rng.choice((1, 1, 1, -1))
+        for key, old in rng.sample(numbers, rng.choice(mutants.EDITS))
+    }
+    take_steps(scene.replace(change))
+
+
+def take_steps(scene: scenes.Scene) -> None:
+    """Some steps of the surrogate, and the first one of the reference. Compiles their kernels."""
     from tipoff import highfi, lowfi
     from tipoff.highfi.dynamics.step_size import choose
     from tipoff.highfi.dynamics.system import build
     from tipoff.highfi.run import Loop
 
-    scene = scenes.load("tiny").condition("phi15")
-    numbers = [(key, old) for key, old in _dotted(scene.resolved()) if isinstance(old, float)]
-    scene = scene.replace(
-        {
-            key: old
-            * 10.0 ** rng.choice((-12, -6, -3, -1, 1, 3, 6, 12))
-            * rng.choice((1, 1, 1, -1))
-            for key, old in rng.sample(numbers, rng.choice(mutants.EDITS))
-        }
-    )
     lowfi.run(scene, "springs", numerics=lowfi.Numerics(maximum_steps=200))
-    numerics = highfi.Numerics(element_size=8e-3)
+    numerics = highfi.Numerics(element_size=1e-3 * COARSE)
     system = build(scene, numerics, highfi.prepare(scene, numerics))
     loop = Loop(scene, system, choose(system, scene, numerics))
     loop.begin()
