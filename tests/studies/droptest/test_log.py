@@ -1,6 +1,8 @@
 """Reading logs: what is repaired is said, what cannot be is refused with every fault, and nothing
 passes silently."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -269,3 +271,9 @@ def _late(time):
         return cells
 
     return change
+
+
+def test_a_gyro_without_an_inverse_is_refused(tmp_path):
+    sheet = re.sub(r"scale_error = .*", "scale_error = [-1, 0, 0]", SHEET, count=1)
+    assert sheet != SHEET
+    assert "gyro.scale_error.0" in refused(written(tmp_path, sheet))
