@@ -21,7 +21,7 @@ QUICK = tests/test_layers.py tests/test_sources.py tests/scenes tests/mechanics 
   tests/studies/core/test_models.py tests/studies/report
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest paper recovery report view pictures convergence rails full-report bench check coverage hooks test test-slow clean
+.PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest paper recovery report view pictures convergence rails full-report bench check coverage hooks test test-slow fuzz clean
 
 help: ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-12s %s\n", $$1, $$2}' Makefile
@@ -91,7 +91,7 @@ view: $(READY) ## one run to look at: VTK files for ParaView, and pictures if `m
 	$(TIPOFF) view $(ASKED)
 
 pictures: $(READY) ## add pyvista (0.6 GB) to .venv, with which `make view` draws too
-	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps -r requirements-view.lock
+	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements-view.lock
 
 convergence: $(READY) ## the error of the reference itself: meshes, steps, interface stiffness, quadrature (minutes)
 	$(TIPOFF) convergence $(ASKED)
@@ -123,12 +123,16 @@ test-slow: $(READY) ## every test
 	.venv/bin/python -m tests.warm
 	.venv/bin/python -m pytest --numprocesses=auto --dist=loadfile
 
+fuzz: $(READY) ## 10,000 mutants of scenes, meshes, solids, tables and logs, then kills and full disks (COUNT=500 for fewer)
+	.venv/bin/python -m tests.warm
+	.venv/bin/python -m tests.fuzz $(if $(COUNT),--count $(COUNT))
+
 clean: ## remove results and caches; the environment stays
 	rm -rf out build *.egg-info .pytest_cache .hypothesis
 	find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +
 
 $(CHECKED): requirements-check.lock $(READY)
-	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps -r requirements-check.lock
+	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements-check.lock
 	@touch $@
 
 # The environment. The stamp is written last, so an install that was cut short is taken up again.
@@ -139,7 +143,7 @@ $(READY): requirements.lock pyproject.toml
 	  { echo "$(PYTHON) cannot make an environment. On Debian and Ubuntu, as root: apt-get install python3-venv" >&2; exit 1; }
 	@.venv/bin/python -m pip --version >/dev/null 2>&1 || \
 	  { echo "making .venv (about 1 GB, a minute or two)"; $(PYTHON) -m venv --clear .venv; }
-	.venv/bin/python -m pip install --quiet --disable-pip-version-check -r requirements.lock
+	.venv/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
 	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
 	@.venv/bin/python -m tipoff.studies.doctor
 	@touch $@

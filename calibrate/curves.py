@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tipoff.files import read_input
 from tipoff.mechanics.outcome import SETTLE_WINDOW
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import csv_file
@@ -65,7 +66,7 @@ class Curves(NamedTuple):
         ignition on or leave a gap, a record too short for the window.
         """
         try:
-            data = Path(path).read_bytes()
+            data = read_input(path)
         except OSError as error:
             raise SceneError(
                 [Fault(str(path), "file", error.strerror or str(error), "a readable CSV file")]

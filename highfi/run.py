@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tipoff.files import tell
 from tipoff.highfi.dynamics import ending, linear_range, observe, samples
 from tipoff.highfi.dynamics.checkpoint import Checkpoint, restore
 from tipoff.highfi.dynamics.step import ADVANCE, EVALUATE, KICK, OPEN, Task, perform
@@ -17,7 +18,7 @@ from tipoff.highfi.dynamics.system import System, build, initial_state
 from tipoff.highfi.faults import fault
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
-from tipoff.highfi.rail import spin
+from tipoff.highfi.rail import spin, step_cost
 from tipoff.highfi.rail.fit import check_fit
 from tipoff.highfi.rail.memory_check import check_before, check_mesh
 from tipoff.highfi.rail.scene_mesh import geometry, make_mesh
@@ -92,7 +93,10 @@ def run(
     numerics = numerics or Numerics()
     began, cpu = clock.perf_counter(), clock.thread_time()
     system = build(scene, numerics, prepare(scene, numerics))
-    loop = Loop(scene, system, choose(system, scene, numerics), threads or _threads_for(system))
+    stepping = choose(system, scene, numerics)
+    if words := step_cost.long_run(system.mesh, scene, stepping.dt_s):
+        tell(words)
+    loop = Loop(scene, system, stepping, threads or _threads_for(system))
     kept = (
         Checkpoint(checkpoint, checkpoint_every, loop, numerics) if checkpoint is not None else None
     )

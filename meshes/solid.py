@@ -59,14 +59,20 @@ def build(
         gmsh.option.setString("Geometry.OCCTargetUnit", "M")
         try:
             gmsh.model.occ.importShapes(str(path))
+            gmsh.model.occ.removeAllDuplicates()  # solids that touch share the face between them
+            gmsh.model.occ.synchronize()
         except Exception as fault:  # gmsh knows no other class
             raise ValueError(f"gmsh does not read it ({fault})") from fault
-        gmsh.model.occ.removeAllDuplicates()  # solids that touch share the face between them
-        gmsh.model.occ.synchronize()
         if not gmsh.model.getEntities(3):
             raise ValueError("it holds no solid")
-        areas = imprint.areas(gmsh, boxes)
-        filling.fits(sum(gmsh.model.occ.getMass(*solid) for solid in gmsh.model.getEntities(3)))
+        try:
+            areas = imprint.areas(gmsh, boxes)
+            volume = sum(gmsh.model.occ.getMass(*solid) for solid in gmsh.model.getEntities(3))
+        except imprint.Outside:
+            raise
+        except Exception as fault:  # gmsh knows no other class
+            raise ValueError(f"gmsh cannot measure its faces ({fault})") from fault
+        filling.fits(volume)
         try:
             return Meshed(*_elements(gmsh, element_size, boxes, filling), areas)
         except Exception as fault:  # gmsh knows no other class

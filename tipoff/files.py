@@ -10,11 +10,14 @@ the digest under the key ``sha256`` instead: that of the canonical JSON of all i
 that it does not depend on the layout.
 """
 
+import errno
 import glob
 import hashlib
+import io
 import json
 import os
 import re
+import stat
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping
@@ -22,10 +25,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+MOST_TEXT = (
+    2**25
+)  # bytes of a file of text that a user gives: read, it takes some ten times as much
 KEY = "sha256"  # of the digest in a JSON object
 _MARK = b"# sha-256 "
 _LINE = re.compile(_MARK + rb"([0-9a-f]{64})\n")
 _LENGTH = len(_MARK) + 64 + 1
+_temporaries: set[Path] = set()  # of this process, not yet renamed
 _CARRIES_NONE = "carries no digest of what it holds, or a damaged one"
 _DIFFERS = "does not fit the digest it carries (damaged, or edited)"
 
@@ -45,6 +52,32 @@ class DamageError(ValueError):
 
 
 @contextmanager
+def open_input(path: str | Path) -> Iterator[io.BufferedReader]:
+    """Yield the bytes of a file that a user named. Raises OSError for what is not a regular file: a
+    device or a pipe may never end, and opening a pipe may never return."""
+
+    def opened(name: str, flags: int) -> int:
+        return os.open(name, flags | getattr(os, "O_NONBLOCK", 0))
+
+    if "\0" in str(path):
+        raise OSError(errno.EINVAL, "a null character in its name", str(path))
+    with open(path, "rb", opener=opened) as stream:
+        if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
+            raise OSError(errno.EINVAL, "not a regular file", str(path))
+        yield stream
+
+
+def read_input(path: str | Path, most: int = MOST_TEXT) -> bytes:
+    """Content of a file that a user named. Raises OSError as ``open_input``, and for a file of more
+    than ``most`` bytes, of which no more are read."""
+    with open_input(path) as stream:
+        content = stream.read(most + 1)
+    if len(content) > most:
+        raise OSError(errno.EFBIG, f"larger than {most // 2**20} MiB", str(path))
+    return content
+
+
+@contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
     """Yield a temporary path; on success it replaces ``path`` atomically, on any exception it is
     removed."""
@@ -53,13 +86,26 @@ def replacing(path: str | Path) -> Iterator[Path]:
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=path.suffix, dir=path.parent)
     os.close(handle)
     temporary = Path(name)
+    _temporaries.add(temporary)
     try:
         yield temporary
         with open(temporary, "rb") as stream:
             os.fsync(stream.fileno())
         temporary.chmod(0o644)
         temporary.replace(path)
+    except OSError as error:
+        if error.errno and not error.filename:  # writing names none
+            error.filename = str(path)
+        raise
     finally:
+        temporary.unlink(missing_ok=True)
+        _temporaries.discard(temporary)
+
+
+def remove_temporaries() -> None:
+    """Remove the temporary files of ``replacing`` in all threads. For a process that ends at once and
+    leaves no time to its threads."""
+    for temporary in list(_temporaries):
         temporary.unlink(missing_ok=True)
 
 
@@ -88,10 +134,18 @@ def sealed(path: str | Path) -> Iterator[Path]:
             stream.write(_MARK + digest.encode() + b"\n")
 
 
+def write_netcdf(path: str | Path, found: Any) -> None:
+    """Write an xarray Dataset or DataTree as ``sealed``. The bytes are made in memory, because HDF5
+    ends the whole process where the disk is full."""
+    content = found.to_netcdf(engine="h5netcdf")
+    with sealed(path) as temporary:
+        temporary.write_bytes(content)
+
+
 def require_whole(path: str | Path) -> None:
     """Raises DamageError unless the file is as ``sealed`` left it, FileNotFoundError or another
     OSError where it cannot be read."""
-    content = memoryview(Path(path).read_bytes())
+    content = memoryview(_content(path))
     last = _LINE.fullmatch(content[-_LENGTH:])
     if last is None:
         raise DamageError(path, _CARRIES_NONE)
@@ -102,7 +156,12 @@ def require_whole(path: str | Path) -> None:
 def is_sealed(path: str | Path) -> bool:
     """Whether any line of the file begins like the line of a digest. Raises OSError where the file
     cannot be read."""
-    return any(line.startswith(_MARK) for line in Path(path).read_bytes().splitlines())
+    return any(line.startswith(_MARK) for line in _content(path).splitlines())
+
+
+def _content(path: str | Path) -> bytes:
+    with open_input(path) as stream:
+        return stream.read()
 
 
 def write_json(path: str | Path, value: Mapping[str, Any]) -> dict[str, Any]:
@@ -117,9 +176,9 @@ def read_json(path: str | Path) -> dict[str, Any]:
     """The object that ``write_json`` wrote. Raises DamageError, or OSError where the file cannot be
     read."""
     try:
-        found = json.loads(Path(path).read_bytes())
+        found = json.loads(_content(path))
         whole = isinstance(found, dict) and fits_digest(found)
-    except ValueError as fault:
+    except (ValueError, RecursionError) as fault:
         raise DamageError(path, "is no JSON (damaged, or edited)") from fault
     if not whole:
         raise DamageError(

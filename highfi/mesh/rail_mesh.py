@@ -28,6 +28,7 @@ from tipoff.highfi.mesh.cells import (
     kind,
     thickness,
 )
+from tipoff.highfi.mesh.memory_limit import limited
 from tipoff.scenes.faults import InputError
 
 _LISTED = 20  # element numbers printed in one message
@@ -35,6 +36,9 @@ _THIN = 0.25  # of the median: thinner elements set the time step of the whole m
 # scaled Jacobian, 1 for a brick and 0.71 for corners of 45 degrees, where bending of thin layers is
 # lost
 _SKEW = 0.85
+# bytes of memory that reading a mesh takes at most: numbers as text in lists of Python, per byte of
+# the file, and what any file takes
+_PER_BYTE, _BESIDE = 100, 2**29
 
 
 class MeshError(InputError):
@@ -133,8 +137,13 @@ def listed(elements: np.ndarray) -> str:
 def _opened(path: Path) -> meshio.Mesh:
     output = io.StringIO()
     try:
+        most = _PER_BYTE * path.stat().st_size + _BESIDE
         # meshio prints what is wrong with a file, and then asks the whole program to exit.
-        with contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
+        with (
+            contextlib.redirect_stdout(output),
+            contextlib.redirect_stderr(output),
+            limited(most),
+        ):
             return meshio.read(path)
     # each format's reader fails in its own way on damaged bytes
     except (Exception, SystemExit) as fault:

@@ -20,20 +20,24 @@ def require_split(scene: Scene, element_size: float, mesh: RailMesh) -> None:
     parts = split.parts(mesh, element_size) ** 3
     shapes = min(elements * parts, len(assembly.shape_classes(mesh)[1]) * parts)
     needed = memory_estimate.of_mesh(elements * parts, nodes, shapes)
-    _require(scene, element_size, elements * parts, needed)
+    _require(scene, element_size, elements * parts, needed, memory_estimate.available())
 
 
-def require_filled(scene: Scene, element_size: float, nodes: int, volume: float) -> None:
+def require_filled(
+    scene: Scene, element_size: float, nodes: int, memory: float | None, volume: float
+) -> None:
     """Raise SceneError where a solid of ``volume`` (m3), filled with elements of so many ``nodes``
-    and ``element_size`` (m), does not fit into memory, be they all alike."""
+    and ``element_size`` (m), does not fit into ``memory`` (bytes), be they all alike."""
     per_cube = _HEXAHEDRA if nodes == 8 else _TETRAHEDRA
     elements = int(per_cube * volume / element_size**3)
     shapes = 1 if nodes == 8 else elements
-    _require(scene, element_size, elements, memory_estimate.of_mesh(elements, nodes, shapes))
+    needed = memory_estimate.of_mesh(elements, nodes, shapes)
+    _require(scene, element_size, elements, needed, memory)
 
 
-def _require(scene: Scene, element_size: float, elements: int, needed: float) -> None:
-    left = memory_estimate.available()
+def _require(
+    scene: Scene, element_size: float, elements: int, needed: float, left: float | None
+) -> None:
     if left is not None and needed > left:
         raise too_large(
             scene, element_size, elements, needed, left, "a larger one, or a coarser file"

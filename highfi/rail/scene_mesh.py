@@ -2,17 +2,13 @@
 file."""
 
 from dataclasses import replace
-from functools import partial
-
-import meshio
-import numpy as np
 
 from tipoff.files import content_hash
 from tipoff.highfi.mesh import split
-from tipoff.highfi.mesh.rail_mesh import MeshError, RailMesh, along_x, boundary_facets, read
-from tipoff.highfi.rail import memory_fault, step_cost
-from tipoff.highfi.rail.fit import check_areas, check_frame, check_held, unit_of
-from tipoff.meshes import imprint, l_rail, msh, solid
+from tipoff.highfi.mesh.rail_mesh import MeshError, RailMesh, along_x, read
+from tipoff.highfi.rail import memory_fault, solid_process, step_cost
+from tipoff.highfi.rail.fit import check_areas, check_frame, check_held
+from tipoff.meshes import l_rail
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import GeometryTable, SectionTable
 from tipoff.scenes.scene import Scene
@@ -40,7 +36,7 @@ def make_mesh(scene: Scene, element_size: float) -> RailMesh:
     if not scene.rail.is_as_found():
         raise MeshError(f"{scene.rail.path()} has changed since the scene was read")
     if isinstance(scene.rail, GeometryTable):
-        meshed, areas = _meshed(scene, scene.rail, element_size)
+        meshed, areas = solid_process.mesh_of(scene, scene.rail, element_size)
         mesh = replace(read(meshed), drawn=areas)
         check_areas(scene.rail, mesh)
         check_held(scene.rail, mesh)
@@ -55,40 +51,6 @@ def make_mesh(scene: Scene, element_size: float) -> RailMesh:
     memory_fault.require_split(scene, element_size, mesh)
     mesh = along_x(split.to_size(mesh, element_size))
     return step_cost.with_run_time(mesh, scene, min(element_size, step_cost.spacing(mesh)))
-
-
-def _meshed(
-    scene: Scene, rail: GeometryTable, element_size: float
-) -> tuple[meshio.Mesh, dict[str, float]]:
-    """The solid of a CAD file as elements, the facets of its boundary named after the boxes they
-    lie in, and the area (m2) of the solid's own faces there."""
-    boxes = {
-        name: np.array([(box.low, box.high) for box in given])
-        for name, given in rail.surfaces.items()
-    }
-    cost = partial(step_cost.ratio, rail.material, element_size)
-    nodes = 10 if rail.elements == "tet10" else 8
-    fits = partial(memory_fault.require_filled, scene, element_size, nodes)
-    filling = solid.Filling(rail.elements == "tet10", cost, step_cost.MOST, fits)
-    try:
-        points, cells, areas = solid.build(rail.path(), element_size, boxes, filling)
-    except imprint.Outside as fault:
-        raise MeshError(
-            f"{rail.path()} cannot be used: {fault}{unit_of(rail, fault.extent)}"
-        ) from fault
-    except SceneError:
-        raise
-    except ValueError as fault:
-        raise MeshError(f"{rail.path()} cannot be used: {fault}") from fault
-    facets = boundary_facets(cells)
-    nodes = points[facets][:, None]
-    inside = {
-        name: ((nodes > box[:, 0, None] - imprint.SAME) & (nodes < box[:, 1, None] + imprint.SAME))
-        .all(axis=(2, 3))
-        .any(axis=1)
-        for name, box in boxes.items()
-    }
-    return msh.tagged(points, cells, {name: facets[found] for name, found in inside.items()}), areas
 
 
 def _l_section(scene: Scene, rail: SectionTable) -> l_rail.LRailGeometry:

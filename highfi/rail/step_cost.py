@@ -26,6 +26,7 @@ _WORST = 500  # elements assembled for each measure
 # matrix, and where each has its own
 _SHARED, _OWN = {8: 45.0, 10: 150.0}, {8: 250.0, 10: 900.0}
 _FEW = 0.1  # matrices per element
+_LONG = 1200.0  # s on one core, beyond which a run is announced with its time
 
 
 def ratio(
@@ -85,10 +86,27 @@ def run_time(mesh: RailMesh, scene: Scene) -> tuple[float, float]:
     jacobian, _ = jacobians(mesh.points, mesh.cells)
     worst = mesh.cells[_worst(mesh.points, mesh.cells, jacobian.min(axis=1))]
     limit = largest_step(RailMesh(mesh.points, worst, {}), scene.rail.material)
-    step, count = Numerics().safety * limit, len(mesh.cells)
+    step = Numerics().safety * limit
+    return step, _seconds(mesh, scene, step)
+
+
+def long_run(mesh: RailMesh, scene: Scene, step: float) -> str:
+    """Words on a run with this ``step`` (s) that would take more than twenty minutes of one core, as under
+    an interface stiffness in a wrong unit; else nothing."""
+    if (seconds := _seconds(mesh, scene, step)) <= _LONG:
+        return ""
+    return (
+        f"{scene.name}: {scene.duration / step:.3g} steps of {step:.3g} s for all of "
+        f"{scene.duration:.3g} s, with {len(mesh.cells):,} elements about {in_words(seconds)} on one "
+        "core"
+    )
+
+
+def _seconds(mesh: RailMesh, scene: Scene, step: float) -> float:
+    count = len(mesh.cells)
     is_shared = len(assembly.shape_classes(mesh)[1]) < _FEW * count
     nanoseconds = (_SHARED if is_shared else _OWN)[mesh.cells.shape[1]]
-    return step, 1e-9 * nanoseconds * scene.duration / step * count
+    return 1e-9 * nanoseconds * scene.duration / step * count
 
 
 def spacing(mesh: RailMesh) -> float:

@@ -1,12 +1,13 @@
 """Chunks of an ensemble on a Dask cluster: workers run them, this process alone draws the cases and
 writes the store.
 
-If a worker dies, its chunks go to others. If the scheduler dies, the run ends with a message, and
-the next run continues the store. Every worker must have the sources and library versions of this
-process, so that the bits are the same.
+If a worker dies, its chunks go to others. If the scheduler or the last worker dies, the run ends with
+a message, and the next run continues the store. Every worker must have the sources and library
+versions of this process, so that the bits are the same.
 """
 
 import threading
+import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import Any, NamedTuple
@@ -20,9 +21,12 @@ from tipoff.lowfi.ensemble.threads import PIECE, in_order
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
-PATIENCE = 30.0  # s for a scheduler to answer, and for its first worker to come
+PATIENCE = 30.0  # s for a scheduler to answer, for its first worker to come, and without a worker
+_LOOK, _FETCH = 0.1, 1.0  # s between looks for a chunk and its workers, and to fetch its result
+_SCHEMES = ("tcp", "tls", "ucx", "ws", "wss")
 _AHEAD = 2  # chunks sent per worker thread: one runs, the next waits
 _RETRIES = 5  # of a chunk whose worker died
 
@@ -45,8 +49,9 @@ def made(
     ensemble: Ensemble, store: Store, requested: Iterable[tuple[int, _Rows]], scheduler: str
 ) -> Iterator[Chunk]:
     """The ``requested`` chunks, given by number and rows, in the order in which they end. Raises
-    StoreError."""
+    StoreError, and SceneError for a ``scheduler`` that is no address."""
     distributed = _distributed()
+    _require_address(scheduler)
     try:
         client = distributed.Client(scheduler, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
@@ -69,8 +74,8 @@ def made(
         )
     except TimeoutError as error:
         raise StoreError(
-            f"no worker came to {scheduler} in {PATIENCE:g} s; start one with: dask worker "
-            f"{scheduler}"
+            f"no worker at {scheduler} for {PATIENCE:g} s; {store.progress()}; start one with: dask "
+            f"worker {scheduler}"
         ) from error
     except (OSError, RuntimeError, distributed.CancelledError, distributed.KilledWorker) as error:
         what = "the cluster failed" if client.status == "running" else "lost the scheduler"
@@ -95,11 +100,52 @@ def _made(client, recipe: Recipe, requested: Iterator[tuple[int, _Rows]]) -> Ite
             ended.add(future)
 
     send()
-    for future in ended:
+    while sent:
+        future, (results, messages) = _result(client, ended)
         number, rows = sent.pop(future)
-        results, messages = future.result()
         send()
         yield Chunk(number, rows, results, messages)
+
+
+def _result(client, ended) -> tuple[Any, Any]:
+    """The next chunk that ends, as its future and its result. Raises TimeoutError after ``PATIENCE``
+    without a worker: Dask itself would wait for ever, for a chunk or for a result that was lost with
+    its worker."""
+    future, served = None, time.monotonic()
+    while True:
+        if future is None and ended.has_ready():
+            future = next(ended)
+        try:
+            if future is not None:
+                return future, future.result(timeout=_FETCH)
+        except TimeoutError:
+            pass
+        else:
+            time.sleep(_LOOK)
+        now = time.monotonic()
+        if client.nthreads():
+            served = now
+        elif now - served > PATIENCE:
+            raise TimeoutError
+
+
+def _require_address(scheduler: str) -> None:
+    """Raise SceneError unless this is the address of a scheduler. A client of a malformed one would
+    hold the process up at its end."""
+    from distributed import Security
+    from distributed.comm import addressing
+
+    expected = "an address such as tcp://node1:8786"
+    try:
+        scheme, location = addressing.parse_address(scheduler)
+        _, port = addressing.parse_host_port(location)
+        wrong = scheme not in _SCHEMES or not 0 < port < 2**16
+    except (ValueError, AssertionError):
+        scheme, wrong = "", True
+    if scheme == "tls" and not Security().get_connection_args("client").get("ssl_context"):
+        wrong, expected = True, "certificates in Dask's settings distributed.comm.tls, or tcp://"
+    if wrong:
+        raise SceneError([Fault("scheduler", "address", repr(scheduler), expected)])
 
 
 def run_rows(recipe: Recipe, rows: _Rows) -> tuple[Columns, list[str]]:

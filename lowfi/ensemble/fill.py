@@ -35,7 +35,7 @@ def fill(
     stored = store.asked - missing
     for chunk in (
         cluster.made(ensemble, store, requested, scheduler)
-        if scheduler
+        if scheduler is not None
         else _here(ensemble, requested, workers)
     ):
         store.write(chunk)

@@ -13,6 +13,7 @@ that a new store would have, and are written again where they are not. No time o
 so two runs of one ensemble leave the same numbers, whoever ran them.
 """
 
+import errno
 import hashlib
 import json
 import os
@@ -75,17 +76,18 @@ class Store:
         self.path, self.asked, self.names = Path(path), asked, list(names)
         self.ensemble = content_hash(json.loads(json.dumps(identity)))
         attributes = with_digest({"identity": identity, **attributes})
-        if not self.path.exists() or (self.path.is_dir() and not any(self.path.iterdir())):
-            with self._explained():
-                self._make(attributes)
-        else:
+        is_new = not self.path.exists() or (self.path.is_dir() and not any(self.path.iterdir()))
+        with self._explained():
+            is_made = is_new and self._make(attributes)
+        if not is_made:
             self._require(identity)
             with self._explained():
                 self._describe(attributes)
         self._arrays, self._inputs = self._opened()
 
-    def _make(self, attributes: dict) -> None:
-        """Create the store under another name and rename it, so that it is never incomplete."""
+    def _make(self, attributes: dict) -> bool:
+        """Create the store under another name and rename it, so that it is never incomplete. False
+        where another process has made one in the meantime; both then write the same numbers."""
         self.path.parent.mkdir(parents=True, exist_ok=True)
         folder = Path(tempfile.mkdtemp(prefix=f".{self.path.name}.", dir=self.path.parent))
         try:
@@ -93,6 +95,11 @@ class Store:
             (folder / "done").mkdir()
             folder.chmod(0o755)
             os.replace(folder, self.path)
+            return True
+        except OSError as error:
+            if error.errno not in (errno.ENOTEMPTY, errno.EEXIST):
+                raise
+            return False
         finally:
             shutil.rmtree(folder, ignore_errors=True)
 

@@ -45,6 +45,8 @@ class TableFile:
         for row in rows:
             self._append(row, readers)
         self.asked = len(self._columns[0])
+        if not self.asked:
+            raise SceneError([Fault(str(path), "file", "no case", "one in each line")])
         digest = hashlib.sha256(json.dumps([self.keys, list(self._odd.items())]).encode())
         for column in self._columns:
             digest.update(column)

@@ -137,3 +137,26 @@ def test_code_names_whole_functions_only():
     )
     assert b"rotat" in code and not contains(code, rotation.matrix)
     assert not contains(code.replace(b"6rotateB", b"9rotated_byB"), rotation.rotate)
+
+
+@pytest.mark.parametrize("suffix", ["nbi", "nbc"])
+@pytest.mark.parametrize("harm", [lambda content: content[: len(content) // 2], lambda _: b""])
+def test_a_damaged_kernel_is_compiled_again(project, suffix, harm):
+    write_callee(project, 1.0)
+    assert ask(project) == (2.0, 1)
+    (stored,) = (project / "cache").rglob(f"*.{suffix}")
+    sound = stored.read_bytes()
+    stored.write_bytes(harm(sound))
+    assert ask(project) == (2.0, 1)
+    assert ask(project) == (2.0, 0)  # it has been replaced
+
+
+def test_a_kernel_with_one_other_byte_is_compiled_again(project):
+    """Numba would run it."""
+    write_callee(project, 1.0)
+    assert ask(project) == (2.0, 1)
+    (stored,) = (project / "cache").rglob("*.nbc")
+    content = bytearray(stored.read_bytes())
+    content[len(content) // 2] ^= 1
+    stored.write_bytes(content)
+    assert ask(project) == (2.0, 1)

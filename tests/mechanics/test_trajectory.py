@@ -186,11 +186,11 @@ def test_an_exception_while_writing_leaves_the_old_file(tmp_path):
 
 
 def test_an_exception_while_saving_leaves_nothing(tmp_path, monkeypatch):
-    def broken(self, path, engine):
-        Path(path).write_bytes(b"half")
+    def broken(self, content):
+        self.write_text("half")
         raise OSError("disk full")
 
-    monkeypatch.setattr("xarray.Dataset.to_netcdf", broken)
+    monkeypatch.setattr(Path, "write_bytes", broken)
     with pytest.raises(OSError, match="disk full"):
         random_trajectory().save(tmp_path / "a.nc")
     assert list(tmp_path.iterdir()) == []

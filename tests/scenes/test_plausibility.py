@@ -193,3 +193,10 @@ def test_an_implausible_condition_is_reported_once():
     assert scene.warnings == []
     (text,) = plausibility.of_all_conditions(scene)
     assert text.startswith("contact.stiffness: ") and text.endswith("(condition a)")
+
+
+@pytest.mark.parametrize("stiffness, warned", [("1.8e12", False), ("9e15", False), ("1e20", True)])
+def test_an_interface_stiffer_than_any_is_named(stiffness, warned):
+    scene = parse(small(contact=CONTACT | {"interface_stiffness": f"{stiffness} N/m**3"}))
+    found = [text for text in scene.warnings if "steps of the reference" in text]
+    assert len(found) == warned

@@ -72,9 +72,9 @@ BAD_SAMPLING = [
         "at most 1,000,000 samples in the duration of 0.03 s",
     ),
     (
-        {"output__interval": "5e-324 s"},
+        {"output__interval": "1e-30 s"},
         "output.interval",
-        "4.94066e-324 s",
+        "1e-30 s",
         "at most 1,000,000 samples",
     ),
     ({"output__interval": "0 s"}, "output.interval", "'0 s'", "greater than 0"),

@@ -14,12 +14,14 @@ from types import CodeType, FunctionType, SimpleNamespace
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, overload
 
 import numba
+from numba.core import caching
 from numba.core.caching import _CacheLocator
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.registry import CPUDispatcher
 
 from tipoff import sources
+from tipoff.kernels.cached import KernelFiles
 
 if TYPE_CHECKING:
     from numba.core.dispatcher import Dispatcher
@@ -62,7 +64,11 @@ class KernelCacheLocator(_CacheLocator):
         if sources.path(py_func.__module__) is None:
             return None
         locator = cls(py_func)
-        locator.ensure_cache_path()
+        try:
+            locator.ensure_cache_path()
+        except OSError as error:
+            why = f"{error.strerror}, so compiled kernels cannot be kept; set NUMBA_CACHE_DIR"
+            raise OSError(error.errno, why, locator.get_cache_path()) from error
         return locator
 
     def get_cache_path(self) -> str:
@@ -89,6 +95,8 @@ def _digest_of_code(code: CodeType) -> str:
 
 
 _settings.CACHE_LOCATOR_CLASSES = f"{__name__}.KernelCacheLocator,UserProvidedCacheLocator"
+# The class by which Numba's caches reach their files; it has no setting for it.
+caching.IndexDataCacheFile = KernelFiles  # type: ignore[misc]
 _settings.CACHE_DIR = str(sources.cache_folder() / "kernels")
 
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tipoff.files import DamageError, require_whole, sealed
+from tipoff.files import DamageError, require_whole, write_netcdf
 from tipoff.mechanics import ledger, outcome
 from tipoff.mechanics.models import MODELS
 
@@ -198,8 +198,7 @@ class Trajectory:
     def save(self, path: str | Path) -> None:
         """Write netCDF with its digest, atomically: an interrupted call leaves the file that was
         there, or none."""
-        with sealed(path) as temporary:
-            self.to_xarray().to_netcdf(temporary, engine="h5netcdf")
+        write_netcdf(path, self.to_xarray())
 
     @classmethod
     def load(cls, path: str | Path) -> "Trajectory":

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from tipoff import toml
-from tipoff.files import DamageError, is_sealed, require_whole, sealed
+from tipoff.files import DamageError, is_sealed, read_input, require_whole, sealed
 from tipoff.scenes import changes as added
 from tipoff.scenes.scene import Scene
 
@@ -103,7 +103,7 @@ class Calibration:
         try:
             if is_sealed(path):
                 require_whole(path)
-            data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+            data = tomllib.loads(read_input(path).decode("utf-8-sig"))
             return cls(**data | {"information": np.array(data["information"])})
         except DamageError as fault:
             raise ValueError(
@@ -111,5 +111,5 @@ class Calibration:
                 f"edited the file on "
                 "purpose"
             ) from fault
-        except (ValueError, TypeError, KeyError) as error:
+        except (ValueError, TypeError, KeyError, RecursionError) as error:
             raise ValueError(f"{path}: not a calibration file ({error})") from error

@@ -7,17 +7,23 @@ in the second line. Columns that are not wanted are ignored.
 
 import csv
 import io
+import itertools
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 
+from tipoff.files import open_input
 from tipoff.scenes import units
 from tipoff.scenes.faults import Fault, SceneError
 
 Line = tuple[int, list[str]]  # its number in the file, and its cells
 _HEAD = re.compile(r"\s*(.*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
+_LONGEST = 2**20  # characters of a line
+_MOST_COLUMNS = 1000
+MOST_LINES = 1_000_000  # of a curve or a log, which is held in memory as text
 _SHOWN = 5  # lines with one fault that are listed; the rest is counted
 
 
@@ -32,15 +38,13 @@ def lines(
     try:
         # Spreadsheets put a byte-order mark in front of UTF-8. "utf-8-sig" removes it.
         with (
-            open(path, newline="", encoding="utf-8-sig")
-            if data is None
-            else io.StringIO(data.decode("utf-8-sig"), newline="")
-        ) as stream:
-            text: Iterable[str] = stream
-            if comment is not None:  # an empty line in its place keeps the numbers of the others
-                text = ("\n" if line.startswith(comment) else line for line in stream)
-            reader = csv.reader(text, strict=True)
+            open_input(path) if data is None else io.BytesIO(data) as content,
+            io.TextIOWrapper(content, encoding="utf-8-sig", newline="") as stream,
+        ):
+            reader = csv.reader(_text(stream, comment), strict=True)
             for row in reader:
+                if len(row) > _MOST_COLUMNS:
+                    raise csv.Error(f"{len(row)} columns, {_MOST_COLUMNS} at most")
                 if len(row) > 1 or (row and row[0].strip()):
                     yield reader.line_num, row
     except OSError as error:
@@ -50,13 +54,30 @@ def lines(
         raise SceneError([Fault(str(path), "file", str(error), "a CSV file of text")]) from error
 
 
+def listed(path: str | Path, data: bytes | None = None, comment: str | None = None) -> list[Line]:
+    """The same in a list. Raises SceneError also for more than ``MOST_LINES`` lines."""
+    found = list(itertools.islice(lines(path, data, comment), MOST_LINES + 1))
+    if len(found) > MOST_LINES:
+        raise SceneError([Fault(str(path), "file", "more lines", f"{MOST_LINES:,} lines at most")])
+    return found
+
+
+def _text(stream: TextIO, comment: str | None) -> Iterator[str]:
+    """Lines of text. One that begins with ``comment`` is empty, so that the others keep their
+    numbers."""
+    while line := stream.readline(_LONGEST):
+        if len(line) == _LONGEST:
+            raise csv.Error(f"a line of {_LONGEST:,} characters or more")
+        yield "\n" if comment is not None and line.startswith(comment) else line
+
+
 def quantities(
     path: str | Path, wanted: dict[str, str], data: bytes | None = None
 ) -> tuple[dict[str, np.ndarray], list[Fault]]:
     """Columns (n,) in SI by name, and the faults of the file (see ``lines`` for ``data``).
     ``wanted`` gives the SI unit of each column by name. A column with a fault is left out."""
     try:
-        table = [line for line in lines(path, data) if any(map(str.strip, line[1]))]
+        table = [line for line in listed(path, data) if any(map(str.strip, line[1]))]
     except SceneError as error:
         return {}, error.faults
     heads = [_head(cell) for cell in table[0][1]] if table else []

@@ -82,8 +82,10 @@ def _key(error: ErrorDetails) -> str:
 
 def _shown(value: Any) -> str:
     if isinstance(value, dict):
-        return "a table with " + (", ".join(map(str, value)) or "no keys")
-    return repr(value) if len(repr(value)) < 200 else f"{repr(value)[:200]} ..."
+        text = "a table with " + (", ".join(map(str, value)) or "no keys")
+    else:
+        text = repr(value)
+    return text if len(text) < 200 else f"{text[:200]} ..."
 
 
 def _given(error: ErrorDetails) -> str:

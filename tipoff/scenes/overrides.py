@@ -1,11 +1,44 @@
 """Dotted keys such as ``thrust_offset.misalignment.axial`` or ``pads.0.relief``: setting, dropping
 and checking them."""
 
+import sys
 from collections.abc import Iterator, Mapping
 from types import UnionType
 from typing import Annotated, Any, Union, get_args, get_origin
 
+from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.table import Table
+
+DEEPEST = 32  # tables and lists inside each other; a scene has five
+
+
+def require_shallow(raw: Any, source: str) -> None:
+    """Raise SceneError for tables and lists more than ``DEEPEST`` levels inside each other, which no
+    scene has; what reads tables here calls itself at each level."""
+    level = [raw]
+    for _ in range(DEEPEST + 1):
+        level = [
+            item
+            for value in level
+            for item in (value.values() if isinstance(value, Mapping) else value)
+            if isinstance(item, (Mapping, list, tuple))
+        ]
+        if not level:
+            return
+    raise SceneError([too_deep(source)])
+
+
+def too_deep(source: str) -> Fault:
+    """The fault of tables that are too deep."""
+    expected = f"tables and lists of at most {DEEPEST} levels"
+    return Fault(source, "tables", "more levels inside each other", expected)
+
+
+def index(text: str, length: int) -> int | None:
+    """The place in a list of so many items that a part of a dotted key names; None for none."""
+    # isdigit alone would take superscripts, and int no more than 4300 digits
+    is_number = text.isascii() and text.isdigit() and len(text) < 10
+    return int(text) if is_number and int(text) < length else None
 
 
 def plain(value: Any) -> Any:
@@ -71,7 +104,8 @@ def _inside(annotation: Any, part: str) -> list:
         field = annotation.model_fields.get(part)
         return [Annotated[field.annotation, field]] if field else []
     if get_origin(annotation) in (list, tuple):
-        return list(get_args(annotation)[:1]) if part.isdigit() else []
+        is_index = index(part, sys.maxsize) is not None
+        return list(get_args(annotation)[:1]) if is_index else []
     if get_origin(annotation) is dict:
         return [get_args(annotation)[1]]
     return [found for item in get_args(annotation) for found in _inside(item, part)]
@@ -104,6 +138,8 @@ def apply(raw: dict, key: str, value: Any) -> tuple[str, str, str] | None:
 
     A table that loses its last key is dropped with it, since an empty table is a fault.
     """
+    if key.count(".") >= DEEPEST:
+        return key, repr(value), "no such key"
     head, _, rest = key.partition(".")
     return _apply_inside(raw, head, rest, key, value)
 
@@ -113,9 +149,9 @@ def _apply_inside(
 ) -> tuple[str, str, str] | None:
     place: int | str
     if isinstance(table, list):
-        if not (head.isdigit() and int(head) < len(table)):
+        if (found := index(head, len(table))) is None:
             return key, repr(head), f"an index below {len(table)}"
-        place = int(head)
+        place = found
     elif isinstance(table, dict):
         place = head
         if is_drop(value) and head not in table:

@@ -44,7 +44,7 @@ def warnings(scene) -> list[str]:
     found += _of_inertia(scene) + _of_mounts(scene.rail)
     found += _of_joints(scene.rail.mount_stiffness)
     if scene.contact is not None:
-        found += sinking.warnings(scene)
+        found += sinking.warnings(scene) + _of_interface(scene.contact)
     if scene.thermal is not None:
         found += _of_temperature(scene)
     return found
@@ -131,6 +131,17 @@ def _of_joints(table) -> list[str]:
     if not (_JOINT[0] <= min(joint) and max(joint) <= _JOINT[1]):
         return [f"{given} {_JOINT[0]:g} to {_JOINT[1]:g} N/m3"]
     return [f"{given} a shear stiffness below the normal one"] if joint.shear > joint.normal else []
+
+
+def _of_interface(contact) -> list[str]:
+    """A stiffness that no contact of asperities has. It costs the reference steps, whose number grows
+    with its square root. ``sinking`` has the soft ones."""
+    if (found := contact.interface_stiffness) <= _JOINT[1]:
+        return []
+    return [
+        f"contact.interface_stiffness: {found:.4g} N/m3, plausible up to {_JOINT[1]:g} N/m3; the "
+        f"steps of the reference shrink with its square root"
+    ]
 
 
 def _of_temperature(scene) -> list[str]:

@@ -8,6 +8,8 @@ its text on to its other keys, and its own text then ends with ", in part user".
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from tipoff.scenes.overrides import index
+
 USER = "user"
 _PARTLY = ", in part user"
 _NO_QUANTITIES = ("name", "description", "conditions", "agreement", "provenance")
@@ -80,8 +82,5 @@ def _names(table: Any) -> Iterable[str]:
 def _inside(table: Any, part: str) -> Any:
     if isinstance(table, dict):
         return table.get(part)
-    return (
-        table[int(part)]
-        if isinstance(table, list) and part.isdigit() and int(part) < len(table)
-        else None
-    )
+    place = index(part, len(table)) if isinstance(table, list) else None
+    return None if place is None else table[place]

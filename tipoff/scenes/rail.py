@@ -26,11 +26,14 @@ from pydantic import (
     model_validator,
 )
 
+from tipoff.files import open_input
 from tipoff.scenes.effects.mount_stiffness import MountStiffness, MountStiffnessTable
 from tipoff.scenes.effects.structural_damping import DampingTable
-from tipoff.scenes.table import Table, at_least_one, is_absent
+from tipoff.scenes.table import Table, at_least_one, is_absent, limited
 from tipoff.scenes.units import (
+    SMALLEST_DIMENSION,
     Density,
+    Dimension,
     Expansion,
     Length,
     NonNegativeLength,
@@ -44,8 +47,8 @@ SOLIDS = (".step", ".stp", ".iges", ".igs", ".brep")
 
 
 def _beyond_start(end: float, info: ValidationInfo) -> float:
-    if end <= info.data.get("start", -math.inf):
-        raise ValueError("an end beyond start")
+    if end < info.data.get("start", -math.inf) + SMALLEST_DIMENSION:
+        raise ValueError(f"an end beyond start, by {SMALLEST_DIMENSION:g} m or more")
     return end
 
 
@@ -100,16 +103,17 @@ class SectionTable(_RailTable):
     ``mounts``."""
 
     GIVEN_BY = "section"
-    leg: PositiveLength = 0.024
-    thickness: PositiveLength = 0.004
-    mount_width: PositiveLength = 0.004
-    mounts: tuple[Span, ...] = ()
+    leg: Dimension = 0.024
+    thickness: Dimension = 0.004
+    mount_width: Dimension = 0.004
+    mounts: Annotated[tuple[Span, ...], limited] = ()
 
     @field_validator("thickness", "mount_width")
     @classmethod
     def _within_leg(cls, value: float, info: ValidationInfo):
         leg = info.data.get("leg", math.inf)
-        if value > leg or (info.field_name == "thickness" and value == leg):
+        free = SMALLEST_DIMENSION if info.field_name == "thickness" else 0.0
+        if value > leg - free:
             raise ValueError(f"less than the leg, {leg:g} m")
         return value
 
@@ -135,8 +139,8 @@ class _FileTable(_RailTable):
     """
 
     clearance: NonNegativeLength | None = None
-    leg: PositiveLength | None = None
-    thickness: PositiveLength | None = None
+    leg: Dimension | None = None
+    thickness: Dimension | None = None
     _digest: str = PrivateAttr()
 
     @model_validator(mode="after")
@@ -145,7 +149,8 @@ class _FileTable(_RailTable):
         return self
 
     def _digest_now(self) -> str:
-        return hashlib.sha256(self.path().read_bytes()).hexdigest()
+        with open_input(self.path()) as stream:
+            return hashlib.file_digest(stream, "sha256").hexdigest()
 
     def is_as_found(self) -> bool:
         """Whether the file is the same as when the scene was read."""
@@ -167,7 +172,7 @@ class _FileTable(_RailTable):
 
 def _readable(file: str) -> str:
     try:
-        with open(file, "rb") as stream:
+        with open_input(file) as stream:
             stream.read(1)
     except OSError as error:
         raise ValueError(f"a readable file ({error.strerror})") from error
@@ -196,6 +201,9 @@ class BoxTable(Table):
         return high
 
 
+_Boxes = Annotated[tuple[BoxTable, ...], limited, AfterValidator(at_least_one)]
+
+
 class GeometryTable(_FileTable):
     """``[rail] geometry``: a solid drawn in CAD, meshed here with ``elements`` of 8-node hexahedra
     or 10-node tetrahedra. ``surfaces`` names the parts of its boundary that lie in boxes."""
@@ -203,7 +211,7 @@ class GeometryTable(_FileTable):
     GIVEN_BY = "geometry"
     geometry: Annotated[str, AfterValidator(_readable)]
     elements: Literal["hex8", "tet10"] = "hex8"
-    surfaces: dict[str, Annotated[tuple[BoxTable, ...], AfterValidator(at_least_one)]]
+    surfaces: Annotated[dict[str, _Boxes], limited]
 
     @field_validator("geometry")
     @classmethod

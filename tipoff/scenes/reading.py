@@ -11,6 +11,7 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
+from tipoff.files import read_input
 from tipoff.scenes import overrides, provenance, rail
 from tipoff.scenes.faults import Fault, SceneError
 
@@ -30,9 +31,9 @@ def read(name_or_path: str | Path) -> tuple[dict, str]:
     """Mapping and path of a catalogue scene (by name) or of a TOML file. Raises SceneError."""
     path = Path(name_or_path)
     if path.suffix != ".toml":
-        path = CATALOG / f"{name_or_path}.toml"
-        if not path.is_file():
+        if str(name_or_path) not in names():
             raise SceneError([Fault(str(name_or_path), "scene", "an unknown name", _known())])
+        path = CATALOG / f"{name_or_path}.toml"
     raw = _inherit(path, str(path), ())
     raw.setdefault("name", path.stem)
     return raw, str(path)
@@ -46,7 +47,7 @@ def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
     """``path`` merged over the file that it extends. A fault of an inherited file names this file
     and the one the user gave."""
     key = "file" if not chain else "extends"
-    if path.resolve() in chain:
+    if absolute(path) in chain:
         raise SceneError(
             [Fault(user_file, key, str(path), "files that do not extend each other in a circle")]
         )
@@ -58,16 +59,16 @@ def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
             and isinstance(table.get(entry), str)
             and table[entry] != "absent"
         ):
-            table[entry] = str((path.parent / table[entry]).resolve())
+            table[entry] = str(absolute(path.parent / table[entry]))
     base = raw.pop("extends", None)
     if base is None:
         return raw
     if not isinstance(base, str):
         raise SceneError([Fault(user_file, "extends", repr(base), _known())])
-    base_path = path.parent / base if base.endswith(".toml") else CATALOG / f"{base}.toml"
-    if not base_path.is_file():
+    if not base.endswith(".toml") and base not in names():
         raise SceneError([Fault(user_file, "extends", repr(base), _known())])
-    inherited = _inherit(base_path, user_file, (*chain, path.resolve()))
+    base_path = path.parent / base if base.endswith(".toml") else CATALOG / f"{base}.toml"
+    inherited = _inherit(base_path, user_file, (*chain, absolute(path)))
     # results are filed by name: a variation needs a name of its own
     inherited.pop("name", None)
     merged = _merged(inherited, raw)
@@ -83,14 +84,28 @@ def toml(path: Path, user_file: str, key: str = "file") -> dict:
     """Content of a TOML file. Raises SceneError, filed under ``key`` of the file the user gave."""
     inherited = "" if key == "file" else f"{path}: "
     try:
-        with open(path, "rb") as stream:
-            return tomllib.load(stream)
+        # Editors may put a byte-order mark in front of UTF-8. "utf-8-sig" removes it.
+        found = tomllib.loads(read_input(path).decode("utf-8-sig").replace("\r\n", "\n"))
     except OSError as error:
         raise SceneError(
             [Fault(user_file, key, f"{inherited}{error.strerror}", "a readable TOML file")]
         ) from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except RecursionError:
+        raise SceneError([overrides.too_deep(user_file)]) from None
+    # bad TOML, bytes that are no UTF-8, or an integer of thousands of digits
+    except ValueError as error:
         raise SceneError([Fault(user_file, key, f"{inherited}{error}", "valid TOML")]) from error
+    overrides.require_shallow(found, user_file)
+    return found
+
+
+def absolute(path: Path) -> Path:
+    """``path`` from the root. Links are followed, except in a name that the file system refuses and
+    in links in a circle: reading such a file gives the reason."""
+    try:
+        return path.resolve()
+    except (OSError, RuntimeError, ValueError):
+        return Path.cwd() / path
 
 
 def _merged(base: dict, extra: dict) -> dict:

@@ -6,6 +6,7 @@ from typing import Any
 from tipoff.scenes import names
 from tipoff.scenes.faults import renamed
 from tipoff.scenes.overrides import is_key
+from tipoff.scenes.table import MOST
 
 
 def faults(raw: dict[str, Any], scene_type: type) -> list[tuple[str, str, str]]:
@@ -14,7 +15,12 @@ def faults(raw: dict[str, Any], scene_type: type) -> list[tuple[str, str, str]]:
     conditions, roles, provenance = (
         _table(raw.get(name)) for name in ("conditions", "agreement", "provenance")
     )
-    lists = {role: members for role, members in roles.items() if isinstance(members, list)}
+    # what is no text, and too many of them, are faults of the table
+    lists = {
+        role: [name for name in members[:MOST] if isinstance(name, str)]
+        for role, members in roles.items()
+        if isinstance(members, list)
+    }
     found = names.faults(conditions)
     found += [
         (f"agreement.{role}", repr(name), "a name from [conditions]")

@@ -36,7 +36,7 @@ from tipoff.scenes.effects.thrust import MeasuredTable, ThrustTable
 from tipoff.scenes.effects.thrust_offset import ThrustOffsetTable
 from tipoff.scenes.faults import Fault, SceneError, faults_of, within
 from tipoff.scenes.rail import RailTable
-from tipoff.scenes.table import Table, at_least_one, is_absent
+from tipoff.scenes.table import MOST, Table, at_least_one, is_absent, limited
 from tipoff.scenes.tables import MOST_SAMPLES, AgreementTable, OutputTable, PadTable, PayloadTable
 from tipoff.scenes.units import Duration
 
@@ -55,7 +55,7 @@ class Scene(Table):
     description: str = ""
     duration: Duration
     payload: PayloadTable
-    pads: Annotated[tuple[PadTable, ...], AfterValidator(at_least_one)]
+    pads: Annotated[tuple[PadTable, ...], limited, AfterValidator(at_least_one)]
     rail: RailTable
     thrust: ThrustTable
     thrust_offset: ThrustOffsetTable | None = None
@@ -69,8 +69,8 @@ class Scene(Table):
     thermal: ThermalTable | None = Field(None, exclude_if=is_absent)
     output: OutputTable = Field(OutputTable(), validate_default=True)
     agreement: AgreementTable = AgreementTable()
-    conditions: dict[str, dict[str, Any]] = Field(default_factory=dict)
-    provenance: dict[str, str] = Field(default_factory=dict)
+    conditions: Annotated[dict[str, dict[str, Any]], limited] = Field(default_factory=dict)
+    provenance: Annotated[dict[str, str], limited] = Field(default_factory=dict)
     _raw: dict = PrivateAttr(default_factory=dict)
     _source: str = PrivateAttr(default="scene")
 
@@ -107,6 +107,7 @@ class Scene(Table):
 
         Raises SceneError listing every fault.
         """
+        keys.require_shallow(overrides, f"override of {self._source}")
         raw = keys.plain(self._raw)
         lost = keys.apply_all(raw, overrides, Scene)
         _mark(raw, overrides)
@@ -187,6 +188,7 @@ def parse(
 
     Raises SceneError listing every fault with file, key, given and expected.
     """
+    keys.require_shallow(raw, source)
     tables = keys.plain(raw)
     scene, faults = _validated(tables, bare_numbers_are_si)
     if isinstance(tables, dict):
@@ -255,7 +257,7 @@ def _beside_faults(raw: dict, bare_numbers_are_si: bool, reported: _Faults) -> _
     """Faults in conditions, agreement and provenance, without those in ``reported``, the faults of
     the scene itself."""
     found = []
-    for name, table in _tables(raw.get("conditions")):
+    for name, table in _tables(raw.get("conditions"))[:MOST]:  # more of them are a fault
         varied = keys.plain({key: item for key, item in raw.items() if key not in _BESIDE})
         faults = keys.apply_all(varied, table, Scene) + _validated(varied, bare_numbers_are_si)[1]
         found += [

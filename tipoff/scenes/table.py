@@ -3,7 +3,10 @@
 from collections.abc import Sized
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, ValidationInfo, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, model_validator
+
+MOST = 5000  # of a list or of named tables: pads, mounts, conditions
+limited: Any = Field(max_length=MOST)  # of a field that holds as many as a user likes
 
 
 class Table(BaseModel):

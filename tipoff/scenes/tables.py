@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, field_validator
 
 from tipoff.scenes.body import InertiaTensor
-from tipoff.scenes.table import Table, at_least_one
+from tipoff.scenes.table import Table, at_least_one, limited
 from tipoff.scenes.units import (
     Length,
     Mass,
@@ -20,6 +20,7 @@ from tipoff.scenes.units import (
 MOST_SAMPLES = 1_000_000  # after ignition: a gigabyte of curves
 _ROUNDING = 1e-12  # relative: a last sample at the end of the scene is one
 
+_Names = Annotated[tuple[str, ...], limited]
 Normal = Literal["+y", "-y", "+z", "-z"]
 
 
@@ -41,7 +42,7 @@ class PadTable(Table):
     """
 
     position: tuple[Length, Length, Length]
-    normals: Annotated[tuple[Normal, ...], AfterValidator(at_least_one)]
+    normals: Annotated[tuple[Normal, ...], limited, AfterValidator(at_least_one)]
     length: PositiveLength = 0.016
     width: PositiveLength = 0.016
     inset: NonNegativeLength = 0.0
@@ -75,9 +76,9 @@ class AgreementTable(Table):
     """``[agreement]``: conditions that are fitted, held out, used for the floor, and refined;
     and the limits of agreement: relative L2 of the rates (1) and error of a settled rate (rad/s)."""
 
-    fitted: tuple[str, ...] = ()
-    held_out: tuple[str, ...] = ()
-    floor: tuple[str, ...] = ()
-    refined: tuple[str, ...] = ()
+    fitted: _Names = ()
+    held_out: _Names = ()
+    floor: _Names = ()
+    refined: _Names = ()
     rate_limit: PositiveNumber = 0.05
     settled_limit: PositiveRate = math.radians(0.1)

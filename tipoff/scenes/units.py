@@ -21,6 +21,15 @@ registry: pint.UnitRegistry = pint.UnitRegistry()
 _QUANTITY = re.compile(
     r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf(?:inity)?)\b)\s*(.*?)\s*", re.I
 )
+# What pint may read: names, each to a small power, and 1, multiplied and divided. It evaluates
+# arithmetic, and would take hours and all memory for "kg*9**9**9".
+_LONGEST = 100  # characters of a unit
+_NUMBER = r"[+-]?\d{1,2}(?:[./]\d{1,12})?"
+_POWER = rf"(?:\*\*|\^)\s*(?:{_NUMBER}(?![\w.])|\(\s*{_NUMBER}\s*\))"
+_UNIT = re.compile(rf"(?:{_POWER}(?!\s*(?:\*\*|\^))|[^\W\d]\w*|1(?![\w.])|[%°()/·⁻]|\*(?!\*)|\s)*")
+# Magnitudes (SI) beyond these are typing errors. Products of quantities would leave the range of
+# floating-point numbers, and a rail would be lost in the rounding of its place.
+_LARGEST, _LARGEST_LENGTH = 1e200, 1e9
 
 
 def named(unit: str) -> str:
@@ -40,22 +49,35 @@ def to_si(text: str, unit: str, absolute: bool = False) -> float:
     number, given_unit = float(match[1]), match[2] or "dimensionless"
     if not math.isfinite(number):
         raise ValueError(f"{named(unit)}, neither NaN nor infinite")
+    if len(given_unit) > _LONGEST or not _UNIT.fullmatch(given_unit):
+        raise ValueError(f"{named(unit)} ({given_unit[:_LONGEST]!r} is no unit)")
     try:
         quantity = registry.Quantity(number, registry.parse_units(given_unit))
     except Exception as error:  # pint raises a wide family of exceptions on malformed text
         raise ValueError(f"{named(unit)} ({given_unit!r} is no unit)") from error
     if not quantity.is_compatible_with(unit):
         raise ValueError(f"{named(unit)} (given dimension {quantity.dimensionality})")
+    try:
+        return _finite(_converted(quantity, unit, absolute, given_unit), unit)
+    except (ArithmeticError, pint.PintError) as error:  # powers of powers, or of offset units
+        raise ValueError(f"{named(unit)} ({given_unit!r} is no such unit)") from error
+
+
+def _converted(quantity: pint.Quantity, unit: str, absolute: bool, given: str) -> float:
+    """Magnitude in ``unit``. Raises ValueError for another power of the radian, and, unless it is
+    ``absolute``, for a unit whose zero is elsewhere."""
     if not absolute and registry.Quantity(0.0, quantity.units).to(unit).magnitude != 0.0:
         raise ValueError(
-            f"{named(unit)} ({given_unit!r} has its zero elsewhere: a difference is in K or "
-            f"delta_degC)"
+            f"{named(unit)} ({given!r} has its zero elsewhere: a difference is in K or delta_degC)"
         )
     # An angle has no dimension, so "0.1" would pass for 0.1 rad and "5 Hz" for 5 rad/s: ask for the
     # unit itself.
     if _radians(quantity) != _radians(registry.Quantity(1.0, unit)):
         raise ValueError(f"{named(unit)} (given unit {quantity.units})")
-    value = float(quantity.to(unit).magnitude)
+    return float(quantity.to(unit).magnitude)
+
+
+def _finite(value: float, unit: str) -> float:
     if not math.isfinite(value):
         raise ValueError(f"{named(unit)}, neither NaN nor infinite")
     return value
@@ -83,11 +105,23 @@ def parse(value: Any, unit: str, bare_numbers_are_si: bool) -> float:
     # checks of abstract types are slow
     if type(value) is not float and (isinstance(value, bool) or not isinstance(value, Real)):
         raise ValueError(named(unit))
-    if not math.isfinite(value):
-        raise ValueError(f"{named(unit)}, neither NaN nor infinite")
+    try:
+        number = _finite(float(value), unit)
+    except OverflowError:  # an integer beyond all floating-point numbers
+        number = _finite(math.inf, unit)
     if unit != "dimensionless" and not bare_numbers_are_si:
         raise ValueError(f'text with a unit of dimension {unit}, for example "{value} {unit}"')
-    return float(value)
+    return number
+
+
+def sized(value: float, unit: str, is_positive: bool = False) -> float:
+    """``value``, if its magnitude in ``unit`` is one that a scene may have. Raises ValueError."""
+    largest = _LARGEST_LENGTH if unit == "m" else _LARGEST
+    if abs(value) > largest:
+        raise ValueError(f"{named(unit)}, {largest:g} at most")
+    if is_positive and 0.0 < value < 1.0 / largest:
+        raise ValueError(f"{named(unit)}, {1.0 / largest:g} at least")
+    return value
 
 
 class Bounds(TypedDict, total=False):
@@ -105,7 +139,7 @@ def quantity(unit: str, **bounds: Unpack[Bounds]) -> Any:
 
     def convert(value: Any, info: ValidationInfo) -> float:
         bare = bool(info.context and info.context.get("bare_numbers_are_si"))
-        return parse(value, unit, bare)
+        return sized(parse(value, unit, bare), unit, bounds.get("gt") == 0.0)
 
     return Annotated[
         float, BeforeValidator(convert), Field(**bounds, json_schema_extra={"unit": unit})
@@ -115,9 +149,12 @@ def quantity(unit: str, **bounds: Unpack[Bounds]) -> Any:
 Number = quantity("dimensionless")
 NonNegativeNumber = quantity("dimensionless", ge=0.0)
 PositiveNumber = quantity("dimensionless", gt=0.0)
+ContactExponent = quantity("dimensionless", ge=0.5, le=10.0)  # 1.5 of Hertz, 1 of a plane
 Length = quantity("m")
 NonNegativeLength = quantity("m", ge=0.0)
 PositiveLength = quantity("m", gt=0.0)
+SMALLEST_DIMENSION = 1e-6  # m, of a rail: above the rounding of its place, below what is made
+Dimension = quantity("m", ge=SMALLEST_DIMENSION)
 Angle = quantity("rad")
 Time = quantity("s")
 NonNegativeTime = quantity("s", ge=0.0)

@@ -1,7 +1,8 @@
 """The ``tipoff`` command: one sub-command per stage.
 
-Exit codes: 0 done; 1 a run failed (its status gives the reason); 2 bad input, every fault listed,
-nothing written. Each command imports the large libraries that it needs, so that ``--help`` is fast.
+Exit codes: 0 done; 1 a run failed (its status gives the reason), or this machine refused a file or
+memory; 2 bad input, every fault listed, nothing written. Each command imports the large libraries
+that it needs, so that ``--help`` is fast.
 """
 
 from typing import Annotated

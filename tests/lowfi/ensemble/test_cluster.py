@@ -14,7 +14,7 @@ from tipoff.lowfi.ensemble.fill import fill
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.lowfi.ensemble.store import StoreError
-from tipoff.scenes import load, uncertainty
+from tipoff.scenes import SceneError, load, uncertainty
 
 pytest.importorskip("zarr")
 distributed = pytest.importorskip("distributed")
@@ -81,6 +81,39 @@ def test_a_lost_scheduler_ends_with_a_message_and_a_store_that_resumes(tmp_path)
     one = asked.store(tmp_path / "one")
     fill(asked, one)
     assert store.digest() == one.digest()
+
+
+def test_a_last_worker_that_dies_ends_with_a_message(tmp_path, monkeypatch):
+    """Dask would wait for another one for ever."""
+    monkeypatch.setattr(cluster, "PATIENCE", 3.0)
+    asked = ensemble()
+    store = asked.store(tmp_path / "store")
+    with local_cluster(1) as workers:
+
+        def dismiss(stored: int) -> None:
+            if stored == 3 * CHUNK:
+                for nanny in list(workers.workers.values()):
+                    workers.sync(nanny.close)
+
+        with pytest.raises(StoreError, match=r"no worker at .* for 3 s; .* are stored"):
+            fill(asked, store, scheduler=workers.scheduler_address, progress=dismiss)
+    assert 0 < len(store.pending()) <= CASES // CHUNK - 3
+
+
+@pytest.mark.parametrize(
+    "address", ["", "node1", "tcp://", "tcp://node1", "http://node1:80", "a:99999999", "a:0"]
+)
+def test_what_is_no_address_is_refused_at_once(tmp_path, monkeypatch, address):
+    monkeypatch.setattr(distributed, "Client", lambda *_, **__: pytest.fail("a client was made"))
+    asked = ensemble()
+    with pytest.raises(SceneError, match="expected an address such as tcp://node1:8786"):
+        fill(asked, asked.store(tmp_path / "store"), scheduler=address)
+
+
+def test_tls_needs_certificates(tmp_path):
+    asked = ensemble()
+    with pytest.raises(SceneError, match=r"distributed\.comm\.tls"):
+        fill(asked, asked.store(tmp_path / "store"), scheduler="tls://127.0.0.1:9")
 
 
 def test_no_scheduler_and_no_dask_say_what_is_missing(tmp_path, monkeypatch):

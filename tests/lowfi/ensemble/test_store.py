@@ -3,6 +3,7 @@ undisturbed run."""
 
 import errno
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -246,3 +247,19 @@ def test_the_store_is_open_to_others(tmp_path):
         and identity["cases"]["vary"]["mass_offset.eccentricity.axial"]["rule"] == "redraw"
     )
     assert json.loads((tmp_path / "store" / "done" / "000001.json").read_text())["ok"] == 4
+
+
+def test_a_store_that_another_process_makes_first_is_opened(tmp_path, monkeypatch):
+    """Two ensembles started at once: the second finds the folder taken when it renames its own."""
+    first, replace = ensemble(), os.replace
+
+    def late(source, target):
+        monkeypatch.setattr(os, "replace", replace)
+        ensemble().store(tmp_path / "store")
+        replace(source, target)
+
+    monkeypatch.setattr(os, "replace", late)
+    store = first.store(tmp_path / "store")
+    assert [path.name for path in tmp_path.iterdir()] == ["store"]
+    fill(first, store)
+    assert store.pending() == []

@@ -87,3 +87,10 @@ def test_a_bad_header_is_refused_at_once(tmp_path, lines, words):
 def test_a_missing_file_is_named(tmp_path):
     with pytest.raises(SceneError, match="cases.csv"):
         TableFile(tmp_path / "cases.csv")
+
+
+@pytest.mark.parametrize("text", ["payload.mass\n", "payload.mass\nkg\n"])
+def test_a_table_without_a_case_is_refused(tmp_path, text):
+    (tmp_path / "cases.csv").write_text(text)
+    with pytest.raises(SceneError, match="given no case"):
+        TableFile(tmp_path / "cases.csv")

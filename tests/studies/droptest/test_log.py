@@ -1,6 +1,8 @@
 """Reading logs: what is repaired is said, what cannot be is refused with every fault, and nothing
 passes silently."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -255,3 +257,23 @@ def test_a_broken_settling_rule_is_said(tmp_path):
         "settling rule broken" in note and "0.1 deg/s allowed" in note for note in found.notes
     )
     assert not any("settling rule" in note for note in analysis.analyse(SAMPLES[0]).notes)
+
+
+@pytest.mark.parametrize("time", ["1e9", "1e300", "100000"])
+def test_one_bad_time_does_not_ask_for_a_grid_of_billions(tmp_path, time):
+    said = refused(written(tmp_path, rows=_late(time)))
+    assert "a gap from" in said and "10 times as many instants as samples" in said
+
+
+def _late(time):
+    def change(cells):
+        cells[-1][0] = time
+        return cells
+
+    return change
+
+
+def test_a_gyro_without_an_inverse_is_refused(tmp_path):
+    sheet = re.sub(r"scale_error = .*", "scale_error = [-1, 0, 0]", SHEET, count=1)
+    assert sheet != SHEET
+    assert "gyro.scale_error.0" in refused(written(tmp_path, sheet))

@@ -2,6 +2,7 @@
 rates, and paper.nc."""
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -198,11 +199,11 @@ def test_data_are_written_whole_or_not_at_all(quick, monkeypatch):
     study, _ = quick
     before = study.path("paper.nc").read_bytes()
 
-    def stops(self, path, **_):
-        path.write_bytes(b"half")
+    def stops(self, content):
+        self.write_text("half")
         raise OSError("disk full")
 
-    monkeypatch.setattr(xarray.Dataset, "to_netcdf", stops)
+    monkeypatch.setattr(Path, "write_bytes", stops)
     left = exits.run(misfit.Launcher(BASE), np.full(COUNT, 0.5))
     with pytest.raises(OSError, match="disk full"):
         results.save(study.path("paper.nc"), [stub()(None, 0.0, 0, None, None)], 0, left)

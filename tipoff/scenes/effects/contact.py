@@ -33,14 +33,15 @@ from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.table import Table, is_absent
 from tipoff.scenes.units import (
     ContactDamping,
+    ContactExponent,
     Dissipation,
     InterfaceStiffness,
     NonNegativeLength,
     PoissonRatio,
     PositiveLength,
-    PositiveNumber,
     Pressure,
     parse,
+    sized,
 )
 
 EFFECT = Effect("contact")
@@ -65,7 +66,7 @@ class _ContactTable(Table):
     clearance: NonNegativeLength
     clearance_y: NonNegativeLength | None = Field(None, exclude_if=is_absent)
     clearance_z: NonNegativeLength | None = Field(None, exclude_if=is_absent)
-    exponent: PositiveNumber = 1.5
+    exponent: ContactExponent = 1.5
     stiffness: float
     interface_stiffness: InterfaceStiffness = 1.8e12
     pad_layer: PadLayerTable | None = Field(None, exclude_if=is_absent)
@@ -97,7 +98,8 @@ class _ContactTable(Table):
         if "exponent" not in info.data:
             return 1.0  # the exponent is refused, so the unit to expect is unknown
         bare = bool(info.context and info.context.get("bare_numbers_are_si"))
-        stiffness = parse(value, f"N/m**{info.data['exponent']:.12g}", bare)
+        unit = f"N/m**{info.data['exponent']:.12g}"
+        stiffness = sized(parse(value, unit, bare), unit, is_positive=True)
         if stiffness <= 0.0:
             raise ValueError("greater than 0")
         return stiffness

@@ -13,13 +13,13 @@ equatorial radius. The ejection does not depend on this table.
 """
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from pydantic import model_validator
 
 from tipoff.scenes.rail import BoxTable
-from tipoff.scenes.table import Table
+from tipoff.scenes.table import Table, limited
 from tipoff.scenes.units import Angle, PointingLimit, PositiveLength, PositiveRate, PositiveTime
 
 GRAVITATION = 3.986004418e14  # m3/s2, of the Earth
@@ -44,7 +44,7 @@ class FlightTable(Table):
     duration: PositiveTime | None = None
     pointing_limit: PointingLimit | None = None
     body: tuple[PositiveLength, PositiveLength, PositiveLength] | None = None
-    envelope: tuple[BoxTable, ...] = ()
+    envelope: Annotated[tuple[BoxTable, ...], limited] = ()
 
     @model_validator(mode="after")
     def _one_orbit(self):

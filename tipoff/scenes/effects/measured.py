@@ -37,7 +37,7 @@ def read_curve(path: str | Path) -> MeasuredCurve:
     """Read a CSV with header ``time_s,force_N``. A time in two rows is a jump. Raises ValueError
     naming everything that is wrong with the table."""
     try:
-        table = list(csv_file.lines(path))
+        table = csv_file.listed(path)
     except SceneError as error:
         raise ValueError(f"{error.faults[0].expected} ({error.faults[0].given})") from error
     if not table or [cell.strip() for cell in table[0][1]] != _HEADER:

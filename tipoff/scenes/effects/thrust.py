@@ -37,7 +37,7 @@ from tipoff.scenes.effects.thrust_law import (
     sample,
     shortest_feature,
 )
-from tipoff.scenes.table import Table, at_least_one
+from tipoff.scenes.table import Table, at_least_one, limited
 from tipoff.scenes.units import (
     Force,
     Impulse,
@@ -204,7 +204,7 @@ class GaussiansTable(_PulsedTable):
     """``[thrust] kind = "gaussians"`` with ``[[thrust.components]]``, one pulse each."""
 
     kind: Literal["gaussians"]
-    components: Annotated[tuple[Pulse, ...], AfterValidator(at_least_one)]
+    components: Annotated[tuple[Pulse, ...], limited, AfterValidator(at_least_one)]
 
     def pulses(self) -> tuple[Pulse, ...]:
         """The components."""

@@ -77,8 +77,9 @@ def guarded(
     """Run ``work``, print its result as JSON or as text, and return it.
 
     ``lines`` makes the text from the result. Errors become a message on standard error and an exit
-    code: 1 for a failed run, 2 for bad input, 130 for Ctrl-C.
+    code: 1 for a failed run and for what this machine refuses, 2 for bad input, 130 for Ctrl-C.
     """
+    from tipoff.files import remove_temporaries
     from tipoff.meshes.generator import GmshUnavailable
     from tipoff.scenes.faults import InputError, SceneError
     from tipoff.studies.core.study import StudyError
@@ -95,11 +96,17 @@ def guarded(
             file=sys.stderr,
             flush=True,
         )
-        # No clean-up: files are complete at any time, and a thread that compiles a kernel would
-        # delay the exit by seconds.
+        # Results are complete at any time, and a thread that compiles a kernel would delay the exit
+        # by seconds.
+        remove_temporaries()
         os._exit(130)
     except InputError as fault:
         stop(f"{type(fault).__name__}: {fault}", 2)
+    except OSError as fault:  # a full disk, a folder that cannot be written
+        place = f"{fault.filename}: " if fault.filename else ""
+        stop(f"{place}{fault.strerror or fault}", 1)
+    except MemoryError as fault:
+        stop(f"memory does not suffice ({fault})" if str(fault) else "memory does not suffice", 1)
     if as_json:
         print(json.dumps(result, indent=1))
     if failed := result.get("failed"):

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.scenes.csv_file import lines, numbers, places
+from tipoff.scenes.csv_file import listed, numbers, places
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.units import to_si
 from tipoff.studies.droptest import sheet as sheets
@@ -24,6 +24,7 @@ _BRIDGED = 2  # samples that a straight line may stand for
 _JITTER = 0.01  # of an interval: less is the rounding of a clock, and left as it is
 _UNEVEN = 0.45  # of an interval: more, and it is not clear which instant a sample belongs to
 _FEWEST = 100
+_MOST_MISSING = 10.0  # instants of the even grid per sample; a bad time would ask for billions
 
 
 class Log(NamedTuple):
@@ -70,7 +71,7 @@ def read(path: str | Path) -> tuple[Sheet, Log]:
 
 def _table(path: Path, wanted: list[str]) -> dict[str, np.ndarray]:
     """The wanted columns (n,) by name; an empty cell is NaN."""
-    rows = [(number, [cell.strip() for cell in row]) for number, row in lines(path, comment="#")]
+    rows = [(number, [cell.strip() for cell in row]) for number, row in listed(path, comment="#")]
     where, faults = places(str(path), rows[0][1] if rows else [], wanted)
     found = {}
     for name, place in where.items():
@@ -101,8 +102,16 @@ def _even(sheet: Sheet, source: str, values: dict[str, np.ndarray]) -> Log:
     if (steps <= 0.0).any():
         given = f"{(steps <= 0.0).sum()} samples not later than the one before"
         raise SceneError([Fault(source, "time", given, "times in increasing order")])
+    interval = float(np.median(steps))
+    if not (time[-1] - time[0]) <= _MOST_MISSING * time.size * interval:
+        gap = int(np.argmax(steps))
+        given = (
+            f"a gap from {time[gap]:.6g} s to {time[gap + 1]:.6g} s, samples {interval:.3g} s apart"
+        )
+        expected = f"at most {_MOST_MISSING:g} times as many instants as samples"
+        raise SceneError([Fault(source, "time", given, expected)])
     # Counted step by step: jitter may put the median off by more than the whole log forgives.
-    place = np.concatenate([[0], np.cumsum(np.round(steps / np.median(steps)).astype(int))])
+    place = np.concatenate([[0], np.cumsum(np.round(steps / interval).astype(int))])
     interval, start = (
         float(value) for value in np.polynomial.Polynomial.fit(place, time, 1).convert().coef[::-1]
     )

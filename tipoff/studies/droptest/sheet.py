@@ -32,7 +32,6 @@ from tipoff.scenes.faults import SceneError, faults_of
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import (
     Acceleration,
-    Angle,
     NonNegativeNumber,
     NonNegativeTime,
     Number,
@@ -57,9 +56,13 @@ def _in(unit: str, **bounds: float) -> tuple:
     return quantity(unit, **bounds).__metadata__
 
 
-NonNegativeRate = Annotated[float, *_in("rad/s", ge=0.0)]
-PositiveRate = Annotated[float, *_in("rad/s", gt=0.0)]
+_FASTEST = 1e6  # rad/s, which no gyro reaches
+NonNegativeRate = Annotated[float, *_in("rad/s", ge=0.0, le=_FASTEST)]
+PositiveRate = Annotated[float, *_in("rad/s", gt=0.0, le=_FASTEST)]
 PositiveAcceleration = Annotated[float, *_in("m/s**2", gt=0.0)]
+# of a sensor that is one: within these bounds its matrix has an inverse
+ScaleError = Annotated[float, *_in("dimensionless", ge=-0.5, le=0.5)]
+Misalignment = Annotated[float, *_in("rad", ge=-0.3, le=0.3)]
 GSensitivity = Annotated[float, *_in("rad*s/m")]
 GSensitivityError = Annotated[float, *_in("rad*s/m", ge=0.0)]
 Drift = Annotated[float, *_in("rad/s/K")]
@@ -118,8 +121,8 @@ class Gyro(Table):
     resolution: NonNegativeRate
     uncertainty: GyroUncertainty
     bias: _Triple[Rate] = (0.0,) * 3
-    scale_error: _Triple[Number] = (0.0,) * 3
-    misalignment: _Matrix[Angle] = ((0.0,) * 3,) * 3
+    scale_error: _Triple[ScaleError] = (0.0,) * 3
+    misalignment: _Matrix[Misalignment] = ((0.0,) * 3,) * 3
     g_sensitivity: _Matrix[GSensitivity] = ((0.0,) * 3,) * 3
     temperature: _Triple[Drift] = (0.0,) * 3
     reference_temperature: Annotated[float, BeforeValidator(_temperature)] = 293.15
@@ -130,7 +133,7 @@ class Accelerometer(Table):
 
     range: PositiveAcceleration
     bias: _Triple[Acceleration] = (0.0,) * 3
-    scale_error: _Triple[Number] = (0.0,) * 3
+    scale_error: _Triple[ScaleError] = (0.0,) * 3
 
 
 class Triggers(Table):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tipoff.files import sealed
+from tipoff.files import write_netcdf
 from tipoff.studies.droptest.analysis import Drop
 from tipoff.studies.droptest.channel_class import filtered
 from tipoff.studies.droptest.events import WINDOWS
@@ -76,8 +76,7 @@ def dataset(drop: Drop) -> "xarray.Dataset":
 
 def write(path: Path, drops: list[Drop]) -> None:
     """All tests in one file, each as the group of its name, atomically."""
-    with sealed(path) as temporary:
-        for number, drop in enumerate(drops):
-            dataset(drop).to_netcdf(
-                temporary, mode="a" if number else "w", group=drop.name, engine="h5netcdf"
-            )
+    import xarray
+
+    groups = {f"/{drop.name}": dataset(drop) for drop in drops}
+    write_netcdf(path, xarray.DataTree.from_dict(groups))

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tipoff.files import sealed
+from tipoff.files import write_netcdf
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.scenes import uncertainty
@@ -69,8 +69,7 @@ def run(study: Study, options: Options = Options()) -> dict:
         labelled = summary.dataset(
             [row["condition"] for row in rows if row["flown"]], single, exits, many, left
         )
-        with sealed(data) as temporary:
-            labelled.to_netcdf(temporary, engine="h5netcdf")
+        write_netcdf(data, labelled)
         pictures = [
             path
             for drawing, _ in page.charts(found)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tipoff.files import DamageError, require_whole, sealed
+from tipoff.files import DamageError, require_whole, write_netcdf
 from tipoff.studies.core.progress import say
 from tipoff.studies.populations import answers
 
@@ -32,8 +32,7 @@ def save(path: Path, values: np.ndarray, scale: float, tolerances: Mapping[str, 
         },
         {"scale": scale, "tolerances_si": json.dumps(dict(tolerances))},
     )
-    with sealed(path) as temporary:
-        found.to_netcdf(temporary, engine="h5netcdf")
+    write_netcdf(path, found)
 
 
 def load(path: Path) -> np.ndarray | None:

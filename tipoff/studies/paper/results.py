@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tipoff.files import sealed
+from tipoff.files import write_netcdf
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.studies import published
 from tipoff.studies.paper import exits, inputs, misfit, solutions, summary
@@ -21,9 +21,7 @@ if TYPE_CHECKING:
 
 def save(path: Path, found: list[solutions.Search], best: int, left: Columns) -> None:
     """Write ``dataset`` atomically."""
-    labelled = dataset(found, best, left)
-    with sealed(path) as temporary:
-        labelled.to_netcdf(temporary, engine="h5netcdf")
+    write_netcdf(path, dataset(found, best, left))
 
 
 def dataset(found: list[solutions.Search], best: int, left: Columns) -> "xarray.Dataset":

@@ -202,7 +202,8 @@ def _number(scene: Scene, key: str) -> float | None:
 
     def inside(table: Any, part: str) -> Any:
         if isinstance(table, tuple):
-            return table[int(part)] if part.isdigit() and int(part) < len(table) else None
+            place = keys.index(part, len(table))
+            return None if place is None else table[place]
         return getattr(table, part, None)
 
     whole: Any = scene

@@ -1,0 +1,28 @@
+"""A limit of the memory that reading a file may take, so that a few bytes in it, such as the number
+of a node, cannot ask for all memory of the machine."""
+
+import resource
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+_PAGES = Path("/proc/self/statm")  # its first number is the address space in pages
+
+
+@contextmanager
+def limited(extra: int) -> Iterator[None]:
+    """Within the block this process gets at most ``extra`` more bytes of address space, and a
+    MemoryError beyond. Without effect on systems that do not say how much it has."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+    try:
+        limit = int(_PAGES.read_text().split()[0]) * resource.getpagesize() + extra
+    except OSError:
+        yield
+        return
+    if soft != resource.RLIM_INFINITY:
+        limit = min(limit, soft)
+    resource.setrlimit(resource.RLIMIT_AS, (limit, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))

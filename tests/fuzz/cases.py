@@ -1,0 +1,263 @@
+"""What is done with a mutant of each kind, up to where a run would begin: the input is read, checked
+and turned into what the solvers take. The result is the exit code that a command would give."""
+
+import random
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import meshio
+import numpy as np
+import typer
+
+from tests.fuzz import mutants
+from tipoff import scenes
+from tipoff.highfi.mesh.rail_mesh import read
+from tipoff.highfi.rail import fit, step_cost
+from tipoff.lowfi.ensemble.table import TableFile
+from tipoff.mechanics import model
+from tipoff.meshes import generator
+from tipoff.scenes import plausibility, reading, uncertainty
+from tipoff.scenes.faults import InputError
+from tipoff.scenes.rail import SectionTable
+from tipoff.studies.calibration.files import constants
+from tipoff.studies.commands.running import guarded, study_of
+from tipoff.studies.droptest import analysis, sheet
+
+SCENES = ("reference", "tiny", "channel", "paper_like", "sensitive", "thin", "titanium")
+COARSE = 8.0  # mm
+TABLE = (
+    "payload.mass,thrust.peak,thrust_offset.misalignment.axial\n"
+    "kg,kN,deg\n9.9,6,0.1\n10,6.1,\n9.8,5.9,0.3\n"
+)
+CURVE = "time_s,force_N\n0,0\n0.001,2000\n0.004,6000\n0.010,5000\n0.02,0\n"
+CALIBRATION = """
+parameters = ["force"]
+values = [1.0]
+units = ["N"]
+lower = [0.5]
+upper = [2.0]
+justification = ["x"]
+information = [[1.0]]
+weak_directions = []
+conditions = ["phi15"]
+objective = 0.1
+
+[constants]
+"contact.stiffness" = 2.2e9
+"contact.exponent" = 1.5
+
+[residuals.phi15]
+rate = 0.01
+"""
+
+
+def outcome(kind: str, seed: int, folder: Path) -> int:
+    """Exit code of mutant ``seed`` of a ``kind``, whose files are written into ``folder``. Whatever
+    else a command would end with is raised."""
+    rng = random.Random(f"{kind} {seed}")
+    try:
+        guarded(lambda: KINDS[kind](rng, folder) or {}, as_json=False)
+    except typer.Exit as ended:
+        return ended.exit_code
+    return 0
+
+
+def _scene(rng: random.Random, folder: Path) -> None:
+    name = rng.choice(SCENES)
+    file = folder / "scene.toml"
+    if rng.random() < 0.5:
+        text = mutants.of_text(rng, (reading.CATALOG / f"{name}.toml").read_text(encoding="utf-8"))
+    else:
+        raw, _ = reading.read(name)
+        text = mutants.of_scene(rng, raw)
+    file.write_bytes(text.encode("utf-8", "surrogatepass"))
+    _prepared(file, folder)
+
+
+def _prepared(file: Path, folder: Path) -> None:
+    """A scene as far as its mesh and the records of the solvers."""
+    from tipoff import highfi
+
+    study = study_of(str(file), folder / "out", [], element_size=COARSE)
+    whole = study.scene
+    assert scenes.parse(whole.resolved(), bare_numbers_are_si=True).hash == whole.hash
+    for scene in list(study.conditions.values())[:2]:
+        assert scene.hash and scene.absent_effects() is not None
+        model.build(scene)
+        request = study.highfi(next(iter(study.conditions)))
+        if isinstance(scene.rail, SectionTable) or not _is_large(scene):
+            highfi.prepare(scene, request.numerics)
+
+
+def _is_large(scene: scenes.Scene) -> bool:
+    return scene.rail.path().suffix in (".step", ".brep")
+
+
+def _step(rng: random.Random, folder: Path) -> None:
+    """A scene with other numbers and the same effects, hence the same kernels."""
+    scene = scenes.load("tiny").condition("phi15")
+    numbers = [(key, old) for key, old in _dotted(scene.resolved()) if isinstance(old, float)]
+    change = {
+        key: old * 10.0 ** rng.choice((-12, -6, -3, -1, 1, 3, 6, 12)) * rng.choice((1, 1, 1, -1))
+        for key, old in rng.sample(numbers, rng.choice(mutants.EDITS))
+    }
+    take_steps(scene.replace(change))
+
+
+def take_steps(scene: scenes.Scene) -> None:
+    """Some steps of the surrogate, and the first one of the reference. Compiles their kernels."""
+    from tipoff import highfi, lowfi
+    from tipoff.highfi.dynamics.step_size import choose
+    from tipoff.highfi.dynamics.system import build
+    from tipoff.highfi.run import Loop
+
+    lowfi.run(scene, "springs", numerics=lowfi.Numerics(maximum_steps=200))
+    numerics = highfi.Numerics(element_size=1e-3 * COARSE)
+    system = build(scene, numerics, highfi.prepare(scene, numerics))
+    loop = Loop(scene, system, choose(system, scene, numerics))
+    loop.begin()
+    loop.advance_steps(1)
+
+
+def _override(rng: random.Random, folder: Path) -> None:
+    scene = scenes.load(rng.choice(SCENES))
+    keys = [key for key, _ in _dotted(scene.resolved())] + list(mutants.NAMES)
+    text = {
+        rng.choice(keys): f"{rng.choice(mutants.NUMBERS)} {rng.choice(mutants.UNITS)}"
+        for _ in range(rng.randint(1, 3))
+    }
+    found = scene.replace(text)
+    plausibility.of_all_conditions(found)
+    model.build(found)
+
+
+def _dotted(table: dict) -> list:
+    return list(scenes.overrides.dotted(table))
+
+
+def _mesh(rng: random.Random, folder: Path) -> None:
+    form = rng.choice(("values", "binary", "text", "vtu", "inp"))
+    file = folder / f"mesh.{form if form in ('vtu', 'inp') else 'msh'}"
+    if form == "values":
+        meshio.gmsh.write(file, mutants.of_mesh(rng, _original()), "2.2", binary=True)
+    else:
+        _write(form, file)
+        file.write_bytes(mutants.of_bytes(rng, file.read_bytes()))
+    scene = scenes.load("channel").replace({"rail.mesh": str(file)})
+    mesh = read(file)
+    fit.check_frame(scene, scene.rail, mesh)
+    fit.check_held(scene.rail, mesh)
+    step_cost.with_sliver_steps(mesh, scene.rail.material)
+    fit.check_fit(scene, mesh)
+
+
+def _original() -> meshio.Mesh:
+    return meshio.read(reading.CATALOG / "channel.msh")
+
+
+def _write(form: str, file: Path) -> None:
+    """The mesh of the catalogue in another format."""
+    mesh = _original()
+    if form in ("binary", "text"):
+        meshio.gmsh.write(file, mesh, "2.2", binary=form == "binary")
+        return
+    mesh.field_data, mesh.cell_data = {}, {}
+    mesh.write(file)
+
+
+def _solid(rng: random.Random, folder: Path) -> None:
+    """A plate in a STEP file, held at one face."""
+    from tipoff import highfi
+
+    file = folder / "plate.step"
+    file.write_bytes(mutants.of_text(rng, _plate()).encode("utf-8", "surrogatepass"))
+    raw, _ = reading.read("tiny")
+    rail = raw["rail"]
+    box = [{"low": ["-88 mm", "-1 m", "-1 m"], "high": ["-88 mm", "1 m", "1 m"]}]
+    wall = [{"low": ["-1 m", "100.25 mm", "-1 m"], "high": ["1 m", "100.25 mm", "1 m"]}]
+    raw["rail"] = {key: rail[key] for key in ("start", "end", "material")} | {
+        "geometry": str(file),
+        "surfaces": {"mount": box, "contact_wall": wall},
+    }
+    highfi.prepare(scenes.parse(raw | {"provenance": {}}), highfi.Numerics(element_size=8e-3))
+
+
+@cache
+def _plate() -> str:
+    """Text of a STEP file in millimetres."""
+    with tempfile.TemporaryDirectory() as folder, generator.session("plate") as gmsh:
+        gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
+        gmsh.model.occ.addBox(-88.0, 100.25, 80.0, 224.0, 4.0, 24.0)
+        gmsh.model.occ.synchronize()
+        gmsh.write(f"{folder}/plate.step")
+        return Path(folder, "plate.step").read_text(encoding="utf-8")
+
+
+def _table(rng: random.Random, folder: Path) -> None:
+    file = folder / "table.csv"
+    text = mutants.of_text(rng, TABLE)
+    file.write_bytes(mutants.of_bytes(rng, text.encode()) if rng.random() < 0.3 else text.encode())
+    table, scene = TableFile(file), scenes.load("reference")
+    for row in table.rows(0, min(table.asked, 20)):
+        try:
+            scene.replace(row)
+        except InputError:
+            continue
+
+
+def _curve(rng: random.Random, folder: Path) -> None:
+    file = folder / "curve.csv"
+    file.write_bytes(mutants.of_text(rng, CURVE).encode())
+    law = rng.choice(("curve", "fit"))
+    thrust = {"kind": "measured", "file": str(file), "use": law}
+    raw, _ = reading.read("reference")
+    raw.pop("provenance")
+    found = scenes.parse(raw | {"thrust": thrust})
+    found.thrust.describe(found.duration)
+
+
+def _log(rng: random.Random, folder: Path) -> None:
+    sample = rng.choice(sheet.SAMPLES)
+    log = sample.with_suffix(".csv")
+    text, table = sample.read_text(encoding="utf-8"), log.read_text(encoding="utf-8")
+    if rng.random() < 0.5:
+        text = mutants.of_text(rng, text)
+    else:
+        table = mutants.of_text(rng, table)
+    (folder / log.name).write_bytes(table.encode("utf-8", "surrogatepass"))
+    file = folder / sample.name
+    file.write_bytes(text.encode("utf-8", "surrogatepass"))
+    analysis.analyse(file)
+
+
+def _distributions(rng: random.Random, folder: Path) -> None:
+    file = folder / "vary.toml"
+    text = (uncertainty.CATALOG / "paper.toml").read_text(encoding="utf-8")
+    file.write_bytes(mutants.of_text(rng, text).encode("utf-8", "surrogatepass"))
+    found = uncertainty.load(file, scenes.load("reference"))
+    for item in found.vary.values():
+        item.ppf(np.array([0.1, 0.9]))
+
+
+def _calibration(rng: random.Random, folder: Path) -> None:
+    file = folder / "calibration.toml"
+    file.write_bytes(mutants.of_text(rng, CALIBRATION).encode("utf-8", "surrogatepass"))
+    found = constants(file)
+    assert found is not None
+    found.apply(scenes.load("reference"))
+
+
+KINDS: dict[str, Callable[[random.Random, Path], None]] = {
+    "scene": _scene,
+    "override": _override,
+    "step": _step,
+    "mesh": _mesh,
+    "solid": _solid,
+    "table": _table,
+    "curve": _curve,
+    "log": _log,
+    "distributions": _distributions,
+    "calibration": _calibration,
+}

@@ -1,0 +1,86 @@
+"""Rails given by damaged files: they are refused, and neither end this process nor take its memory."""
+
+import resource
+import subprocess
+
+import meshio
+import pytest
+
+from tests.highfi.support import COARSE, tiny
+from tests.meshes.test_imprint import BESIDE, TOP
+from tests.meshes.test_solid import drawn, drilled, scene_of
+from tipoff import highfi
+from tipoff.highfi.dynamics.step_size import choose
+from tipoff.highfi.dynamics.system import build
+from tipoff.highfi.mesh.memory_limit import limited
+from tipoff.highfi.mesh.rail_mesh import MeshError, read
+from tipoff.highfi.rail import step_cost
+from tipoff.highfi.rail.scene_mesh import make_mesh
+from tipoff.scenes.scene import CATALOG
+
+
+@pytest.fixture
+def lines(tmp_path):
+    """The channel of the catalogue as lines of text."""
+    mesh = meshio.read(CATALOG / "channel.msh")
+    meshio.gmsh.write(tmp_path / "channel.msh", mesh, "2.2", binary=False)
+    return (tmp_path / "channel.msh").read_text().split("\n")
+
+
+@pytest.mark.parametrize("place, text", [(2, "2147483647 0 0 0"), (1, "999999999999")])
+def test_a_number_in_a_mesh_does_not_ask_for_all_memory(tmp_path, lines, place, text):
+    """The number of a node, and of all nodes: gigabytes. The limit is lifted afterwards."""
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    lines[lines.index("$Nodes") + place] = text
+    (tmp_path / "bad.msh").write_text("\n".join(lines))
+    with pytest.raises(MeshError, match="MemoryError"):
+        read(tmp_path / "bad.msh")
+    assert resource.getrlimit(resource.RLIMIT_AS) == before
+
+
+def test_memory_is_limited_within_the_block_alone():
+    with pytest.raises(MemoryError), limited(2**28):
+        bytearray(2**30)
+    assert len(bytearray(2**30)) == 2**30
+
+
+@pytest.fixture
+def block(tmp_path):
+    """A scene on a block with a hole, and the lines of its STEP file."""
+    path = drawn(tmp_path / "block.step", drilled)
+    scene = scene_of(path, {"contact_top": [TOP], "mount": [BESIDE]}, 0.0, 0.04)
+    return scene, path, path.read_text().split("\n")
+
+
+@pytest.mark.gmsh
+def test_a_solid_that_ends_the_process_of_gmsh_is_refused(block):
+    """A vector that others point to is missing. Control: the whole file is meshed."""
+    scene, path, lines = block
+    assert len(make_mesh(scene, 0.008).cells) > 0
+    place = next(number for number, line in enumerate(lines) if "VECTOR('',#91,1.)" in line)
+    damaged = [line for number, line in enumerate(lines) if number != place]
+    path.write_text("\n".join(damaged))
+    with pytest.raises(MeshError, match="cannot be used"):
+        make_mesh(scene.replace({"rail.geometry": str(path)}), 0.008)
+
+
+@pytest.mark.gmsh
+def test_an_end_by_a_signal_is_named(block, monkeypatch):
+    run, ends = subprocess.run, "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
+    monkeypatch.setattr(
+        subprocess, "run", lambda command, **asked: run([*command[:2], ends], **asked)
+    )
+    scene, *_ = block
+    with pytest.raises(MeshError, match="ended with SIGSEGV"):
+        make_mesh(scene, 0.008)
+
+
+def test_a_run_of_hours_is_announced():
+    """Under an interface stiffness of 1e20 N/m3 steps are thousands of times as short."""
+    for stiffness, announced in (("1.8e12", False), ("1e20", True)):
+        scene = tiny(contact__interface_stiffness=f"{stiffness} N/m**3")
+        mesh = highfi.prepare(scene, COARSE)
+        step = choose(build(scene, COARSE, mesh), scene, COARSE).dt_s
+        words = step_cost.long_run(mesh, scene, step)
+        assert bool(words) == announced
+        assert not announced or ("steps of" in words and "on one core" in words)
