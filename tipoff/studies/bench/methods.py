@@ -1,7 +1,8 @@
 """The methods of the benchmark and the varied cases they solve. A method has ``settings``, from
-coarse to fine, the ``error`` (%) at one, and a ``piece``: a call that solves all cases."""
+coarse to fine, the ``error`` (%) at one, and a ``piece`` of work (``Method``)."""
 
 from collections.abc import Callable
+from typing import Protocol
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -13,7 +14,7 @@ from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.scene import Scene
 
-TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
+TOLERANCES: tuple[float, ...] = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 STEPS_S = tuple(4e-4 / 2.0 ** (0.5 * k) for k in range(14))
 _TIGHT = 1e-11
 _ABSOLUTE = 1e-3  # of the relative tolerance of solve_ivp, in SI: places of 1e-6 m count
@@ -75,6 +76,20 @@ class Population:
             return np.inf
         worst = np.abs(rates - self.rates).max(axis=1) / np.abs(self.rates).max(axis=1)
         return float(np.quantile(worst, 0.95) * 100.0)
+
+
+class Method(Protocol):
+    """What the benchmark needs of a method."""
+
+    name: str
+    settings: tuple[float, ...]
+    unit: str
+
+    def error(self, setting: float, /) -> float:
+        """Error (%) at a setting."""
+
+    def piece(self, setting: float, /) -> Callable:
+        """A call that solves all cases."""
 
 
 class Surrogate:
@@ -196,6 +211,9 @@ class SolveIvp:
             )
             found.append(((solution.t, solution.y[10:13].T), start))
         return found
+
+
+BASELINES = PlainRungeKutta, SolveIvp
 
 
 def coarsest(settings: tuple[float, ...], error, requested: float) -> tuple[float, float]:

@@ -20,10 +20,10 @@ from tipoff.files import write_json
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.scenes.scene import load
 from tipoff.studies.bench.methods import (
+    BASELINES,
     MODELS,
-    PlainRungeKutta,
+    Method,
     Population,
-    SolveIvp,
     Surrogate,
     coarsest,
     varied,
@@ -66,14 +66,12 @@ def _single(populations: list[Population], requested: float, repeats: int) -> li
     """Processor time per case (ms) of each method at the ``requested`` error (%): medians of
     ``repeats``, taken in turn."""
     surrogates = [Surrogate(population) for population in populations]
-    baselines = [PlainRungeKutta(populations[-1]), SolveIvp(populations[-1])]
-    chosen = [
-        (method, *coarsest(method.settings, method.error, requested))
-        for method in (*surrogates, *baselines)
-    ]
+    methods: list[Method] = [*surrogates, *(one(populations[-1]) for one in BASELINES)]
+    chosen = [(method, *coarsest(method.settings, method.error, requested)) for method in methods]
     pieces = {method.name: method.piece(setting) for method, setting, _ in chosen}
     pieces |= {
-        _with_curves(method.name): method.whole(setting) for method, setting, _ in chosen[:2]
+        _with_curves(method.name): method.whole(setting)
+        for method, (_, setting, _) in zip(surrogates, chosen)
     }
     times = _times(pieces, repeats, len(populations[0].rows))
     return [
