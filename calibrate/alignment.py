@@ -41,8 +41,7 @@ NAMES = (
 def free(scene: Scene) -> list[Parameter]:
     """The changes that a fit of ``scene`` may find; without clearance there is no room for those of
     the initial state."""
-    room = scene.contact is not None and scene.contact.clearance > 0.0
-    return [*(_initial(scene) if room else []), *_thrust(scene), *_mass_centre(), *_inertia(scene)]
+    return [*_initial(scene), *_thrust(scene), *_mass_centre(), *_inertia(scene)]
 
 
 def changes(values: dict[str, float]) -> dict[str, float]:
@@ -63,7 +62,8 @@ def _change(name: str, unit: str, bound: float, justification: str) -> Parameter
 
 
 def _initial(scene: Scene) -> list[Parameter]:
-    assert scene.contact is not None
+    if scene.contact is None:
+        return []
     faces, gaps = models.built(scene).nominal, np.array(scene.contact.gaps())
     found = [
         _change(

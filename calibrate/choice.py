@@ -34,15 +34,16 @@ def parameters(
     items = _candidates(scene, fit)
     stated = {item.name: _stated(scene, conditions, item.name) for item in items}
     items = [item for item in items if not stated[item.name]]
+    reasons = [reason for found in stated.values() for reason in found[:1]]
     own = np.clip([item.share(item.read(scene)) for item in items], 0.0, 1.0)
-    taken = determined(information(jacobian(make(items), own)))
+    taken = determined(information(jacobian(make(items), own))) if items else []
     if not taken:
+        none = [f"the curves determine none of {', '.join(item.name for item in items)}"]
+        faults = [f"fit: {text}" for text in reasons + (none if items else [])]
         raise CalibrationError(
-            f"cannot calibrate {scene.name}\n  fit: the curves determine none of "
-            f"{', '.join(item.name for item in items)}; name what to fit"
+            "\n  ".join([f"cannot calibrate {scene.name}", *faults, "name what to fit"])
         )
     held = [item for number, item in enumerate(items) if number not in taken]
-    reasons = [reason for found in stated.values() for reason in found[:1]]
     return [items[number] for number in taken], held, reasons
 
 
@@ -73,8 +74,10 @@ def named(scene: Scene, conditions: Iterable[str], names: Sequence[str]) -> list
     for name in dict.fromkeys(names):
         if names.count(name) > 1:
             faults.append(f"fit: {name} is named {names.count(name)} times")
-        if name not in every_name():
-            faults.append(f"fit: {name} is none of {', '.join(every_name())}")
+        if name == ALL:
+            faults.append(f"fit: {ALL} stands alone, without names")
+        elif name not in every_name():
+            faults.append(f"fit: {name!r} is none of {', '.join(every_name())}")
         elif name not in known:
             faults.append(f"fit: {name} needs {compliant.needs(name)}, which the scene lacks")
         else:

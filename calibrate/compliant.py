@@ -24,14 +24,16 @@ KEYS = (
 
 
 def free(scene: Scene) -> list[Parameter]:
-    """The constants of the contact of ``scene``: interface stiffness, clearance where there is any,
-    stiffness of the mounts where they are no rigid clamps, and friction if there is any; none without
-    contact."""
+    """The constants of the contact of ``scene``: interface stiffness, clearance where there is any
+    (along both axes where each states its own), stiffness of the mounts where they are no rigid
+    clamps, and friction if there is any; none without contact."""
     contact = scene.contact
     if contact is None:
         return []
     found = [_interface_stiffness(contact)]
-    if contact.clearance > 0.0:
+    if None not in (contact.clearance_y, contact.clearance_z):
+        found += along_axes(scene)
+    elif contact.clearance > 0.0:
         found.append(_clearance(CLEARANCE, contact.clearance, "", lambda c: c.clearance))
     if scene.rail.mount_stiffness is not None:
         found.append(_mounts())
@@ -54,7 +56,9 @@ def along_axes(scene: Scene) -> list[Parameter]:
 
 def needs(name: str) -> str:
     """What a scene needs to have the parameter ``name``."""
-    if name.startswith("initial.") or CLEARANCE in name:
+    if name == CLEARANCE:
+        return f"a clearance above zero and an axis without its own ({' and '.join(AXES)})"
+    if name.startswith("initial.") or name in AXES:
         return "a clearance above zero"
     if name.startswith("payload.inertia."):
         return "an inertia tensor that leaves room for changes"

@@ -114,8 +114,12 @@ def overrides(scene: Scene, values: dict[str, float]) -> dict[str, float]:
 
 
 def siblings(name: str) -> list[str]:
-    """The keys of a scene that the parameter ``name`` sets."""
-    return ["friction.dynamic", "friction.static"] if name == "friction.dynamic" else [name]
+    """The keys of a scene that the parameter ``name`` sets or replaces."""
+    if name == "friction.dynamic":
+        return [name, "friction.static"]
+    if name in ("contact.clearance_y", "contact.clearance_z"):
+        return [name, "contact.clearance"]
+    return [name]
 
 
 def share_of_damping(depth: float) -> float:

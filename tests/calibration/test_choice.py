@@ -124,9 +124,11 @@ def test_every_fault_of_names_is_listed():
         choice.named(stated, CONDITIONS, [*fit, TILT, TILT])
     told = str(refused.value).split("\n")
     assert "friction.dynamic is stated by condition phi15 itself (friction.static)" in told[1]
-    assert "contact.stiffness is none of contact.interface_stiffness, " in told[2]
+    assert "'contact.stiffness' is none of contact.interface_stiffness, " in told[2]
     assert "needs the table [rail.mount_stiffness], which the scene lacks" in told[3]
     assert f"{TILT} is named 2 times" in told[4] and len(told) == 5
+    with pytest.raises(calibration.CalibrationError, match="all stands alone"):
+        choice.named(SCENE, CONDITIONS, ["all", TILT])
     with pytest.raises(calibration.CalibrationError, match="at least one"):
         choice.named(SCENE, CONDITIONS, [])
     with pytest.raises(calibration.CalibrationError, match="has no effect beside"):
@@ -137,6 +139,37 @@ def test_every_fault_of_names_is_listed():
         "friction.dynamic",
         TILT,
     ]
+
+
+def test_where_conditions_state_every_candidate_nothing_is_chosen():
+    stated = {
+        "contact.interface_stiffness": 1e12,
+        "contact.clearance": 1e-4,
+        "friction.dynamic": 0.1,
+    }
+    scene = SCENE.replace({f"conditions.phi15.{key}": value for key, value in stated.items()})
+    with pytest.raises(calibration.CalibrationError, match="name what to fit") as refused:
+        choice.parameters(scene, CONDITIONS, None, lambda items: None)
+    for key in stated:
+        assert f"fit: {key} is stated by condition phi15 itself" in str(refused.value)
+
+
+def test_clearances_of_both_axes_are_the_candidates_where_a_scene_states_them():
+    """The clearance itself would change no gap."""
+    axes = {"contact.clearance": 0.0, "contact.clearance_y": 1e-4, "contact.clearance_z": 2e-4}
+    scene = SCENE.replace(axes)
+    names = [item.name for item in compliant.free(scene)]
+    assert names == ["contact.interface_stiffness", *compliant.AXES, "friction.dynamic"]
+    with pytest.raises(calibration.CalibrationError, match="an axis without its own"):
+        choice.named(scene, CONDITIONS, [compliant.CLEARANCE])
+    bounds = {item.name: item.upper for item in alignment.free(scene)}
+    assert bounds["initial.position.y"] == 1e-4 and bounds["initial.position.z"] == 2e-4
+
+
+def test_a_clearance_that_a_condition_states_is_not_replaced_along_one_axis():
+    scene = SCENE.replace({"conditions.phi15.contact.clearance": "0.3 mm"})
+    with pytest.raises(calibration.CalibrationError, match="stated by condition phi15 itself"):
+        choice.named(scene, CONDITIONS, [compliant.AXES[0]])
 
 
 def test_every_name_is_a_parameter_of_some_scene():

@@ -191,7 +191,7 @@ def test_a_file_of_the_other_model_is_refused_before_the_compliance_is_found(tmp
 def test_faults_of_a_choice_come_before_any_run(tmp_path):
     asked = ("calibrate", "--scene", "tiny", "--out", tmp_path)
     refused = call(*asked, "--fit", "friction.static,contact.clearance", code=2)
-    assert "friction.static is none of contact.interface_stiffness" in refused.stderr
+    assert "'friction.static' is none of contact.interface_stiffness" in refused.stderr
     refused = call(*asked, "--fit", "contact.clearance", "--model", "springs", code=2)
     assert "expected none with springs" in refused.stderr
 

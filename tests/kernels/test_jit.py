@@ -1,13 +1,17 @@
 """A changed callee: a compiled caller contains its old callee unless its place in the cache depends
 on all the code it uses. Changed comments compile nothing."""
 
+import gc
 import os
 import shutil
 import subprocess
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
+from numba.core.compiler_lock import global_compiler_lock
 
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import contains, entry, kernel
@@ -100,6 +104,26 @@ def test_python_calls_a_kernel_and_meets_its_exceptions():
     for call in (lambda: root(-1.0), lambda: sum_of_roots(1.0, -1.0)):
         with pytest.raises(ValueError, match="a negative number"):
             call()
+
+
+def test_threads_that_compile_together_leave_the_garbage_collector_as_it_was():
+    """Both begin while a third compilation goes on."""
+
+    @entry
+    def once(value):
+        return value + 1.0
+
+    @entry
+    def twice(value):
+        return value + 2.0
+
+    before = gc.get_threshold()
+    with ThreadPoolExecutor(2) as pool:
+        with global_compiler_lock:
+            found = [pool.submit(kernel, 1.0) for kernel in (once, twice)]
+            time.sleep(0.2)
+        assert [one.result() for one in found] == [2.0, 3.0]
+    assert gc.get_threshold() == before
 
 
 def test_comments_compile_nothing(project):

@@ -94,3 +94,16 @@ def test_one_clearance_along_both_axes_is_the_clearance():
     np.testing.assert_allclose(shims, moved.outcome.rate, rtol=2e-3, atol=1e-5)
     as_before = lowfi.run(phi35, compliance=compliance).outcome.rate
     assert np.abs(np.subtract(as_before, shims)).max() > 1e-3
+
+
+@pytest.mark.parametrize("stated", ["", "y", "z", "yz"])
+def test_a_change_of_the_clearance_is_one_of_every_gap(stated):
+    """Control: where both axes state their own, the clearance itself changes no gap."""
+    scene = SCENE.replace({f"contact.clearance_{axis}": 0.1e-3 for axis in stated})
+    wide = scene.replace(scene.contact.widened(2e-6))
+    grown = np.subtract(wide.contact.gaps(), scene.contact.gaps())[1:]
+    np.testing.assert_allclose(grown, 2e-6, rtol=1e-9)
+    other = scene.replace({"contact.clearance": 0.3e-3})
+    assert (other.contact.gaps()[1:] == scene.contact.gaps()[1:]) is (stated == "yz")
+    assert list(scene.contact.either_way(2e-6)) == ["plus", "minus"]
+    assert list(scene.contact.either_way(0.2e-3)) == ["plus", "minus"][: 1 if stated else 2]

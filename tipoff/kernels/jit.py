@@ -18,6 +18,7 @@ from numba.core import caching
 from numba.core.caching import _CacheLocator
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
+from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 
 from tipoff import sources
@@ -168,12 +169,13 @@ class _Entry(CPUDispatcher):
     def compile(self, signature):
         """Compile for ``signature``. Numba makes millions of objects that live until it is done: a
         seventh of its time would go into looking for unused ones."""
-        threshold = gc.get_threshold()
-        gc.set_threshold(_RARELY, *threshold[1:])
-        try:
-            return super().compile(signature)
-        finally:
-            gc.set_threshold(*threshold)
+        with global_compiler_lock:  # threads that compile together would not restore the threshold
+            threshold = gc.get_threshold()
+            gc.set_threshold(_RARELY, *threshold[1:])
+            try:
+                return super().compile(signature)
+            finally:
+                gc.set_threshold(*threshold)
 
 
 def _entry(function: Callable | None = None, **options: Any) -> Callable:

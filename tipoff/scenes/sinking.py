@@ -59,7 +59,7 @@ def warnings(scene) -> list[str]:
     contact, force = scene.contact, load(scene)
     side = min(min(pad.length, pad.width) for pad in scene.pads)
     base, in_words = max(
-        (min(contact.gaps()[1:]), "the clearance"), (_STRAIN * side, "1 % of a pad's shortest side")
+        (contact.narrowest(), "the clearance"), (_STRAIN * side, "1 % of a pad's shortest side")
     )
     area = min(pad.length * pad.width for pad in scene.pads)
     springs = (

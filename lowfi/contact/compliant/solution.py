@@ -44,14 +44,17 @@ def solve(compliance, faces, rail, touching, place, turn, state):
 
 @inlined
 def _move(compliance, faces, face, place, turn):
-    """Fill the lever of a face, and guess how its wall follows."""
+    """Fill the lever of a face, and guess how its wall follows; a state that is not finite leaves
+    nothing behind."""
     lever, displacement = compliance.workspace.lever[face], compliance.workspace.displacement[face]
     depth, by_xi, by_eta = lever[DEPTH], lever[BY_XI], lever[BY_ETA]
     take_lever(compliance, faces, face, place, turn)
     yielding = compliance.workspace.yielding[face]
     depth, by_xi, by_eta = lever[DEPTH] - depth, lever[BY_XI] - by_xi, lever[BY_ETA] - by_eta
     for a in range(PATTERNS):
-        displacement[a] += depth * yielding[0, a] + by_xi * yielding[1, a] + by_eta * yielding[2, a]
+        moved = depth * yielding[0, a] + by_xi * yielding[1, a] + by_eta * yielding[2, a]
+        guess = displacement[a] + moved
+        displacement[a] = guess if abs(guess) < np.inf else 0.0
 
 
 @inlined
@@ -85,7 +88,7 @@ def between_stations(compliance, place):
         (place - compliance.origin - compliance.spacing * compliance.cubic.shape[0]) / half
     )
     way, changes = place - compliance.origin - half * over, 1.0 - rate
-    if way < 0.0:
+    if not way >= 0.0:  # also where the place is not a number
         way, changes = 0.0, 0.0
     station = min(int(way / compliance.spacing), compliance.cubic.shape[0] - 1)
     return station, way - station * compliance.spacing, changes

@@ -13,6 +13,7 @@ from tests.scenes.support import small
 from tipoff.scenes import parse
 from tipoff.scenes.effects import thrust
 from tipoff.scenes.effects.measured import MeasuredCurve, fit_gaussian
+from tipoff.scenes.effects.thrust_law import Pulses, Thrust
 
 DURATION = 0.05
 O41 = {"kind": "gaussian", "impulse": "100 N*s", "width": "4 ms", "centre": "20 ms"}
@@ -256,6 +257,16 @@ def test_a_pulse_shorter_than_the_grid_is_not_missed():
     record = table(kind="gaussian", peak=1e3, width=1e-8, centre=0.0200012).record()
     assert thrust.peak(record, DURATION) == pytest.approx(1e3, rel=1e-9)
     assert 0.0200012 < thrust.burnout(record, 1e-3, DURATION) < 0.0200012 + 1e-7
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_the_peak_of_pulses_that_begin_late_is_at_their_begin(count):
+    pulses = Pulses(
+        np.full(count, 1e3), np.linspace(0.01, 0.012, count), np.full(count, 4e-3), 0.0175, 0.03
+    )
+    record = Thrust(pulses, None)
+    began = float(thrust.sample(record, np.array([0.0175]))[0])
+    assert thrust.peak(record, DURATION) == began > 100.0
 
 
 def test_no_thrust_is_burnt_out_at_once():

@@ -311,6 +311,16 @@ def test_clearance_and_friction_vary_about_their_nominal_values():
     assert np.allclose([row["contact.clearance"] - 0.25e-3 for row in more], 2.0 * (gaps - 0.25e-3))
 
 
+def test_clearances_along_the_axes_vary_together():
+    axes = {"contact.clearance_y": 1e-4, "contact.clearance_z": 2e-4}
+    scene = load("reference").replace(axes)
+    assert within.factors(scene)["clearance"].most == 1e-4
+    row = within.source(scene, {"clearance": 1e-4}, 8, 1).rows(0, 8)[3]
+    added = row["contact.clearance_y"] - 1e-4
+    assert 0.0 < abs(added) < 1e-4 and "contact.clearance" not in row
+    assert row["contact.clearance_z"] - 2e-4 == pytest.approx(added)
+
+
 def test_constants_are_drawn_inside_their_intervals_and_others_stay():
     scene, endless = load("reference"), float("inf")
     fitted = Calibration(

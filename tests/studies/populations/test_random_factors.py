@@ -118,6 +118,14 @@ def test_a_case_has_the_same_bits_in_every_chunk_and_the_reading_is_part_of_the_
     assert 0.9 * SCENE.contact.clearance < np.abs(inside).max() <= SCENE.contact.clearance
 
 
+def test_the_initial_position_is_inside_the_clearance_of_each_axis():
+    scene = SCENE.replace({"contact.clearance_z": 1e-4})
+    source = random_factors.source(scene, Reading(initial=True), 300, 5)
+    drawn = dict(zip(source.keys, numbers(source.keys, source.rows(0, 300)).T))
+    for axis, gap in (("y", scene.contact.clearance), ("z", 1e-4)):
+        assert 0.9 * gap < np.abs(drawn[f"initial.position.{axis}"]).max() <= gap
+
+
 def test_the_interface_stiffness_is_known_to_a_factor():
     """Its logarithm is uniform from a quarter to four times the scene's value. Control: the number
     itself is not, and no other reading draws it."""

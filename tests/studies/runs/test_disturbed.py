@@ -46,6 +46,17 @@ def test_a_negative_clearance_is_left_out_and_free_flight_has_none():
     assert "by_clearance_deg_s" not in found and found["by_tolerance_deg_s"] < 1e-6
 
 
+def test_clearances_along_the_axes_are_disturbed_too():
+    """Both change as the one clearance does, up to the arms. Control: the run does not see that one
+    where both axes state their own."""
+    axes = {f"contact.clearance_{axis}": REFERENCE.contact.clearance for axis in "yz"}
+    scene = REFERENCE.condition("phi60").replace(axes)
+    nominal = lowfi.run(scene, "springs")
+    found = disturbed.of(Run("lowfi", "phi60", scene, lowfi.Numerics()), nominal, 1e-6)
+    expected = moved("phi60")[0]["by_clearance_deg_s"]
+    assert found["by_clearance_deg_s"] == pytest.approx(expected, rel=0.05)
+
+
 @pytest.mark.parametrize("condition, warned", [("phi60", False), ("h8", True)])
 def test_a_sensitive_run_says_so(condition, warned):
     words = disturbed.lines(moved(condition)[0], 0.1)

@@ -93,6 +93,13 @@ def test_the_constants_of_a_law_are_lowered_and_raised(law, symbols):
     ]
 
 
+def test_clearances_along_the_axes_grow_together():
+    axes = {"contact.clearance_y": 1e-4, "contact.clearance_z": 2e-4}
+    last = contact_table.changes(load("reference").replace(axes), COMPLIANT)[-1]
+    assert last.overrides == pytest.approx({key: gap + 1e-6 for key, gap in axes.items()})
+    assert last.share == pytest.approx(0.01)
+
+
 def test_a_case_that_did_not_settle_is_not_counted():
     scene = load("reference")
     changed = contact_table.changes(scene, COMPLIANT)

@@ -23,7 +23,7 @@ Source of M: Johnson, Contact Mechanics, Cambridge 1985, section 4.3. Values of 
 stiffness with their sources are in ``docs/interface_stiffness.md``.
 """
 
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple, TypeVar
 
 import numpy as np
 from pydantic import Field, ValidationInfo, field_validator
@@ -45,6 +45,7 @@ from tipoff.scenes.units import (
 )
 
 EFFECT = Effect("contact")
+_Lengths = TypeVar("_Lengths", float, np.ndarray)
 
 
 class PadLayerTable(Table):
@@ -77,6 +78,28 @@ class _ContactTable(Table):
             self.clearance if own is None else own for own in (self.clearance_y, self.clearance_z)
         )
         return self.clearance, y, z
+
+    def narrowest(self) -> float:
+        """The smaller clearance (m) of the two axes across the rail."""
+        return min(self.gaps()[1:])
+
+    def widened(self, change: _Lengths) -> dict[str, _Lengths]:
+        """Overrides (SI) of a scene for ``change`` (m) more clearance along both axes."""
+        found = {
+            f"contact.clearance_{axis}": own + change
+            for axis, own in (("y", self.clearance_y), ("z", self.clearance_z))
+            if own is not None
+        }
+        return found if len(found) == 2 else {"contact.clearance": self.clearance + change} | found
+
+    def either_way(self, change: float) -> dict[str, dict[str, float]]:
+        """Overrides (SI) of a scene for ``change`` (m) more clearance, "plus", and for less,
+        "minus"; without the latter where none would be left."""
+        return {
+            name: self.widened(step)
+            for name, step in (("plus", change), ("minus", -change))
+            if self.narrowest() + step >= 0.0
+        }
 
     def series_stiffness(self) -> float:
         """Pressure over approach (N/m3) of the interface and the layer of the pad in series."""

@@ -130,11 +130,11 @@ def _grid(thrust: Thrust, duration: float) -> tuple[np.ndarray, np.ndarray]:
     if thrust.pulses is None:
         times = _curve(thrust).times
         near = np.append(times, np.nextafter(times, -np.inf))  # both sides of a jump
-    elif thrust.pulses.centres.size == 1:  # it rises once and falls once
-        centre, width = thrust.pulses.centres[0], thrust.pulses.widths[0]
-        near = np.append(centre + _COARSE * width, (thrust.pulses.begin, thrust.pulses.end))
     else:
-        near = thrust.pulses.centres[:, None] + _FINE * thrust.pulses.widths[:, None]
+        # one alone rises once and falls once
+        widths = _COARSE if thrust.pulses.centres.size == 1 else _FINE
+        around = thrust.pulses.centres[:, None] + widths * thrust.pulses.widths[:, None]
+        near = np.append(around, (thrust.pulses.begin, thrust.pulses.end))
     time = np.unique(np.append(near[(near > 0.0) & (near < duration)], (0.0, duration)))
     return time, np.abs(sample(thrust, time))
 

@@ -141,14 +141,7 @@ def _chaotic(
     factor; None where a run did not settle."""
     assert study.scene.contact is not None
     change = study.settings.clearance_change
-    clearances = [
-        value
-        for value in (
-            study.scene.contact.clearance + change,
-            study.scene.contact.clearance - change,
-        )
-        if value >= 0.0
-    ]
+    clearances = study.scene.contact.either_way(change)
     wanted = [
         run
         for name, factor in places
@@ -157,10 +150,10 @@ def _chaotic(
             *(
                 study.coarse(
                     name,
-                    overrides(study, factor) | {"contact.clearance": clearance},
+                    overrides(study, factor) | changed,
                     f"-interface-{factor:g}-clearance-{number}",
                 )
-                for number, clearance in enumerate(clearances)
+                for number, changed in enumerate(clearances.values())
             ),
         )
     ]

@@ -223,8 +223,8 @@ def _twins(
     groups = {
         name: [request(name)]
         + [
-            request(name, overrides={"contact.clearance": clearance}, tag=f"-clearance-{sign}")
-            for sign, clearance in clearances(study)
+            request(name, overrides=changed, tag=f"-clearance-{sign}")
+            for sign, changed in clearances(study).items()
         ]
         for name in names
     }
@@ -232,15 +232,10 @@ def _twins(
     return {name: [next(runs) for _ in group] for name, group in groups.items()}
 
 
-def clearances(study: Study) -> list[tuple[str, float]]:
-    """The perturbed clearances (m) of a scene with contact; a negative one is left out."""
+def clearances(study: Study) -> dict[str, dict[str, float]]:
+    """Overrides of a scene with contact that perturb its clearance."""
     assert study.scene.contact is not None
-    nominal, change = study.scene.contact.clearance, study.settings.clearance_change
-    return [
-        (sign, value)
-        for sign, value in (("plus", nominal + change), ("minus", nominal - change))
-        if value >= 0.0
-    ]
+    return study.scene.contact.either_way(study.settings.clearance_change)
 
 
 def _speedups(study: Study, compared: list[Candidate]) -> list[dict]:

@@ -73,13 +73,13 @@ def pressing(scene: Scene) -> Scene:
     """``scene`` with a load into the +y and +z walls, which the pads just touch, and no other load.
     Its effects stay, because another set of effects would be another kernel to compile."""
     assert scene.contact is not None  # required by ``measure``
-    gap = scene.contact.clearance
+    _, beside, above = scene.contact.gaps()
     changes = {
         "thrust": {"kind": "gaussian", "peak": _LOAD, "width": 1e4, "centre": 0.0, "arm": 1e-6},
         "mass_offset": None,
         "thrust_offset": {"misalignment": {"axial": np.pi / 2.0, "radial": np.pi / 4.0}},
         "duration": 1.0,
-        "initial": {"position": {"y": gap, "z": gap}},
+        "initial": {"position": {"y": beside, "z": above}},
         **{effect.key: None for effect in EFFECTS if effect.is_body_force},
         "output.interval": _INTERVAL,
     }

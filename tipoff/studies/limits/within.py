@@ -53,9 +53,9 @@ def factors(scene: Scene) -> dict[str, Factor]:
         name: Factor(error.words, error.unit, error.scale, _REACH * ADVISED[name], ADVISED[name])
         for name, error in ERRORS.items()
     }
-    if scene.contact is not None and scene.contact.clearance > 0.0:
+    if scene.contact is not None and scene.contact.narrowest() > 0.0:
         found[CLEARANCE] = Factor(
-            "clearance, about its nominal value", "mm", 1e-3, scene.contact.clearance, None
+            "clearance, about its nominal value", "mm", 1e-3, scene.contact.narrowest(), None
         )
     if scene.friction is not None and scene.friction.dynamic > 0.0:
         found[FRICTION] = Factor(
@@ -91,7 +91,7 @@ def _overrides(scene: Scene, tolerances: dict[str, float], drawn: Numbers) -> Nu
             found |= {f"{ERRORS[name].key}.axial": value, f"{ERRORS[name].key}.radial": angle}
         elif name == CLEARANCE:
             assert scene.contact is not None
-            found["contact.clearance"] = scene.contact.clearance + size * drawn[name]
+            found |= scene.contact.widened(size * drawn[name])
         else:
             assert scene.friction is not None
             found |= friction(scene, scene.friction.dynamic + size * drawn[name])

@@ -128,7 +128,7 @@ def source(scene: Scene, reading: Reading, cases: int, seed: int) -> Derived:
                 "independent, since two components determine the angle",
             )
         )
-    if reading.initial and not (scene.contact is not None and scene.contact.clearance > 0.0):
+    if reading.initial and not (scene.contact is not None and scene.contact.narrowest() > 0.0):
         faults.append(Fault("--initial", "contact.clearance", "nothing", "a clearance"))
     if reading.interface and scene.contact is None:
         faults.append(Fault("--interface", "contact", "nothing", "contact"))
@@ -157,8 +157,10 @@ def _laws(scene: Scene, reading: Reading) -> dict[str, Distribution]:
         found["angle"] = whole_turn
     if reading.initial:
         assert scene.contact is not None  # or ``source`` has refused the reading
-        gap = scene.contact.clearance
-        found |= {f"initial.position.{axis}": law("uniform", low=-gap, high=gap) for axis in "yz"}
+        found |= {
+            f"initial.position.{axis}": law("uniform", low=-gap, high=gap)
+            for axis, gap in zip("yz", scene.contact.gaps()[1:])
+        }
     if reading.interface:
         assert scene.contact is not None
         nominal = scene.contact.interface_stiffness

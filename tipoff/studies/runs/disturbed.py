@@ -24,11 +24,9 @@ def of(run: Run, nominal: Trajectory, clearance_change: float) -> dict[str, floa
         "by_tolerance_deg_s": _change(nominal, replace(run, numerics=tight)),
     }
     if run.scene.contact is not None:
-        clearance = run.scene.contact.clearance
-        changed = [value for sign in (1, -1) if (value := clearance + sign * clearance_change) >= 0]
         changes = [
-            _change(nominal, replace(run, scene=run.scene.replace({"contact.clearance": value})))
-            for value in changed
+            _change(nominal, replace(run, scene=run.scene.replace(changed)))
+            for changed in run.scene.contact.either_way(clearance_change).values()
         ]
         found["clearance_change_m"] = clearance_change
         found["by_clearance_deg_s"] = None if None in changes else largest(changes)

@@ -50,13 +50,9 @@ def changes(scene: Scene, model: str) -> list[Change]:
                 Change(symbol, raised, share, {f"contact.{name}": value * (1.0 + sign * share)})
                 for raised, sign in ((False, -1.0), (True, 1.0))
             ]
-    share = CLEARANCE / scene.contact.clearance if scene.contact.clearance else 0.0
-    return [
-        *found,
-        Change(
-            "clearance", True, share, {"contact.clearance": scene.contact.clearance + CLEARANCE}
-        ),
-    ]
+    narrowest = scene.contact.narrowest()
+    share = CLEARANCE / narrowest if narrowest else 0.0
+    return [*found, Change("clearance", True, share, scene.contact.widened(CLEARANCE))]
 
 
 def conditions(scene: Scene) -> list[str]:

@@ -190,6 +190,22 @@ def test_one_solution_whatever_the_first_guess(reference, name):
             )
 
 
+def test_a_pose_that_is_not_finite_leaves_nothing_behind(reference):
+    """A trial step may end anywhere; a shorter one must find the same walls as without it."""
+    _, model, system = reference
+    pose, workspace = pose_of(model, "both legs"), system.compliance.workspace
+    every = np.ones(len(system.faces), dtype=np.bool_)
+    solved(system, model, pose, 0)
+    force = workspace.force.copy()
+    place, turn = seen_from_platform(system.platform, system.payload, state_of(model, pose))
+    for lost in (np.nan, np.inf):
+        for bad in ((lost, *place[1:]), (place[0], lost, lost)):
+            arguments = (system.faces, 0, every, bad, turn, np.zeros(0))
+            solution.solve(system.compliance, *arguments)
+            solved(system, model, pose, 0)
+            np.testing.assert_allclose(workspace.force, force, rtol=1e-9, atol=1e-9)
+
+
 def test_any_pose_is_solved(reference):
     """From first touch to millimetres deep, also over the ends, from random guesses: the forces are
     those of the displacements."""
