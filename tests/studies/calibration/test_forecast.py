@@ -138,6 +138,22 @@ def test_curves_are_fitted_after_the_time_was_said(tmp_path, capsys, monkeypatch
     assert "the search" not in capsys.readouterr().err
 
 
+def test_a_fit_of_other_parameters_is_another_result(tmp_path, monkeypatch):
+    """From files and on the reference. Control: the same parameters again."""
+    fitted = []
+    monkeypatch.setattr(stage, "fit", lambda *asked: (fitted.append(asked[4]) or {}, []))
+    monkeypatch.setattr(stage, "require_success", lambda *asked: None)
+    path, names = tmp_path / "phi15.csv", ("contact.clearance", "friction.dynamic")
+    head = "time [ms],velocity_x [m/s],rate_x [deg/s],rate_y [deg/s],rate_z [deg/s]"
+    path.write_text("\n".join([head, *(f"{0.5 * n},{0.1 * n},1,2,3" for n in range(120))]))
+    of = study(tmp_path)
+    monkeypatch.setattr(type(of.store), "fill", lambda *asked: [])
+    for chosen in ([names[0]], [names[0]], list(names)):
+        stage.from_files(of, [("phi15", str(path))], None, COMPLIANT, chosen)
+        stage.on_reference(of, COMPLIANT, chosen)
+    assert fitted == [[names[0]], [names[0]], list(names), list(names)]
+
+
 def test_speed_comes_from_the_nearest_measurement(tmp_path):
     of = study(tmp_path)
     assert "typical" in forecast.pace(of).source
