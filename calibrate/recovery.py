@@ -40,9 +40,13 @@ class Draw(NamedTuple):
         return scene.replace(self.constants | added.overrides(scene, self.changes))
 
     def inside(self, intervals: Sequence[Sequence[float]]) -> np.ndarray:
-        """Whether each hidden value is inside its interval (p,)."""
+        """Whether each hidden value is inside its interval (p,). One without ends, of a parameter
+        that the curves do not determine, contains nothing."""
         return np.array(
-            [low <= value <= high for (low, high), value in zip(intervals, self.hidden)]
+            [
+                -np.inf < low <= value <= high < np.inf
+                for (low, high), value in zip(intervals, self.hidden)
+            ]
         )
 
 

@@ -36,5 +36,7 @@ def fitted(references: dict, fit: list[str] | None, scene: scenes.Scene = SCENE)
 
 
 def inside(intervals: list, truth: list[float]) -> np.ndarray:
-    """Whether each value is inside its interval."""
-    return np.array([low <= value <= high for (low, high), value in zip(intervals, truth)])
+    """Whether each value is inside its interval, which must have ends to contain anything."""
+    return np.array(
+        [-np.inf < low <= value <= high < np.inf for (low, high), value in zip(intervals, truth)]
+    )

@@ -86,3 +86,31 @@ def test_intervals_with_model_error_cover_and_those_of_scatter_do_not():
             row += np.abs(error) <= 1.96 * deviation
     scatter, whole = hits
     assert (whole >= 93).all() and (scatter < 50).all(), hits
+
+
+def test_the_deviation_is_the_likeliest_of_what_no_parameter_moves():
+    """Restricted likelihood by its definition: that of the combinations of samples which are
+    orthogonal to all slopes, of one curve with many parameters. Control: the likelihood of all
+    samples about the fit has its top at a smaller deviation."""
+    time = np.linspace(0.001, 0.05, 50)
+    generator, count = np.random.default_rng(7), 12
+    slope = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, time.size), count - 1)
+    path = 0.3 * np.cumsum(generator.standard_normal(time.size)) / np.sqrt(time.size)
+    path -= slope @ np.linalg.lstsq(slope, path, rcond=None)[0]
+    curve = Curve(time, path, slope, 1.0, RATE)
+    others = np.linalg.svd(slope)[0][:, count:]
+
+    def surprise(deviation: float, seen: np.ndarray) -> float:
+        gained = np.cumsum(curve.steps(deviation))
+        covariance = np.minimum.outer(gained, gained) + curve.noise * np.eye(time.size)
+        inner, left = seen.T @ covariance @ seen, seen.T @ path
+        return np.linalg.slogdet(inner)[1] + left @ np.linalg.solve(inner, left)
+
+    grid = np.geomspace(0.01, 1.0, 2001)
+    restricted, plain = (
+        grid[np.argmin([surprise(deviation, seen) for deviation in grid])]
+        for seen in (others, np.eye(time.size))
+    )
+    found = discrepancy.likeliest([curve])[RATE]
+    assert found == pytest.approx(restricted, rel=5e-3)
+    assert plain < 0.95 * restricted

@@ -9,8 +9,11 @@ import pytest
 from tests.lowfi.compliance import reference_compliance
 from tests.scenes.test_calibration import CALIBRATION
 from tipoff import lowfi
+from tipoff.lowfi.ensemble.request import Ensemble
+from tipoff.lowfi.ensemble.rows import Listed
 from tipoff.mechanics import model as models
 from tipoff.scenes import SceneError, changes, load
+from tipoff.studies.core.store import Run
 
 SCENE = load("reference")
 TILT = 2e-3
@@ -56,6 +59,22 @@ def test_changes_travel_as_a_file(tmp_path):
     read = type(FITTED).load(tmp_path / "c.toml")
     assert read.apply(SCENE).hash == FITTED.apply(SCENE).hash != SCENE.hash
     assert read.applied == FITTED.applied and "changes" not in CALIBRATION.applied
+
+
+def test_other_changes_are_another_run_and_another_ensemble():
+    """Control: a calibration without changes has the key it had before there were any."""
+    other = replace(FITTED, changes=CHANGES | {"initial.position.y": 6e-6})
+    plain = replace(FITTED, changes={})
+    runs = [
+        Run("lowfi", "phi35", SCENE, lowfi.Numerics(), found) for found in (FITTED, other, plain)
+    ]
+    assert len({run.key for run in runs}) == 3
+    many = [
+        Ensemble(SCENE, Listed([{"friction.dynamic": 0.1}]), found, lowfi.Numerics()).key
+        for found in (FITTED, other, plain)
+    ]
+    assert len(set(many)) == 3
+    assert plain.applied == plain.constants
 
 
 def test_a_case_of_an_ensemble_replaces_constants_and_gets_the_changes():

@@ -138,6 +138,36 @@ def test_curves_are_fitted_after_the_time_was_said(tmp_path, capsys, monkeypatch
     assert "the search" not in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    "ends, said",
+    [
+        ([1.0, 3.0], "1 to 3"),
+        ([1.99995e-4, 2.00005e-4], "0.000199995 to 0.000200005"),
+        ([-2.004e-4, 2.2e-4], "-0.0002004 to 0.00022"),
+        ([None, None], "not determined by the curves"),
+    ],
+)
+def test_a_narrow_interval_shows_its_width(ends, said):
+    """Control: with four digits both ends would be 0.0002."""
+    assert stage.interval([end if end is None else float(end) for end in ends]) == said
+
+
+def test_a_fit_of_other_parameters_is_another_result(tmp_path, monkeypatch):
+    """From files and on the reference. Control: the same parameters again."""
+    fitted = []
+    monkeypatch.setattr(stage, "fit", lambda *asked: (fitted.append(asked[4]) or {}, []))
+    monkeypatch.setattr(stage, "require_success", lambda *asked: None)
+    path, names = tmp_path / "phi15.csv", ("contact.clearance", "friction.dynamic")
+    head = "time [ms],velocity_x [m/s],rate_x [deg/s],rate_y [deg/s],rate_z [deg/s]"
+    path.write_text("\n".join([head, *(f"{0.5 * n},{0.1 * n},1,2,3" for n in range(120))]))
+    of = study(tmp_path)
+    monkeypatch.setattr(type(of.store), "fill", lambda *asked: [])
+    for chosen in ([names[0]], [names[0]], list(names)):
+        stage.from_files(of, [("phi15", str(path))], None, COMPLIANT, chosen)
+        stage.on_reference(of, COMPLIANT, chosen)
+    assert fitted == [[names[0]], [names[0]], list(names), list(names)]
+
+
 def test_speed_comes_from_the_nearest_measurement(tmp_path):
     of = study(tmp_path)
     assert "typical" in forecast.pace(of).source

@@ -1,8 +1,13 @@
 """Recovery of hidden values, small: two draws on the coarse scene, and a reference of 8 mm."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from tests.highfi.support import tiny
+from tests.scenes.test_calibration import CALIBRATION
+from tipoff.calibration.recovery import Draw
 from tipoff.studies.core.settings import defaults
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.recovery import page, stage
@@ -16,7 +21,8 @@ def test_hidden_values_are_found_and_shown(tmp_path):
     for row in found["rows"]:
         assert row["covered_with_model_error"] == 2 >= row["covered"] >= 0
         assert row["half_width"] > 0.0
-    assert sum(row["covered"] for row in found["rows"]) >= 5
+    assert sum(row["covered"] + row["undetermined"] for row in found["rows"]) >= 5
+    assert [row["undetermined"] for row in found["rows"][:2]] == [0, 0]
     assert found["held_out"]["fitted_deg_s"] < 0.3 * found["held_out"]["scene_deg_s"]
     for row in found["reference"]["rows"]:
         low, high = row["interval"]
@@ -24,7 +30,20 @@ def test_hidden_values_are_found_and_shown(tmp_path):
     assert found["reference"]["rows"][0]["hidden"] == pytest.approx(0.2625e-3)
     text = document.terminal(page.draw(found))
     assert "contact.clearance" in text and "elements of 8 mm" in text
+    assert "which is held out" in text
     assert stage.STAGE.stored(study)["rows"] == found["rows"]
+
+
+def test_a_value_that_is_not_determined_is_not_covered():
+    """Without ends an interval contains nothing and has no width. Control: the other draw."""
+    endless = [[-np.inf, np.inf]]
+    whole = replace(CALIBRATION, parameters=["a"], units=["m"], intervals=[[1.0, 3.0]])
+    known = replace(whole, with_model_error=[[0.0, 4.0]])
+    lost = replace(whole, intervals=endless, with_model_error=endless)
+    draws = [Draw([2.0], one, {}, {}) for one in (known, lost)]
+    (row,) = stage.rows(draws)
+    assert (row["covered"], row["covered_with_model_error"], row["undetermined"]) == (1, 1, 1)
+    assert row["half_width"] == 1.0 and stage.rows(draws[1:])[0]["half_width"] is None
 
 
 def test_nothing_is_hidden_where_there_is_nothing(tmp_path):

@@ -42,6 +42,8 @@ def words(
     converged reference, as text."""
     if model == FINITE_ELEMENTS:
         return "the reference itself"
+    if calibrated and model == COMPLIANT:
+        return "not measured: the agreement table has compliant contact with the scene's constants"
     found = rows(study, model, calibrated, modes)
     own = [row for row in found if row["condition"] == condition]
     if own:

@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from tipoff.studies.calibration.stage import digits
 from tipoff.studies.render.document import Fold, Part
 from tipoff.studies.render.table import Column, Table, number
 
@@ -85,4 +86,5 @@ def interval(ends: list[float | None]) -> str:
     low, high = ends
     if low is None or high is None:
         return "not determined"
-    return f"{number(low, '.4g')} to {number(high, '.4g')}"
+    form = f".{digits(ends)}g"
+    return f"{number(low, form)} to {number(high, form)}"

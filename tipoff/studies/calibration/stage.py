@@ -222,7 +222,7 @@ def lines(document: dict, folder: Path) -> list[str]:
         document["parameters"], document["values"], document["units"], document["intervals"], wide
     )
     text = [
-        f"  {name:30}{value:.5g}{'' if unit == '1' else f' {unit}'}, {interval(ends)}"
+        f"  {name:30}{value:.{digits(ends) + 1}g}{'' if unit == '1' else f' {unit}'}, {interval(ends)}"
         + (f"; with model error {interval(wider)}" if wider and None not in ends else "")
         for name, value, unit, ends, wider in found
     ]
@@ -248,7 +248,19 @@ def _compliance(document: dict, folder: Path) -> list[str]:
 
 def interval(ends: list[float | None]) -> str:
     """The 95 % interval of a constant as text."""
-    return "not determined by the curves" if None in ends else f"{ends[0]:.4g} to {ends[1]:.4g}"
+    low, high = ends
+    if low is None or high is None:
+        return "not determined by the curves"
+    count = digits(ends)
+    return f"{low:.{count}g} to {high:.{count}g}"
+
+
+def digits(ends: list[float | None]) -> int:
+    """Digits of the ends of an interval that show a tenth of its width, four at least."""
+    low, high = ends
+    if low is None or high is None or not high > low:
+        return 4
+    return max(4, 2 + math.ceil(math.log10(max(abs(low), abs(high)) / (high - low))))
 
 
 def as_dict(found: Calibration) -> dict:

@@ -9,12 +9,14 @@ def draw(found: dict) -> list[Part]:
     """The section: coverage of the draws, rates of a held-out condition, the reference."""
     asked, held, reference = found["asked"], found["held_out"], found["reference"]
     draws = asked["draws"]
+    role = "fitted too" if held["condition"] in found["conditions"] else "held out"
     return [
         Table(
             (
                 "hidden parameter",
                 f"inside the 95 % interval, of {draws}",
                 f"inside with model error, of {draws}",
+                "not determined",
                 Column("median half width", form=".3g"),
                 "unit",
             ),
@@ -23,6 +25,7 @@ def draw(found: dict) -> list[Part]:
                     f"`{row['parameter']}`",
                     row["covered"],
                     row["covered_with_model_error"],
+                    row["undetermined"],
                     row["half_width"],
                     row["unit"],
                 )
@@ -31,7 +34,7 @@ def draw(found: dict) -> list[Part]:
             (
                 f"Curves of the surrogate on {', '.join(found['conditions'])} with "
                 f"{100.0 * asked['noise']:g} % of noise, fitted from the scene's values. Settled "
-                f"rates of {held['condition']}, which is held out, are within "
+                f"rates of {held['condition']}, which is {role}, are within "
                 f"{number(held['fitted_deg_s'], '.2g')} deg/s of those with the hidden values; with "
                 f"the scene's values they are off by up to {number(held['scene_deg_s'], '.2g')} "
                 "deg/s.",

@@ -5,14 +5,19 @@ and a fit that starts from the scene's values gives intervals. A held-out condit
 Then clearance and friction are hidden in one run of the reference.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tipoff.studies.core.progress import Board
 from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study, StudyError, require_success
+
+if TYPE_CHECKING:
+    from tipoff.calibration.recovery import Draw
 
 HIDDEN = {"contact.clearance": 1.05, "friction.dynamic": 0.65}  # of the scene's, in the reference
 _CONDITIONS = 3
@@ -28,9 +33,10 @@ class Options:
 
 
 def run(study: Study, options: Options = Options()) -> dict:
-    """``rows``: parameter, how many draws each interval contains, and its median half width (SI);
-    ``held_out``: largest errors of its settled rates (deg/s); ``reference``: values hidden in the
-    reference and found.
+    """``rows``: parameter, in how many draws each interval contains the hidden value, in how many
+    the curves do not determine it, and the median half width (SI) of the others, None without any;
+    ``held_out``: largest errors of its settled rates (deg/s), of a fitted condition where none is
+    held out; ``reference``: values hidden in the reference and found.
 
     Raises StudyError for a scene without contact, clearance or friction, whose values are hidden.
     """
@@ -75,25 +81,32 @@ def _drawn(study: Study, options: Options) -> dict:
             errors.append(np.abs(rates[1:] - rates[0]).max(axis=1))
             report((number + 1) / options.draws)
         board.finished(f"{options.draws} draws", "fitted")
+    fitted, own = np.max(errors, axis=0).tolist()
+    held_out = {"condition": other, "fitted_deg_s": fitted, "scene_deg_s": own}
+    return {"conditions": names, "rows": rows(draws), "held_out": held_out}
+
+
+def rows(draws: Sequence["Draw"]) -> list[dict]:
+    """One row for each parameter of the ``draws``."""
     scatter, whole = (
         np.sum([one.inside(getattr(one.found, kind)) for one in draws], axis=0)
         for kind in ("intervals", "with_model_error")
     )
-    widths = np.median([np.diff(one.found.intervals, axis=1)[:, 0] for one in draws], axis=0)
-    first = draws[0].found
-    rows = [
-        {
-            "parameter": name,
-            "unit": unit,
-            "covered": int(scatter[place]),
-            "covered_with_model_error": int(whole[place]),
-            "half_width": 0.5 * float(widths[place]),
-        }
-        for place, (name, unit) in enumerate(zip(first.parameters, first.units))
-    ]
-    fitted, own = np.max(errors, axis=0).tolist()
-    held_out = {"condition": other, "fitted_deg_s": fitted, "scene_deg_s": own}
-    return {"conditions": names, "rows": rows, "held_out": held_out}
+    ends = np.array([one.found.intervals for one in draws])
+    found = []
+    for place, (name, unit) in enumerate(zip(draws[0].found.parameters, draws[0].found.units)):
+        known = ends[np.isfinite(ends[:, place]).all(axis=1), place]
+        found.append(
+            {
+                "parameter": name,
+                "unit": unit,
+                "covered": int(scatter[place]),
+                "covered_with_model_error": int(whole[place]),
+                "undetermined": len(draws) - len(known),
+                "half_width": 0.5 * float(np.median(np.diff(known))) if len(known) else None,
+            }
+        )
+    return found
 
 
 def _in_reference(study: Study) -> dict:
