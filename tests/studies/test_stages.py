@@ -166,7 +166,7 @@ def test_matched_meshes():
 
 def test_closed_gap_is_only_opened(tmp_path):
     study = Study(scenes.load("tiny").replace({"contact.clearance": 0.0}), tmp_path, Settings())
-    assert compare.clearances(study) == [("plus", 1e-6)]
+    assert compare.clearances(study) == [("plus", {"contact.clearance": 1e-6})]
 
 
 def test_refinements_change_one_thing_each(tmp_path):

@@ -46,6 +46,27 @@ def test_a_negative_clearance_is_left_out_and_free_flight_has_none():
     assert "by_clearance_deg_s" not in found and found["by_tolerance_deg_s"] < 1e-6
 
 
+def test_clearances_along_y_and_z_move_too():
+    """Control: the clearance of other faces alone changes no distance between pad and wall here."""
+    own = {"contact.clearance_y": 0.26e-3, "contact.clearance_z": 0.24e-3}
+    scene = REFERENCE.condition("phi60").replace(own)
+    run, nominal = Run("lowfi", "phi60", scene, lowfi.Numerics()), lowfi.run(scene, "springs")
+
+    def by_hand(stated: dict[str, float]) -> float:
+        rates = [
+            lowfi.run(
+                scene.replace({key: value + change for key, value in stated.items()}), "springs"
+            ).outcome.rate
+            for change in (1e-6, -1e-6)
+        ]
+        return np.degrees(np.abs(np.subtract(rates, nominal.outcome.rate)).max())
+
+    other = {"contact.clearance": REFERENCE.contact.clearance}
+    apart = by_hand(other | own)
+    assert apart > 10.0 * by_hand(other)
+    assert disturbed.of(run, nominal, 1e-6)["by_clearance_deg_s"] == pytest.approx(apart, rel=1e-12)
+
+
 @pytest.mark.parametrize("condition, warned", [("phi60", False), ("h8", True)])
 def test_a_sensitive_run_says_so(condition, warned):
     words = disturbed.lines(moved(condition)[0], 0.1)

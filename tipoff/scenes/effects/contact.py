@@ -61,6 +61,9 @@ class PadLayerTable(Table):
         return self.youngs_modulus * confined / self.thickness
 
 
+_CLEARANCES = ("clearance", "clearance_y", "clearance_z")
+
+
 class _ContactTable(Table):
     clearance: NonNegativeLength
     clearance_y: NonNegativeLength | None = Field(None, exclude_if=is_absent)
@@ -76,6 +79,18 @@ class _ContactTable(Table):
             self.clearance if own is None else own for own in (self.clearance_y, self.clearance_z)
         )
         return self.clearance, y, z
+
+    def widened(self, change: float) -> dict[str, float]:
+        """Overrides (SI) of a scene for every clearance larger by ``change`` (m), that along y and z
+        too where it is given."""
+        stated = ((name, getattr(self, name)) for name in _CLEARANCES)
+        return {f"contact.{name}": own + change for name, own in stated if own is not None}
+
+    def widened_and_narrowed(self, change: float) -> list[dict[str, float]]:
+        """Overrides (SI) of a scene for every clearance larger and smaller by ``change`` (m); without
+        the smaller ones where one would be negative."""
+        both = [self.widened(change), self.widened(-change)]
+        return [overrides for overrides in both if min(overrides.values()) >= 0.0]
 
     def series_stiffness(self) -> float:
         """Pressure over approach (N/m3) of the interface and the layer of the pad in series."""

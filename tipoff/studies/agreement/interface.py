@@ -141,14 +141,7 @@ def _chaotic(
     factor; None where a run did not settle."""
     assert study.scene.contact is not None
     change = study.settings.clearance_change
-    clearances = [
-        value
-        for value in (
-            study.scene.contact.clearance + change,
-            study.scene.contact.clearance - change,
-        )
-        if value >= 0.0
-    ]
+    both = study.scene.contact.widened_and_narrowed(change)
     wanted = [
         run
         for name, factor in places
@@ -157,10 +150,10 @@ def _chaotic(
             *(
                 study.coarse(
                     name,
-                    overrides(study, factor) | {"contact.clearance": clearance},
+                    overrides(study, factor) | clearances,
                     f"-interface-{factor:g}-clearance-{number}",
                 )
-                for number, clearance in enumerate(clearances)
+                for number, clearances in enumerate(both)
             ),
         )
     ]
@@ -168,7 +161,7 @@ def _chaotic(
     gate = context.gates["settled_rate_error_deg_s"]
     found = {}
     for name, factor in places:
-        nominal, *twins = (next(runs) for _ in range(1 + len(clearances)))
+        nominal, *twins = (next(runs) for _ in range(1 + len(both)))
         grown = growth.growth(name, FINITE_ELEMENTS, nominal, twins, change, gate)
         found[name, factor] = grown.chaotic
     return found

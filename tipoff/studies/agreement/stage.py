@@ -223,8 +223,8 @@ def _twins(
     groups = {
         name: [request(name)]
         + [
-            request(name, overrides={"contact.clearance": clearance}, tag=f"-clearance-{sign}")
-            for sign, clearance in clearances(study)
+            request(name, overrides=overrides, tag=f"-clearance-{sign}")
+            for sign, overrides in clearances(study)
         ]
         for name in names
     }
@@ -232,15 +232,12 @@ def _twins(
     return {name: [next(runs) for _ in group] for name, group in groups.items()}
 
 
-def clearances(study: Study) -> list[tuple[str, float]]:
-    """The perturbed clearances (m) of a scene with contact; a negative one is left out."""
+def clearances(study: Study) -> list[tuple[str, dict[str, float]]]:
+    """The perturbed clearances of a scene with contact as overrides (SI); negative ones are left
+    out."""
     assert study.scene.contact is not None
-    nominal, change = study.scene.contact.clearance, study.settings.clearance_change
-    return [
-        (sign, value)
-        for sign, value in (("plus", nominal + change), ("minus", nominal - change))
-        if value >= 0.0
-    ]
+    both = study.scene.contact.widened_and_narrowed(study.settings.clearance_change)
+    return list(zip(("plus", "minus"), both))
 
 
 def _speedups(study: Study, compared: list[Candidate]) -> list[dict]:

@@ -14,8 +14,8 @@ TOLERANCE = 1e-10  # relative, of a step
 
 
 def of(run: Run, nominal: Trajectory, clearance_change: float) -> dict[str, float | None]:
-    """Largest changes of a settled rate (deg/s) by ``clearance_change`` (m) either way, absent
-    without contact, and by ``TOLERANCE``; None where the disturbed run does not settle."""
+    """Largest changes of a settled rate (deg/s) by ``clearance_change`` (m) of every clearance either
+    way, absent without contact, and by ``TOLERANCE``; None where the disturbed run does not settle."""
     if run.calibration is not None:  # its clearance is the one that is changed
         run = replace(run, scene=run.calibration.apply(run.scene), calibration=None)
     tight = replace(run.numerics, relative_tolerance=TOLERANCE)
@@ -24,11 +24,9 @@ def of(run: Run, nominal: Trajectory, clearance_change: float) -> dict[str, floa
         "by_tolerance_deg_s": _change(nominal, replace(run, numerics=tight)),
     }
     if run.scene.contact is not None:
-        clearance = run.scene.contact.clearance
-        changed = [value for sign in (1, -1) if (value := clearance + sign * clearance_change) >= 0]
         changes = [
-            _change(nominal, replace(run, scene=run.scene.replace({"contact.clearance": value})))
-            for value in changed
+            _change(nominal, replace(run, scene=run.scene.replace(overrides)))
+            for overrides in run.scene.contact.widened_and_narrowed(clearance_change)
         ]
         found["clearance_change_m"] = clearance_change
         found["by_clearance_deg_s"] = None if None in changes else largest(changes)

@@ -53,9 +53,7 @@ def changes(scene: Scene, model: str) -> list[Change]:
     share = CLEARANCE / scene.contact.clearance if scene.contact.clearance else 0.0
     return [
         *found,
-        Change(
-            "clearance", True, share, {"contact.clearance": scene.contact.clearance + CLEARANCE}
-        ),
+        Change("clearance", True, share, scene.contact.widened(CLEARANCE)),
     ]
 
 
