@@ -71,8 +71,8 @@ def ensemble(
     path of their file. ``options`` are ``count`` and ``seed``, which replace those of this file,
     and the numerics of ``run``. ``workers`` is the number of threads. ``store`` is a folder for
     results, so that an interrupted ensemble continues. ``sensitivity`` adds how far 1 um more of
-    every clearance and a tighter tolerance move the settled rates of each case, at several times
-    the cost. The rest is as in ``run``. Raises SceneError, StoreError or ValueError.
+    every clearance and a tolerance of 1e-10 move the settled rates of each case. The rest is as in
+    ``run``. Raises SceneError, StoreError or ValueError.
     """
     from tipoff import lowfi
 

@@ -2,10 +2,12 @@
 later::
 
     cases.zarr/        a zarr group: status, exit_time, velocity ... and inputs/<dotted key>, SI,
-                       one chunk per 4096 cases, with checksums
+                       one chunk per 4096 cases, with checksums; and the columns that ``add``
+                       keeps, made from whole stores and made again on each request
     done/000012.json   written last, in one piece: chunk 12 is whole; the ensemble it belongs to,
                        the digest of its numbers, its counts, and each case that failed; with a
                        digest of its own
+    twins/             stores of the same cases with a disturbance (``lowfi.ensemble.twins``)
 
 A chunk counts as done once its file in done/ is there, fits its own digest, and has the digest of
 what is read back; any other is run again. The descriptions of the arrays (``zarr.json``) are those

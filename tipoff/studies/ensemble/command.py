@@ -75,7 +75,8 @@ def ensemble(
         typer.Option(
             "--sensitivity",
             help="Also run each case with 1 µm more of every clearance, and at a tolerance of 1e-10: "
-            "how far they move its settled rates. This takes several times as long.",
+            "how far they move its settled rates. The second takes about 20 times as long as the "
+            "cases at the default --tolerance.",
         ),
     ] = False,
     tolerance: Annotated[
@@ -120,7 +121,7 @@ def ensemble(
       tipoff ensemble --vary my_errors.toml --sampling sobol --cases 4096
       tipoff ensemble --table cases.csv --store out/night
       tipoff ensemble --cases 1000000 --case 1234    # that case alone, compared with the store
-      tipoff ensemble --sensitivity                  # and how many cases are sensitive
+      tipoff ensemble --sensitivity                  # count the sensitive cases too
 
     After a stop or a full disk, the same command continues and gives the same bits. A bad case is
     refused alone; the store lists it with its inputs and the reason (done/*.json).
