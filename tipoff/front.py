@@ -62,6 +62,7 @@ def ensemble(
     calibration: Calibration | None = None,
     workers: int | None = None,
     store: str | Path | None = None,
+    sensitivity: bool = False,
     **options: Any,
 ) -> "xarray.Dataset":
     """Run ``scene`` once for each of ``cases`` in a surrogate ``model``.
@@ -69,8 +70,9 @@ def ensemble(
     ``cases`` are rows of dotted overrides as in ``Scene.replace``; or distributions, by the name or
     path of their file. ``options`` are ``count`` and ``seed``, which replace those of this file,
     and the numerics of ``run``. ``workers`` is the number of threads. ``store`` is a folder for
-    results, so that an interrupted ensemble continues. The rest is as in ``run``. Raises
-    SceneError, StoreError or ValueError.
+    results, so that an interrupted ensemble continues. ``sensitivity`` adds how far 1 um more of
+    every clearance and a tolerance of 1e-10 move the settled rates of each case. The rest is as in
+    ``run``. Raises SceneError, StoreError or ValueError.
     """
     from tipoff import lowfi
 
@@ -92,6 +94,7 @@ def ensemble(
         numerics=chosen,
         workers=workers,
         store=store,
+        sensitivity=sensitivity,
     )
 
 

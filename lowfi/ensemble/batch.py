@@ -47,8 +47,8 @@ class _Group(NamedTuple):
 
 
 class Family:
-    """The cases of one scene. The kernel of its group runs a case; ``lowfi.run`` runs those that the
-    kernel leaves open."""
+    """The cases of one scene, with every clearance larger by ``widening`` (m). The kernel of its
+    group runs a case; ``lowfi.run`` runs those that the kernel leaves open."""
 
     def __init__(
         self,
@@ -56,8 +56,9 @@ class Family:
         calibration: Calibration | None,
         numerics: Numerics,
         compliance: RailCompliance | None = None,
+        widening: float = 0.0,
     ):
-        self.scene, self.calibration = scene, calibration
+        self.scene, self.calibration, self.widening = scene, calibration, widening
         self.numerics, self.compliance = numerics, compliance
         calibrated = calibration.apply(scene) if calibration else scene
         constants = calibration.constants if calibration else {}
@@ -96,7 +97,7 @@ class Family:
                 alone.append((number, row))
                 continue
             try:
-                built = models.built(self.variations.of(self._changed(row)), self.base)
+                built = models.built(self._scene(row), self.base)
                 self._require_compliance(built)
             except SceneError as error:
                 alone.append((number, _refused(error)))
@@ -105,6 +106,14 @@ class Family:
             group.rows.append((number, row))
             group.models.append(built.model)
         return list(groups.values()), alone
+
+    def _scene(self, row: Mapping[str, Any]) -> Scene:
+        """The scene of a case, overwritten by that of the next."""
+        changed = self._changed(row)
+        scene = self.variations.of(changed)
+        if not self.widening or scene.contact is None:
+            return scene
+        return self.variations.of({**changed, **scene.contact.widened(self.widening)})
 
     def _changed(self, row: Mapping[str, Any]) -> Mapping[str, Any]:
         """The overrides of a row with the changes of the calibration added to what it states."""
@@ -221,9 +230,13 @@ class Family:
 
     def _run_whole(self, row: Mapping[str, Any]) -> Case:
         try:
-            found = solved(
-                self.scene.replace(row), self.calibration, self.numerics, compliance=self.compliance
-            )
+            scene, calibration = self.scene.replace(row), self.calibration
+            if self.widening:
+                # a calibration may replace the clearance of a row, so that it comes first
+                scene, calibration = calibration.apply(scene) if calibration else scene, None
+                if scene.contact is not None:
+                    scene = scene.replace(scene.contact.widened(self.widening))
+            found = solved(scene, calibration, self.numerics, compliance=self.compliance)
         except SceneError as error:
             return _refused(error)
         return Case(

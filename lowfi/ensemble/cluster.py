@@ -43,6 +43,7 @@ class Recipe(NamedTuple):
     calibration: Calibration | None
     numerics: Numerics
     compliance: RailCompliance | None = None
+    widening: float = 0.0
 
 
 def made(
@@ -69,6 +70,7 @@ def made(
                 ensemble.calibration,
                 ensemble.numerics,
                 ensemble.compliance,
+                ensemble.widening,
             ),
             iter(requested),
         )
@@ -166,10 +168,7 @@ def _family(recipe: Recipe) -> Family:
     """The Family of a recipe, kept from chunk to chunk; one per thread, because setting up a case
     changes it."""
     if getattr(_kept, "key", None) != recipe.key:
-        _kept.key, _kept.family = (
-            recipe.key,
-            Family(recipe.scene, recipe.calibration, recipe.numerics, recipe.compliance),
-        )
+        _kept.key, _kept.family = recipe.key, Family(*recipe[2:])
     return _kept.family
 
 

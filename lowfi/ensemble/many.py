@@ -1,14 +1,15 @@
 """Many runs of the surrogate at once, as one labelled data set."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tipoff.lowfi.ensemble import columns
-from tipoff.lowfi.ensemble.batch import Family
+from tipoff.lowfi.ensemble import columns, twins
+from tipoff.lowfi.ensemble.batch import Case
 from tipoff.lowfi.ensemble.fill import fill
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.rows import Drawn, Listed
@@ -27,6 +28,16 @@ if TYPE_CHECKING:
 _AXES = ("x", "y", "z")
 
 
+@dataclass(frozen=True)
+class Execution:
+    """How an ensemble is run and kept: the number of threads ``workers`` (None: all cores), the
+    folder ``store``, and whether the ``sensitivity`` of each case is found too."""
+
+    workers: int | None = None
+    store: str | Path | None = None
+    sensitivity: bool = False
+
+
 def run_many(
     scene: Scene,
     table: Sequence[Mapping[str, Any]] | Uncertainty,
@@ -35,8 +46,7 @@ def run_many(
     compliance: RailCompliance | None = None,
     calibration: Calibration | None = None,
     numerics: Numerics | None = None,
-    workers: int | None = None,
-    store: str | Path | None = None,
+    **execution: Any,
 ) -> "xarray.Dataset":
     """Run ``scene`` once per row of ``table``, a row being dotted overrides as in
     ``Scene.replace``, or per draw of an Uncertainty.
@@ -45,10 +55,16 @@ def run_many(
     ``calibration``; there are no curves. A row that the scene refuses has the status ``refused`` and
     the reason as its message; the others run. Settled values are NaN where a run has none.
     ``wall_s`` of a case is its share of the time of its group. The attributes count ``asked = ok +
-    refused + failed``, failed being the diverged. With a ``store``, a folder, cases go there chunk
-    by chunk, stored cases are not run again (``lowfi.ensemble.fill``), and there is no
-    ``wall_s``.
+    refused + failed``, failed being the diverged.
+
+    ``execution`` are fields of ``Execution``. With a ``store``, a folder, cases go there chunk by
+    chunk, stored cases are not run again (``lowfi.ensemble.fill``), and there is no ``wall_s``. With
+    ``sensitivity=True`` there are also ``rate_change_by_clearance`` and
+    ``rate_change_by_tolerance`` (rad/s): how far 1 um more of every clearance, and a tolerance of
+    1e-10, move the settled rates of the case (``lowfi.ensemble.twins``); their time is
+    ``sensitivity_wall_s``, which ``wall_s`` does not contain.
     """
+    chosen = Execution(**execution)
     require(scene, model, compliance, calibration, numerics)
     if model == COMPLIANT and calibration is not None:  # before a row, which may vary a constant
         scene, calibration = calibration.split(scene)
@@ -56,27 +72,51 @@ def run_many(
         Drawn(table) if isinstance(table, Uncertainty) else Listed(table),
         numerics or Numerics(),
     )
-    if store is not None:
-        return _stored(Ensemble(scene, source, calibration, numerics, compliance), workers, store)
+    ensemble = Ensemble(scene, source, calibration, numerics, compliance)
+    if chosen.store is not None:
+        return _stored(ensemble, chosen, chosen.store)
+    cases = _cases(ensemble, chosen)
+    found = _dataset(columns.of(cases), [case.message for case in cases])
+    found["wall_s"] = "case", _shares(cases), {"units": "s"}
+    if chosen.sensitivity:
+        spent = np.zeros(len(cases))
+        for cause, twin in twins.of(ensemble).items():
+            disturbed = _cases(twin, chosen)
+            _add_change(found, cause, twin, columns.of(disturbed).rate)
+            spent += _shares(disturbed)
+        found["sensitivity_wall_s"] = "case", spent, {"units": "s"}
+    return found
+
+
+def _cases(ensemble: Ensemble, chosen: Execution) -> list[Case]:
+    source = ensemble.source
     pieces = (
         source.rows(begin, min(begin + PIECE, source.asked))
         for begin in range(0, source.asked, PIECE)
     )
-    cases = list(
-        chain.from_iterable(
-            completed(Family(scene, calibration, numerics, compliance), pieces, workers)
-        )
-    )
-    shares = np.array([case.wall_s for case in cases], dtype=float)
-    return _dataset(columns.of(cases), [case.message for case in cases]).assign(
-        wall_s=("case", shares, {"units": "s"})
-    )
+    return list(chain.from_iterable(completed(ensemble.family(), pieces, chosen.workers)))
 
 
-def _stored(ensemble, workers, path) -> "xarray.Dataset":
+def _shares(cases: list[Case]) -> np.ndarray:
+    return np.array([case.wall_s for case in cases], dtype=float)
+
+
+def _stored(ensemble: Ensemble, chosen: Execution, path: str | Path) -> "xarray.Dataset":
     store = ensemble.store(path)
-    fill(ensemble, store, workers)
-    return _dataset(*store.results())
+    fill(ensemble, store, chosen.workers)
+    found = _dataset(*store.results())
+    if chosen.sensitivity:
+        for cause, twin in twins.of(ensemble).items():
+            disturbed = twins.opened(twin, cause, store)
+            fill(twin, disturbed, chosen.workers)
+            twins.add(store, cause, twin, disturbed)
+            _add_change(found, cause, twin, disturbed.column("rate"))
+    return found
+
+
+def _add_change(found: "xarray.Dataset", cause: str, twin: Ensemble, disturbed: np.ndarray) -> None:
+    change = twins.change(found["rate"].values, disturbed)
+    found[twins.column(cause)] = "case", change, twins.attributes(cause, twin)
 
 
 def _dataset(found: columns.Columns, messages: list[str]) -> "xarray.Dataset":

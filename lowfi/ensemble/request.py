@@ -28,10 +28,11 @@ class Ensemble(NamedTuple):
     calibration: Calibration | None  # constants of springs, changes of what rows state
     numerics: Numerics
     compliance: RailCompliance | None = None  # None for contact springs on rigid walls
+    widening: float = 0.0  # m, by which every clearance of a case is larger
 
     def family(self) -> Family:
         """The Family that runs its cases."""
-        return Family(self.scene, self.calibration, self.numerics, self.compliance)
+        return Family(self.scene, self.calibration, self.numerics, self.compliance, self.widening)
 
     def identity(self) -> dict:
         """Everything the numbers depend on, as JSON."""
@@ -41,6 +42,7 @@ class Ensemble(NamedTuple):
             "numerics": self.numerics.as_dict(),
             "calibration": self.calibration.applied if self.calibration else {},
             "walls": self.compliance.hash if self.compliance else "",
+            "widening": self.widening,
             "chunk": stores.CHUNK,
         } | code()
 

@@ -2,10 +2,12 @@
 later::
 
     cases.zarr/        a zarr group: status, exit_time, velocity ... and inputs/<dotted key>, SI,
-                       one chunk per 4096 cases, with checksums
+                       one chunk per 4096 cases, with checksums; and the columns that ``add``
+                       keeps, made from whole stores and made again on each request
     done/000012.json   written last, in one piece: chunk 12 is whole; the ensemble it belongs to,
                        the digest of its numbers, its counts, and each case that failed; with a
                        digest of its own
+    twins/             stores of the same cases with a disturbance (``lowfi.ensemble.twins``)
 
 A chunk counts as done once its file in done/ is there, fits its own digest, and has the digest of
 what is read back; any other is run again. The descriptions of the arrays (``zarr.json``) are those
@@ -19,7 +21,7 @@ import json
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -36,14 +38,13 @@ from tipoff.files import (
     with_digest,
     write_json,
 )
-from tipoff.lowfi.ensemble import columns
+from tipoff.lowfi.ensemble import arrays, columns
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.lowfi.ensemble.rows import numbers
 from tipoff.scenes import overrides as keys
 from tipoff.scenes.scene import Scene
 
 CHUNK = 4096
-_NOT_RUN = -1
 _FAILED = ("refused", "diverged")
 
 
@@ -107,33 +108,15 @@ class Store:
         """The group and its arrays, without cases, in a folder or in memory."""
         root = _zarr().create_group(place, attributes=attributes)
         for name in Columns._fields:
-            self._array(
-                root,
-                name,
-                _type(name),
-                {"units": columns.UNITS[name]} if name in columns.UNITS else {},
-            )
+            units = {"units": columns.UNITS[name]} if name in columns.UNITS else {}
+            arrays.create(root, name, self.asked, CHUNK, units, arrays.kind(name))
         root["status"].attrs.update(
             flag_values=list(range(len(columns.STATUSES))), flag_meanings=" ".join(columns.STATUSES)
         )
         inputs = root.create_group("inputs")
         for name in self.names:
-            self._array(inputs, name, "f8", {"units": keys.unit(Scene, name) or "SI"})
-
-    def _array(self, group, name: str, kind: str, attributes: dict) -> None:
-        from zarr.codecs import Crc32cCodec
-
-        inner = (3,) if name in columns.VECTORS else ()
-        group.create_array(
-            name,
-            shape=(self.asked, *inner),
-            chunks=(CHUNK, *inner),
-            dtype=kind,
-            compressors=[Crc32cCodec()],
-            fill_value=np.nan if kind == "f8" else _NOT_RUN,
-            attributes=attributes,
-            dimension_names=("case", "axis")[: 1 + len(inner)],
-        )
+            units = {"units": keys.unit(Scene, name) or "SI"}
+            arrays.create(inputs, name, self.asked, CHUNK, units)
 
     def _require(self, identity: dict) -> None:
         """Raises StoreError unless this is a store of the ensemble of this ``identity``. Where its
@@ -232,6 +215,21 @@ class Store:
                     "warnings": warnings,
                 },
             )
+
+    def add(self, name: str, attributes: dict, values: Iterable[np.ndarray]) -> None:
+        """Keep a further column (n,) beside the results, its ``values`` by chunk; it takes the place
+        of the one there, and appears in one piece. Raises StoreError as ``write`` does."""
+        with self._explained():
+            folder = Path(tempfile.mkdtemp(prefix=f".{name}.", dir=self.path))
+            try:
+                group = _zarr().create_group(folder / "group")
+                column = arrays.create(group, name, self.asked, CHUNK, attributes)
+                for number, part in enumerate(values):
+                    column[slice(*self.bounds(number))] = part
+                shutil.rmtree(place := self.path / "cases.zarr" / name, ignore_errors=True)
+                os.replace(folder / "group" / name, place)
+            finally:
+                shutil.rmtree(folder, ignore_errors=True)
 
     @contextmanager
     def _explained(self) -> Iterator[None]:
@@ -361,13 +359,9 @@ def _alike(there: bytes, new: bytes) -> bool:
 def _digest(results: Columns, inputs: np.ndarray) -> str:
     digest = hashlib.sha256()
     for name, values in zip(Columns._fields, results):
-        digest.update(np.ascontiguousarray(values, dtype=_type(name)).data)
+        digest.update(np.ascontiguousarray(values, dtype=arrays.kind(name)).data)
     digest.update(np.ascontiguousarray(inputs).data)
     return digest.hexdigest()
-
-
-def _type(name: str) -> str:
-    return {"status": "i1", "steps": "i8"}.get(name, "f8")
 
 
 def _plain(row: Mapping[str, Any]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from tipoff import lowfi
-from tipoff.lowfi.ensemble import cluster
+from tipoff.lowfi.ensemble import cluster, twins
 from tipoff.lowfi.ensemble import store as stores
 from tipoff.lowfi.ensemble.fill import fill
 from tipoff.lowfi.ensemble.request import Ensemble
@@ -26,11 +26,11 @@ def small_chunks(monkeypatch):
     monkeypatch.setattr(stores, "CHUNK", CHUNK)
 
 
-def ensemble() -> Ensemble:
+def ensemble(cases: int = CASES) -> Ensemble:
     scene = load("reference")
     return Ensemble(
         scene,
-        Drawn(uncertainty.load("paper", scene, cases=CASES)),
+        Drawn(uncertainty.load("paper", scene, cases=cases)),
         None,
         lowfi.Numerics(relative_tolerance=1e-2),
     )
@@ -59,6 +59,16 @@ def test_a_worker_that_is_killed_changes_no_bit(tmp_path):
         assert len(told) == CASES // CHUNK and told[-1] == CASES
         assert pids[0] not in [worker.pid for worker in workers.workers.values()]
     assert there.pending() == [] and there.digest() == here.digest()
+
+
+def test_twins_have_the_bits_of_one_process(tmp_path):
+    asked = ensemble(cases=3 * CHUNK)
+    with local_cluster(1) as workers:
+        for twin in (asked, *twins.of(asked).values()):  # one worker, which changes its Family
+            here, there = twin.store(tmp_path / twin.key), twin.store(tmp_path / f"{twin.key}-far")
+            fill(twin, here)
+            fill(twin, there, scheduler=workers.scheduler_address)
+            assert there.pending() == [] and there.digest() == here.digest()
 
 
 def test_a_lost_scheduler_ends_with_a_message_and_a_store_that_resumes(tmp_path):

@@ -138,6 +138,7 @@ def test_a_full_disk_is_reported_and_the_store_resumes(tmp_path, digest, monkeyp
         (lambda: ensemble(load("reference").replace({"payload.mass": "10 kg"})), "scene"),
         (lambda: ensemble(seed=2), "cases"),
         (lambda: ensemble(numerics=lowfi.Numerics()), "numerics"),
+        (lambda: ensemble()._replace(widening=1e-6), "widening"),
     ],
 )
 def test_a_store_of_another_ensemble_is_refused(tmp_path, other, name):

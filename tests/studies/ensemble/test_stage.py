@@ -2,13 +2,15 @@
 
 import errno
 import json
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from tipoff.lowfi.ensemble import store as stores
 from tipoff.studies.cli import app
-from tipoff.studies.ensemble import page
+from tipoff.studies.ensemble import page, sensitivity, stage
 from tipoff.studies.render import table as tables
 
 pytest.importorskip("zarr")
@@ -62,6 +64,87 @@ def test_default_errors_run_and_are_kept(tmp_path):
     assert call("--cases", 300, "--out", tmp_path, "--case", 300).exit_code == 2
 
 
+def test_sensitivity_is_added_to_a_store_that_is_there(tmp_path, monkeypatch):
+    """In a clock in which the cases take 1 s, those with more clearance 10 s, the tight ones 100 s:
+    each cost stands apart. The counts are those of the columns in the store."""
+    xarray, fill, seconds = pytest.importorskip("xarray"), stage.fill, [0.0]
+
+    def slow(ensemble, *options):
+        tight = ensemble.numerics.relative_tolerance < 1e-9
+        seconds[0] += 10.0 if ensemble.widening else 100.0 if tight else 1.0
+        return fill(ensemble, *options)
+
+    monkeypatch.setattr(stage, "fill", slow)
+    clock = SimpleNamespace(perf_counter=lambda: seconds[0], process_time=lambda: seconds[0])
+    monkeypatch.setattr(stage, "time", clock)
+    options = ("--cases", 200, "--out", tmp_path)
+    plain = json.loads(call(*options, "--json").stdout)
+    assert "sensitivity" not in plain and plain["run"]["wall_s"] == 1.0
+    result = call(*options, "--sensitivity")
+    found = json.loads((tmp_path / "reference" / "ensemble.json").read_text())
+    assert found["run"]["cases"] == 0 and found["digest"] == plain["digest"]
+    told = found["sensitivity"]
+    assert {cause: item["wall_s"] for cause, item in told["run"].items()} == {
+        "clearance": 10.0,
+        "tolerance": 100.0,
+    }
+    assert [item["cpu_ms_per_case"] for item in told["run"].values()] == [50.0, 500.0]
+    assert "1 µm of clearance: 10 s for 200 cases" in result.stdout
+
+    kept = xarray.open_zarr(f"{found['store']}/cases.zarr", consolidated=False, chunks=None)
+    changes = {cause: np.degrees(kept[f"rate_change_by_{cause}"].values) for cause in told["run"]}
+    above = {cause: change > 0.1 for cause, change in changes.items()}
+    assert told["limit_deg_s"] == pytest.approx(0.1)
+    for cause, change in changes.items():
+        assert told["by"][cause]["above_limit"] == above[cause].sum()
+        assert told["by"][cause]["largest_deg_s"] == pytest.approx(change.max())
+    assert told["sensitive"] == (above["clearance"] | above["tolerance"]).sum()
+    assert 0 < told["sensitive"] < 100  # some of the paper's errors, not most
+    assert f"sensitive: {told['sensitive']} cases" in result.stdout
+
+    alone = json.loads(call(*options, "--sensitivity", "--case", 7, "--json").stdout)
+    assert alone["stored"] and alone["sensitivity"]["by"] == {
+        cause: change[7] for cause, change in changes.items()
+    }
+
+
+def test_a_disturbed_run_that_does_not_settle_is_counted():
+    """Of three cases one moves by more than the limit, one by less, one does not settle; a fourth
+    never did, and is not counted."""
+    rates = np.radians([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [np.nan] * 3])
+    moved = rates + np.radians([[0.2, 0.0, 0.0], [0.0, 0.05, 0.0], [np.nan] * 3, [0.0] * 3])
+
+    def store(rate):
+        columns = {"rate": rate, "lateral_velocity": rate[:, 0]}
+
+        class Held:
+            asked = 4
+
+            def __len__(self):
+                return 2
+
+            def bounds(self, number):
+                return 2 * number, 2 * number + 2
+
+            def column(self, name, begin=0, end=None):
+                return columns[name][begin:end]
+
+            def digest(self):
+                return ""
+
+        return Held()
+
+    found = sensitivity.of(
+        store(rates), {"clearance": store(moved), "tolerance": store(rates)}, 0.1
+    )
+    assert found["sensitive"] == 2
+    by = found["by"]["clearance"]
+    assert (by["above_limit"], by["unsettled"]) == (1, 1)
+    assert by["largest_deg_s"] == pytest.approx(0.2)
+    assert by["median_deg_s"] == pytest.approx(0.125)
+    assert found["by"]["tolerance"]["largest_deg_s"] == 0.0
+
+
 def test_bad_rows_are_refused_alone(tmp_path):
     table = tmp_path / "cases.csv"
     table.write_text(
@@ -78,7 +161,7 @@ def test_bad_rows_are_refused_alone(tmp_path):
         "bounds"
     ].startswith("none")
     table.write_text("payload.mass\nkg\n-1\n")
-    hopeless = call("--table", table, "--out", tmp_path / "out")
+    hopeless = call("--table", table, "--out", tmp_path / "out", "--sensitivity")
     assert hopeless.exit_code == 1 and "case 0: refused" in hopeless.stderr
 
 

@@ -1,5 +1,6 @@
 """An ensemble for the terminal: quantiles with bounds, and the distributions of the inputs."""
 
+from tipoff.studies.ensemble.sensitivity import CAUSES
 from tipoff.studies.render.document import Bullets, Part
 from tipoff.studies.render.table import Table, estimate, percent
 
@@ -29,19 +30,49 @@ def summary(found: dict) -> list[Part]:
         f"agreement: {found['agreement']}",
         *failures,
     ]
-    processor = (
-        f", {cost['cpu_ms_per_case']:.3f} ms of processor time per case"
-        if "cpu_ms_per_case" in cost
-        else ""
-    )
     memory = f"{cost['peak_memory_bytes'] / 1e6:.0f} MB of memory at most"
     tables = [table_of_quantiles(found)] if found["quantiles"] else []
     return [
         Bullets(run),
         *_varied(found["cases"].get("vary", {})),
         *tables,
-        f"run time: {cost['wall_s']:.3g} s for {cost['cases']:,} cases{processor}; {memory}",
+        f"run time: {_time(cost)}; {memory}",
+        *(_sensitivity(found["sensitivity"]) if "sensitivity" in found else []),
         f"store: {found['store']}",
+    ]
+
+
+def _time(cost: dict) -> str:
+    processor = (
+        f", {cost['cpu_ms_per_case']:.3f} ms of processor time per case"
+        if "cpu_ms_per_case" in cost
+        else ""
+    )
+    return f"{cost['wall_s']:.3g} s for {cost['cases']:,} cases{processor}"
+
+
+def _sensitivity(found: dict) -> list[Part]:
+    """How many cases are sensitive, the changes by cause, and what that took beside the cases."""
+    limit = f"{found['limit_deg_s']:.3g} deg/s"
+    rows = [
+        (
+            CAUSES[cause],
+            *(
+                "-" if item[name] is None else f"{item[name]:.2g}"
+                for name in ("median_deg_s", "q95_deg_s", "largest_deg_s")
+            ),
+            f"{item['above_limit']:,}",
+            f"{item['unsettled']:,}",
+        )
+        for cause, item in found["by"].items()
+    ]
+    heads = ["change by", "median (deg/s)", "95 % below", "largest", f"above {limit}", "unsettled"]
+    took = [f"{CAUSES[cause]}: {_time(cost)}" for cause, cost in found["run"].items()]
+    return [
+        f"sensitive: {found['sensitive']:,} cases. A settled rate moves by more than {limit}, or the "
+        "disturbed run does not settle.",
+        Table(heads, rows),
+        f"run time of the sensitivity, beside the above: {'; '.join(took)}",
     ]
 
 
@@ -75,4 +106,9 @@ def case(found: dict) -> list[Part]:
         vectors = (("velocity (m/s)", found["velocity"]), ("rate (rad/s)", found["rate"]))
         rows = [(name, *(f"{value:.17g}" for value in vector)) for name, vector in vectors]
         parts.append(Table(["", "x", "y", "z"], rows))
+    if "sensitivity" in found:
+        parts += [
+            f"{CAUSES[cause]}: " + ("does not settle" if change is None else f"{change:.2g} deg/s")
+            for cause, change in found["sensitivity"]["by"].items()
+        ]
     return [*parts, _STORED[found["stored"]]]

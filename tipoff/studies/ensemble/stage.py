@@ -10,22 +10,22 @@ from typing import Any
 import numpy as np
 
 from tipoff.files import write_json
-from tipoff.lowfi.ensemble import columns
+from tipoff.lowfi.ensemble import columns, twins
 from tipoff.lowfi.ensemble.fill import fill
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.rows import Drawn
-from tipoff.lowfi.ensemble.store import StoreError
+from tipoff.lowfi.ensemble.store import Store, StoreError
 from tipoff.lowfi.ensemble.table import TableFile
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.models import SPRINGS
 from tipoff.scenes import uncertainty
 from tipoff.scenes.faults import Fault, SceneError
-from tipoff.studies.agreement import kept
+from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.core import machine, models
 from tipoff.studies.core.progress import Board
 from tipoff.studies.core.study import Study, StudyError
-from tipoff.studies.ensemble import summary
+from tipoff.studies.ensemble import sensitivity, summary
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,7 @@ class Options:
     scheduler: str | None = None
     workers: int | None = None
     model: models.Options = models.Options()
+    sensitivity: bool = False
 
 
 def request(study: Study, options: Options) -> Ensemble:
@@ -84,49 +85,74 @@ def request(study: Study, options: Options) -> Ensemble:
 
 
 def run(study: Study, options: Options) -> dict:
-    """Run the cases that the store lacks. Returns the statistics, also written as
-    ``ensemble.json``. Raises StudyError when the store fails."""
+    """Run the cases that the store lacks, then their twins where the sensitivity is asked for.
+    Returns the statistics, also written as ``ensemble.json``. Raises StudyError when the store
+    fails."""
     ensemble = request(study, options)
     try:
         store = ensemble.store(path := _path(study, options, ensemble))
         ensemble.case(0)  # compiles, or loads the kernels from disk, before any clock runs
-        began, processor = time.perf_counter(), time.process_time()
-        with Board("ensemble", 1) as board:
-            label = f"{store.asked:,} cases"
-            report = board.callback(label)
-            new = fill(
-                ensemble,
-                store,
-                options.workers,
-                options.scheduler,
-                lambda stored: report(stored / store.asked),
-            )
-            wall, spent = time.perf_counter() - began, time.process_time() - processor
-            board.finished(
-                label, f"{new:,} run in {wall:.3g} s" if new else "all of them stored before"
-            )
+        with Board("ensemble", 3 if options.sensitivity else 1) as board:
+            cost = _filled(ensemble, store, f"{store.asked:,} cases", options, board)
+            told = _sensitivity(study, ensemble, store, options, board)
     except StoreError as fault:
         raise StudyError(str(fault)) from fault
     statistics = summary.of(ensemble, store, options.model.calibration is not None)
-    cost = {
-        "cases": new,
-        "wall_s": wall,
-        "peak_memory_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
-        "scheduler": options.scheduler,
-    }
-    if new and not options.scheduler:
-        cost["cpu_ms_per_case"] = 1e3 * spent / new
+    cost["peak_memory_bytes"] = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     found = {
         "stage": "ensemble",
         "scene": study.scene.name,
         "store": str(path),
         **statistics,
+        **told,
         "agreement": _agreement(study, options),
         "run": cost,
         "hardware": machine.describe(),
     }
     write_json(study.path("ensemble.json"), found)
     return found
+
+
+def _filled(
+    ensemble: Ensemble, store: Store, label: str, options: Options, board: Board
+) -> dict[str, Any]:
+    """Run the cases that a store lacks. Returns their number and cost."""
+    report, began, processor = board.callback(label), time.perf_counter(), time.process_time()
+    new = fill(
+        ensemble,
+        store,
+        options.workers,
+        options.scheduler,
+        lambda stored: report(stored / store.asked),
+    )
+    wall, spent = time.perf_counter() - began, time.process_time() - processor
+    board.finished(label, f"{new:,} run in {wall:.3g} s" if new else "all of them stored before")
+    cost = {"cases": new, "wall_s": wall, "scheduler": options.scheduler}
+    if new and not options.scheduler:
+        cost["cpu_ms_per_case"] = 1e3 * spent / new
+    return cost
+
+
+def _sensitivity(
+    study: Study, ensemble: Ensemble, store: Store, options: Options, board: Board
+) -> dict[str, Any]:
+    """How far the twins of the cases differ, and the cost of each; nothing where it is not asked
+    for."""
+    if not options.sensitivity:
+        return {}
+    disturbed, costs = {}, {}
+    for cause, twin in twins.of(ensemble).items():
+        disturbed[cause] = twins.opened(twin, cause, store)
+        label = f"{store.asked:,} cases, {sensitivity.CAUSES[cause]}"
+        costs[cause] = _filled(twin, disturbed[cause], label, options, board)
+        twins.add(store, cause, twin, disturbed[cause])
+    found = sensitivity.of(store, disturbed, _limit(study))
+    return {"sensitivity": found | {"run": costs}}
+
+
+def _limit(study: Study) -> float:
+    """Limit of agreement of the settled rates, deg/s: that of ``tipoff run``."""
+    return verdicts.gates(study.scene)["settled_rate_error_deg_s"]
 
 
 def _agreement(study: Study, options: Options) -> str:
@@ -162,6 +188,11 @@ def case(study: Study, options: Options, number: int) -> dict:
         **found.outcome._asdict(),
         "stored": None,
     }
+    if options.sensitivity:
+        result["sensitivity"] = {
+            "limit_deg_s": _limit(study),
+            "by": sensitivity.of_case(ensemble, number, found),
+        }
     path = _path(study, options, ensemble)
     if path.exists():
         try:

@@ -6,21 +6,21 @@ run predicts the rates of such a case better than this.
 
 from dataclasses import replace
 
+from tipoff.lowfi.ensemble import twins
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.agreement.verdicts import largest, settled_change
 from tipoff.studies.core.store import Run, execute
 
-TOLERANCE = 1e-10  # relative, of a step
-
 
 def of(run: Run, nominal: Trajectory, clearance_change: float) -> dict[str, float | None]:
-    """Largest changes of a settled rate (deg/s) by ``clearance_change`` (m) either way, absent
-    without contact, and by ``TOLERANCE``; None where the disturbed run does not settle."""
+    """Largest changes of a settled rate (deg/s) by ``clearance_change`` (m) of every clearance either
+    way, absent without contact, and by a tighter tolerance; None where the disturbed run does not
+    settle."""
     if run.calibration is not None:  # its clearance is the one that is changed
         run = replace(run, scene=run.calibration.apply(run.scene), calibration=None)
-    tight = replace(run.numerics, relative_tolerance=TOLERANCE)
+    tight = twins.tight(run.numerics)
     found: dict[str, float | None] = {
-        "tolerance": TOLERANCE,
+        "tolerance": tight.relative_tolerance,
         "by_tolerance_deg_s": _change(nominal, replace(run, numerics=tight)),
     }
     if run.scene.contact is not None:

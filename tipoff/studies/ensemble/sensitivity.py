@@ -1,0 +1,64 @@
+"""How many cases of an ensemble are sensitive: 1 um more of every clearance, or a tighter tolerance,
+moves a settled rate by more than the limit of agreement, or keeps the case from settling.
+
+``tipoff run`` tells the same of one run (``studies.runs.disturbed``). Chaos is the usual cause.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from tipoff.lowfi.ensemble import twins
+from tipoff.lowfi.ensemble.batch import Case
+from tipoff.lowfi.ensemble.request import Ensemble
+from tipoff.lowfi.ensemble.store import Store
+
+CAUSES = {
+    "clearance": f"{1e6 * twins.CLEARANCE_CHANGE:g} µm of clearance",
+    "tolerance": "a tighter tolerance",
+}
+
+
+def of(store: Store, disturbed: Mapping[str, Store], limit: float) -> dict:
+    """Counts, and quantiles of the changes (deg/s) by cause, of a whole ``store`` and the stores of
+    its twins; ``limit`` (deg/s)."""
+    settled = np.isfinite(store.column("lateral_velocity"))
+    beyond, found = np.zeros(store.asked, dtype=bool), {}
+    for cause, twin in disturbed.items():
+        change = np.degrees(np.concatenate([[], *twins.changes(store, twin)]))
+        known, large = np.isfinite(change), change > limit  # False where it is NaN
+        lost = settled & ~known
+        beyond |= large | lost
+        found[cause] = {
+            "above_limit": int(large.sum()),
+            "unsettled": int(lost.sum()),
+            **_quantiles(change[known]),
+            "digest": twin.digest(),
+        }
+    return {
+        "limit_deg_s": limit,
+        "clearance_change_m": twins.CLEARANCE_CHANGE,
+        "sensitive": int(beyond.sum()),
+        "by": found,
+    }
+
+
+def _quantiles(change: np.ndarray) -> dict[str, float | None]:
+    shares = {"median_deg_s": 0.5, "q95_deg_s": 0.95, "largest_deg_s": 1.0}
+    return {
+        name: float(np.quantile(change, share)) if change.size else None
+        for name, share in shares.items()
+    }
+
+
+def of_case(ensemble: Ensemble, number: int, nominal: Case) -> dict[str, float | None]:
+    """Changes of the settled rates of one case (deg/s) by cause; None where the case or its twin
+    does not settle."""
+    found: dict[str, float | None] = {}
+    for cause, twin in twins.of(ensemble).items():
+        rates = nominal.outcome.rate, twin.case(number)[1].outcome.rate
+        found[cause] = None
+        if rates[0] is not None and rates[1] is not None:
+            (change,) = twins.change(*(np.array([rate]) for rate in rates))
+            found[cause] = float(np.degrees(change))
+    return found
