@@ -17,6 +17,7 @@ from tipoff.highfi.mesh.rail_mesh import read
 from tipoff.highfi.rail import fit, step_cost
 from tipoff.lowfi.ensemble.table import TableFile
 from tipoff.mechanics import model
+from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.meshes import generator
 from tipoff.scenes import plausibility, reading, uncertainty
 from tipoff.scenes.faults import InputError
@@ -244,7 +245,7 @@ def _distributions(rng: random.Random, folder: Path) -> None:
 def _calibration(rng: random.Random, folder: Path) -> None:
     file = folder / "calibration.toml"
     file.write_bytes(mutants.of_text(rng, CALIBRATION).encode("utf-8", "surrogatepass"))
-    found = constants(file)
+    found = constants(file, rng.choice((COMPLIANT, SPRINGS)))
     assert found is not None
     found.apply(scenes.load("reference"))
 
