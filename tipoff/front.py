@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tipoff import sources
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SURROGATES
+from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import Calibration, Fault, Scene, SceneError, uncertainty
@@ -123,18 +123,20 @@ def calibrate(
     references: "Mapping[str, Trajectory | Curves]",
     progress: Callable[[float], None] | None = None,
     seed: int = 0,
-    model: str = "springs",
+    model: str | None = None,
     compliance: RailCompliance | None = None,
     fit: Sequence[str] | None = None,
 ) -> Calibration:
     """Parameters of a surrogate ``model``, fitted to runs of the reference or to other curves, by
-    the name of their condition. On compliant contact these are the parameters ``fit``
+    the name of their condition. The default model is ``springs``, and ``compliant`` where parameters
+    are chosen, as in the command. On compliant contact these are the parameters ``fit``
     (``calibration.choice.every_name``), those of ``["all"]`` that the curves determine, or by
     default those of interface and mount stiffness, clearance and friction that they determine; the
     rail ``compliance`` is computed if it is not given. Raises CalibrationError or SceneError."""
     from tipoff import calibration
     from tipoff.lowfi import models
 
+    model = model or (SPRINGS if fit is None else COMPLIANT)
     _require(scene, model, SURROGATES)
     calibration.require_model(scene, model, fit)
     found = _pressed(scene, model, compliance)

@@ -245,7 +245,7 @@ def _distributions(rng: random.Random, folder: Path) -> None:
 def _calibration(rng: random.Random, folder: Path) -> None:
     file = folder / "calibration.toml"
     file.write_bytes(mutants.of_text(rng, CALIBRATION).encode("utf-8", "surrogatepass"))
-    found = constants(file, rng.choice((COMPLIANT, SPRINGS)))
+    found = constants(file, rng.choice((COMPLIANT, SPRINGS)), "reference")
     assert found is not None
     found.apply(scenes.load("reference"))
 

@@ -281,4 +281,4 @@ def test_calibration_shows_intervals_and_constants_without_one():
         "objective": 1.0,
     }
     shown = html(calibration(document))
-    assert ">350 to 450<" in shown and ">not determined<" in shown
+    assert ">350 to 450<" in shown and ">not determined by the curves<" in shown

@@ -2,14 +2,16 @@
 
 from pathlib import Path
 
+from tipoff.files import tell
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
 
 
-def constants(path: Path | None, model: str) -> Calibration | None:
-    """The calibration in a file, or None without a file. Raises SceneError for one that cannot be
-    read or is of another ``model``."""
+def constants(path: Path | None, model: str, scene: str) -> Calibration | None:
+    """The calibration in a file, or None without a file; one that was fitted on another scene than
+    that of the name ``scene`` is announced. Raises SceneError for one that cannot be read or is of
+    another ``model``."""
     if path is None:
         return None
     try:
@@ -23,4 +25,6 @@ def constants(path: Path | None, model: str) -> Calibration | None:
         given = f"constants of {SPRINGS if model == COMPLIANT else 'compliant contact'}"
         expected = f"those of a fit on --model {model}"
         raise SceneError([Fault(str(path), "calibration", given, expected)])
+    if (fitted := found.provenance.get("scene", scene)) != scene:
+        tell(f"{path}: fitted on the scene {fitted}, and applied to {scene}")
     return found

@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING
 
-from tipoff.studies.calibration.stage import digits
+from tipoff.studies.calibration.stage import interval
 from tipoff.studies.render.document import Fold, Part
-from tipoff.studies.render.table import Column, Table, number
+from tipoff.studies.render.table import Column, Table
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
@@ -79,12 +79,3 @@ def calibration(document: dict) -> list[Part]:
             ],
         ),
     ]
-
-
-def interval(ends: list[float | None]) -> str:
-    """An interval as text."""
-    low, high = ends
-    if low is None or high is None:
-        return "not determined"
-    form = f".{digits(ends)}g"
-    return f"{number(low, form)} to {number(high, form)}"

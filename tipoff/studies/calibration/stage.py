@@ -227,6 +227,11 @@ def lines(document: dict, folder: Path) -> list[str]:
         for name, value, unit, ends, wider in found
     ]
     text += [f"  weak          {words}" for words in document["weak_directions"]]
+    text += [
+        f"  residuals     {name}: "
+        + ", ".join(f"{key.replace('_', ' ')} {value:.3g}" for key, value in found.items())
+        for name, found in document["residuals"].items()
+    ]
     text += [f"  verdict       {words}" for words in [document["verdict"]] if words]
     return [
         f"fitted to {', '.join(document['conditions'])}: objective {document['objective']:.4g}",

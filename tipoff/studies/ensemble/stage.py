@@ -49,7 +49,7 @@ def request(study: Study, options: Options) -> Ensemble:
     """The ensemble of the ``options``. Raises SceneError for bad input, before any rail compliance
     is computed, and StudyError where no model is named and the agreement table rejects the
     default."""
-    fitted = constants(options.model.calibration, options.model.model)
+    fitted = constants(options.model.calibration, options.model.model, study.scene.name)
     changed = {
         name: value
         for name in ("cases", "seed", "sampling")

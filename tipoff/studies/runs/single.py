@@ -22,7 +22,8 @@ def run(
     Raises SceneError for an unreadable calibration and for options of another model, StudyError
     where no model is named and the agreement table rejects the default on ``condition``.
     """
-    fitted, scene = constants(options.calibration, options.model), study.condition(condition)
+    fitted = constants(options.calibration, options.model, study.scene.name)
+    scene = study.condition(condition)
     if options.model == FINITE_ELEMENTS:
         return result_of(study, condition, study.highfi(condition), quiet)
     if options.model == SPRINGS:
