@@ -32,8 +32,8 @@ class PayloadTable(Table):
     mass: Mass
     #: Inertia about the actual mass centre.
     inertia: InertiaTensor
-    #: Outer size along x, y and z. It is used for plausibility, pictures and the clearance
-    #: in flight.
+    #: Outer size along x, y and z. It is used for plausibility and, without flight.body, for
+    #: the clearance in flight.
     size: tuple[PositiveLength, PositiveLength, PositiveLength] | None = None
 
 
