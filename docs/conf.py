@@ -10,7 +10,7 @@ sys.path.insert(0, str(ROOT))
 from docs.pages import command_line, scene_keys  # noqa: E402
 
 project = "tipoff"
-author = "The tipoff maintainers"
+author = "tipoff contributors"
 version = release = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "sphinx_copybutton"]
