@@ -13,9 +13,11 @@ project = "tipoff"
 author = "tipoff contributors"
 version = release = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "sphinx_copybutton"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "docs.pages.formulas", "sphinx_copybutton"]
 exclude_patterns = ["_build"]
+smartquotes = False  # they make dashes of the two hyphens before an option
 html_theme = "furo"
+html_math_renderer = "mathml"
 html_title = f"tipoff {release}"
 html_static_path: list[str] = []
 html_show_copyright = False
@@ -26,7 +28,7 @@ copybutton_prompt_text = "$ "
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
-autodoc_preserve_defaults = True
+autodoc_class_signature = "separated"
 
 _ELSEWHERE = ("index", "glossary")  # pages of this folder with a place of their own
 

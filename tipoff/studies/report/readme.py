@@ -50,7 +50,8 @@ def headline(folder: Path) -> str:
     lines = [_agreed(rows)]
     refined = read(folder / "convergence.json")
     if refined is not None and (found := refined["equal_accuracy"]) is not None:
-        lines.append(f"- {_upper(equal_accuracy.sentence(found).split('. ')[0])}.")
+        said = equal_accuracy.sentence(found).split(". ")[0].removeprefix("speed-up ")
+        lines.append(f"- **Speed-up** {said}.")
     return "\n".join(lines)
 
 
@@ -62,7 +63,7 @@ def _agreed(rows: list[dict]) -> str:
     touched = [row for row in agree if row["verdict"] == verdicts.AGREES]
     curves = [row["rate_relative_l2"] for row in touched]
     said = (
-        f"- The reference is converged on {len(judged)} of {len(rows)} conditions. Compliant contact, "
+        f"- **Measured**: the reference is converged on {len(judged)} of {len(rows)} conditions. Compliant contact, "
         f"with nothing fitted, agrees on {len(agree)} of these {len(judged)}."
     )
     if not touched:
