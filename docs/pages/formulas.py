@@ -15,7 +15,9 @@ def visit_inline(writer, node) -> None:
 
 def visit_block(writer, node) -> None:
     """A formula set apart."""
-    writer.body.append(f'<div class="math" style="margin: 0.8em 0">{tex2mathml(node.astext(), as_block=True)}</div>')
+    writer.body.append(
+        f'<div class="math" style="margin: 0.8em 0">{tex2mathml(node.astext(), as_block=True)}</div>'
+    )
     raise nodes.SkipNode
 
 

@@ -5,15 +5,17 @@ import functools
 import inspect
 import textwrap
 
+from tipoff.scenes.table import Table
+
 MARK = "#:"
 
 
-def meanings(table: type) -> dict[str, str]:
+def meanings(table: type[Table]) -> dict[str, str]:
     """Text by field, those of base classes included. Raises LookupError, naming every field
     without a meaning."""
     found: dict[str, str] = {}
     for base in reversed(table.__mro__):
-        if "__annotations__" in vars(base) and base.__module__.startswith("tipoff."):
+        if issubclass(base, Table) and base is not Table:
             found |= _own(base)
     missing = [name for name in table.model_fields if not found.get(name)]
     if missing:

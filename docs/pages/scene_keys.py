@@ -70,7 +70,7 @@ def _references(entry: Any) -> Iterator[str]:
             yield from _references(inner)
 
 
-def _section(title: str, schema: dict, of: type) -> str:
+def _section(title: str, schema: dict, of: type[Table]) -> str:
     said = meanings(of)
     required = schema.get("required", [])
     rows = [
