@@ -11,6 +11,7 @@ TIPOFF = .venv/bin/tipoff
 ASKED = --scene $(SCENE) --out $(OUT)
 READY = .venv/.ready
 CHECKED = .venv/.checked
+DOCUMENTED = .venv/.documented
 # Tests that take a second or two each where kernels are compiled.
 QUICK = tests/test_layers.py tests/test_sources.py tests/scenes tests/mechanics tests/meshes \
   $(patsubst %,tests/highfi/%,elements mesh statics extruded contact/test_hertz.py test_compliance.py) \
@@ -21,7 +22,7 @@ QUICK = tests/test_layers.py tests/test_sources.py tests/scenes tests/mechanics 
   tests/studies/core/test_models.py tests/studies/report
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest paper recovery report view pictures convergence rails full-report bench check coverage hooks test test-slow fuzz clean
+.PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest paper recovery report view pictures convergence rails full-report bench docs check coverage hooks test test-slow fuzz clean
 
 help: ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-12s %s\n", $$1, $$2}' Makefile
@@ -103,6 +104,9 @@ rails: $(READY) ## two more rails, calibrated and judged at 4 mm: they stand on 
 full-report: rails ## the report with every study on it, and with two more rails (an hour and a half)
 	$(TIPOFF) report --every $(ASKED)
 
+docs: $(DOCUMENTED) ## the documentation site, every warning an error: docs/_build/index.html
+	.venv/bin/python -m sphinx --fail-on-warning --keep-going --quiet -b html docs docs/_build
+
 check: $(CHECKED) ## format, lint, types and the quick tests: within a minute where kernels are compiled
 	.venv/bin/ruff format --check --quiet .
 	.venv/bin/ruff check --quiet .
@@ -128,11 +132,15 @@ fuzz: $(READY) ## 10,000 mutants of scenes, meshes, solids, tables and logs, the
 	.venv/bin/python -m tests.fuzz $(if $(COUNT),--count $(COUNT))
 
 clean: ## remove results and caches; the environment stays
-	rm -rf out build *.egg-info .pytest_cache .hypothesis
+	rm -rf out build docs/_build *.egg-info .pytest_cache .hypothesis
 	find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +
 
 $(CHECKED): requirements-check.lock $(READY)
 	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements-check.lock
+	@touch $@
+
+$(DOCUMENTED): requirements-docs.lock $(READY)
+	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements-docs.lock
 	@touch $@
 
 # The environment. The stamp is written last, so an install that was cut short is taken up again.

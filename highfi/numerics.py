@@ -11,12 +11,15 @@ _MOST_CELLS = 1000
 class Numerics:
     """Mesh, contact cells and step of one run. Raises ValueError outside their ranges."""
 
-    element_size: float = 0.004  # m
-    # contact cells along each edge of a pad face; None: ``LEAST_CELLS`` or more, so that none is
-    # longer than half a facet
+    #: Length of an edge of an element (m).
+    element_size: float = 0.004
+    #: Contact cells along each edge of a pad face; None: ``LEAST_CELLS`` or more, so that none is
+    #: longer than half a facet.
     cells: int | None = None
-    safety: float = 0.9  # fraction of the critical step
-    step: float | None = None  # s, requested; refused above the limit
+    #: Fraction of the critical step.
+    safety: float = 0.9
+    #: Requested step (s), refused above the limit; None: the critical step times ``safety``.
+    step: float | None = None
 
     def __post_init__(self):
         faults = []

@@ -1,15 +1,17 @@
 """The package as a user gets it: a wheel in an environment of its own, away from the repository."""
 
-import re
 import shutil
 import subprocess
 import sys
 import sysconfig
+import tarfile
 import venv
 import zipfile
 from pathlib import Path
 
 import pytest
+
+from tests.docs import pages
 
 ROOT = Path(__file__).resolve().parent.parent
 # Every module by its file: one that was loaded under two names stands there twice.
@@ -28,14 +30,23 @@ print(sys.modules["tipoff"].__file__)
 def wheel(tmp_path_factory):
     """Built from a copy, for setuptools leaves its work beside what it packs."""
     folder = tmp_path_factory.mktemp("wheel")
+    return _wheel(_copy(folder / "copy"), folder)
+
+
+def _copy(folder: Path) -> Path:
     leave = shutil.ignore_patterns("__pycache__")
-    for name in ("tipoff", "highfi", "lowfi", "meshes", "calibrate"):
-        shutil.copytree(ROOT / name, folder / "copy" / name, symlinks=True, ignore=leave)
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
-        shutil.copy(ROOT / name, folder / "copy")
+    for name in ("tipoff", "highfi", "lowfi", "meshes", "calibrate", "docs"):
+        shutil.copytree(ROOT / name, folder / name, symlinks=True, ignore=leave)
+    for name in ("pyproject.toml", "MANIFEST.in", "README.md", "LICENSE", "CITATION.cff"):
+        shutil.copy(ROOT / name, folder)
+    return folder
+
+
+def _wheel(source: Path, folder: Path) -> Path:
+    """The wheel of a folder or of a source distribution."""
     _run(
         *(sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation"),
-        *("--wheel-dir", folder, folder / "copy"),
+        *("--wheel-dir", folder, source),
     )
     (found,) = folder.glob("*.whl")
     return found
@@ -70,13 +81,32 @@ def test_a_wheel_puts_one_name_into_an_environment(wheel):
     assert "tipoff/scenes/catalog/reference.toml" in names
 
 
-def test_the_tour_of_the_readme_runs_on_the_wheel(python, tmp_path):
-    """On the small scene, which has the same conditions."""
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    (tour,) = re.findall(r"```python\n(import tipoff\n.*?)```", text, re.DOTALL)
-    assert tour.count('"reference"') == 1
+def test_a_source_distribution_gives_the_same_wheel(wheel, tmp_path):
+    copy = _copy(tmp_path / "copy")
+    build = "import sys; from setuptools import build_meta; build_meta.build_sdist(sys.argv[1])"
+    _run(sys.executable, "-c", build, tmp_path, cwd=copy)
+    (source,) = tmp_path.glob("*.tar.gz")
+    with tarfile.open(source) as archive:
+        held = {name.split("/", 1)[1] for name in archive.getnames() if "/" in name}
+    assert {"CITATION.cff", "docs/index.md", "docs/ejection.png"} <= held
+    (tmp_path / "again").mkdir()
+    with (
+        zipfile.ZipFile(_wheel(source, tmp_path / "again")) as again,
+        zipfile.ZipFile(wheel) as own,
+    ):
+        assert sorted(again.namelist()) == sorted(own.namelist())
+
+
+@pytest.mark.parametrize(
+    "page, scene",
+    [("README.md", "reference"), ("docs/tutorials/surrogate_and_reference.md", "tiny")],
+)
+def test_the_python_of_a_page_runs_on_the_wheel(python, tmp_path, page, scene):
+    """On the small scene, which has the same conditions, and with fewer cases."""
+    text = "\n".join(pages.of_language(page, "python"))
+    assert text.startswith("import tipoff\n") and text.count(f'"{scene}"') == 1
     said = _run(
-        *(python, "-c", tour.replace('"reference"', '"tiny"') + LOADED),
+        *(python, "-c", pages.smaller(text) + LOADED),
         cwd=tmp_path,
         env={"PATH": "", "HOME": str(Path.home()), "MPLBACKEND": "Agg"},
     )
@@ -86,3 +116,16 @@ def test_the_tour_of_the_readme_runs_on_the_wheel(python, tmp_path):
 def test_the_command_runs_on_the_wheel(python, tmp_path):
     said = _run(python, "-m", "tipoff", "scenes", cwd=tmp_path)
     assert "reference" in said and "conditions" in said
+
+
+def test_a_scene_is_run_on_the_wheel(python, tmp_path):
+    """One that is written by the user, and files of results beside it."""
+    (tmp_path / "mine.toml").write_text(
+        'extends = "tiny"\nname = "mine"\n[payload]\nmass = "8 kg"\n'
+    )
+    said = _run(
+        *(python, "-m", "tipoff", "run", "--scene", "mine.toml", "--condition", "phi15"),
+        cwd=tmp_path,
+    )
+    assert said.startswith("mine / phi15, model compliant: exited")
+    assert list((tmp_path / "out" / "mine" / "lowfi").glob("phi15-*.nc"))

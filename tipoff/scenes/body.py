@@ -11,11 +11,17 @@ class InertiaTensor(Table):
     """Inertia tensor entries (kg m2) about the mass centre in body axes; xy, xz, yz are tensor
     entries, not products' negatives."""
 
+    #: Moment of inertia about x.
     xx: PositiveInertia
+    #: Moment of inertia about y.
     yy: PositiveInertia
+    #: Moment of inertia about z.
     zz: PositiveInertia
+    #: Tensor entry xy, minus the integral of x y dm.
     xy: Inertia = 0.0
+    #: Tensor entry xz, minus the integral of x z dm.
     xz: Inertia = 0.0
+    #: Tensor entry yz, minus the integral of y z dm.
     yz: Inertia = 0.0
 
     @model_validator(mode="after")

@@ -55,7 +55,9 @@ def _beyond_start(end: float, info: ValidationInfo) -> float:
 class Span(Table):
     """A stretch along the rail measured from its rear end (m)."""
 
+    #: Rear end of the mount, from the rear end of the rail.
     start: NonNegativeLength
+    #: Front end of the mount, from the rear end of the rail.
     end: PositiveLength
 
     _forward = field_validator("end")(_beyond_start)
@@ -65,10 +67,15 @@ class MaterialTable(Table):
     """``[rail.material]``: isotropic linear elasticity; only ``[thermal]`` needs ``expansion``
     (1/K)."""
 
+    #: Density.
     density: Density
+    #: Young's modulus.
     youngs_modulus: Pressure
+    #: Poisson's ratio.
     poisson_ratio: PoissonRatio
+    #: Yield strength, beside which the peak stress is reported.
     yield_strength: Pressure | None = None
+    #: Coefficient of thermal expansion; [thermal] needs it.
     expansion: Expansion | None = Field(None, exclude_if=is_absent)
 
 
@@ -77,10 +84,15 @@ class _RailTable(Table):
     its mounts."""
 
     GIVEN_BY: ClassVar[str]
+    #: Rear end of the walls along X.
     start: Length
+    #: Open end of the walls along X.
     end: Length
+    #: Linear elastic material of the rails.
     material: MaterialTable
+    #: Structural damping of the rails.
     damping: DampingTable | None = None
+    #: Stiffness of the bolted joints; rigid mounts where absent.
     mount_stiffness: MountStiffnessTable | None = Field(None, exclude_if=is_absent)
 
     _forward = field_validator("end")(_beyond_start)
@@ -103,9 +115,13 @@ class SectionTable(_RailTable):
     ``mounts``."""
 
     GIVEN_BY = "section"
+    #: Outer width of a leg of the L.
     leg: Dimension = 0.024
+    #: Thickness of a leg.
     thickness: Dimension = 0.004
+    #: Width of the clamped strip on the back of a leg, from the outer corner.
     mount_width: Dimension = 0.004
+    #: Stretches along the rail that the platform holds.
     mounts: Annotated[tuple[Span, ...], limited] = ()
 
     @field_validator("thickness", "mount_width")
@@ -138,8 +154,12 @@ class _FileTable(_RailTable):
     side (``mechanics.model.Plate``).
     """
 
+    #: Clearance for which the file is drawn; a scene with another one has shims of the
+    #: difference under its pads.
     clearance: NonNegativeLength | None = None
+    #: Unsupported width of a wall.
     leg: Dimension | None = None
+    #: Thickness of a wall.
     thickness: Dimension | None = None
     _digest: str = PrivateAttr()
 
@@ -184,13 +204,16 @@ class MeshTable(_FileTable):
     named surfaces ``contact...`` and ``mount`` (``highfi.mesh.rail_mesh``)."""
 
     GIVEN_BY = "mesh"
+    #: Mesh file in any format that meshio reads, in scene axes and metres.
     mesh: Annotated[str, AfterValidator(_readable)]
 
 
 class BoxTable(Table):
     """A box between two corners in scene axes (m); it is flat where they are equal."""
 
+    #: Corner with the smallest coordinates, in scene axes.
     low: tuple[Length, Length, Length]
+    #: Corner with the largest coordinates, in scene axes.
     high: tuple[Length, Length, Length]
 
     @field_validator("high")
@@ -209,8 +232,12 @@ class GeometryTable(_FileTable):
     or 10-node tetrahedra. ``surfaces`` names the parts of its boundary that lie in boxes."""
 
     GIVEN_BY = "geometry"
+    #: CAD solid: STEP, IGES or BREP, in scene axes.
     geometry: Annotated[str, AfterValidator(_readable)]
+    #: 8-node hexahedra or 10-node tetrahedra.
     elements: Literal["hex8", "tet10"] = "hex8"
+    #: Boxes that contain the walls (names that start with contact) and the clamped surface
+    #: (mount).
     surfaces: Annotated[dict[str, _Boxes], limited]
 
     @field_validator("geometry")

@@ -51,25 +51,47 @@ class Scene(Table):
     """Everything a run needs. Fields are SI; an absent effect is None. Use ``replace`` for
     variations."""
 
+    #: Name of the scene and of its folder of results: letters, digits, -, _ and .
     name: Annotated[str, AfterValidator(names.of_scene)]
+    #: One line for lists and reports.
     description: str = ""
+    #: Time that is simulated from ignition on. It must contain the exit and the settled
+    #: window.
     duration: Duration
+    #: The rigid body that leaves the rail.
     payload: PayloadTable
+    #: The blocks on the payload that slide along the rail.
     pads: Annotated[tuple[PadTable, ...], limited, AfterValidator(at_least_one)]
+    #: The elastic guide: the built-in L section, a mesh file or a CAD solid.
     rail: RailTable
+    #: The force of the thruster over time.
     thrust: ThrustTable
+    #: Errors of the direction and of the line of the thrust.
     thrust_offset: ThrustOffsetTable | None = None
+    #: Error of the place of the mass centre.
     mass_offset: MassOffsetTable | None = None
+    #: State of payload and platform at ignition.
     initial: InitialTable | None = None
+    #: Clearance, contact law and interface stiffness.
     contact: ContactTable | None = None
+    #: Friction between pads and walls.
     friction: FrictionTable | None = None
+    #: The free rigid body that carries the rails.
     platform: PlatformTable | None = None
+    #: Uniform acceleration of every body.
     gravity: GravityTable | None = None
+    #: Flight in orbit after the exit.
     flight: FlightTable | None = None
+    #: Temperature of the rails.
     thermal: ThermalTable | None = Field(None, exclude_if=is_absent)
+    #: Sampling of the results.
     output: OutputTable = Field(OutputTable(), validate_default=True)
+    #: Roles of the conditions, and limits of agreement.
     agreement: AgreementTable = AgreementTable()
+    #: Named conditions: under each name dotted keys with the values that differ from the
+    #: scene; "absent" removes a table.
     conditions: Annotated[dict[str, dict[str, Any]], limited] = Field(default_factory=dict)
+    #: Source of values, under the dotted key of the value or of its table.
     provenance: Annotated[dict[str, str], limited] = Field(default_factory=dict)
     _raw: dict = PrivateAttr(default_factory=dict)
     _source: str = PrivateAttr(default="scene")

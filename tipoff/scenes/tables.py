@@ -28,8 +28,12 @@ class PayloadTable(Table):
     """``[payload]``: mass, inertia about the actual mass centre, and (for plausibility) outer
     size."""
 
+    #: Mass of the payload.
     mass: Mass
+    #: Inertia about the actual mass centre.
     inertia: InertiaTensor
+    #: Outer size along x, y and z. It is used for plausibility and, without flight.body, for
+    #: the clearance in flight.
     size: tuple[PositiveLength, PositiveLength, PositiveLength] | None = None
 
 
@@ -41,11 +45,17 @@ class PadTable(Table):
     y is centred ``inset`` towards the payload's axis along z (and the other way round).
     """
 
+    #: Corner of the pad, from the nominal mass centre.
     position: tuple[Length, Length, Length]
+    #: Outward normals of the faces: "+y", "-y", "+z" or "-z", each once.
     normals: Annotated[tuple[Normal, ...], limited, AfterValidator(at_least_one)]
+    #: Length of a face along X.
     length: PositiveLength = 0.016
+    #: Width of a face across the rail.
     width: PositiveLength = 0.016
+    #: Distance from the corner to the middle of a face, along the face and towards the axis.
     inset: NonNegativeLength = 0.0
+    #: Crown: how far the edges of a face lie behind its middle.
     relief: NonNegativeLength = 0.0
 
     @field_validator("normals")
@@ -59,6 +69,7 @@ class PadTable(Table):
 class OutputTable(Table):
     """``[output]``: sampling interval of every result (s). The outcome does not depend on it."""
 
+    #: Sampling interval of every result. Exit and settled values do not depend on it.
     interval: PositiveTime = 5e-5
 
     def fits(self, duration: float) -> bool:
@@ -76,9 +87,15 @@ class AgreementTable(Table):
     """``[agreement]``: conditions that are fitted, held out, used for the floor, and refined;
     and the limits of agreement: relative L2 of the rates (1) and error of a settled rate (rad/s)."""
 
+    #: Conditions that the calibration uses.
     fitted: _Names = ()
+    #: Conditions that the calibration does not use.
     held_out: _Names = ()
+    #: Conditions whose change by 1 um of clearance is measured.
     floor: _Names = ()
+    #: Conditions whose uncertainty by mesh, step and contact cells is measured.
     refined: _Names = ()
+    #: Largest relative L2 difference of the rates where models agree.
     rate_limit: PositiveNumber = 0.05
+    #: Largest difference of a settled rate where models agree.
     settled_limit: PositiveRate = math.radians(0.1)

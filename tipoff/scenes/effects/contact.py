@@ -52,8 +52,11 @@ class PadLayerTable(Table):
     """``[contact.pad_layer]``: pad material of ``thickness`` (m) and ``youngs_modulus`` (Pa) in
     front of a stiff payload. With a ``poisson_ratio`` it cannot bulge sideways."""
 
+    #: Thickness of the soft layer of a pad.
     thickness: PositiveLength
+    #: Young's modulus of the layer.
     youngs_modulus: Pressure
+    #: Poisson's ratio of a bonded thin layer; without it the layer bulges freely.
     poisson_ratio: PoissonRatio | None = None
 
     def stiffness(self) -> float:
@@ -64,12 +67,20 @@ class PadLayerTable(Table):
 
 
 class _ContactTable(Table):
+    #: Gap between a face and its wall when the payload is centred.
     clearance: NonNegativeLength
+    #: Clearance of the faces along y, if it differs.
     clearance_y: NonNegativeLength | None = Field(None, exclude_if=is_absent)
+    #: Clearance of the faces along z, if it differs.
     clearance_z: NonNegativeLength | None = Field(None, exclude_if=is_absent)
+    #: Exponent e of the law of the springs.
     exponent: ContactExponent = 1.5
+    #: Stiffness k of one face, in N/m**e.
     stiffness: float
+    #: Pressure over approach of asperities and coating, in the finite elements and in
+    #: compliant contact.
     interface_stiffness: InterfaceStiffness = 1.8e12
+    #: Soft material of the pads, in series with the interface.
     pad_layer: PadLayerTable | None = Field(None, exclude_if=is_absent)
 
     def gaps(self) -> tuple[float, float, float]:
@@ -131,8 +142,11 @@ class _ContactTable(Table):
 class ImpactTable(_ContactTable):
     """``[contact] law = "impact"``: k (N/m^e), e, c (N s/m), d (m)."""
 
+    #: IMPACT of ADAMS.
     law: Literal["impact"]
+    #: Damping coefficient at full depth.
     damping: ContactDamping
+    #: Penetration at which the damping is full.
     damping_depth: PositiveLength
 
     def record(self) -> "Impact":
@@ -143,7 +157,9 @@ class ImpactTable(_ContactTable):
 class HuntCrossleyTable(_ContactTable):
     """``[contact] law = "hunt-crossley"``: k (N/m^e), e, dissipation a (s/m)."""
 
+    #: Law of Hunt and Crossley.
     law: Literal["hunt-crossley"]
+    #: Dissipation factor a.
     dissipation: Dissipation
 
     def record(self) -> "HuntCrossley":
@@ -154,8 +170,11 @@ class HuntCrossleyTable(_ContactTable):
 class LinearTable(_ContactTable):
     """``[contact] law = "linear"``: spring k (N/m) and damper c (N s/m) that never pull."""
 
+    #: Linear spring and damper that never pull.
     law: Literal["linear"]
+    #: Exponent, always 1.
     exponent: Literal[1.0] = 1.0  # type: ignore[valid-type]  # pydantic has literal fractions
+    #: Damping coefficient.
     damping: ContactDamping = 0.0
 
     def record(self) -> "Linear":

@@ -35,15 +35,25 @@ class FlightTable(Table):
     of the payload without its pads, ``payload.size`` where absent; ``envelope`` lists boxes that the
     platform lies in, in scene axes at ignition, to which built-in rails are added."""
 
+    #: Altitude of the circular orbit; either this or mean_motion.
     altitude: PositiveLength | None = None
+    #: Mean motion of the circular orbit; either this or altitude.
     mean_motion: PositiveRate | None = None
+    #: Turns the launch axis from the flight direction towards the orbit's normal.
     azimuth: Angle = 0.0
+    #: Raises the launch axis towards the zenith.
     elevation: Angle = 0.0
+    #: Turns Y towards Z about the launch axis.
     roll: Angle = 0.0
+    #: Distance of the target along the launch axis.
     range: PositiveLength
+    #: Duration of the flight; one orbit where absent.
     duration: PositiveTime | None = None
+    #: Pointing error whose time is found.
     pointing_limit: PointingLimit | None = None
+    #: Size of the payload without its pads; payload.size where absent.
     body: tuple[PositiveLength, PositiveLength, PositiveLength] | None = None
+    #: Boxes that contain the platform, in scene axes at ignition.
     envelope: Annotated[tuple[BoxTable, ...], limited] = ()
 
     @model_validator(mode="after")

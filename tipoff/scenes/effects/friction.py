@@ -30,10 +30,15 @@ class TwoStepTable(Table):
     """``[friction]``: coefficients (dimensionless) and transition speeds (m/s)."""
 
     # The default law. It is not written, so that scenes without this key keep their hash.
+    #: Two-step Coulomb friction.
     law: Literal["two-step"] = Field("two-step", exclude=True)
+    #: Static coefficient.
     static: NonNegativeNumber
+    #: Dynamic coefficient.
     dynamic: NonNegativeNumber
+    #: Sliding speed at which friction is static.
     static_speed: PositiveVelocity
+    #: Sliding speed from which on friction is dynamic.
     dynamic_speed: PositiveVelocity
 
     @field_validator("dynamic_speed")

@@ -11,8 +11,11 @@ EFFECT = Effect("gravity", {"gravity.z": "-9.81 m/s**2"}, is_body_force=True)
 class GravityTable(Table):
     """``[gravity]``: acceleration components in initial scene axes (m/s2)."""
 
+    #: Acceleration along X.
     x: Acceleration = 0.0
+    #: Acceleration along Y.
     y: Acceleration = 0.0
+    #: Acceleration along Z.
     z: Acceleration = 0.0
 
     def body_force(self) -> BodyForce:

@@ -17,43 +17,61 @@ EFFECT = Effect("initial", {"initial.position.y": "20 um"})
 class Displacement(Table):
     """Lengths along scene axes (m)."""
 
+    #: Along X.
     x: Length = 0.0
+    #: Along Y.
     y: Length = 0.0
+    #: Along Z.
     z: Length = 0.0
 
 
 class RotationVector(Table):
     """Axis times angle, in scene axes (rad)."""
 
+    #: About X.
     x: Angle = 0.0
+    #: About Y.
     y: Angle = 0.0
+    #: About Z.
     z: Angle = 0.0
 
 
 class LinearVelocity(Table):
     """Inertial velocity in scene axes (m/s)."""
 
+    #: Along X.
     x: Velocity = 0.0
+    #: Along Y.
     y: Velocity = 0.0
+    #: Along Z.
     z: Velocity = 0.0
 
 
 class AngularRate(Table):
     """Inertial angular velocity in body axes (rad/s)."""
 
+    #: About body axis x.
     x: Rate = 0.0
+    #: About body axis y.
     y: Rate = 0.0
+    #: About body axis z.
     z: Rate = 0.0
 
 
 class InitialTable(Table):
     """``[initial]``: state at ignition."""
 
+    #: Displacement of the payload from its centred place.
     position: Displacement = Displacement()
+    #: Rotation vector from scene axes to body axes.
     attitude: RotationVector = RotationVector()
+    #: Inertial velocity of the payload.
     velocity: LinearVelocity = LinearVelocity()
+    #: Inertial rate of the payload.
     rate: AngularRate = AngularRate()
+    #: Inertial velocity of the platform.
     platform_velocity: LinearVelocity = LinearVelocity()
+    #: Inertial rate of the platform.
     platform_rate: AngularRate = AngularRate()
 
     def record(self) -> "Initial":

@@ -24,7 +24,9 @@ EFFECT = Effect(
 class Eccentricity(Table):
     """Radius r (m) and radial angle (rad): ``l_z = r cos``, ``l_y = r sin``."""
 
+    #: Radius of the offset from the axis.
     axial: NonNegativeLength = 0.0
+    #: Clock angle of the offset, from +Z towards +Y.
     radial: Angle = 0.0
 
     def offset(self) -> tuple[float, float, float]:
@@ -35,4 +37,5 @@ class Eccentricity(Table):
 class MassOffsetTable(Table):
     """``[mass_offset]``: where the mass centre lies, measured from the nominal centre."""
 
+    #: Offset of the actual mass centre from the nominal one.
     eccentricity: Eccentricity = Eccentricity()

@@ -39,8 +39,11 @@ class MountStiffnessTable(Table):
     """``[rail.mount_stiffness]``: stiffness per area (N/m3) of the joints along the normal of a
     mount strip and across it. ``factor`` multiplies both; studies of uncertainty vary it."""
 
+    #: Stiffness per area along the normal of a mount strip.
     normal: InterfaceStiffness
+    #: Stiffness per area across that normal.
     shear: InterfaceStiffness
+    #: Multiplies both; studies of uncertainty vary it.
     factor: PositiveNumber = 1.0
 
     def record(self) -> MountStiffness:

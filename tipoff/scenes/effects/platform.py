@@ -21,8 +21,11 @@ class PlatformTable(Table):
     """``[platform]``: mass (kg), inertia about its mass centre (kg m2), mass centre at ignition in
     scene axes (m)."""
 
+    #: Mass of the platform with its rails.
     mass: Mass
+    #: Inertia of the platform with its rails, about its mass centre.
     inertia: InertiaTensor
+    #: Mass centre at ignition, in scene axes.
     mass_centre: Displacement = Displacement()
 
     def record(self) -> "Platform":

@@ -23,11 +23,17 @@ class StickingTable(Table):
     """``[friction] law = "sticking"``: coefficients (dimensionless), tangential stiffness (N/m) and
     damping (N s/m) of one held face, and the slip (m/s) below which a face that stops is held."""
 
+    #: Coulomb friction with stick, in the surrogate only.
     law: Literal["sticking"]
+    #: Static coefficient.
     static: NonNegativeNumber
+    #: Dynamic coefficient.
     dynamic: NonNegativeNumber
+    #: Tangential stiffness of a held face.
     stiffness: Stiffness
+    #: Tangential damping of a held face.
     damping: ContactDamping
+    #: Slip speed below which a face is held.
     capture_speed: CaptureSpeed = 1e-6
 
     @field_validator("dynamic")

@@ -41,7 +41,9 @@ class DampingTable(Table):
     requires z1 / q <= z2 <= q z1.
     """
 
+    #: Two frequencies, the lower one first.
     frequencies: tuple[Frequency, Frequency]
+    #: Damping ratio at each of the two frequencies.
     ratios: tuple[DampingRatio, DampingRatio]
 
     @field_validator("frequencies")

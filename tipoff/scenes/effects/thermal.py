@@ -30,8 +30,11 @@ EFFECT = Effect("thermal", {"thermal.mean": "5 K", "thermal.gradient.y": "20 K/m
 class GradientTable(Table):
     """Components along scene axes (K/m)."""
 
+    #: Temperature gradient along X.
     x: TemperatureGradient = 0.0
+    #: Temperature gradient along Y.
     y: TemperatureGradient = 0.0
+    #: Temperature gradient along Z.
     z: TemperatureGradient = 0.0
 
 
@@ -39,8 +42,11 @@ class ThermalTable(Table):
     """``[thermal]``: mean change of temperature (K), its gradient, and the strain of the platform
     between the mounts."""
 
+    #: Mean change of temperature since the rails were mounted.
     mean: TemperatureChange = 0.0
+    #: Gradient of the change around the middle of the rails.
     gradient: GradientTable = GradientTable()
+    #: Growth of the platform between the mounts, as a strain.
     platform_strain: Number = 0.0
 
     def record(self, rail) -> "Thermal":

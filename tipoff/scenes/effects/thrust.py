@@ -68,9 +68,13 @@ __all__ = [
 class Pulse(Table):
     """One Gaussian: peak force (N) or impulse (N s), width sigma (s), centre (s)."""
 
+    #: Peak force; either this or impulse.
     peak: Force | None = None
+    #: Impulse of the whole pulse; either this or peak.
     impulse: Impulse | None = None
+    #: Standard deviation of the Gaussian.
     width: PositiveTime
+    #: Time of the peak.
     centre: Time
 
     @model_validator(mode="after")
@@ -92,7 +96,9 @@ class _ThrustTable(Table):
     """What every kind has: ``arm`` (m), distance of the point of application behind the nominal
     mass centre; ``reaction``."""
 
+    #: Distance of the point of application behind the nominal mass centre.
     arm: PositiveLength = 0.1
+    #: "platform": the reaction acts on the platform; "exhaust": it leaves with the gas.
     reaction: Literal["platform", "exhaust"] = "platform"
     if TYPE_CHECKING:
         kind: str  # a literal in each kind, whose place among the keys is theirs
@@ -142,7 +148,9 @@ class _PulsedTable(_ThrustTable):
     ``rescale`` raises each pulse by the share that the cut removes, so that the impulse stays.
     """
 
+    #: Number of widths beyond which pulses are cut; not cut where absent.
     cutoff: PositiveNumber | None = None
+    #: Restores the impulse that the cut removes.
     rescale: bool = False
 
     @field_validator("rescale")
@@ -193,6 +201,7 @@ class _PulsedTable(_ThrustTable):
 class GaussianTable(Pulse, _PulsedTable):
     """``[thrust] kind = "gaussian"``: the keys of one pulse and those of a pulsed thrust."""
 
+    #: One Gaussian pulse.
     kind: Literal["gaussian"]
 
     def pulses(self) -> tuple[Pulse, ...]:
@@ -203,7 +212,9 @@ class GaussianTable(Pulse, _PulsedTable):
 class GaussiansTable(_PulsedTable):
     """``[thrust] kind = "gaussians"`` with ``[[thrust.components]]``, one pulse each."""
 
+    #: A sum of Gaussian pulses.
     kind: Literal["gaussians"]
+    #: The pulses.
     components: Annotated[tuple[Pulse, ...], limited, AfterValidator(at_least_one)]
 
     def pulses(self) -> tuple[Pulse, ...]:
@@ -214,9 +225,13 @@ class GaussiansTable(_PulsedTable):
 class ConstantTable(_ThrustTable):
     """``[thrust] kind = "constant"``: force (N) from ``start`` for ``duration`` (s)."""
 
+    #: A constant push.
     kind: Literal["constant"]
+    #: Force.
     force: Force
+    #: Time at which the push begins.
     start: NonNegativeTime = 0.0
+    #: Duration of the push.
     duration: PositiveTime
 
     def record(self) -> Thrust:
@@ -235,8 +250,11 @@ class MeasuredTable(_ThrustTable):
     """``[thrust] kind = "measured"``: CSV with columns ``time_s,force_N``; ``use`` the curve itself
     or its Gaussian fit."""
 
+    #: A measured curve.
     kind: Literal["measured"]
+    #: CSV file with the columns time_s,force_N; relative to the scene file.
     file: str
+    #: "curve": the points act; "fit": their Gaussian fit acts.
     use: Literal["curve", "fit"] = "curve"
     _curve: MeasuredCurve = PrivateAttr()
 

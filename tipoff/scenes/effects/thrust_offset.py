@@ -25,7 +25,9 @@ EFFECT = Effect(
 class Misalignment(Table):
     """Angle from +X (rad) and clock angle from +Y towards +Z (rad)."""
 
+    #: Tilt of the thrust off +X.
     axial: Angle = 0.0
+    #: Clock angle of the tilt, from +Y towards +Z.
     radial: Angle = 0.0
 
     def direction(self) -> tuple[float, float, float]:
@@ -37,7 +39,9 @@ class Misalignment(Table):
 class ThrustOffsetTable(Table):
     """``[thrust_offset]``: misalignment and eccentricity of the thrust."""
 
+    #: Error of the direction of the thrust.
     misalignment: Misalignment = Misalignment()
+    #: Offset of the line of the thrust from the axis.
     eccentricity: Eccentricity = Eccentricity()
 
 

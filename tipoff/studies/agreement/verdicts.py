@@ -27,6 +27,7 @@ VELOCITY_LIMIT = 0.001
 CONVERGED_DEG_S = 0.1
 FLOOR_CAP_DEG_S = 0.1
 NOT_CONVERGED = "reference not converged"
+AGREES, UNTOUCHED = "agrees", "agrees (no pad touches)"
 NOT_KNOWN = "convergence of the reference not known"
 _SHORT = {
     "rate_relative_l2": "rate L2",
@@ -203,10 +204,6 @@ def verdict(gates: dict[str, dict], converged: bool, touches: bool = True) -> st
         for name, item in gates.items()
         if not item["passes"]
     ]
-    return (
-        "misses: " + ", ".join(missed)
-        if missed
-        else "agrees"
-        if touches
-        else "agrees (no pad touches)"
-    )
+    if missed:
+        return "misses: " + ", ".join(missed)
+    return AGREES if touches else UNTOUCHED

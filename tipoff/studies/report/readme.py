@@ -1,5 +1,5 @@
-"""Writes the tables and pictures of README.md and docs/results.md from the result files of ``make
-full-report``.
+"""Writes the figures of README.md, and the tables and pictures of docs/results.md, from the result
+files of ``make full-report``.
 
     python -m tipoff.studies.report.readme [FOLDER]        default out/reference
 """
@@ -10,7 +10,7 @@ from pathlib import Path
 
 from tipoff.files import read_json, write_text
 from tipoff.mechanics.models import FINITE_ELEMENTS
-from tipoff.studies.agreement import growth_page, rails_page
+from tipoff.studies.agreement import growth_page, rails_page, verdicts
 from tipoff.studies.agreement.other_rails import beside
 from tipoff.studies.agreement.page import by_factor
 from tipoff.studies.convergence import equal_accuracy
@@ -20,25 +20,64 @@ from tipoff.studies.render.table import Column, Table, number, percent
 from tipoff.studies.report import further
 
 _ROOT = Path(__file__).resolve().parents[3]
-_TITLE = """# Further results on the reference scene
+_TITLE = """# Results on the reference scene
 
 Written by `python -m tipoff.studies.report.readme` from the files of `make full-report` and `make bench`; times
-of different tables may be those of different days and are not to be divided by each other. Terms
-are those of README."""
+of different tables may be those of different days and are not to be divided by each other. The
+[glossary](glossary.md) has the terms, and [agreement](explanation/convergence_and_chaos.md) the limits.
+
+Conditions `phi0` to `phi90` are the paper's (0.1 deg of thrust misalignment, that clock angle) and were
+fitted; `h1` to `h10` were not. No pad touches a rail in `h5` and `h6`: their agreement tests free flight."""
 _BEGIN, _END = "<!-- results: python -m tipoff.studies.report.readme -->", "<!-- end of results -->"
 
 
 def main(folder: Path) -> None:
-    """Replace the results section of README.md, the page of further results, and the pictures
-    beside it."""
+    """Replace the figures in README.md, the page of results, and the pictures beside it."""
     readme = _ROOT / "README.md"
-    before, rest = readme.read_text().split(_BEGIN)
+    before, rest = readme.read_text(encoding="utf-8").split(_BEGIN)
     after = rest.split(_END)[1]
-    write_text(readme, f"{before}{_BEGIN}\n{section(folder)}\n{_END}{after}")
-    (_ROOT / "docs").mkdir(exist_ok=True)
-    write_text(_ROOT / "docs" / "results.md", f"{_TITLE}\n\n{further.details(folder)}\n")
+    write_text(readme, f"{before}{_BEGIN}\n{headline(folder)}\n{_END}{after}")
+    page = f"{_TITLE}\n\n{section(folder)}\n\n{further.details(folder)}\n"
+    write_text(_ROOT / "docs" / "results.md", page)
     for name in ("figure6.png", "cost.png"):
         shutil.copyfile(folder / "figures" / name, _ROOT / "docs" / name)
+
+
+def headline(folder: Path) -> str:
+    """The few figures of README: agreement of compliant contact, and the one speed-up, at equal
+    accuracy, where the error of the reference was studied."""
+    rows = read_json(folder / "agreement.json")["compliant"]
+    lines = [_agreed(rows)]
+    refined = read(folder / "convergence.json")
+    if refined is not None and (found := refined["equal_accuracy"]) is not None:
+        said = equal_accuracy.sentence(found).split(". ")[0].removeprefix("speed-up ")
+        lines.append(f"- **Speed-up** {said}.")
+    return "\n".join(lines)
+
+
+def _agreed(rows: list[dict]) -> str:
+    """How many conditions are judged and agree, and the errors where pads touch."""
+    unjudged = (verdicts.NOT_CONVERGED, verdicts.NOT_KNOWN)
+    judged = [row for row in rows if row["verdict"] not in unjudged]
+    agree = [row for row in judged if row["verdict"] in (verdicts.AGREES, verdicts.UNTOUCHED)]
+    touched = [row for row in agree if row["verdict"] == verdicts.AGREES]
+    curves = [row["rate_relative_l2"] for row in touched]
+    said = (
+        f"- **Measured**: the reference is converged on {len(judged)} of {len(rows)} conditions. Compliant contact, "
+        f"with nothing fitted, agrees on {len(agree)} of these {len(judged)}."
+    )
+    if not touched:
+        return said
+    settled = max(row["settled_rate_error_deg_s"] for row in touched)
+    return (
+        f"{said} Pads touch in {len(touched)} of them: there rates differ by "
+        f"{percent(min(curves), '.2g')} to {percent(max(curves), '.2g')} % (L2) and settled rates "
+        f"by at most {number(settled, '.2g')} deg/s."
+    )
+
+
+def _upper(sentence: str) -> str:
+    return sentence[0].upper() + sentence[1:]
 
 
 def section(folder: Path) -> str:
@@ -146,7 +185,7 @@ def _equal(refined: dict | None) -> list[Part]:
     if refined is None or refined["equal_accuracy"] is None:
         return []
     sentence = equal_accuracy.sentence(refined["equal_accuracy"])
-    return [f"{sentence[0].upper()}{sentence[1:]} (`make convergence`)."]
+    return [f"{_upper(sentence)} (`make convergence`)."]
 
 
 def _rails(found: list[dict]) -> Table:
@@ -190,7 +229,7 @@ def _ladder(found: dict) -> list[Part]:
         "finest mesh, whose own uncertainty is "
         f"{number(found['band_deg_s'], '.2g')} deg/s; smaller ones count as that. Bold: none "
         "faster is as good.",
-        "![Errors of all models against wall time](docs/cost.png)",
+        "![Errors of all models against wall time](cost.png)",
         Table(heads, rows, kinds=["best" if point["pareto"] else "" for point in found["points"]]),
     ]
 

@@ -1,0 +1,118 @@
+"""Every key of a scene file with its value, default and meaning, from the tables themselves."""
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+from docs.pages.markdown import table
+from docs.pages.meanings import meanings
+from tipoff.scenes.scene import Scene
+from tipoff.scenes.table import Table
+
+_BOUNDS = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
+_BOUNDS |= {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
+_CHOICES = ("kind", "law", "mesh", "geometry")  # the key that tells the tables of one name apart
+
+
+def markdown() -> str:
+    """One section for the scene itself and one for each table. Raises LookupError for a key without
+    a meaning."""
+    schema = Scene.model_json_schema()
+    classes = {each.__name__: each for each in _below(Table)}
+    sections = {"The scene itself": _section("The scene itself", schema, Scene)}
+    for path, name in _tables(schema, schema["$defs"], ""):  # some stand in rails of any kind
+        sections[path] = _section(path, schema["$defs"][name], classes[name])
+    return "\n\n".join(sections.values())
+
+
+def _below(base: type) -> Iterator[Any]:
+    for each in base.__subclasses__():
+        yield each
+        yield from _below(each)
+
+
+def _tables(schema: dict, known: dict, path: str) -> Iterator[tuple[str, str]]:
+    """(heading, class) of every table below ``schema``."""
+    for key, entry in schema["properties"].items():
+        many = _lists(entry)
+        refs = list(_references(entry))
+        for name in refs:
+            below = f"{path}.{key}" if path else key
+            if "additionalProperties" in entry:
+                below, many = f"{below}.NAME", True
+            shown = f"`[[{below}]]`" if many else f"`[{below}]`"
+            yield shown + (_choice(known[name]) if len(refs) > 1 else ""), name
+            yield from _tables(known[name], known, below)
+
+
+def _choice(schema: dict) -> str:
+    """What tells this table apart from others of its name."""
+    for key in _CHOICES:
+        entry = schema["properties"].get(key)
+        if entry is not None:
+            return f", `{key} = {json.dumps(entry['const'])}`" if "const" in entry else f", `{key}`"
+    return ", built-in section"
+
+
+def _lists(entry: dict) -> bool:
+    return entry.get("type") == "array"
+
+
+def _references(entry: Any) -> Iterator[str]:
+    if isinstance(entry, dict):
+        if "$ref" in entry:
+            yield entry["$ref"].rsplit("/", 1)[1]
+        for key, inner in entry.items():
+            if key != "discriminator":
+                yield from _references(inner)
+    elif isinstance(entry, list):
+        for inner in entry:
+            yield from _references(inner)
+
+
+def _section(title: str, schema: dict, of: type[Table]) -> str:
+    said = meanings(of)
+    required = schema.get("required", [])
+    rows = [
+        (f"`{key}`", _value(entry), _default(key, entry, required), said[key])
+        for key, entry in schema["properties"].items()
+    ]
+    return f"## {title}\n\n" + table(("key", "value", "default", "meaning"), rows)
+
+
+def _value(entry: dict) -> str:
+    """Unit and bounds, or the kind of value."""
+    if "anyOf" in entry:
+        return " or ".join(_value(each) for each in entry["anyOf"] if each.get("type") != "null")
+    if "oneOf" in entry or "$ref" in entry:
+        return "table"
+    if "const" in entry:
+        return f"`{json.dumps(entry['const'])}`"
+    if "enum" in entry:
+        return " or ".join(f"`{json.dumps(each)}`" for each in entry["enum"])
+    if entry["type"] == "array":
+        items = entry.get("prefixItems")
+        return f"{len(items)} × {_value(items[0])}" if items else f"list: {_value(entry['items'])}"
+    if entry["type"] == "number":
+        bounds = [f"{sign} {entry[key]:.4g}" for key, sign in _BOUNDS.items() if key in entry]
+        unit = entry.get("unit", "quantity")
+        return ", ".join(["number" if unit == "dimensionless" else f"`{unit}`", *bounds])
+    return {"string": "text", "boolean": "`true` or `false`", "object": "tables by name"}[
+        entry["type"]
+    ]
+
+
+def _default(key: str, entry: dict, required: list[str]) -> str:
+    if key in required:
+        return "required"
+    default = entry.get("default")
+    if default is None:
+        return "absent"
+    if isinstance(default, dict):
+        return "as below"
+    if isinstance(default, list | tuple):
+        return "none" if not default else json.dumps(default)
+    unit = entry.get("unit", "dimensionless")
+    if isinstance(default, float):
+        return f"{default:g}" if unit == "dimensionless" else f"`{default:g} {unit}`"
+    return f"`{json.dumps(default)}`"

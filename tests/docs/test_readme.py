@@ -1,0 +1,64 @@
+"""README: short enough to be read, no dead link, and figures that are those of the results."""
+
+import re
+
+import pytest
+
+from tests.docs import pages
+from tipoff.files import write_json
+from tipoff.studies.report import readme
+
+TEXT = (pages.ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def _row(verdict: str, curve: float = 0.001, settled: float = 0.01) -> dict:
+    return {"verdict": verdict, "rate_relative_l2": curve, "settled_rate_error_deg_s": settled}
+
+
+def _written(folder, rows: list[dict]) -> str:
+    write_json(folder / "agreement.json", {"compliant": rows})
+    return readme.headline(folder)
+
+
+def test_it_fits_on_three_screens():
+    assert len(TEXT.splitlines()) <= 150
+
+
+@pytest.mark.parametrize("page", pages.PAGES)
+def test_every_link_to_a_file_leads_to_one(page):
+    text = (pages.ROOT / page).read_text(encoding="utf-8")
+    files = {link.split("#")[0] for link in re.findall(r"\]\(([^)\s]+)\)", text) if ":" not in link}
+    assert not [link for link in files if link and not ((pages.ROOT / page).parent / link).exists()]
+
+
+def test_conditions_are_counted_by_their_verdict(tmp_path):
+    said = _written(
+        tmp_path,
+        [
+            _row("agrees", 0.002, 0.03),
+            _row("agrees", 0.004, 0.01),
+            _row("agrees (no pad touches)", 1e-8, 1e-8),
+            _row("misses: rate L2 2 x limit", 0.1, 0.5),
+            _row("reference not converged", 0.2, 3.0),
+        ],
+    )
+    assert "converged on 4 of 5 conditions" in said and "agrees on 3 of these 4" in said
+    assert "Pads touch in 2" in said and "0.2 to 0.4 %" in said and "at most 0.03 deg/s" in said
+
+
+def test_agreement_in_free_flight_alone_has_no_error_of_contact(tmp_path):
+    said = _written(tmp_path, [_row("agrees (no pad touches)", 1e-8, 1e-8)])
+    assert said.endswith("agrees on 1 of these 1.")
+
+
+def test_figures_are_those_of_the_page_of_results():
+    """Both are written from the same files; one that was written without the other shows here."""
+    results = (pages.ROOT / "docs/results.md").read_text(encoding="utf-8")
+    table = results.split("\n\nCompliant contact at other values")[0]
+    agree, unknown = (len(re.findall(rf"\| {word}", table)) for word in ("agrees", "reference not"))
+    rows = len(re.findall(r"^\| (?:phi|h)\d+ \|", table, re.MULTILINE))
+    judged = rows - unknown
+    assert f"converged on {judged} of {rows} conditions" in TEXT
+    assert f"agrees on {agree} of these {judged}" in TEXT
+    (speed,) = re.findall(r"\*\*Speed-up\*\* (.*)\.$", TEXT, re.MULTILINE)
+    assert speed in results

@@ -1,0 +1,152 @@
+"""Programs and commands of the documentation, run on the small scene and with few cases. The
+programs of README and of the tutorial on both models run in ``test_installed``."""
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import tipoff
+from tests.docs import pages
+from tipoff.studies import droptest
+
+IN_A_WHEEL = ("README.md", "docs/tutorials/surrogate_and_reference.md")
+PROGRAMS = [
+    page for page in pages.PAGES if pages.of_language(page, "python") and page not in IN_A_WHEEL
+]
+# Commands that are not run here, each by what it begins with, and why.
+LEFT_OUT = {
+    ("scenes", "--show"): "its output stands in the test of commands",
+    ("paper",): "minutes for each search: tests/studies/paper",
+    ("recovery",): "an hour: tests/studies/recovery",
+    ("cost",): "minutes: tests/studies/cost",
+    ("report",): "every stage: tests/studies/test_pipeline.py",
+    ("sensitivity",): "20,480 cases: tests/studies/sensitivity",
+    ("limits",): "searches of minutes: tests/studies/limits",
+    ("view",): "tests/studies/view",
+    ("blind",): "tests/studies/blind",
+    ("convergence",): "minutes: tests/studies/convergence",
+    ("stability",): "minutes: tests/studies/stability",
+    ("compare",): "tests/studies/agreement",
+}
+SCHEDULER, ACCURACY, FITTED = "--scheduler", "--accuracy", "--calibration"
+FEWEST = "40"
+COMMANDS = sorted({tuple(words) for page in pages.PAGES for words in pages.tipoff(page) if words})
+
+
+def _is_run(words: tuple[str, ...]) -> bool:
+    apart = {SCHEDULER, ACCURACY, FITTED, "--help"} & set(words)  # machines, or results of others
+    return not apart and not any(words[: len(left)] == left for left in LEFT_OUT)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder with every file that a command of the documentation names."""
+    place = tmp_path_factory.mktemp("reader")
+    (place / "my_launcher.toml").write_text('extends = "tiny"\nname = "my_launcher"\n')
+    errors = next(
+        text for text in pages.of_language("docs/tutorials/tolerances.md", "toml") if "vary" in text
+    )
+    for name in ("my_errors.toml", "my_tolerances.toml"):
+        (place / name).write_text(errors)
+    key = "thrust_offset.misalignment.axial"
+    (place / "cases.csv").write_text(f"{key}\ndeg\n0.1\n0.2\n")
+    logs = Path(droptest.__file__).parent / "logs"
+    for number in (0, 1):
+        shutil.copy(logs / f"simulated{number}.csv", place)
+        text = (logs / f"simulated{number}.toml").read_text()
+        (place / f"test{number + 1}.toml").write_text(text)
+    for name in ("phi15", "phi60"):
+        _write_curve(place / f"test{name.removeprefix('phi')}.csv", name)
+    return place
+
+
+def _write_curve(file: Path, condition: str) -> None:
+    run = tipoff.run(tipoff.load("tiny").condition(condition))
+    lines = ["time [s],velocity_x [m/s],rate_x [rad/s],rate_y [rad/s],rate_z [rad/s]"]
+    for time, velocity, rate in zip(run.time, run.velocity, run.rate):
+        lines.append(",".join(repr(float(value)) for value in (time, velocity[0], *rate)))
+    file.write_text("\n".join(lines) + "\n")
+
+
+def _small(words: tuple[str, ...]) -> list[str]:
+    """The same command on the small scene, with few cases."""
+    found = [*words]
+    if "--cases" in found:
+        found[found.index("--cases") + 1] = FEWEST
+    elif words[0] in ("ensemble", "flight", "montecarlo", "droptest"):
+        found += ["--cases", FEWEST] if "--table" not in found else []
+    if "--case" in found:
+        found[found.index("--case") + 1] = "7"
+    if "--settled-from" in found:
+        at = found.index("--settled-from")
+        del found[at : at + 2]  # the curves here end with the settled window
+    if "--scene" not in found and words[0] not in ("scenes", "doctor", "bench"):
+        found += ["--scene", "tiny"]
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("words", [words for words in COMMANDS if _is_run(words)], ids=" ".join)
+def test_a_command_runs(words, folder):
+    _python(folder, "-m", "tipoff", *_small(words))
+
+
+def _python(folder: Path, *arguments: str) -> str:
+    said = subprocess.run(
+        [sys.executable, *arguments],
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": str(pages.ROOT), "MPLBACKEND": "Agg"},
+        capture_output=True,
+        text=True,
+        timeout=540,
+    )
+    assert said.returncode == 0, said.stdout + said.stderr
+    return said.stdout
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", PROGRAMS)
+def test_a_program_runs(page, tmp_path):
+    text = "\n".join(pages.of_language(page, "python"))
+    before = "" if text.startswith("import tipoff") else _BEFORE
+    _python(tmp_path, "-c", pages.smaller(before + text))
+
+
+# What a page of one question takes for given.
+_BEFORE = """
+import tipoff
+scene = tipoff.load("tiny")
+curves = {"phi15": tipoff.run(scene.condition("phi15"))}
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "page", ["README.md", "docs/tutorials/first_ejection.md", "docs/tutorials/your_launcher.md"]
+)
+def test_a_command_says_what_stands_below_it(page, tmp_path):
+    """The numbers within one percent, but for those that tell how sensitive a run is: they depend
+    on the last bits."""
+    for text in pages.of_language(page, "toml")[:1]:
+        (tmp_path / "my_launcher.toml").write_text(text)
+    (block,) = pages.of_language(page, "console")
+    command, _, shown = block[block.index("$ tipoff") :].partition("\n")
+    arguments = shlex.split(command.removeprefix(pages.PROMPT))
+    printed = _python(tmp_path, "-m", *arguments).splitlines()
+    for line, own in zip(shown.splitlines(), printed):
+        if line.split()[0] not in ("sensitivity", "warning"):
+            assert re.sub(_NUMBER, "", line) == re.sub(_NUMBER, "", own)
+            assert _numbers(own) == pytest.approx(_numbers(line), rel=0.01)
+
+
+_NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
+
+
+def _numbers(line: str) -> list[float]:
+    return [float(item) for item in re.findall(_NUMBER, line)]
