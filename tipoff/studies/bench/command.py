@@ -57,4 +57,7 @@ def bench(
             "surrogate": surrogate.run(out, cases=cases, repeats=repeats),
         }
 
-    guarded(work, json_)
+    def shown(found: dict) -> list[str]:
+        return [f"  {Path(out) / 'bench' / name}" for name in ("highfi.json", "lowfi.json")]
+
+    guarded(work, json_, shown)

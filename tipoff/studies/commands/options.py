@@ -49,7 +49,7 @@ Conditions = Annotated[
     typer.Option(
         "--condition",
         metavar="NAME",
-        help="Named condition of the scene, repeatable; default: all.",
+        help="Named condition of the scene, repeatable, or several with commas; default: all.",
     ),
 ]
 RefinedCondition = Annotated[

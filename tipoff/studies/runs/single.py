@@ -1,5 +1,7 @@
 """One run of one condition in one model; prints the result."""
 
+from collections.abc import Callable, Sequence
+
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.agreement import stage as compare
@@ -35,6 +37,15 @@ def run(
     found = study.rail_compliance(scene, judged=False)
     request = study.lowfi(condition, fitted, compliance=found, modes=options.modes or 0)
     return result_of(study, condition, request, quiet)
+
+
+def several(names: Sequence[str], make: Callable[[str], dict]) -> dict:
+    """The result that ``make`` has for one condition; of more than one, ``conditions`` holds a
+    result each and ``failed`` the failures of all."""
+    if len(names) == 1:
+        return make(names[0])
+    found = [make(name) for name in names]
+    return {"conditions": found, "failed": [line for item in found for line in item["failed"]]}
 
 
 def chosen(
