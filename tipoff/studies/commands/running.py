@@ -6,12 +6,17 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, NoReturn, TypeVar
 
 import typer
 
+from tipoff.studies.commands.strict import is_strict
+
 if TYPE_CHECKING:
     from tipoff.studies.render.document import Part
+
+
+_T = TypeVar("_T")
 
 
 def study_of(
@@ -31,7 +36,7 @@ def study_of(
     SceneError, every fault listed.
     """
     from tipoff import scenes
-    from tipoff.scenes import plausibility
+    from tipoff.scenes import plausibility, reading
     from tipoff.scenes.faults import Fault, SceneError
     from tipoff.studies.core.progress import say
     from tipoff.studies.core.settings import defaults
@@ -40,7 +45,11 @@ def study_of(
     pairs = [item.partition("=") for item in overrides or []]
     if wrong := [item for item, (_, equals, _) in zip(overrides or [], pairs) if not equals]:
         raise SceneError([Fault("--set", item, "no value", "KEY=VALUE") for item in wrong])
-    found = scenes.load(scene).replace({key.strip(): value.strip() for key, _, value in pairs})
+    is_file = scene.endswith(".toml")
+    named = {} if is_file else {"source": "--scene", "key": "name", "given": repr(scene)}
+    loaded = _of_option(named, lambda: scenes.load(scene))
+    changes = {key.strip(): value.strip() for key, _, value in pairs}
+    found = _of_option({"source": "--set"}, lambda: loaded.replace(changes))
     settings = replace(defaults(found.name), resume=resume)
     if element_size is not None:
         settings = replace(settings, element_size=1e-3 * element_size)
@@ -51,10 +60,32 @@ def study_of(
         settings = replace(settings, checkpoint_every=every)
     names = [name.strip() for item in conditions or () for name in item.split(",")]
     study = Study(found, Path(out) / found.name, settings, tuple(dict.fromkeys(names)))
-    _ = study.conditions  # raises for a bad override or an unknown condition before anything runs
-    for warning in plausibility.of_all_conditions(found):
+    # a bad override or an unknown condition, before anything runs
+    asked = {"source": "--condition", "key": "name"} if names else {}
+    _of_option(asked, lambda: study.conditions)
+    doubtful = plausibility.of_all_conditions(found)
+    if doubtful and is_strict():
+        raise SceneError(
+            [
+                Fault(found.name, key, given, "a plausible value with --strict")
+                for key, _, given in (words.partition(": ") for words in doubtful)
+            ]
+        )
+    for warning in doubtful:
         say(f"implausible: {warning}")
+    for warning in reading.replaced_by_conditions(scene):
+        say(f"warning: {warning}")
     return study
+
+
+def _of_option(named: dict[str, str], work: Callable[[], _T]) -> _T:
+    """What ``work`` returns; its faults are those of an option, with the fields ``named`` so."""
+    from tipoff.scenes.faults import SceneError
+
+    try:
+        return work()
+    except SceneError as error:
+        raise SceneError([fault._replace(**named) for fault in error.faults]) from None
 
 
 def quantity(option: str, text: str | None, unit: str) -> float | None:

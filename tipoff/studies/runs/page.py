@@ -20,7 +20,7 @@ _CURVES = (
 
 def settled(rows: list[dict]) -> Table:
     """Velocity and rates of each condition for the terminal, from the ``rows`` of a result file."""
-    columns = (
+    columns: tuple[Column | str, ...] = (
         "condition",
         "model",
         "status",

@@ -6,14 +6,14 @@ from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.calibration.files import constants
-from tipoff.studies.core import models, words
+from tipoff.studies.core import compiling, models, words
 from tipoff.studies.core.progress import say
 from tipoff.studies.core.store import Run
-from tipoff.studies.core.study import FAILED, Study, StudyError
+from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.cost import choice
 from tipoff.studies.cost import stage as cost
 from tipoff.studies.runs import disturbed
-from tipoff.studies.runs.stage import row
+from tipoff.studies.runs.stage import failure, row
 
 
 def run(
@@ -76,7 +76,10 @@ def chosen(
 
 
 def result_of(study: Study, condition: str, request: Run, quiet: bool) -> dict:
+    if study.store.load(request) is None:
+        compiling.announce(request)
     found = study.store.get(request)
+    compiling.remember(request)
     calibrated, modes = request.calibration is not None, getattr(request.numerics, "modes", 0)
     result = row(condition, found, study.relative(study.store.path(request)))
     result["agreement"] = kept.words(study, request.model, condition, calibrated, modes)
@@ -84,11 +87,7 @@ def result_of(study: Study, condition: str, request: Run, quiet: bool) -> dict:
         result["disturbed"] = disturbed.of(request, found, study.settings.clearance_change)
     if not quiet:
         print("\n".join(lines(result, model(request), study)))
-    return result | {
-        "failed": [f"{condition}: {found.status}: {found.message}"]
-        if found.status in FAILED
-        else []
-    }
+    return result | {"failed": failure(condition, request, found)}
 
 
 def model(request: Run) -> str:
