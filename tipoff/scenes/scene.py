@@ -21,7 +21,7 @@ from pydantic import (
 )
 
 from tipoff.files import content_hash
-from tipoff.scenes import names, plausibility, provenance, reading, roles, suggestions
+from tipoff.scenes import names, pads, plausibility, provenance, reading, roles, suggestions
 from tipoff.scenes import overrides as keys
 from tipoff.scenes.effects.contact import ContactTable
 from tipoff.scenes.effects.flight import FlightTable
@@ -191,6 +191,8 @@ def parse(
     """
     keys.require_shallow(raw, source)
     tables = keys.plain(raw)
+    if isinstance(tables, dict) and (wrong := pads.expand(tables)):
+        raise SceneError(_reported(source, wrong))
     scene, faults = _validated(tables, bare_numbers_are_si)
     if isinstance(tables, dict):
         faults = faults + _beside_faults(tables, bare_numbers_are_si, faults)

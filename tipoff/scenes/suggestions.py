@@ -10,7 +10,7 @@ import tomllib
 from collections.abc import Iterator
 from typing import Any, get_args
 
-from tipoff.scenes import overrides, reading
+from tipoff.scenes import overrides, pads, reading
 from tipoff.scenes.faults import MOST_NAMES, NO_SUCH_KEY, close
 from tipoff.scenes.table import Table
 
@@ -77,6 +77,7 @@ def written() -> dict[str, str]:
     paths = sorted(reading.CATALOG.glob("*.toml"), key=lambda path: path.stem != "reference")
     for path in paths:
         raw = tomllib.loads(path.read_text(encoding="utf-8"))
+        pads.expand(raw)
         tables = [raw, *raw.get("conditions", {}).values()]
         for table in tables:
             for key, text in _texts(table):

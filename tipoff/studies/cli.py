@@ -14,6 +14,7 @@ from tipoff.studies.commands.helptext import flow
 from tipoff.studies.commands.options import Json
 from tipoff.studies.commands.running import guarded
 from tipoff.studies.commands.strict import add_strict
+from tipoff.studies.new_scene import command as new_scene
 from tipoff.studies.registry import BENCHMARKS, COMPARISON, ON_DEMAND, QUESTIONS
 from tipoff.studies.report import command as report
 
@@ -56,6 +57,9 @@ def main(
     """Predict the velocity and the angular rates of a payload when it leaves its rail."""
 
 
+new_scene.add(app)
+
+
 @app.command("scenes")
 def list_scenes(
     show: Annotated[
@@ -73,14 +77,14 @@ def list_scenes(
 
     def work() -> dict:
         from tipoff import scenes
-        from tipoff.scenes.faults import Fault, SceneError
+        from tipoff.scenes.faults import Fault, SceneError, close
         from tipoff.scenes.scene import CATALOG
 
         if show is not None:
             if show not in scenes.catalog():
-                raise SceneError(
-                    [Fault("--show", "scene", show, f"one of {', '.join(scenes.catalog())}")]
-                )
+                known = scenes.catalog()
+                words = f"one of {', '.join(known)}{close(show, known)}"
+                raise SceneError([Fault("--show", "scene", show, words)])
             text = (CATALOG / f"{show}.toml").read_text(encoding="utf-8")
             if not json_:
                 print(text, end="")
