@@ -2,7 +2,8 @@
 
 import pytest
 
-from tipoff.scenes import SceneError, load
+from tipoff import scenes
+from tipoff.scenes import SceneError, load, reading
 
 
 @pytest.fixture
@@ -77,11 +78,28 @@ def test_a_curve_lies_beside_the_file_that_names_it(scene, tmp_path, monkeypatch
 
 def test_a_misspelt_key_in_a_child_is_found(scene):
     with pytest.raises(
-        SceneError, match="child.toml: contact.clearence: given '1 mm', expected no such key"
+        SceneError,
+        match="child.toml: contact.clearence: no such key, did you mean contact.clearance",
     ):
         scene('extends = "reference"\n[contact]\nclearence = "1 mm"\n')
 
 
 def test_a_misspelt_table_is_not_dropped_in_silence(scene):
-    with pytest.raises(SceneError, match="frictoin: given 'absent', expected no such key"):
+    with pytest.raises(SceneError, match="frictoin: no such key, did you mean friction"):
         scene('extends = "reference"\nfrictoin = "absent"\n')
+
+
+def test_values_that_inherited_conditions_replace_are_warned_about(tmp_path):
+    path = tmp_path / "child.toml"
+    text = (
+        'extends = "reference"\n[thrust_offset.misalignment]\naxial = "0.2 deg"\nradial = "9 deg"\n'
+    )
+    path.write_text(text)
+    (axial, radial) = reading.replaced_by_conditions(path)
+    assert "thrust_offset.misalignment.axial" in axial and "h4, h5, h6, h7, h8, h9" in axial
+    assert "phi0, phi15" in radial
+    own = [f'{name}."payload.mass" = "9 kg"' for name in scenes.load("reference").conditions]
+    path.write_text(text + "[conditions]\n" + "\n".join(own))
+    assert reading.replaced_by_conditions(path) == []
+    path.write_text('extends = "reference"\n[payload]\nmass = "9 kg"\n')
+    assert reading.replaced_by_conditions(path) == reading.replaced_by_conditions("tiny") == []

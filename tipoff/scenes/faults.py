@@ -1,6 +1,8 @@
 """Faults of input. All of them are reported at once, each with file, key, the given value and the
 expected one."""
 
+import difflib
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from pydantic import ValidationError
@@ -16,7 +18,20 @@ class Fault(NamedTuple):
     expected: str
 
     def __str__(self) -> str:
+        if self.expected.startswith(NO_SUCH_KEY):
+            return f"{self.source}: {self.key}: {self.expected}"
         return f"{self.source}: {self.key}: given {self.given}, expected {self.expected}"
+
+
+NO_SUCH_KEY = "no such key"
+MOST_NAMES = 3  # that a message proposes
+_ALIKE = 0.7  # of difflib: one or two letters in ten differ
+
+
+def close(name: str, known: Iterable[str]) -> str:
+    """Which of the ``known`` names are like ``name``, as the end of a message; empty without any."""
+    found = difflib.get_close_matches(name, list(known), MOST_NAMES, _ALIKE)
+    return f", did you mean {' or '.join(found)}?" if found else ""
 
 
 class InputError(ValueError):
@@ -29,7 +44,11 @@ class SceneError(InputError):
     def __init__(self, faults: list[Fault]):
         self.faults = faults
         count = "1 fault" if len(faults) == 1 else f"{len(faults)} faults"
-        super().__init__("\n".join([f"{count} in the scene"] + [f"  {fault}" for fault in faults]))
+        of_options = all(fault.source.startswith("--") for fault in faults)
+        place = "options" if of_options else "scene"
+        super().__init__(
+            "\n".join([f"{count} in the {place}"] + [f"  {fault}" for fault in faults])
+        )
 
     def __reduce__(self):
         # As it comes back from another process; by default it would take the message for the faults.
@@ -50,7 +69,7 @@ _VARIANTS = ("thrust", "contact", "friction", "rail")
 _FILED = (("rail", "mesh"), ("rail", "geometry"))
 _RENAMED = {"contact.penalty": "contact.interface_stiffness"}
 _WORDS = {
-    "extra_forbidden": "no such key",
+    "extra_forbidden": NO_SUCH_KEY,
     "missing": "this key",
     "model_type": "a table",
     "model_attributes_type": "a table",

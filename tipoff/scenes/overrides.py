@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from types import UnionType
 from typing import Annotated, Any, Union, get_args, get_origin
 
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.faults import NO_SUCH_KEY, Fault, SceneError
 from tipoff.scenes.table import Table
 
 DEEPEST = 32  # tables and lists inside each other; a scene has five
@@ -126,7 +126,7 @@ def apply_all(
     faults = []
     for key, value in overrides.items():
         if is_drop(value) and not is_key(table_type, key):
-            faults.append((key, repr(value), "no such key"))
+            faults.append((key, repr(value), NO_SUCH_KEY))
         elif fault := apply(raw, key, plain(value)):
             faults.append(fault)
     return faults
@@ -139,7 +139,7 @@ def apply(raw: dict, key: str, value: Any) -> tuple[str, str, str] | None:
     A table that loses its last key is dropped with it, since an empty table is a fault.
     """
     if key.count(".") >= DEEPEST:
-        return key, repr(value), "no such key"
+        return key, repr(value), NO_SUCH_KEY
     head, _, rest = key.partition(".")
     return _apply_inside(raw, head, rest, key, value)
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from tipoff.files import read_input
 from tipoff.scenes import overrides, provenance, rail
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.faults import Fault, SceneError, close
 
 CATALOG = Path(__file__).resolve().parent / "catalog"
 _CHOICE = {"thrust": "kind", "contact": "law"}
@@ -32,7 +32,10 @@ def read(name_or_path: str | Path) -> tuple[dict, str]:
     path = Path(name_or_path)
     if path.suffix != ".toml":
         if str(name_or_path) not in names():
-            raise SceneError([Fault(str(name_or_path), "scene", "an unknown name", _known())])
+            meant = close(str(name_or_path), names())
+            raise SceneError(
+                [Fault(str(name_or_path), "scene", "an unknown name", f"{_known()}{meant}")]
+            )
         path = CATALOG / f"{name_or_path}.toml"
     raw = _inherit(path, str(path), ())
     raw.setdefault("name", path.stem)
@@ -63,10 +66,9 @@ def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
     base = raw.pop("extends", None)
     if base is None:
         return raw
-    if not isinstance(base, str):
-        raise SceneError([Fault(user_file, "extends", repr(base), _known())])
-    if not base.endswith(".toml") and base not in names():
-        raise SceneError([Fault(user_file, "extends", repr(base), _known())])
+    if not isinstance(base, str) or (not base.endswith(".toml") and base not in names()):
+        meant = close(str(base), names())
+        raise SceneError([Fault(user_file, "extends", repr(base), f"{_known()}{meant}")])
     base_path = path.parent / base if base.endswith(".toml") else CATALOG / f"{base}.toml"
     inherited = _inherit(base_path, user_file, (*chain, absolute(path)))
     # results are filed by name: a variation needs a name of its own
@@ -78,6 +80,36 @@ def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
             stated, merged, dict(_changes(inherited, raw)), given
         )
     return merged
+
+
+def replaced_by_conditions(name_or_path: str | Path) -> list[str]:
+    """Warnings: values of a file that extends another, which the conditions that it inherits
+    replace. ``name_or_path`` is that of a scene that can be read."""
+    path = Path(name_or_path)
+    if path.suffix != ".toml":
+        return []
+    own = toml(path, str(path))
+    whole, stated = _inherit(path, str(path), ()), own.get("conditions", {})
+    conditions = whole.get("conditions", {})
+    inherited = {
+        name: dict(overrides.dotted(table))
+        for name, table in (conditions.items() if "extends" in own else ())
+        if name not in stated
+    }
+    found = []
+    for key, _ in overrides.dotted({**own, "conditions": {}}):
+        names_ = [
+            name
+            for name, table in inherited.items()
+            if any(f"{key}.".startswith(f"{changed}.") for changed in table)
+        ]
+        if names_:
+            found.append(
+                f"{path}: {key}: the inherited conditions {', '.join(names_)} replace this value; "
+                f"state conditions of your own, or drop these with [conditions] {names_[0]} = "
+                f'"absent"'
+            )
+    return found
 
 
 def toml(path: Path, user_file: str, key: str = "file") -> dict:

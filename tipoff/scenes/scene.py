@@ -21,7 +21,7 @@ from pydantic import (
 )
 
 from tipoff.files import content_hash
-from tipoff.scenes import names, plausibility, provenance, reading, roles
+from tipoff.scenes import names, pads, plausibility, provenance, reading, roles, suggestions
 from tipoff.scenes import overrides as keys
 from tipoff.scenes.effects.contact import ContactTable
 from tipoff.scenes.effects.flight import FlightTable
@@ -34,7 +34,7 @@ from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.scenes.effects.thermal import ThermalTable
 from tipoff.scenes.effects.thrust import MeasuredTable, ThrustTable
 from tipoff.scenes.effects.thrust_offset import ThrustOffsetTable
-from tipoff.scenes.faults import Fault, SceneError, faults_of, within
+from tipoff.scenes.faults import Fault, SceneError, close, faults_of, within
 from tipoff.scenes.rail import RailTable
 from tipoff.scenes.table import MOST, Table, at_least_one, is_absent, limited
 from tipoff.scenes.tables import MOST_SAMPLES, AgreementTable, OutputTable, PadTable, PayloadTable
@@ -138,9 +138,7 @@ class Scene(Table):
         if any(key.split(".")[0] in _BESIDE for key in overrides):
             faults = faults + _beside_faults(raw, True, faults)
         if scene is None or lost or faults:
-            raise SceneError(
-                [Fault(f"override of {self._source}", *fault) for fault in lost + faults]
-            )
+            raise SceneError(_reported(f"override of {self._source}", lost + faults))
         scene._raw, scene._source = raw, self._source
         return scene
 
@@ -150,8 +148,11 @@ class Scene(Table):
         if name == NOMINAL and name not in self.conditions:
             return self
         if name not in self.conditions:
-            names = ", ".join(self.conditions) or "none are defined"
-            raise SceneError([Fault(self._source, "conditions", repr(name), f"one of {names}")])
+            known = ", ".join(self.conditions) or "none are defined"
+            meant = close(name, self.conditions)
+            raise SceneError(
+                [Fault(self._source, "conditions", repr(name), f"one of {known}{meant}")]
+            )
         return self.replace(self.conditions[name])
 
     def given(self, key: str) -> Any:
@@ -212,11 +213,13 @@ def parse(
     """
     keys.require_shallow(raw, source)
     tables = keys.plain(raw)
+    if isinstance(tables, dict) and (wrong := pads.expand(tables)):
+        raise SceneError(_reported(source, wrong))
     scene, faults = _validated(tables, bare_numbers_are_si)
     if isinstance(tables, dict):
         faults = faults + _beside_faults(tables, bare_numbers_are_si, faults)
     if scene is None or faults:
-        raise SceneError([Fault(source, *fault) for fault in faults])
+        raise SceneError(_reported(source, faults))
     scene._raw, scene._source = tables, source
     return scene
 
@@ -246,6 +249,14 @@ def _validated(raw: Any, bare_numbers_are_si: bool) -> tuple[Scene | None, _Faul
         return Scene.model_validate(raw, context={"bare_numbers_are_si": bare_numbers_are_si}), []
     except ValidationError as error:
         return None, [fault[1:] for fault in faults_of(error, "")]
+
+
+def _reported(source: str, faults: _Faults) -> list[Fault]:
+    """The faults with the keys that were probably meant and with examples."""
+    return [
+        Fault(source, key, given, suggestions.expected(Scene, key, words))
+        for key, given, words in faults
+    ]
 
 
 def _mark(raw: dict, overrides: Mapping[str, Any]) -> None:

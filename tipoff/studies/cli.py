@@ -9,36 +9,55 @@ from typing import Annotated
 
 import typer
 
+from tipoff.studies.commands.groups import group
 from tipoff.studies.commands.helptext import flow
 from tipoff.studies.commands.options import Json
 from tipoff.studies.commands.running import guarded
+from tipoff.studies.commands.strict import add_strict
+from tipoff.studies.new_scene import command as new_scene
 from tipoff.studies.registry import BENCHMARKS, COMPARISON, ON_DEMAND, QUESTIONS
 from tipoff.studies.report import command as report
 
+SUMMARY = "Predict the velocity and the angular rates of a payload when it leaves its rail."
 EXAMPLES = """Examples:
 
+  tipoff new my_launcher.toml                # a scene of your own from a few numbers
+  tipoff run --scene my_launcher.toml        # one run of the surrogate: milliseconds
+  tipoff run --condition phi15,phi35         # conditions of the reference scene
   tipoff report                              # the whole page, reference scene
-  tipoff run --condition phi35               # one run of the surrogate: milliseconds
   tipoff run --model finite-elements --element-size 8 --set thrust.peak="7 kN"
   tipoff compare --scene tiny --json         # the agreement table as JSON
-  tipoff highfi --scene my_launcher.toml     # your own scene; copy one with tipoff scenes --show
 """
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        print(f"tipoff {version('tipoff')}")
+        raise typer.Exit()
+
 
 app = typer.Typer(
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",
-    help="Predict the velocity and the angular rates of a payload when it leaves its rail.\n\n"
-    + EXAMPLES,
 )
 
 
-for entry in COMPARISON:
-    entry.add_command(app)
-report.add(app)
-for entry in (*ON_DEMAND, *QUESTIONS, *BENCHMARKS):
-    entry.add_command(app)
+@app.callback(help=f"{SUMMARY}\n\n{EXAMPLES}")
+def main(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version and stop."
+        ),
+    ] = False,
+) -> None:
+    """Predict the velocity and the angular rates of a payload when it leaves its rail."""
+
+
+new_scene.add(app)
 
 
 @app.command("scenes")
@@ -58,14 +77,14 @@ def list_scenes(
 
     def work() -> dict:
         from tipoff import scenes
-        from tipoff.scenes.faults import Fault, SceneError
+        from tipoff.scenes.faults import Fault, SceneError, close
         from tipoff.scenes.scene import CATALOG
 
         if show is not None:
             if show not in scenes.catalog():
-                raise SceneError(
-                    [Fault("--show", "scene", show, f"one of {', '.join(scenes.catalog())}")]
-                )
+                known = scenes.catalog()
+                words = f"one of {', '.join(known)}{close(show, known)}"
+                raise SceneError([Fault("--show", "scene", show, words)])
             text = (CATALOG / f"{show}.toml").read_text(encoding="utf-8")
             if not json_:
                 print(text, end="")
@@ -92,6 +111,21 @@ def doctor() -> None:
     raise typer.Exit(check.main())
 
 
+group(app, "Scenes and this machine")
+for entry in ON_DEMAND:
+    entry.add_command(app)
+report.add(app)
+group(app, "Answers")
+for entry in COMPARISON:
+    entry.add_command(app)
+group(app, "Surrogate against finite elements")
+for entry in QUESTIONS:
+    entry.add_command(app)
+group(app, "Studies")
+for entry in BENCHMARKS:
+    entry.add_command(app)
+group(app, "Benchmarks")
+add_strict(app)
 flow(app)
 
 if __name__ == "__main__":

@@ -51,6 +51,24 @@ def ablation(document: dict) -> Table:
     return Table(columns, rows, (note,))
 
 
+def terminal(document: dict) -> list[Part]:
+    """What each effect changes and costs."""
+    columns = (
+        "model",
+        "variant",
+        "status",
+        Column("time", "s"),
+        Column("time ratio", form=".2f"),
+        "change of the settled rates x, y, z (deg/s)",
+    )
+    keys = ("fidelity", "variant", "status", "time_s", "time_ratio")
+    rows = [
+        [*(row[key] for key in keys), _three(row["settled_rate_change_deg_s"], "+")]
+        for row in document["rows"]
+    ]
+    return [Table(columns, rows, title=f"Without each effect, condition {document['condition']}:")]
+
+
 def _three(values: list[float] | None, sign: str) -> str | None:
     if values is None:
         return None

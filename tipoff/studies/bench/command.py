@@ -8,6 +8,7 @@ import typer
 from tipoff.studies.commands.options import (
     Json,
     Out,
+    in_millimetres,
 )
 from tipoff.studies.commands.running import guarded
 
@@ -23,9 +24,9 @@ def bench(
         list[float] | None,
         typer.Option(
             "--element-size",
-            metavar="MM",
-            min=0.05,
-            help="Element size in mm, repeatable; default: 2, 1 and 0.5.",
+            metavar="LENGTH",
+            parser=in_millimetres,
+            help='Element size, "4 mm" or 4, repeatable; default: 2, 1 and 0.5 mm.',
         ),
     ] = None,
     repeats: Annotated[
@@ -57,4 +58,7 @@ def bench(
             "surrogate": surrogate.run(out, cases=cases, repeats=repeats),
         }
 
-    guarded(work, json_)
+    def shown(found: dict) -> list[str]:
+        return [f"  {Path(out) / 'bench' / name}" for name in ("highfi.json", "lowfi.json")]
+
+    guarded(work, json_, shown)

@@ -113,9 +113,9 @@ def calibrate(
             return stage.on_reference(study, model.value if model else default, chosen)
         return stage.of_models(study, model and model.value)
 
-    def lines(found: dict) -> list[str]:
+    def shown(found: dict) -> list[str]:
         from tipoff.studies.calibration import stage
 
         return stage.lines(found, Path(out) / found["scene"])
 
-    guarded(work, json_, lines)
+    guarded(work, json_, shown)

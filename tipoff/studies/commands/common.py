@@ -19,7 +19,7 @@ def add(
     name: str,
     summary: str,
     run: Callable[["Study"], dict],
-    shown: Callable[[dict], list["Part"]] | None = None,
+    shown: Callable[[dict], list["Part"]],
 ) -> None:
     """Add a command to ``app``: its ``name``, its help ``summary``, the function it runs, and what
     of the result is ``shown`` in the terminal."""
@@ -32,13 +32,11 @@ def add(
         workers: Workers = None,
         json_: Json = False,
     ) -> None:
-        found = guarded(
+        guarded(
             lambda: run(study_of(scene, out, set_, element_size=element_size, workers=workers)),
             json_,
+            shown,
+            out,
         )
-        if shown is not None and not json_:
-            from tipoff.studies.render import document
-
-            print(document.terminal(shown(found)))
 
     app.command(name, help=summary)(command)

@@ -23,10 +23,51 @@ class SurrogateName(StrEnum):
     springs = "springs"
 
 
+def scene_names(incomplete: str) -> list[str]:
+    """Names of the catalogue and scene files that begin with ``incomplete``, for the shell."""
+    catalog = Path(__file__).resolve().parents[2] / "scenes" / "catalog"
+    names = sorted(path.stem for path in catalog.glob("*.toml"))
+    files = sorted(f"{path}{'/' if path.is_dir() else ''}" for path in _beginning_with(incomplete))
+    return [name for name in names if name.startswith(incomplete)] + files
+
+
+def _beginning_with(incomplete: str) -> list[Path]:
+    folder = Path(incomplete or ".")
+    folder = folder if incomplete.endswith("/") else folder.parent
+    return [
+        path
+        for path in (folder.iterdir() if folder.is_dir() else ())
+        if str(path).startswith(incomplete) and (path.is_dir() or path.suffix == ".toml")
+    ]
+
+
+def in_millimetres(text: str) -> float:
+    """A length with its unit, or a number of millimetres, in mm. Raises typer.BadParameter."""
+    try:
+        value = float(text)
+    except ValueError:
+        from tipoff.scenes.units import to_si
+
+        try:
+            value = 1e3 * to_si(text, "m")
+        except ValueError:
+            raise typer.BadParameter(
+                f'given {text!r}, expected a length, for example "4 mm", or a number of mm'
+            ) from None
+    if not _FINEST <= value < float("inf"):
+        raise typer.BadParameter(f"given {text!r}, expected at least {_FINEST:g} mm")
+    return value
+
+
+_FINEST = 0.05  # mm, an element size
+
 SceneName = Annotated[
     str,
     typer.Option(
-        "--scene", metavar="NAME_OR_FILE", help="Catalogue scene or path of a .toml file."
+        "--scene",
+        metavar="NAME_OR_FILE",
+        autocompletion=scene_names,
+        help="Catalogue scene or path of a .toml file.",
     ),
 ]
 Out = Annotated[
@@ -49,7 +90,7 @@ Conditions = Annotated[
     typer.Option(
         "--condition",
         metavar="NAME",
-        help="Named condition of the scene, repeatable; default: all.",
+        help="Named condition of the scene, repeatable, or several with commas; default: all.",
     ),
 ]
 RefinedCondition = Annotated[
@@ -101,9 +142,9 @@ ElementSize = Annotated[
     float | None,
     typer.Option(
         "--element-size",
-        metavar="MM",
-        min=0.05,
-        help="Element size of the reference in mm; default 2 (scene tiny: 8). Studies of many runs "
+        metavar="LENGTH",
+        parser=in_millimetres,
+        help='Element size of the reference, "4 mm" or 4; default 2 mm (scene tiny: 8 mm). Studies of many runs '
         "and of differences of runs use twice this size.",
     ),
 ]

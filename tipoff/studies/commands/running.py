@@ -3,12 +3,20 @@
 import json
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn, TypeVar
 
 import typer
+
+from tipoff.studies.commands.strict import is_strict
+
+if TYPE_CHECKING:
+    from tipoff.studies.render.document import Part
+
+
+_T = TypeVar("_T")
 
 
 def study_of(
@@ -23,11 +31,12 @@ def study_of(
 ):
     """The study of a scene with the options of a command.
 
-    ``overrides`` are texts "KEY=VALUE"; ``element_size`` is in mm; ``checkpoint_every`` is a time
-    with its unit. Raises SceneError, every fault listed.
+    ``overrides`` are texts "KEY=VALUE", ``conditions`` names, also several with commas between
+    them; ``element_size`` is in mm; ``checkpoint_every`` is a time with its unit. Raises
+    SceneError, every fault listed.
     """
     from tipoff import scenes
-    from tipoff.scenes import plausibility
+    from tipoff.scenes import plausibility, reading
     from tipoff.scenes.faults import Fault, SceneError
     from tipoff.studies.core.progress import say
     from tipoff.studies.core.settings import defaults
@@ -36,7 +45,11 @@ def study_of(
     pairs = [item.partition("=") for item in overrides or []]
     if wrong := [item for item, (_, equals, _) in zip(overrides or [], pairs) if not equals]:
         raise SceneError([Fault("--set", item, "no value", "KEY=VALUE") for item in wrong])
-    found = scenes.load(scene).replace({key.strip(): value.strip() for key, _, value in pairs})
+    is_file = scene.endswith(".toml")
+    named = {} if is_file else {"source": "--scene", "key": "name", "given": repr(scene)}
+    loaded = _of_option(named, lambda: scenes.load(scene))
+    changes = {key.strip(): value.strip() for key, _, value in pairs}
+    found = _of_option({"source": "--set"}, lambda: loaded.replace(changes))
     settings = replace(defaults(found.name), resume=resume)
     if element_size is not None:
         settings = replace(settings, element_size=1e-3 * element_size)
@@ -45,11 +58,34 @@ def study_of(
     every = quantity("--checkpoint-every", checkpoint_every, "s")
     if every is not None:
         settings = replace(settings, checkpoint_every=every)
-    study = Study(found, Path(out) / found.name, settings, tuple(conditions or ()))
-    _ = study.conditions  # raises for a bad override or an unknown condition before anything runs
-    for warning in plausibility.of_all_conditions(found):
+    names = [name.strip() for item in conditions or () for name in item.split(",")]
+    study = Study(found, Path(out) / found.name, settings, tuple(dict.fromkeys(names)))
+    # a bad override or an unknown condition, before anything runs
+    asked = {"source": "--condition", "key": "name"} if names else {}
+    _of_option(asked, lambda: study.conditions)
+    doubtful = plausibility.of_all_conditions(found)
+    if doubtful and is_strict():
+        raise SceneError(
+            [
+                Fault(found.name, key, given, "a plausible value with --strict")
+                for key, _, given in (words.partition(": ") for words in doubtful)
+            ]
+        )
+    for warning in doubtful:
         say(f"implausible: {warning}")
+    for warning in reading.replaced_by_conditions(scene):
+        say(f"warning: {warning}")
     return study
+
+
+def _of_option(named: dict[str, str], work: Callable[[], _T]) -> _T:
+    """What ``work`` returns; its faults are those of an option, with the fields ``named`` so."""
+    from tipoff.scenes.faults import SceneError
+
+    try:
+        return work()
+    except SceneError as error:
+        raise SceneError([fault._replace(**named) for fault in error.faults]) from None
 
 
 def quantity(option: str, text: str | None, unit: str) -> float | None:
@@ -72,12 +108,14 @@ def quantity(option: str, text: str | None, unit: str) -> float | None:
 def guarded(
     work: Callable[[], dict],
     as_json: bool = False,
-    lines: Callable[[dict], list[str]] | None = None,
+    shown: "Callable[[dict], Sequence[Part]] | None" = None,
+    out: Path | None = None,
 ) -> dict:
     """Run ``work``, print its result as JSON or as text, and return it.
 
-    ``lines`` makes the text from the result. Errors become a message on standard error and an exit
-    code: 1 for a failed run and for what this machine refuses, 2 for bad input, 130 for Ctrl-C.
+    ``shown`` makes the text from the result; below it stand the files of the stage in the folder
+    ``out``. Errors become a message on standard error and an exit code: 1 for a failed run and for
+    what this machine refuses, 2 for bad input, 130 for Ctrl-C.
     """
     from tipoff.files import remove_temporaries
     from tipoff.meshes.generator import GmshUnavailable
@@ -109,11 +147,40 @@ def guarded(
         stop(f"memory does not suffice ({fault})" if str(fault) else "memory does not suffice", 1)
     if as_json:
         print(json.dumps(result, indent=1))
+    else:
+        _print(result, shown, out)
     if failed := result.get("failed"):
         stop("failed:\n  " + "\n  ".join(failed), 1)
-    if lines is not None and not as_json:
-        print("\n".join(lines(result)))
     return result
+
+
+def _print(
+    result: dict, shown: "Callable[[dict], Sequence[Part]] | None", out: Path | None
+) -> None:
+    if shown is not None:
+        from tipoff.studies.render import document
+
+        print(document.terminal(shown(result)))
+    if out is not None:
+        print("\n".join(files(result, out)))
+
+
+def files(result: dict, out: Path) -> list[str]:
+    """One line for each file of a stage below the folder ``out``, made now or before; a folder with
+    more than three of its files is one line."""
+    folder = Path(out) / result["scene"]
+    listed: dict[str, list[str]] = {}
+    for name in (f"{result['stage']}.json", *result["files"]):
+        listed.setdefault(name.rpartition("/")[0], []).append(name)
+    return [
+        f"  {line}"
+        for place, names in listed.items()
+        for line in (
+            map(str, (folder / name for name in names))
+            if not place or len(names) <= 3
+            else [f"{folder / place}/ ({len(names)} files)"]
+        )
+    ]
 
 
 def stop(message: str, code: int) -> NoReturn:

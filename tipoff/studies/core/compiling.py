@@ -17,11 +17,29 @@ from tipoff.kernels.jit import kernel_digest
 from tipoff.studies.core.progress import Board, say
 from tipoff.studies.core.store import Run, execute, prepare
 
+_COMPILES = {"highfi": "20 s", "lowfi": "10 s"}
+
 
 def warm_up(run: Run) -> None:
     """Compile or load the kernels of ``run`` by its first milliseconds."""
     prepare(run)
     execute(replace(run, scene=run.scene.replace({"duration": min(run.scene.duration, 1e-3)})))
+
+
+def announce(run: Run) -> None:
+    """Print that the kernels of ``run`` have to be compiled, where no run has compiled them."""
+    if not _mark(run).is_file():
+        say(
+            f"compiling the kernels of model {run.model} for these effects: about "
+            f"{_COMPILES[run.fidelity]}, once"
+        )
+
+
+def remember(run: Run) -> None:
+    """Note in the cache that the kernels of ``run``, which has been made, are there."""
+    mark = _mark(run)
+    mark.parent.mkdir(parents=True, exist_ok=True)
+    mark.touch()
 
 
 def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
@@ -41,14 +59,13 @@ def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
     try:
         with Board(title, len(missing)) as board:
             pending = {}
-            for mark, run in missing.items():
+            for run in missing.values():
                 board.callback(run.label)(0.0)
-                pending[pool.submit(warm_up, run)] = mark, run
+                pending[pool.submit(warm_up, run)] = run
             for future in as_completed(pending):
-                mark, run = pending[future]
+                run = pending[future]
                 future.result()
-                mark.parent.mkdir(parents=True, exist_ok=True)
-                mark.touch()
+                remember(run)
                 board.finished(run.label, "compiled")
     except BrokenProcessPool:
         say("  a process that compiled kernels was ended; the runs compile their own")

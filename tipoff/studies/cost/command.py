@@ -8,6 +8,7 @@ from tipoff.studies.commands import common
 
 if TYPE_CHECKING:
     from tipoff.studies.core.study import Study
+    from tipoff.studies.render.document import Part
 
 
 def add(app: typer.Typer) -> None:
@@ -18,6 +19,7 @@ def add(app: typer.Typer) -> None:
         "Error over wall time, and growth of time with elements, pads and effects; writes "
         "cost.json and cost_study.json.",
         run,
+        shown,
     )
 
 
@@ -26,3 +28,10 @@ def run(study: "Study") -> dict:
     from tipoff.studies.cost import stage
 
     return stage.run(study)
+
+
+def shown(found: dict) -> "list[Part]":
+    """What the terminal shows of it."""
+    from tipoff.studies.cost import page
+
+    return page.terminal(found)

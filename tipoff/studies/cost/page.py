@@ -34,6 +34,27 @@ def draw(page: "Page") -> list[Part]:
     return page.shown("cost_study", body, "cost")
 
 
+def terminal(document: dict) -> list[Part]:
+    """The points of the Pareto front: each the fastest with its accuracy."""
+    columns = (
+        "model",
+        "numerics",
+        Column("wall time", "s"),
+        Column("error", "deg/s", ".2g"),
+        Column("rate L2", "%", ".2g", 100.0),
+    )
+    keys = ("model", "numerics", "wall_s", "error_deg_s", "curve_error")
+    best = sorted(
+        (point for point in document["points"] if point["pareto"]), key=lambda item: item["wall_s"]
+    )
+    rows = [["reference" if point[key] is None else point[key] for key in keys] for point in best]
+    title = (
+        f"The fastest model of each accuracy, condition {document['condition']}, "
+        f"{len(rows)} of {len(document['points'])} measured points:"
+    )
+    return [Table(columns, rows, title=title)]
+
+
 def tables(document: dict) -> list[Part]:
     """Errors and wall times of all points, and meshes with the error of each surrogate."""
     error = Column("error", "deg/s")

@@ -1,12 +1,15 @@
 """``tipoff droptest``: logs of drop tests compared with simulated cases."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from tipoff.studies.commands.options import Json, Out, SceneName, Set, Surrogate, Workers
 from tipoff.studies.commands.running import guarded, study_of
+
+if TYPE_CHECKING:
+    from tipoff.studies.render.document import Part
 
 
 def add(app: typer.Typer) -> None:
@@ -76,11 +79,9 @@ def droptest(
             ),
         )
 
-    found = guarded(work, json_)
-    if not json_:
+    def shown(found: dict) -> list["Part"]:
         from tipoff.studies.droptest import page
-        from tipoff.studies.render import document
 
-        folder = Path(out) / found["scene"]
-        files = f"Data {folder / found['data']}, figures in {folder / 'figures'}."
-        print(document.terminal([*page.terminal(found), files]))
+        return page.terminal(found)
+
+    guarded(work, json_, shown, out)

@@ -1,7 +1,7 @@
 """``tipoff ensemble``."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -17,6 +17,9 @@ from tipoff.studies.commands.options import (
     Workers,
 )
 from tipoff.studies.commands.running import guarded, study_of
+
+if TYPE_CHECKING:
+    from tipoff.studies.render.document import Part
 
 
 def add(app: typer.Typer) -> None:
@@ -152,9 +155,9 @@ def ensemble(
         study = study_of(scene, out, set_)
         return stage.run(study, options) if case is None else stage.case(study, options, case)
 
-    found = guarded(work, json_)
-    if not json_:
+    def shown(found: dict) -> list["Part"]:
         from tipoff.studies.ensemble import page
-        from tipoff.studies.render import document
 
-        print(document.terminal(page.summary(found) if case is None else page.case(found)))
+        return page.summary(found) if case is None else page.case(found)
+
+    guarded(work, json_, shown, out)

@@ -1,7 +1,7 @@
 """``tipoff flight``: the payload after its exit."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -16,6 +16,9 @@ from tipoff.studies.commands.options import (
     Workers,
 )
 from tipoff.studies.commands.running import guarded, study_of
+
+if TYPE_CHECKING:
+    from tipoff.studies.render.document import Part
 
 
 def add(app: typer.Typer) -> None:
@@ -83,9 +86,9 @@ def flight(
         study = study_of(scene, out, [*(set_ or []), *table], condition, element_size, workers)
         return stage.run(study, stage.Options(vary, cases, seed, model and model.value))
 
-    found = guarded(work, json_)
-    if not json_:
+    def shown(found: dict) -> list["Part"]:
         from tipoff.studies.flight import page
-        from tipoff.studies.render import document
 
-        print(document.terminal(page.terminal(found)))
+        return page.terminal(found)
+
+    guarded(work, json_, shown, out)

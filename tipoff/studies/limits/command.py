@@ -2,12 +2,15 @@
 
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from tipoff.studies.commands.options import Json, Out, SceneName, Set, Surrogate, Workers
 from tipoff.studies.commands.running import guarded, study_of
+
+if TYPE_CHECKING:
+    from tipoff.studies.render.document import Part
 
 
 class Tolerances(StrEnum):
@@ -125,9 +128,9 @@ def add(app: typer.Typer) -> None:
             )
             return stage.run(study_of(scene, out, set_, workers=workers), options)
 
-        found = guarded(work, json_)
-        if not json_:
+        def shown(found: dict) -> list["Part"]:
             from tipoff.studies.limits import page
-            from tipoff.studies.render import document
 
-            print(document.terminal(page.summary(found)))
+            return page.summary(found)
+
+        guarded(work, json_, shown, out)

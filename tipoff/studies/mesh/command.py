@@ -1,6 +1,7 @@
 """``tipoff mesh``."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -12,6 +13,9 @@ from tipoff.studies.commands.options import (
     Set,
 )
 from tipoff.studies.commands.running import guarded, study_of
+
+if TYPE_CHECKING:
+    from tipoff.studies.render.document import Part
 
 
 def add(app: typer.Typer) -> None:
@@ -33,9 +37,9 @@ def mesh(
 
         return stage.run(study_of(scene, out, set_, element_size=element_size))
 
-    found = guarded(work, json_)
-    if not json_:
+    def shown(found: dict) -> list["Part"]:
         from tipoff.studies.mesh import page
-        from tipoff.studies.render import document
 
-        print(document.terminal([page.surfaces(found)]))
+        return [page.surfaces(found)]
+
+    guarded(work, json_, shown, out)

@@ -1,12 +1,15 @@
 """``tipoff paper``."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from tipoff.studies.commands.options import Json, Out, SceneName, Set, Workers
 from tipoff.studies.commands.running import guarded, study_of
+
+if TYPE_CHECKING:
+    from tipoff.studies.render.document import Part
 
 
 def add(app: typer.Typer) -> None:
@@ -45,9 +48,9 @@ def paper(
 
         return stage.run(study_of(scene, out, set_, workers=workers), stage.Options(starts))
 
-    found = guarded(work, json_)
-    if not json_:
+    def shown(found: dict) -> list["Part"]:
         from tipoff.studies.paper import page
-        from tipoff.studies.render import document
 
-        print(document.terminal(page.terminal(found)))
+        return page.terminal(found)
+
+    guarded(work, json_, shown, out)

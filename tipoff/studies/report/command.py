@@ -51,4 +51,7 @@ def report(
             study_of(scene, out, set_, element_size=element_size, workers=workers), every
         )
 
-    guarded(work, json_)
+    def shown(found: dict) -> list[str]:
+        return [found["verdict"]] if found["verdict"] else []
+
+    guarded(work, json_, shown, out)

@@ -16,7 +16,8 @@ from tipoff.studies.runs import stage as runs
 
 
 def run(study: Study, every: bool = False) -> dict:
-    """Make missing results and write report.html; ``failed`` contains the failures of all stages.
+    """Make missing results and write report.html; ``verdict`` is one sentence on the agreement of
+    both models, ``failed`` contains the failures of all stages.
 
     With ``every``, each study without a present result is made too; the page gives the reason where
     the scene does not allow one.
@@ -46,10 +47,12 @@ def run(study: Study, every: bool = False) -> dict:
         )
         path = study.path("report.html")
         write_text(path, page.render())
-        return {"report": study.relative(path), "failed": _failed(documents, problems)}, [
-            path,
-            *page.pictures,
-        ]
+        found = {
+            "report": study.relative(path),
+            "verdict": _verdict(documents.get("agreement")),
+            "failed": _failed(documents, problems),
+        }
+        return found, [path, *page.pictures]
 
     keys = {name: found and found["key"] for name, found in documents.items()}
     made_at = {
@@ -59,6 +62,17 @@ def run(study: Study, every: bool = False) -> dict:
     shown = study.key(__name__, drawn, study.scene.resolved().get("flight"))
     key = content_hash(keys, content_hash(made_at), content_hash(there), problems | absent, shown)
     return study.stage("report", key, make)
+
+
+def _verdict(agreement: dict | None) -> str:
+    """How many conditions agree, and the speed-up; empty where both models were not compared."""
+    if not agreement:
+        return ""
+    from tipoff.studies.agreement import page
+
+    found = f"Compliant contact against finite elements: {page.summary(agreement['compliant'])}"
+    speed = agreement.get("speedup_compliant")
+    return found + (f"; {speed['ratio']:,.0f} times faster." if speed else ".")
 
 
 def _made(study: Study, listed: list[Result]) -> dict[str, str]:

@@ -24,6 +24,7 @@ from tipoff.studies.commands.running import guarded, quantity, study_of
 
 if TYPE_CHECKING:
     from tipoff.studies.core.study import Study
+    from tipoff.studies.render.document import Part
 
 
 def add(app: typer.Typer) -> None:
@@ -63,7 +64,7 @@ def highfi(
             resume,
         )
 
-    _run("highfi", study, json_)
+    _run("highfi", study, json_, out)
 
 
 def lowfi(
@@ -76,16 +77,21 @@ def lowfi(
 ) -> None:
     """Run the surrogate, model compliant, on every condition; writes lowfi.json and a netCDF file
     each."""
-    _run("lowfi", lambda: study_of(scene, out, set_, condition, workers=workers), json_)
+    _run("lowfi", lambda: study_of(scene, out, set_, condition, workers=workers), json_, out)
 
 
-def _run(fidelity: str, study: Callable[[], "Study"], as_json: bool) -> None:
+def _run(fidelity: str, study: Callable[[], "Study"], as_json: bool, out: Path) -> None:
     def work() -> dict:
         from tipoff.studies.runs import stage
 
         return stage.run(study(), fidelity)
 
-    guarded(work, as_json)
+    def shown(found: dict) -> list["Part"]:
+        from tipoff.studies.runs import page
+
+        return [page.settled(found["conditions"])]
+
+    guarded(work, as_json, shown, out)
 
 
 def run(
@@ -93,8 +99,13 @@ def run(
     out: Out = Path("out"),
     set_: Set = None,
     condition: Annotated[
-        str, typer.Option("--condition", metavar="NAME", help="Named condition.")
-    ] = "nominal",
+        list[str] | None,
+        typer.Option(
+            "--condition",
+            metavar="NAME",
+            help="Named condition, repeatable, or several with commas; default: the scene itself.",
+        ),
+    ] = None,
     model: Model = None,
     modes: Modes = None,
     calibration: CalibrationFile = None,
@@ -121,13 +132,14 @@ def run(
     resume: Resume = True,
     json_: Json = False,
 ) -> None:
-    """Run one condition in one model and print velocity and rates after the exit.
+    """Run one condition or several in one model and print velocity and rates after the exit.
 
     The output names the model and, after tipoff compare, its error. The rail compliance is computed
     once for a rail with its pads. --accuracy and --budget choose a model from the results of tipoff
     cost.
 
       tipoff run --condition phi35
+      tipoff run --condition phi15,phi35,phi60
       tipoff run --condition phi35 --model finite-elements
       tipoff run --condition h4 --accuracy "0.1 deg/s"
     """
@@ -142,14 +154,15 @@ def run(
             scene,
             out,
             set_,
-            [condition],
+            condition or ["nominal"],
             element_size,
             checkpoint_every=checkpoint_every,
             resume=resume,
         )
+        names = list(study.conditions)
         if accuracy is None and budget is None:
             models.require(options, checkpoint_every=checkpoint_every)
-            return single.run(study, condition, options, quiet=json_)
+            return single.several(names, lambda name: single.run(study, name, options, json_))
         given = {"--model": model, "--calibration": calibration, "--modes": modes}
         if wrong := [name for name, value in given.items() if value is not None]:
             raise SceneError(
@@ -159,6 +172,11 @@ def run(
                 ]
             )
         limits = quantity("--accuracy", accuracy, "deg/s"), quantity("--budget", budget, "s")
-        return single.chosen(study, condition, *limits, quiet=json_)
+        return single.several(names, lambda name: single.chosen(study, name, *limits, json_))
 
-    guarded(work, json_)
+    def shown(found: dict) -> list["Part"]:
+        from tipoff.studies.runs import page
+
+        return [page.settled(found["conditions"])] if "conditions" in found else []
+
+    guarded(work, json_, shown)

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from tipoff.studies.render.document import Figure, Part
+from tipoff.studies.render.table import Column, Table
 from tipoff.studies.report.inputs import thrust_facts
 from tipoff.studies.runs import figures
 
@@ -15,6 +16,34 @@ _CURVES = (
     "contact; dashed: springs, calibrated; dotted: springs before calibration. Rates are inertial, "
     "in payload body axes."
 )
+
+
+def settled(rows: list[dict]) -> Table:
+    """Velocity and rates of each condition for the terminal, from the ``rows`` of a result file."""
+    columns: tuple[Column | str, ...] = (
+        "condition",
+        "model",
+        "status",
+        Column("v_x", "m/s", ".4f"),
+        *(Column(f"rate {axis}", "deg/s", "+.3f") for axis in "xyz"),
+        Column("off axis", "deg", ".3g"),
+        Column("took", "s", ".2g"),
+    )
+    found = []
+    for row in rows:
+        own = row["settled"] or {}
+        found.append(
+            (
+                row["condition"],
+                row["model"],
+                row["status"],
+                own.get("velocity_m_s", [None])[0],
+                *own.get("rate_deg_s", [None] * 3),
+                own.get("direction_error_deg"),
+                row["wall_s"],
+            )
+        )
+    return Table(columns, found)
 
 
 def thrust(page: "Page") -> list[Part]:

@@ -1,17 +1,19 @@
 """One run of one condition in one model; prints the result."""
 
+from collections.abc import Callable, Sequence
+
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.calibration.files import constants
-from tipoff.studies.core import models, words
+from tipoff.studies.core import compiling, models, words
 from tipoff.studies.core.progress import say
 from tipoff.studies.core.store import Run
-from tipoff.studies.core.study import FAILED, Study, StudyError
+from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.cost import choice
 from tipoff.studies.cost import stage as cost
 from tipoff.studies.runs import disturbed
-from tipoff.studies.runs.stage import row
+from tipoff.studies.runs.stage import failure, row
 
 
 def run(
@@ -36,6 +38,15 @@ def run(
     found = study.rail_compliance(scene, judged=False)
     request = study.lowfi(condition, fitted, compliance=found, modes=options.modes or 0)
     return result_of(study, condition, request, quiet)
+
+
+def several(names: Sequence[str], make: Callable[[str], dict]) -> dict:
+    """The result that ``make`` has for one condition; of more than one, ``conditions`` holds a
+    result each and ``failed`` the failures of all."""
+    if len(names) == 1:
+        return make(names[0])
+    found = [make(name) for name in names]
+    return {"conditions": found, "failed": [line for item in found for line in item["failed"]]}
 
 
 def chosen(
@@ -66,7 +77,10 @@ def chosen(
 
 
 def result_of(study: Study, condition: str, request: Run, quiet: bool) -> dict:
+    if study.store.load(request) is None:
+        compiling.announce(request)
     found = study.store.get(request)
+    compiling.remember(request)
     calibrated, modes = request.calibration is not None, getattr(request.numerics, "modes", 0)
     result = row(condition, found, study.relative(study.store.path(request)))
     result["agreement"] = kept.words(study, request.model, condition, calibrated, modes)
@@ -74,11 +88,7 @@ def result_of(study: Study, condition: str, request: Run, quiet: bool) -> dict:
         result["disturbed"] = disturbed.of(request, found, study.settings.clearance_change)
     if not quiet:
         print("\n".join(lines(result, model(request), study)))
-    return result | {
-        "failed": [f"{condition}: {found.status}: {found.message}"]
-        if found.status in FAILED
-        else []
-    }
+    return result | {"failed": failure(condition, request, found)}
 
 
 def model(request: Run) -> str:

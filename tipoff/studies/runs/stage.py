@@ -4,9 +4,11 @@ compliant contact."""
 import math
 from pathlib import Path
 
+from tipoff.mechanics import unfinished
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.convergence import stresses
+from tipoff.studies.core import compiling
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import FAILED, Study
 
@@ -20,19 +22,22 @@ def requests(study: Study, fidelity: str) -> dict[str, Run]:
 
 
 def run(study: Study, fidelity: str) -> dict:
-    """``{"conditions": [...]}``; ``failed`` names conditions that diverged or were refused."""
+    """``{"conditions": [...]}``, each with ``advice``, empty unless it ended too early; ``failed``
+    names those that diverged, were refused, or reached the end of the scene too early."""
     requested = requests(study, fidelity)
 
     def make() -> tuple[dict, list[Path]]:
-        runs = dict(zip(requested, study.store.fill(fidelity, list(requested.values()))))
+        asked = list(requested.values())
+        compiling.announce(asked[0])
+        runs = dict(zip(requested, study.store.fill(fidelity, asked)))
+        compiling.remember(asked[0])
         rows = [
-            row(name, runs[name], study.relative(study.store.path(requested[name])))
-            for name in requested
+            row(name, runs[name], study.relative(study.store.path(run)))
+            | {"advice": unfinished.advice(run.scene, runs[name])}
+            for name, run in requested.items()
         ]
         failed = [
-            f"{name}: {found.status}: {found.message}"
-            for name, found in runs.items()
-            if found.status in FAILED
+            line for name, run in requested.items() for line in failure(name, run, runs[name])
         ]
         return {"conditions": rows, "failed": failed}, [
             study.store.path(item) for item in requested.values()
@@ -41,6 +46,14 @@ def run(study: Study, fidelity: str) -> dict:
     return study.stage(
         fidelity, study.key(__name__, [item.key for item in requested.values()]), make
     )
+
+
+def failure(name: str, request: Run, found: Trajectory) -> list[str]:
+    """One line on the run of a condition that is no success; empty for one that exited or jammed."""
+    if found.status not in (*FAILED, "time_limit"):
+        return []
+    words = "; ".join(filter(None, [found.message, unfinished.advice(request.scene, found)]))
+    return [f"{name}: {found.status}: {words}"]
 
 
 def row(name: str, run: Trajectory, path: str) -> dict:

@@ -8,6 +8,7 @@ from tipoff.studies.commands import common
 
 if TYPE_CHECKING:
     from tipoff.studies.core.study import Study
+    from tipoff.studies.render.document import Part
 
 
 def add(app: typer.Typer) -> None:
@@ -17,6 +18,7 @@ def add(app: typer.Typer) -> None:
         "stability",
         "Hard cases, each with a simpler method that fails on it; writes stability.json.",
         run,
+        shown,
     )
 
 
@@ -25,3 +27,10 @@ def run(study: "Study") -> dict:
     from tipoff.studies.stability import stage
 
     return stage.run(study)
+
+
+def shown(found: dict) -> "list[Part]":
+    """What the terminal shows of it."""
+    from tipoff.studies.stability import page
+
+    return page.terminal(found)

@@ -62,6 +62,18 @@ def stability(document: dict) -> Table:
     )
 
 
+def terminal(document: dict) -> list[Part]:
+    """Each hard case with its verdict."""
+    columns = ("case", "model", "measured", "limit", "simpler method", "verdict")
+    rows = [
+        [c["name"], c["fidelity"], _figure(c["figure"]), c["limit"], c["control"], _verdict(c)]
+        for c in document["cases"]
+    ]
+    good = sum(c["held"] and c["control_failed"] for c in document["cases"])
+    title = f"{good} of {len(rows)} hard cases are held where a simpler method fails:"
+    return [Table(columns, rows, title=title)]
+
+
 def _figure(value: float | None) -> float | str:
     return "infinite" if value is None else value
 

@@ -1,7 +1,7 @@
 """``tipoff sweeps``."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -15,6 +15,9 @@ from tipoff.studies.commands.options import (
     Workers,
 )
 from tipoff.studies.commands.running import guarded, study_of
+
+if TYPE_CHECKING:
+    from tipoff.studies.render.document import Part
 
 
 def add(app: typer.Typer) -> None:
@@ -48,9 +51,9 @@ def sweeps(
         study = study_of(scene, out, set_, element_size=element_size, workers=workers)
         return stage.run(study, stage.Options(angles, model and model.value))
 
-    found = guarded(work, json_)
-    if not json_:
-        from tipoff.studies.render import document
+    def shown(found: dict) -> list["Part"]:
         from tipoff.studies.sweeps import page
 
-        print(document.terminal(page.summary(found)))
+        return page.summary(found)
+
+    guarded(work, json_, shown, out)

@@ -65,8 +65,8 @@ def view(
             study_of(scene, out, set_, element_size=element_size), condition, frames, exaggeration
         )
 
-    def lines(found: dict) -> list[str]:
+    def shown(found: dict) -> list[str]:
         folder = Path(out) / found["scene"]
         return [f"{folder / path}" for path in (found["collection"], *found["pictures"].values())]
 
-    guarded(work, json_, lines)
+    guarded(work, json_, shown)

@@ -1,0 +1,1 @@
+"""Scene files from a few numbers, and their schema."""

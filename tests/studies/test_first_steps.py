@@ -1,0 +1,129 @@
+"""What a newcomer meets at the command line: help, completion, misspelt names, units, the end of
+every command."""
+
+import json
+
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from tests.studies.synthetic import flight
+from tipoff.studies.cli import app
+from tipoff.studies.commands import options, running
+from tipoff.studies.core import store as store_module
+
+
+def call(*arguments):
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+@pytest.fixture
+def stub(monkeypatch):
+    def put(**parts):
+        monkeypatch.setattr(store_module, "prepare", lambda run: None)
+        cost = {"wall_s": 1.0, "compile_s": 0.0, "steps": 10, "dt_s": 1e-4}
+        cost |= {"elements": 1, "ns_per_element_step": 1.0}
+        monkeypatch.setattr(
+            store_module,
+            "execute",
+            lambda run, *rest, **kept: flight(model=run.model, cost=cost, **parts),
+        )
+
+    return put
+
+
+def test_version_and_groups():
+    from importlib.metadata import version
+
+    assert call("--version").stdout.strip() == f"tipoff {version('tipoff')}"
+    shown = call("--help").stdout
+    for title in ("Answers", "Surrogate against finite elements", "Studies", "--show-completion"):
+        assert title in shown
+
+
+def test_completion_of_scenes_and_files(tmp_path, monkeypatch):
+    (tmp_path / "mine.toml").touch()
+    (tmp_path / "notes.txt").touch()
+    monkeypatch.chdir(tmp_path)
+    assert options.scene_names("ti") == ["tiny", "titanium"]
+    assert options.scene_names("m") == ["mine.toml"]
+    assert options.scene_names(f"{tmp_path}/") == [f"{tmp_path}/mine.toml"]
+
+
+@pytest.mark.parametrize("text, value", [("4 mm", 4.0), ("0.4 cm", 4.0), ("4", 4.0)])
+def test_an_element_size_has_a_unit(text, value):
+    assert options.in_millimetres(text) == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize("text", ["4 kg", "four", "0.01", "10 um", "nan", "inf", "-4 mm", ""])
+def test_a_bad_element_size(text):
+    with pytest.raises(typer.BadParameter):
+        options.in_millimetres(text)
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (["--scene", "tny"], ["in the options", "--scene: name: given 'tny'", "mean tiny?"]),
+        (["--condition", "phi3"], ["in the options", "--condition", "phi35 or phi0?"]),
+        (["--set", "payload.mas=9 kg"], ["in the options", "--set: payload.mas", "payload.mass"]),
+        (["--set", "mass=9 kg"], ["did you mean payload.mass or platform.mass?"]),
+        (["--set", "contact.clearance=9 kg"], ['for example "0.25 mm"']),
+        (["--set", "thrust_offset.misalignment.axial=9 kg"], ['for example "0.1 deg"']),
+        (["--set", "pads.3.inset=9 kg"], ['for example "9 mm"']),
+    ],
+)
+def test_a_fault_of_an_option_helps(arguments, words, tmp_path):
+    found = call("run", "--scene", "tiny", "--out", tmp_path / "out", *arguments)
+    assert found.exit_code == 2 and not (tmp_path / "out").exists()
+    assert all(word in found.stderr for word in words), found.stderr
+
+
+def test_strict_refuses_what_is_implausible(tmp_path, stub):
+    stub()
+    doubtful = ["run", "--scene", "tiny", "--model", "finite-elements", "--out", tmp_path / "out"]
+    doubtful += ["--set", "rail.material.density=2.8 kg/m**3"]
+    refused = call(*doubtful, "--strict")
+    assert refused.exit_code == 2 and "wave speed" in refused.stderr
+    assert not (tmp_path / "out").exists()
+    warned = call(*doubtful)
+    assert warned.exit_code == 0 and "implausible" in warned.stderr
+
+
+def test_several_conditions_in_one_command(tmp_path, stub):
+    stub()
+    asked = ["run", "--scene", "tiny", "--model", "finite-elements", "--out", tmp_path]
+    asked += ["--condition", "phi15,h1", "--condition", "phi60"]
+    found = json.loads(call(*asked, "--json").stdout)
+    assert [row["condition"] for row in found["conditions"]] == ["phi15", "h1", "phi60"]
+    shown = call(*asked).stdout
+    assert "tiny / h1" in shown and "rate x (deg/s)" in shown
+
+
+def test_a_stage_ends_with_a_table_and_its_files_also_when_nothing_changed(tmp_path, stub):
+    stub()
+    asked = ["highfi", "--scene", "tiny", "--condition", "phi15,h1", "--out", tmp_path]
+    first, second = call(*asked), call(*asked)
+    assert first.stdout == second.stdout and "nothing changed" in second.stderr
+    assert "off axis (deg)" in first.stdout and "phi15" in first.stdout
+    assert str(tmp_path / "tiny" / "highfi.json") in first.stdout
+
+
+def test_files_of_a_stage(tmp_path):
+    result = {"scene": "mine", "stage": "highfi", "files": {"a.csv": "", "b/1": "", "b/2": ""}}
+    place = tmp_path / "mine"
+    assert running.files(result, tmp_path) == [
+        f"  {place / name}" for name in ("highfi.json", "a.csv", "b/1", "b/2")
+    ]
+    result["files"] |= {"b/3": "", "b/4": ""}
+    assert running.files(result, tmp_path)[-1] == f"  {place / 'b'}/ (4 files)"
+
+
+def test_a_run_that_ends_too_early_is_no_success(tmp_path, stub):
+    stub(status="time_limit", outcome=flight().outcome._replace(rate=None, velocity=None))
+    for command in ("highfi", "run"):
+        model = ["--model", "finite-elements"] if command == "run" else []
+        asked = [command, "--scene", "tiny", "--condition", "phi15", "--out", tmp_path, *model]
+        found = call(*asked)
+        assert found.exit_code == 1
+        assert "phi15: time_limit: " in found.stderr and "duration of" in found.stderr

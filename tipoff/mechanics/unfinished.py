@@ -1,0 +1,72 @@
+"""What would help a run that reached the end of its scene before the payload left the rail, or
+before its rates settled (status ``time_limit``).
+
+The definitions of exit and settled window are those of ``mechanics.outcome``.
+"""
+
+import math
+
+from tipoff.mechanics.outcome import SETTLE_DELAY, SETTLE_WINDOW, relative_motion
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.effects import thrust_law
+from tipoff.scenes.scene import Scene
+
+_HORIZON = 100.0  # durations of the scene within which the end of the thrust is looked for
+_BURNT = 1e-3  # of the peak, as in ``mechanics.outcome``
+_SLOW = 0.01  # m/s, as for a jam
+_STEP = 1e-5  # s, to which a duration is rounded up
+_MARGIN = 1e-3  # s: a payload that turns leaves the rail later than its mass centre tells
+
+
+def advice(scene: Scene, run: Trajectory) -> str:
+    """Why a ``run`` of ``scene`` has the status ``time_limit`` and which duration would do; empty
+    for any other status."""
+    if run.status != "time_limit":
+        return ""
+    ends = thrust_law.burnout(scene.thrust.record(), _BURNT, _HORIZON * scene.duration)
+    if ends >= _HORIZON * scene.duration:
+        return (
+            "the thrust does not end within the scene, so no rate settles: state a thrust that ends"
+        )
+    if run.outcome.exit_time is not None:
+        return _before_settling(run.outcome.exit_time, ends)
+    return _on_the_rail(scene, run, ends)
+
+
+def way_to_exit(scene: Scene) -> float:
+    """Travel (m) along the rail from ignition to the exit: the trailing edge of the rearmost pad
+    reaches the end of the rail. A payload that turns has a little more or less to go."""
+    rearmost = min(pad.position[0] - 0.5 * pad.length for pad in scene.pads)
+    begun = scene.initial.position.x if scene.initial is not None else 0.0
+    return scene.rail.end - rearmost - begun
+
+
+def _before_settling(exit_time: float, thrust_ends: float) -> str:
+    start = max(exit_time + SETTLE_DELAY, thrust_ends)
+    cause = (
+        f"thrust falls below 0.1 % of its peak at {_ms(thrust_ends)}"
+        if thrust_ends > exit_time + SETTLE_DELAY
+        else f"the payload leaves the rail at {_ms(exit_time)}"
+    )
+    return f"{cause}; settling needs a duration of {_ms(_up(start + SETTLE_WINDOW))}"
+
+
+def _on_the_rail(scene: Scene, run: Trajectory, thrust_ends: float) -> str:
+    moved = relative_motion(run)
+    place, speed = moved["relative_position"][:, 0], float(moved["relative_velocity"][-1, 0])
+    way, whole = float(place[-1] - place[0]), way_to_exit(scene)
+    text = f"still on the rail: {1e3 * way:.3g} of {1e3 * whole:.3g} mm"
+    if speed < _SLOW:
+        lasts = f" (it lasts until {_ms(thrust_ends)})" if thrust_ends > scene.duration else ""
+        return f"{text}, at {speed:.2g} m/s: it needs more thrust{lasts}, or less friction"
+    exit_time = float(run.time[-1]) + (whole - way) / speed
+    settled = max(exit_time + SETTLE_DELAY, thrust_ends) + SETTLE_WINDOW + _MARGIN
+    return f"{text}, at {speed:.3g} m/s; at this speed a duration of {_ms(_up(settled))} is enough"
+
+
+def _up(time: float) -> float:
+    return math.ceil(time / _STEP - 1e-9) * _STEP
+
+
+def _ms(time: float) -> str:
+    return f"{1e3 * time:.6g} ms"

@@ -1,0 +1,136 @@
+"""``tipoff new`` and ``tipoff schema``."""
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tipoff.studies.commands.options import Json
+from tipoff.studies.commands.running import guarded, quantity
+
+# option, unit, question, answer if none is given
+_ASKED = {
+    "mass": ("kg", "Mass of the payload", "9.9 kg"),
+    "size": ("m", "Its size along X, Y and Z", "350 mm, 200 mm, 200 mm"),
+    "rail_length": ("m", "Travel along the rail", "220 mm"),
+    "clearance": ("m", "Clearance between each pad and its wall", "0.25 mm"),
+    "thrust": ("N", "Peak of the thrust", "6 kN"),
+    "burn_time": ("s", "Time in which it rises and falls", "24 ms"),
+}
+
+
+def add(app: typer.Typer) -> None:
+    """Add the commands to ``app``."""
+    app.command()(new)
+    app.command()(schema)
+
+
+def _option(name: str) -> typer.models.OptionInfo:
+    _, question, default = _ASKED[name]
+    option = f"--{name.replace('_', '-')}"
+    return typer.Option(option, metavar="QUANTITY", help=f"{question}; default: {default}.")
+
+
+def new(
+    file: Annotated[Path, typer.Argument(metavar="FILE.toml", help="The scene file to write.")],
+    mass: Annotated[str | None, _option("mass")] = None,
+    size: Annotated[str | None, _option("size")] = None,
+    rail_length: Annotated[str | None, _option("rail_length")] = None,
+    clearance: Annotated[str | None, _option("clearance")] = None,
+    thrust: Annotated[str | None, _option("thrust")] = None,
+    burn_time: Annotated[str | None, _option("burn_time")] = None,
+    json_: Json = False,
+) -> None:
+    """Write a commented scene of your own launcher from a few numbers; it runs as it is.
+
+    On a terminal the numbers that are not given are asked for. What they do not say is assumed, and
+    listed so under [provenance] in the file.
+
+      tipoff new my_launcher.toml --mass "12 kg" --thrust "4 kN"
+      tipoff run --scene my_launcher.toml
+    """
+    given = {
+        "mass": mass,
+        "size": size,
+        "rail_length": rail_length,
+        "clearance": clearance,
+        "thrust": thrust,
+        "burn_time": burn_time,
+    }
+    if all(value is None for value in given.values()) and sys.stdin.isatty():
+        given = {
+            name: typer.prompt(question, default=default)
+            for name, (_, question, default) in _ASKED.items()
+        }
+
+    def work() -> dict:
+        from tipoff.files import write_text
+        from tipoff.scenes import parse, reading
+        from tipoff.scenes.faults import Fault, SceneError
+        from tipoff.studies.new_scene import template
+
+        faults = []
+        if file.suffix != ".toml":
+            faults.append(Fault("FILE", "name", str(file), "a name that ends in .toml"))
+        if file.exists():
+            faults.append(Fault("FILE", "name", str(file), "a file that is not there yet"))
+        if faults:
+            raise SceneError(faults)
+        text = template.text(file.stem, _numbers(given))
+        write_text(file, text)
+        parse(*reading.read(file))
+        return {"scene": file.stem, "file": str(file), "text": text}
+
+    guarded(work, json_, _next)
+
+
+def _next(found: dict) -> list[str]:
+    file = found["file"]
+    return [
+        f"wrote {file}. Next:",
+        f"  tipoff run --scene {file}         # velocity and rates",
+        f"  tipoff ensemble --scene {file}    # with random errors of thrust and mass",
+        f"  tipoff report --scene {file}      # beside finite elements, on one page",
+    ]
+
+
+def _numbers(given: dict):
+    """The numbers of the new scene in SI. Raises SceneError, every fault listed."""
+    from tipoff.scenes.faults import Fault, SceneError
+    from tipoff.studies.core.checked import together
+    from tipoff.studies.new_scene.template import Numbers
+
+    def read(name: str):
+        unit, _, default = _ASKED[name]
+        text, option = given[name] or default, f"--{name.replace('_', '-')}"
+        if name != "size":
+            return quantity(option, text, unit)
+        sides = [quantity(option, part.strip(), unit) for part in text.split(",")]
+        if len(sides) != 3:
+            expected = 'three lengths, for example "350 mm, 200 mm, 200 mm"'
+            raise SceneError([Fault(option, "value", text, expected)])
+        return tuple(sides)
+
+    found = together(*((lambda name=name: read(name)) for name in _ASKED))
+    return Numbers(*found)
+
+
+def schema() -> None:
+    """Print the JSON schema of scene files, with which an editor completes and checks them.
+
+      tipoff schema > tipoff.schema.json
+
+    An editor with Even Better TOML or taplo uses it for a file that begins with the line
+    #:schema ./tipoff.schema.json
+    """
+
+    def work() -> dict:
+        from tipoff.scenes.schema import schema
+
+        return schema()
+
+    guarded(
+        lambda: {"schema": work()}, False, lambda found: [json.dumps(found["schema"], indent=1)]
+    )
