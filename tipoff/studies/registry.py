@@ -43,7 +43,7 @@ QUESTIONS: tuple[Entry, ...] = (
     blind.QUESTION,
     sensitivity.QUESTION,
     sweeps.QUESTION,
-    montecarlo.QUESTION,
+    montecarlo.ENTRY,
     limits.QUESTION,
     flight.QUESTION,
     droptest.QUESTION,

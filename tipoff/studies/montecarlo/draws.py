@@ -1,0 +1,187 @@
+"""The first cases of a population, run by run through the finite-element reference and the surrogate.
+
+A case has the same overrides of the scene in both models. The reference has the element size of the
+settings where many runs are needed (``Settings.coarse_size``), and half of it for some cases, so that
+the error of the mesh is beside that of the model. The surrogate has the rail compliance of the same
+mesh, and the step of single runs.
+"""
+
+import statistics
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tipoff.highfi.rail import memory_estimate, step_cost
+from tipoff.highfi.statics import assembly
+from tipoff.lowfi.ensemble import columns
+from tipoff.lowfi.ensemble.batch import Case, Family
+from tipoff.lowfi.ensemble.columns import Columns
+from tipoff.lowfi.ensemble.threads import completed
+from tipoff.lowfi.numerics import Numerics
+from tipoff.mechanics.models import COMPLIANT
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.scene import NOMINAL
+from tipoff.studies.agreement import growth
+from tipoff.studies.core.progress import say
+from tipoff.studies.core.store import Run
+from tipoff.studies.core.study import Study
+from tipoff.studies.populations.population import TOLERANCE, Surrogate
+
+_PIECE = 16  # runs held in memory at once
+_REPEATS = 3  # of the timed surrogate
+
+Rows = Sequence[Mapping[str, Any]]
+
+
+class Draws(NamedTuple):
+    """``reference`` and ``surrogate``, results of n cases on the same mesh; ``fine``, of the first m
+    on the finer mesh; ``contacts`` (n,), the number of contacts of a case in the surrogate:
+    stretches of time in which some pad bears a force, as ``growth.contacts`` counts them; ``lost``,
+    status and message of each run of the reference that did not settle; processor seconds of a run
+    of the reference, ``reference_cpu_s``, and on the finer mesh, ``fine_cpu_s``; numbers of
+    ``elements`` and ``fine_elements``."""
+
+    reference: Columns
+    surrogate: Columns
+    fine: Columns
+    contacts: np.ndarray
+    lost: list[dict]
+    reference_cpu_s: float
+    fine_cpu_s: float
+    elements: int
+    fine_elements: int
+
+
+def run(study: Study, model: Surrogate, rows: Rows, fine: int) -> Draws:
+    """The cases with the overrides ``rows`` of the scene, the first ``fine`` of them on the finer
+    mesh too. Runs are kept in the store of the study, so that an interrupted call goes on."""
+    coarse, finer, beside = requests(study, model, rows, fine)
+    announce(study, [*coarse, *finer])
+    many = _filled(study, "tails, reference", coarse)
+    few = _filled(study, "tails, finer mesh", finer)
+    surrogate = _filled(study, "tails, surrogate", beside)
+    return Draws(
+        columns.of([each.case for each in many]),
+        columns.of([each.case for each in surrogate]),
+        columns.of([each.case for each in few]),
+        np.array([each.contacts for each in surrogate]),
+        [
+            {"run": request.label, "status": each.case.status, "message": each.case.message}
+            for request, each in zip([*coarse, *finer], [*many, *few])
+            if each.case.outcome.rate is None
+        ],
+        statistics.median(each.cpu_s for each in many),
+        statistics.median(each.cpu_s for each in few),
+        many[0].elements,
+        few[0].elements,
+    )
+
+
+def requests(
+    study: Study, model: Surrogate, rows: Rows, fine: int
+) -> tuple[list[Run], list[Run], list[Run]]:
+    """The runs of the reference, those on the finer mesh, and those of the surrogate."""
+    sizes = (study.settings.coarse_size, study.settings.element_size)
+    coarse, finer = (
+        [
+            replace(
+                study.highfi(NOMINAL, tag=f"-draw{number}{tag}", element_size=size),
+                # the scene itself, whatever condition has the name
+                scene=study.scene.replace(dict(row)),
+            )
+            for number, row in enumerate(part)
+        ]
+        for size, tag, part in zip(sizes, ("-coarse", ""), (rows, rows[:fine]))
+    )
+    under = model.compliance
+    if model.name == COMPLIANT and study.scene.contact is not None:
+        under = study.rail_compliance(study.scene, element_size=sizes[0])
+    beside = [
+        Run(
+            "lowfi",
+            f"{NOMINAL}-draw{number}-{model.name}",
+            model.at(dict(row)).scene,
+            Numerics(),
+            None,
+            under,
+        )
+        for number, row in enumerate(rows)
+    ]
+    return coarse, finer, beside
+
+
+def announce(study: Study, runs: Sequence[Run]) -> None:
+    """Print how many of the ``runs`` of the reference are missing, and the time and memory that they
+    take."""
+    from tipoff import highfi
+
+    for size in dict.fromkeys(run.numerics.element_size for run in runs):
+        wanted = [run for run in runs if run.numerics.element_size == size]
+        missing = [run for run in wanted if not study.store.path(run).is_file()]
+        if not missing:
+            continue
+        mesh = highfi.prepare(missing[0].scene, missing[0].numerics)
+        elements, nodes = mesh.cells.shape
+        shapes = len(assembly.shape_classes(mesh)[1])
+        memory = memory_estimate.of_mesh(elements, nodes, shapes)
+        _, seconds = step_cost.run_time(mesh, missing[0].scene)
+        say(
+            f"  {len(missing)} of {len(wanted)} runs of the reference on elements of "
+            f"{1e3 * size:g} mm are to be made: {elements:,} elements, about "
+            f"{step_cost.in_words(len(missing) * seconds)} on one core, "
+            f"{memory_estimate.in_words(memory)} for each of {study.settings.workers} at once; an "
+            "interrupted study goes on from the finished runs"
+        )
+
+
+def seconds_per_case(model: Surrogate, rows: Rows) -> float:
+    """Processor seconds that the population takes for a case of the ``rows``, without
+    compilation."""
+    family = Family(model.scene, None, Numerics(relative_tolerance=TOLERANCE), model.compliance)
+
+    def once(part: Rows) -> float:
+        began = time.process_time()
+        list(completed(family, [part], 1))
+        return (time.process_time() - began) / len(part)
+
+    once(rows[:1])  # compiles
+    return statistics.median(once(rows) for _ in range(_REPEATS))
+
+
+class _Kept(NamedTuple):
+    """What remains of a run."""
+
+    case: Case
+    contacts: int
+    cpu_s: float
+    elements: int
+
+
+def _kept(found: Trajectory) -> _Kept:
+    cost = found.cost
+    steps = int(cost["steps"])
+    case = Case(found.status, found.message, found.outcome, steps, cost["wall_s"])
+    loaded = (
+        np.abs(found.pad_force).max(axis=(1, 2)) > 0.0
+        if found.pad_force.size
+        else np.zeros(found.time.size, dtype=bool)
+    )
+    return _Kept(
+        case,
+        len(growth.contacts(found.time, loaded)),
+        cost.get("cpu_s", cost["wall_s"]),
+        int(cost.get("elements", 0)),
+    )
+
+
+def _filled(study: Study, title: str, runs: Sequence[Run]) -> list[_Kept]:
+    """What remains of each of ``runs``, few of which are in memory at once."""
+    found: list[_Kept] = []
+    for begin in range(0, len(runs), _PIECE):
+        piece = runs[begin : begin + _PIECE]
+        label = f"{title} {begin + 1} to {begin + len(piece)} of {len(runs)}:"
+        found += [_kept(each) for each in study.store.fill(label, piece)]
+    return found

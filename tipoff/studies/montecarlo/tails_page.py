@@ -1,0 +1,259 @@
+"""The random errors checked by the reference, on the page and for the terminal."""
+
+from tipoff.highfi.rail.step_cost import in_words
+from tipoff.studies.populations import population
+from tipoff.studies.render.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
+from tipoff.studies.render.document import Bullets, Figure, Fold, Part
+from tipoff.studies.render.table import Column, Table, estimate, number, percent, span
+
+_NAMES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
+_TOTAL, _MEDIAN = "rate_deg_s", 0.5
+# draws with these numbers of contacts: name, colour, marker
+_GROUPS = (
+    (range(3), "up to 2 contacts", NAVY, "o"),
+    (range(3, 4), "3 contacts", AMBER, "s"),
+    (range(4, 1000), "4 or more contacts", VERMILION, "^"),
+)
+_CAPTION = (
+    "Above: settled rates of {paired} draws in the reference and in the surrogate, by the number of "
+    "contacts. Below: quantiles of the reference against those of all {settled:,} settled cases of "
+    "the surrogate at the same ranks. On the grey line both are equal."
+)
+_CONTACTS = (
+    "A contact is a stretch of time in which some pad bears a force in the surrogate; stretches less "
+    "than 1 ms apart are one. Error: the largest of the three axes, both models on the same mesh."
+)
+_ERRORS = (
+    "Same mesh: the surrogate with the rail compliance of the mesh of the reference. Population: the "
+    "cases of the population, with the rail compliance and the step of that study. Finer mesh: the "
+    "reference on elements of {fine:g} mm, {count} draws, against the reference on {coarse:g} mm and "
+    "against the population."
+)
+_INTERVALS = (
+    "{confidence:.0%} intervals. The reference alone: its {paired} draws without correction. "
+    "Equivalent runs: runs of the reference alone with an interval of the same width. A dash: too few "
+    "draws for a bound. Intervals of quantiles and probabilities allow for rare differences that no "
+    "draw has shown, so they gain less than those of a mean."
+)
+_TAILS = (
+    "A case that did not settle counts as above. Missed: draws above the limit in the reference and "
+    "not in the surrogate; false: the other way round."
+)
+
+
+def chart(found: dict) -> tuple[Chart, str]:
+    """The figure with its caption."""
+    panels = [*map(_scatter, _rates(found)), *map(_quantiles, _rates(found))]
+    return Chart("tails", panels, columns=3, height=300), _CAPTION.format(**found)
+
+
+def draw(found: dict) -> list[Part]:
+    """The section."""
+    return [
+        Bullets([*sentences(found), *_run(found)]),
+        Figure(*chart(found)),
+        by_contacts(found),
+        statistics(found),
+        *_tails(found),
+        Fold("Differences of every quantity, and the finer mesh", [_errors(found)]),
+    ]
+
+
+def summary(found: dict) -> list[Part]:
+    """The same for the terminal."""
+    return [
+        Bullets([*sentences(found), *_run(found)]),
+        by_contacts(found),
+        statistics(found),
+        *_tails(found),
+    ]
+
+
+def sentences(found: dict) -> list[str]:
+    """Agreement, corrected rates, cost."""
+    return [_agreement(found), _corrected(found), _cost(found)]
+
+
+def _agreement(found: dict) -> str:
+    *_, everything = found["contacts"]
+    gate, worst = found["gate_deg_s"], number(everything["most"], ".2g")
+    few = [row["most"] for row in found["contacts"][:3] if row["most"] is not None]
+    limit = f"; with up to 2 contacts by at most {number(max(few), '.2g')} deg/s" if few else ""
+    return (
+        f"on the same mesh the surrogate differs from the reference by at most {gate:g} deg/s in "
+        f"{percent(everything['within_gate'], '.0f')} % of {everything['settled']} draws (median "
+        f"{number(everything['median'], '.2g')}, largest {worst} deg/s){limit}"
+    )
+
+
+def _corrected(found: dict) -> str:
+    """The highest quantile of the total rate that has both bounds."""
+    *_, row = [
+        row
+        for row in found["statistics"]
+        if row["name"] == _TOTAL
+        and row["share"]
+        and (None not in (row["low"], row["high"]) or row["share"] == _MEDIAN)
+    ]
+    return (
+        f"corrected by the reference, {percent(row['share'])} % of the total rates are below "
+        f"{number(row['value'])} deg/s ({span(row['low'], row['high'])}); the surrogate alone gives "
+        f"{number(row['surrogate'])} deg/s"
+    )
+
+
+def _cost(found: dict) -> str:
+    row, cost = _statistic(found, _TOTAL, "mean"), found["cost"]
+    took = found["draws"] * cost["reference_cpu_s"] + found["cases"] * cost["surrogate_cpu_s"]
+    alone = row["equivalent_runs"]
+    if alone is None:
+        return "the mean total rate has no interval to compare"
+    return (
+        f"for the mean total rate, as narrow an interval from the reference alone takes "
+        f"{alone:,.0f} runs, {in_words(alone * cost['reference_cpu_s'])} of one core; both models "
+        f"together take {in_words(took)}"
+    )
+
+
+def _run(found: dict) -> list[str]:
+    counts, cost = found["counts"], found["cost"]
+    best = next(row for row in cost["optimal"] if row["name"] == _TOTAL)
+    cases = best["cases_per_run"]
+    lost = "; ".join(f"{row['run']}: {row['status']} {row['message']}" for row in found["lost"])
+    return [
+        f"{counts['asked']} draws on elements of {1e3 * found['element_size_m']:g} mm = "
+        f"{counts['ok']} ok + {counts['refused']} refused + {counts['failed']} failed; "
+        f"{found['paired']} settled in both models; {found['fine']} draws also on "
+        f"{1e3 * found['fine_element_size_m']:g} mm",
+        *([f"not settled in the reference: {lost}"] if lost else []),
+        population.model_line(found),
+        f"random errors: {found['reading']}; {found['cases']:,} cases",
+        f"a run of the reference takes {cost['reference_cpu_s']:.3g} s of one core, on the finer mesh "
+        f"{cost['fine_cpu_s']:.3g} s, a case of the surrogate {1e3 * cost['surrogate_cpu_s']:.2g} ms",
+        f"optimal for the mean total rate: "
+        f"{'no case too many' if cases is None else f'{cases:,.0f} cases'} of the surrogate per run "
+        f"of the reference, {number(best['variance_ratio'], '.2g')} of the variance of the reference "
+        "alone at the same cost",
+    ]
+
+
+def _statistic(found: dict, name: str, words: str) -> dict:
+    return next(
+        row for row in found["statistics"] if (row["name"], row["statistic"]) == (name, words)
+    )
+
+
+def _rates(found: dict) -> list[tuple[str, dict, list[int]]]:
+    return [(name, found["pairs"]["rates"][name], found["pairs"]["contacts"]) for name in _NAMES]
+
+
+def _scatter(rate: tuple[str, dict, list[int]]) -> Panel:
+    name, pair, contacts = rate
+    lines = [_diagonal(pair["surrogate"], pair["reference"])]
+    for numbers, words, colour, marker in _GROUPS:
+        inside = [place for place, count in enumerate(contacts) if count in numbers]
+        x, y = ([pair[side][place] for place in inside] for side in ("surrogate", "reference"))
+        if inside:
+            lines.append(Line(x, y, words, colour, dash="", marker=marker, size=5.0, opacity=0.7))
+    axis = name[5]
+    return Panel(f"Rate about {axis}", "surrogate (deg/s)", "reference (deg/s)", lines)
+
+
+def _quantiles(rate: tuple[str, dict, list[int]]) -> Panel:
+    name, pair, _ = rate
+    x, y = pair["all_cases"], sorted(pair["reference"])
+    lines = [
+        _diagonal(x, y),
+        Line(x, y, "quantiles", TEAL, dash="", marker="D", size=4.0, opacity=0.8),
+    ]
+    return Panel(f"Quantiles about {name[5]}", "surrogate, all (deg/s)", "reference (deg/s)", lines)
+
+
+def _diagonal(x: list[float], y: list[float]) -> Line:
+    ends = [min(*x, *y), max(*x, *y)]
+    return Line(ends, ends, "equal", GREY, 1.2)
+
+
+def by_contacts(found: dict) -> Table:
+    """Errors by the number of contacts."""
+    rows = [
+        (
+            row["contacts"],
+            row["draws"],
+            row["median"],
+            row["most"],
+            percent(row["within_gate"], ".0f"),
+            _percents(row["low"], row["high"]),
+        )
+        for row in found["contacts"]
+    ]
+    heads: tuple[Column | str, ...] = (
+        "contacts",
+        "draws",
+        Column("median error", "deg/s", ".2g"),
+        Column("largest", "deg/s", ".2g"),
+        f"within {found['gate_deg_s']:g} deg/s (%)",
+        "95 % bounds",
+    )
+    return Table(heads, rows, (_CONTACTS,))
+
+
+def _percents(low: float | None, high: float | None) -> str:
+    return "" if low is None or high is None else span(100.0 * low, 100.0 * high, ".0f")
+
+
+def statistics(found: dict) -> Table:
+    """Statistics of the population, corrected, beside those of each model alone."""
+    rows = [
+        (
+            f"{row['label']} ({row['unit']}), {row['statistic']}",
+            row["surrogate"],
+            estimate(row),
+            estimate({"value": row["plain"], "low": row["plain_low"], "high": row["plain_high"]}),
+            number(row["equivalent_runs"], ",.0f"),
+        )
+        for row in found["statistics"]
+    ]
+    heads = ("quantity", "surrogate", "corrected", "reference alone", "equivalent runs")
+    return Table(heads, rows, (_INTERVALS.format(**found),))
+
+
+def _tails(found: dict) -> list[Part]:
+    rows = [
+        (
+            row["limit"],
+            row["surrogate"],
+            estimate(row),
+            estimate({"value": row["plain"], "low": row["plain_low"], "high": row["plain_high"]}),
+            row["missed"],
+            row["false"],
+        )
+        for row in found["tails"]
+    ]
+    heads = ("limit", "surrogate", "corrected", "reference alone", "missed", "false")
+    return [Table(heads, rows, (_TAILS,), title="Probability above each limit")]
+
+
+def _errors(found: dict) -> Table:
+    rows = []
+    for row in found["errors"]:
+        cells: list = [f"{row['label']} ({row['unit']})"]
+        for name in ("same_mesh", "population"):
+            item = row[name] or {}
+            cells += [item.get("median"), item.get("95"), item.get("most")]
+            cells.append(number(item.get("correlation"), ".5f"))
+        for name in ("mesh", "finer"):
+            item = row[name] or {}
+            cells += [item.get("median"), item.get("most")]
+        rows.append(cells)
+    heads: list[Column | str] = ["quantity"]
+    for words in ("same mesh", "population"):
+        heads += [f"{words}, median", "95 %", "largest", "correlation"]
+    for words in ("finer mesh, reference", "population"):
+        heads += [f"{words}, median", "largest"]
+    note = _ERRORS.format(
+        fine=1e3 * found["fine_element_size_m"],
+        coarse=1e3 * found["element_size_m"],
+        count=found["fine"],
+    )
+    return Table(heads, rows, (note,), dense=True)
