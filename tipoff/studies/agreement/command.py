@@ -1,37 +1,52 @@
 """``tipoff compare``."""
 
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands import common
-
-if TYPE_CHECKING:
-    from tipoff.studies.core.study import Study
-    from tipoff.studies.render.document import Part
+from tipoff.studies.commands.options import ElementSize, Json, Out, SceneName, Set, Workers
+from tipoff.studies.commands.running import guarded, study_of
 
 
 def add(app: typer.Typer) -> None:
     """Put the command under ``app``."""
-    common.add(
-        app,
-        "compare",
-        "Agreement on fitted and held-out conditions with the floor, and the speed-up; writes "
-        "agreement.json.",
-        run,
-        shown,
-    )
+    app.command()(compare)
 
 
-def run(study: "Study") -> dict:
-    """The result of the stage."""
-    from tipoff.studies.agreement import stage
+def compare(
+    scene: SceneName = "reference",
+    out: Out = Path("out"),
+    set_: Set = None,
+    neighbours: Annotated[
+        int | None,
+        typer.Option(
+            "--neighbours",
+            metavar="N",
+            min=4,
+            max=10_000,
+            help="Runs of the reference within 1 µm of each condition that is judged as a "
+            "distribution; default: as many as the last time, else 32 (scene tiny: 4).",
+        ),
+    ] = None,
+    element_size: ElementSize = None,
+    workers: Workers = None,
+    json_: Json = False,
+) -> None:
+    """Agreement on fitted and held-out conditions with the floor, and the speed-up; writes
+    agreement.json."""
 
-    return stage.run(study)
+    def work() -> dict:
+        from tipoff.studies.agreement import stage
 
+        return stage.run(
+            study_of(scene, out, set_, element_size=element_size, workers=workers),
+            None if neighbours is None else stage.Options(neighbours),
+        )
 
-def shown(found: dict) -> list["Part"]:
-    """The verdicts for the terminal."""
-    from tipoff.studies.agreement import page
+    found = guarded(work, json_)
+    if not json_:
+        from tipoff.studies.agreement import page
+        from tipoff.studies.render import document
 
-    return page.terminal(found)
+        print(document.terminal(page.terminal(found)))

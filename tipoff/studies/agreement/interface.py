@@ -7,8 +7,8 @@ compliance of that same mesh, so that the mesh is no part of their difference.
 
 A condition is judged at a stiffness where the reference is converged and not chaotic. Chaos is
 looked for where the models miss a limit: there the reference also runs with 1 um more and less
-clearance. A miss at the nominal stiffness stays a miss of the condition, chaotic or not, and its
-verdict says which.
+clearance. A condition that is chaotic at the nominal stiffness is judged as a distribution
+(``agreement.distributions``).
 """
 
 from collections.abc import Callable, Sequence
@@ -57,18 +57,22 @@ def rows(study: Study, request: Callable[..., Run], context: Context) -> list[di
     nominal = {pair.condition: pair for pair in pairs if pair.factor == 1.0}
     found = [_row(study, pair, nominal[pair.condition], context) for pair in pairs]
     missed = [row for row in found if row["reference_converged"] and not row["passes"]]
-    chaotic = _chaotic(study, [(row["condition"], row["factor"]) for row in missed], context)
+    grows = _chaotic(study, [(row["condition"], row["factor"]) for row in missed], context)
     for row in missed:
-        row["chaotic"] = chaotic[row["condition"], row["factor"]]
+        row["chaotic"] = grows[row["condition"], row["factor"]]
         if row["chaotic"]:
             row["verdict"] = f"{row['verdict']}; {CHAOTIC}"
     return found
 
 
+def chaotic(found: Sequence[dict]) -> list[str]:
+    """Conditions whose reference is chaotic at the nominal stiffness."""
+    return [item["condition"] for item in found if item["factor"] == 1.0 and item["chaotic"]]
+
+
 def combined(agreement: Sequence[dict], found: Sequence[dict]) -> list[dict]:
     """Rows of the agreement table with the verdicts at each factor under ``interface``. A condition
-    agrees where it does at every factor at which it is judged. A miss remains a miss where the
-    reference is chaotic, and its verdict says so."""
+    agrees where it does at every factor at which it is judged."""
     return [
         _combined(row, [item for item in found if item["condition"] == row["condition"]])
         for row in agreement
@@ -76,23 +80,25 @@ def combined(agreement: Sequence[dict], found: Sequence[dict]) -> list[dict]:
 
 
 def _combined(row: dict, own: list[dict]) -> dict:
+    as_distribution = row["judgement"] == verdicts.AS_DISTRIBUTION
     misses = [
         item
         for item in own
-        if item["reference_converged"] and not item["passes"] and not item["chaotic"]
+        if item["reference_converged"]
+        and not item["passes"]
+        and not item["chaotic"]
+        # the distribution has judged this factor
+        and not (as_distribution and item["factor"] == 1.0)
     ]
     verdicts_of = [{"factor": item["factor"], "verdict": item["verdict"]} for item in own]
-    if not row["passes"]:
-        chaotic = any(item["chaotic"] for item in own if item["factor"] == 1.0)
-        verdict = f"{row['verdict']}; {CHAOTIC}" if chaotic else row["verdict"]
-        return row | {"interface": verdicts_of, "chaotic": chaotic, "verdict": verdict}
-    if not (row["reference_converged"] and misses):
+    if row["judgement"] not in (verdicts.AGREES, verdicts.AS_DISTRIBUTION) or not misses:
         return row | {"interface": verdicts_of}
     where = ", ".join(f"{item['factor']:g}" for item in misses)
     return row | {
         "interface": verdicts_of,
         "passes": False,
-        "verdict": f"misses at {where} times the interface stiffness",
+        "judgement": verdicts.MISSES,
+        "verdict": f"{verdicts.MISSES}: at {where} times the interface stiffness",
     }
 
 

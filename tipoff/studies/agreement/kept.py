@@ -2,6 +2,7 @@
 
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes.scene import NOMINAL
+from tipoff.studies.agreement import verdicts
 from tipoff.studies.core.study import Study
 
 
@@ -24,14 +25,12 @@ def rows(study: Study, model: str, calibrated: bool = False, modes: int = 0) -> 
 
 
 def missed(study: Study, model: str, condition: str | None = None) -> list[dict]:
-    """Rows (of ``condition``, if given) with a converged reference in which ``model`` misses a
-    gate."""
+    """Rows (of ``condition``, if given) that ``model`` misses: as a curve, or as a distribution where
+    the reference is chaotic or not converged."""
     return [
         row
         for row in rows(study, model)
-        if row["reference_converged"]
-        and not row["passes"]
-        and condition in (None, row["condition"])
+        if row["judgement"] == verdicts.MISSES and condition in (None, row["condition"])
     ]
 
 
@@ -48,15 +47,22 @@ def words(
     own = [row for row in found if row["condition"] == condition]
     if own:
         return _one(own[0])
-    judged = [row for row in found if row["reference_converged"] and row["touches"]]
+    touched = [row for row in found if row["touches"]]
+    judged = [row for row in touched if _by_curve(row)]
     if not judged:
         return "not measured for this scene with this code (tipoff compare measures it)"
     where = "" if condition in (None, NOMINAL) else f"; {condition} is not one of them"
+    alike = sum(row["judgement"] == verdicts.AS_DISTRIBUTION for row in touched)
+    others = f"; {alike} more agree as distributions" if alike else ""
     return (
         f"at most {max(row['settled_rate_error_deg_s'] for row in judged):.2g} deg/s from the "
         f"reference on the "
-        f"{len(judged)} conditions where that is converged and pads touch{where}"
+        f"{len(judged)} conditions where that is converged and pads touch{others}{where}"
     )
+
+
+def _by_curve(row: dict) -> bool:
+    return row["judged_as"] == verdicts.CURVE and row["reference_converged"]
 
 
 def _one(row: dict) -> str:
@@ -67,4 +73,8 @@ def _one(row: dict) -> str:
         f"curves within "
         f"{100.0 * row['rate_relative_l2']:.2g} %"
     )
-    return off if row["reference_converged"] else f"{off}, but the reference is not converged there"
+    if _by_curve(row):
+        return off
+    if row["judged_as"] == verdicts.DISTRIBUTION:
+        return f"{off}, but 1 µm or the mesh moves the reference as much there; it {row['verdict']}"
+    return f"{off}, but the reference is not converged there"

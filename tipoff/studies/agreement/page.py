@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from tipoff.studies.agreement import distribution_page, verdicts
 from tipoff.studies.render.document import Fold, Part
 from tipoff.studies.render.table import Column, Table, number, percent
 
@@ -45,6 +46,7 @@ def agreement(document: dict) -> list[Part]:
         judged(document["compliant"], "agreement", _notes(document)),
         _further(document["compliant"]),
         _simpler(document),
+        *distribution_page.parts(document),
         *interface(document["interface"]),
         "One spring and damper at each pad face, calibrated on the fitted conditions. "
         f"{summary(document['fitted'], 'fitted ')}; {summary(document['held_out'], 'held-out ')}.",
@@ -70,7 +72,12 @@ def terminal(document: dict) -> list[Part]:
         for row in document["compliant"]
     ]
     title = f"Compliant contact: {summary(document['compliant'])}."
-    return [Table(heads, rows, title=title), *by_factor(document["interface"])]
+    alike = document["distributions"]
+    return [
+        Table(heads, rows, title=title),
+        *([distribution_page.summary(alike)] if alike else []),
+        *by_factor(document["interface"]),
+    ]
 
 
 def _notes(document: dict) -> tuple[str, ...]:
@@ -83,15 +90,16 @@ def _notes(document: dict) -> tuple[str, ...]:
         "clearance.",
         "Reference ±: largest uncertainty of its settled rates by mesh, step and contact cells, each "
         "extrapolated with the order it shows. Above "
-        f"{document['converged_deg_s']:g} deg/s the reference is not converged.",
+        f"{document['converged_deg_s']:g} deg/s the reference is not converged. Such a condition, and "
+        "one that 1 µm moves by more than the gate, is judged as a distribution.",
         "A star marks the largest value of other conditions. ISO 18571 is the mean rating of the "
         "three rates (1 is perfect); Sprague and Geers (S-G) is over the three rates together.",
     )
 
 
 def judged(rows: list[dict], name: str, notes: tuple[str, ...] = ()) -> Table:
-    """A table of agreement rows: good, bad, or with a reference that is not converged or chaotic."""
-    kinds = [_kind(row) for row in rows]
+    """A table of agreement rows: good, bad, or not judged."""
+    kinds = [distribution_page.kind(row["judgement"]) for row in rows]
     return Table(_HEADS, [_agreement_row(row) for row in rows], notes, "", name, kinds, dense=True)
 
 
@@ -221,17 +229,23 @@ def _errors(row: dict) -> str:
 
 
 def summary(rows: list[dict], words: str = "") -> str:
-    """How many of the ``words`` conditions agree."""
-    agreeing = [row for row in rows if row["passes"] and row["reference_converged"]]
-    free = sum(not row["touches"] for row in agreeing)
-    doubtful = sum(not row["reference_converged"] for row in rows)
-    chaotic = sum(bool(row.get("chaotic")) for row in rows)
-    return (
-        f"{len(agreeing)} of {len(rows)} {words}conditions agree"
-        + (f", {free} of them without contact" if free else "")
-        + (f"; for {doubtful} the reference is not converged" if doubtful else "")
-        + (f"; {chaotic} of the misses are where the reference is chaotic" if chaotic else "")
-    )
+    """How many of the ``words`` conditions have each verdict."""
+    count = {word: sum(row["judgement"] == word for row in rows) for word in verdicts.JUDGEMENTS}
+    free = sum(row["judgement"] == verdicts.AGREES and not row["touches"] for row in rows)
+    parts = [
+        f"{count[verdicts.AGREES]} of {len(rows)} {words}conditions agree"
+        + (f" ({free} of them without contact)" if free else ""),
+        *(
+            f"{count[word]} {said}"
+            for word, said in (
+                (verdicts.AS_DISTRIBUTION, "agree as distributions"),
+                (verdicts.MISSES, "miss"),
+                (verdicts.CANNOT, "cannot be judged"),
+            )
+            if count[word]
+        ),
+    ]
+    return ", ".join(parts)
 
 
 def _agreement_row(row: dict) -> tuple:

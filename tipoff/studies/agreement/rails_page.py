@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from tipoff.studies.agreement import verdicts
 from tipoff.studies.render.document import Part
 from tipoff.studies.render.table import Column, Table
 
@@ -14,9 +15,10 @@ _HEADS = (
     "model",
     "judged",
     "agree",
+    "as distributions",
     Column("largest rate L2", "%", ".2g", 100.0),
     Column("largest settled error", "deg/s", ".2g"),
-    "reference not converged",
+    "not judged",
 )
 
 
@@ -29,9 +31,9 @@ def draw(page: "Page") -> list[Part]:
 def parts(found: list[dict]) -> list[Part]:
     """Agreement and constants of the scenes ``found``."""
     note = (
-        "The springs are calibrated for each scene. Judged are conditions with contact and a "
-        "converged reference. `make rails` makes the results of the thin and titanium rails of "
-        "the catalogue at 4 mm."
+        "The springs are calibrated for each scene. Judged are conditions with contact, as curves or "
+        "as distributions; errors are those of the curves. `make rails` makes the results of the thin "
+        "and titanium rails of the catalogue at 4 mm."
     )
     rows = [
         (
@@ -48,8 +50,8 @@ def parts(found: list[dict]) -> list[Part]:
 
 def table(found: list[dict], *notes: str, title: str = "") -> Table:
     """Two rows a scene, calibrated springs and compliant contact, over its conditions with contact:
-    number judged, number that agrees, largest errors of those judged, and names of those not
-    judged."""
+    number judged, numbers that agree, largest errors of those judged as curves, and names of those
+    not judged."""
     rows = [
         (
             scene["name"],
@@ -68,14 +70,18 @@ def table(found: list[dict], *notes: str, title: str = "") -> Table:
 
 def _judged(rows: list[dict]) -> tuple:
     touched = [row for row in rows if row["touches"]]
-    judged = [row for row in touched if row["reference_converged"]]
+    judged = [row for row in touched if row["judgement"] != verdicts.CANNOT]
+    curves = [row for row in judged if row["judged_as"] == verdicts.CURVE]
     largest = (
-        max((row[key] for row in judged if row[key] is not None), default=None)
+        max((row[key] for row in curves if row[key] is not None), default=None)
         for key in ("rate_relative_l2", "settled_rate_error_deg_s")
     )
     return (
         f"{len(judged)} of {len(touched)}",
-        sum(row["passes"] for row in judged),
+        *(
+            sum(row["judgement"] == word for row in judged)
+            for word in (verdicts.AGREES, verdicts.AS_DISTRIBUTION)
+        ),
         *largest,
-        ", ".join(row["condition"] for row in touched if not row["reference_converged"]),
+        ", ".join(row["condition"] for row in touched if row["judgement"] == verdicts.CANNOT),
     )

@@ -1,8 +1,9 @@
 """Stage ``compare``: agreement of the surrogates with the reference on fitted and held-out
-conditions, with the floor and the uncertainty of the reference; growth of a 1 um disturbance; speed-up."""
+conditions, as curves or as distributions, with the floor and the uncertainty of the reference; growth
+of a 1 um disturbance; speed-up."""
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
@@ -12,10 +13,11 @@ from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
-from tipoff.studies.agreement import growth, interface, metrics, refined, verdicts
+from tipoff.studies.agreement import distributions, growth, interface, metrics, refined, verdicts
 from tipoff.studies.agreement.verdicts import Context, Spread, spread
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core.progress import Board
+from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study, require_success
@@ -76,12 +78,21 @@ def compliant(study: Study, conditions: Iterable[str]) -> Candidate:
     return Candidate("compliant", COMPLIANT, compliance=study.rail_compliances(conditions))
 
 
-def run(study: Study) -> dict:
+@dataclass(frozen=True)
+class Options:
+    """``neighbours`` of each condition that is judged as a distribution."""
+
+    neighbours: int = Settings().neighbours
+
+
+def run(study: Study, options: Options | None = None) -> dict:
     """``uncalibrated``, ``fitted``, ``held_out``, ``compliant`` and ``modal`` rows; measured
-    ``floor`` and ``refinement``; ``growth`` of a 1 um disturbance; ``speedup`` of calibrated springs
-    and ``speedup_compliant``; ``simpler`` rail compliance; other values of the ``interface``
-    stiffness."""
+    ``floor`` and ``refinement``; ``growth`` of a 1 um disturbance; ``distributions`` of conditions
+    that no single run can judge; ``speedup`` of calibrated springs and ``speedup_compliant``;
+    ``simpler`` rail compliance; other values of the ``interface`` stiffness. ``options`` None: those
+    of the stored result, or else of the settings."""
     study.fitted()
+    chosen = options or _last(study)
     _, calibrated, static, modal = compared = candidates(study)
     gates = verdicts.gates(study.scene)
 
@@ -100,17 +111,30 @@ def run(study: Study) -> dict:
             )
             for candidate in compared
         }
+        on_coarse = _on_coarse(study, compared)
         own_context = Context([*floor, *own[static.name]], changes, gates)
-        on_coarse = static._replace(
-            compliance=study.rail_compliances(study.conditions, study.settings.coarse_size)
+        stiffnesses = interface.rows(study, on_coarse[static.name].request, own_context)
+        grown = _growths(study, static, table["compliant"])
+        as_distributions = distributions.counts(
+            table["compliant"], grown, interface.chaotic(stiffnesses), chosen.neighbours
         )
-        stiffnesses = interface.rows(study, on_coarse.request, own_context)
+        alike = distributions.judge(
+            study,
+            as_distributions,
+            list(on_coarse.values()),
+            gates["settled_rate_error_deg_s"],
+        )
+        table = {
+            name: distributions.combined(found, alike, as_distributions, name)
+            for name, found in table.items()
+        }
         table["compliant"] = interface.combined(table["compliant"], stiffnesses)
         groups = {
             role: [row for row in table["calibrated"] if row["role"] == role]
             for role in ("fitted", "held_out")
         }
         return {
+            "asked": STAGE.plain(chosen),
             "uncalibrated": table["uncalibrated"],
             **groups,
             "compliant": table["compliant"],
@@ -122,20 +146,35 @@ def run(study: Study) -> dict:
             "clearance_change_m": study.settings.clearance_change,
             "floor": [asdict(item) for item in sum(own.values(), floor)],
             "refinement": [asdict(item) for item in changes],
-            "growth": [asdict(item) for item in _growths(study, static, table["compliant"])],
+            "growth": [asdict(item) for item in grown],
+            "distributions": alike,
             "simpler": _simpler(study, static, highfi),
             "interface": stiffnesses,
             **dict(zip(("speedup", "speedup_compliant"), _speedups(study, [calibrated, static]))),
         }, []
 
-    return STAGE.run(study, None, make)
+    return STAGE.run(study, chosen, make)
 
 
-def _inputs(study: Study, _: None) -> list:
+def _last(study: Study) -> Options:
+    found = STAGE.stored(study)
+    return Options(**found["asked"]) if found is not None else Options(study.settings.neighbours)
+
+
+def _on_coarse(study: Study, compared: Iterable[Candidate]) -> dict[str, Candidate]:
+    """The same surrogates by name, on the rail compliance of the coarse mesh."""
+    coarse = study.rail_compliances(study.conditions, study.settings.coarse_size)
+    return {
+        candidate.name: candidate._replace(compliance=coarse) if candidate.compliance else candidate
+        for candidate in compared
+    }
+
+
+def _inputs(study: Study, _: Options) -> list:
     return [calibrate.constants(study), verdicts.gates(study.scene)]
 
 
-STAGE = Stage("agreement", __name__, inputs=_inputs)
+STAGE = Stage("agreement", __name__, Options, inputs=_inputs)
 stored = STAGE.stored
 
 

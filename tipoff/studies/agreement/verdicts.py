@@ -12,6 +12,9 @@
 
 The uncertainty by the mesh is measured on every condition, the others on conditions that the scene
 names; the remaining conditions take the largest value, with a mark.
+
+Every row has one word, its ``judgement``: agrees, agrees as distribution, misses, cannot be judged. A
+row is first judged as a curve; ``agreement.distributions`` judges those that no single run can judge.
 """
 
 import math
@@ -26,9 +29,13 @@ from tipoff.studies.agreement.refinement import Refinement
 VELOCITY_LIMIT = 0.001
 CONVERGED_DEG_S = 0.1
 FLOOR_CAP_DEG_S = 0.1
-NOT_CONVERGED = "reference not converged"
-AGREES, UNTOUCHED = "agrees", "agrees (no pad touches)"
-NOT_KNOWN = "convergence of the reference not known"
+AGREES, AS_DISTRIBUTION = "agrees", "agrees as distribution"
+MISSES, CANNOT = "misses", "cannot be judged"
+JUDGEMENTS = (AGREES, AS_DISTRIBUTION, MISSES, CANNOT)
+CURVE, DISTRIBUTION = "curve", "distribution"
+NOT_CONVERGED = f"{CANNOT}: reference not converged"
+NOT_KNOWN = f"{CANNOT}: convergence of the reference not known"
+UNTOUCHED = f"{AGREES} (no pad touches)"
 _SHORT = {
     "rate_relative_l2": "rate L2",
     "velocity_relative_l2": "v_x L2",
@@ -161,7 +168,8 @@ def row(
         name: gate(getattr(difference, name), limit)
         for name, limit in context.limits(floor_deg_s).items()
     }
-    converged = context.converged(condition)
+    converged, known = context.converged(condition), context.known(condition)
+    passes = all(item["passes"] for item in gates.values())
     return {
         "condition": condition,
         "role": role,
@@ -176,12 +184,19 @@ def row(
         "reference_uncertainty_measured_here": uncertainty_measured,
         "reference_converged": converged,
         "gates": gates,
-        "passes": all(item["passes"] for item in gates.values()),
+        "passes": passes,
         "touches": bool(reference.pad_force.any()),
+        "judged_as": CURVE,
+        "judgement": judgement(passes, converged and known),
         "verdict": verdict(gates, converged, bool(reference.pad_force.any()))
-        if context.known(condition)
+        if known
         else NOT_KNOWN,
     }
+
+
+def judgement(passes: bool, converged: bool) -> str:
+    """The word for a curve that ``passes`` its gates or not."""
+    return CANNOT if not converged else AGREES if passes else MISSES
 
 
 def gate(value: float | None, limit: float) -> dict:
@@ -205,5 +220,5 @@ def verdict(gates: dict[str, dict], converged: bool, touches: bool = True) -> st
         if not item["passes"]
     ]
     if missed:
-        return "misses: " + ", ".join(missed)
+        return f"{MISSES}: " + ", ".join(missed)
     return AGREES if touches else UNTOUCHED

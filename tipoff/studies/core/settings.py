@@ -19,7 +19,8 @@ COARSER = 2.0  # times the element size, where many runs are needed
 @dataclass(frozen=True)
 class Settings:
     """``element_size`` (m) of the reference; ``tolerances`` of the surrogate in the cost study;
-    repeats of timed runs; ``clearance_change`` (m) that defines the floor; ``rail_modes`` of the
+    repeats of timed runs; ``clearance_change`` (m) that defines the floor, and the number of
+    ``neighbours`` within it that judge a chaotic condition; ``rail_modes`` of the
     surrogate whose rails vibrate; ``workers`` side by side; ``checkpoint_every`` seconds (wall
     clock) of a run of the reference, and whether one that was interrupted may ``resume``. What the
     convergence study compares, coarsest first: meshes by ``mesh_ratios`` to ``element_size``, one
@@ -31,6 +32,7 @@ class Settings:
     highfi_repeats: int = 3
     lowfi_repeats: int = 20
     clearance_change: float = 1e-6
+    neighbours: int = 32
     rail_modes: int = 4
     mesh_ratios: tuple[float, ...] = (4.0, 2.0, 1.0, 0.5)
     safeties: tuple[float, ...] = (0.9, 0.45, 0.225)
@@ -69,6 +71,10 @@ def defaults(scene_name: str) -> Settings:
     seconds."""
     if scene_name == "tiny":
         return Settings(
-            element_size=0.008, mesh_ratios=(2.0, 1.0, 0.5), highfi_repeats=2, lowfi_repeats=5
+            element_size=0.008,
+            mesh_ratios=(2.0, 1.0, 0.5),
+            highfi_repeats=2,
+            lowfi_repeats=5,
+            neighbours=4,
         )
     return Settings()
