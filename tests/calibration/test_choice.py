@@ -67,6 +67,7 @@ def test_the_interval_of_the_line_contains_what_acts_as_the_line():
     assert hits[0] >= 17 and hits[1] == 0, hits
 
 
+@pytest.mark.case("O73")
 def test_of_parameters_that_act_alike_one_is_fitted_and_the_others_named():
     """Control: each of the three alone has information."""
     found = calibration.run(FREE, flown({LINE: 2e-4}), plan=TINY)

@@ -4,6 +4,8 @@ Each set of effects that are present is one more kernel, which takes half a minu
 effects that a scene does not need are present without strength.
 """
 
+import pytest
+
 from tests import turning
 from tipoff import lowfi, scenes
 from tipoff.kernels import rotation
@@ -158,6 +160,4 @@ def drop(
 def close(found: dict, expected: dict, relative: float) -> None:
     """Every expected number is met within ``relative``."""
     for name, value in expected.items():
-        assert abs(found[name] - value) <= relative * abs(value), (
-            f"{name}: {found[name]!r}, expected {value!r}"
-        )
+        assert found[name] == pytest.approx(value, rel=relative, abs=0.0), name

@@ -116,6 +116,7 @@ def test_origin():
     assert 0.0 < np.abs(np.subtract(far.outcome.rate, rest.outcome.rate)).max() <= shift(1e-9)
 
 
+@pytest.mark.case("O50")
 def test_a_platform_that_recoils_is_not_the_frame():
     """Control: a velocity of the payload alone, as large as a thousandth of a flight, is no shared
     one."""

@@ -201,8 +201,8 @@ def test_equal_rods_swap_their_speeds(elements, fraction):
 
 @pytest.mark.case("O3")
 def test_wrong_penalties_are_seen():
-    """Controls of the collision: with a soft penalty it lasts too long. A penalty that is too stiff
-    for the mesh is below the limit of linear stability, yet creates energy at each switch of
+    """Controls: with a soft penalty the collision lasts too long. A penalty that is too stiff for
+    the mesh is below the limit of linear stability, yet creates energy at each switch of
     contact; at nine tenths of the limit it creates much."""
     soft, stiff = collide(100, 0.9, 0.1), collide(100, 0.9, 3.0)
     assert soft["duration"] > 1.02 * 2.0 * LENGTH / SPEED

@@ -59,6 +59,7 @@ def test_momenta_stay_over_a_hundred_thousand_steps(tolerance, duration):
     assert run.checks["energy_error"] <= 1e-6 and run.checks["friction_power_max"] <= 0.0
 
 
+@pytest.mark.case("O32")
 def test_the_usual_state_variables_let_angular_momentum_drift():
     """Control: body rates as the state, Runge-Kutta at 50 us: in 10,000 steps the same physics
     loses more than is allowed above."""
