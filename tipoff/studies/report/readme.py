@@ -57,21 +57,24 @@ def headline(folder: Path) -> str:
 
 def _agreed(rows: list[dict]) -> str:
     """How many conditions are judged and agree, and the errors where pads touch."""
-    unjudged = (verdicts.NOT_CONVERGED, verdicts.NOT_KNOWN)
-    judged = [row for row in rows if row["verdict"] not in unjudged]
-    agree = [row for row in judged if row["verdict"] in (verdicts.AGREES, verdicts.UNTOUCHED)]
-    touched = [row for row in agree if row["verdict"] == verdicts.AGREES]
-    curves = [row["rate_relative_l2"] for row in touched]
+    curves = [row for row in rows if row["judged_as"] == verdicts.CURVE]
+    judged = [row for row in curves if row["judgement"] != verdicts.CANNOT]
+    agree = [row for row in judged if row["judgement"] == verdicts.AGREES]
+    touched = [row for row in agree if row["touches"]]
+    errors = [row["rate_relative_l2"] for row in touched]
     said = (
         f"- **Measured**: the reference is converged on {len(judged)} of {len(rows)} conditions. Compliant contact, "
         f"with nothing fitted, agrees on {len(agree)} of these {len(judged)}."
     )
+    if chaotic := [row for row in rows if row["judged_as"] == verdicts.DISTRIBUTION]:
+        alike = sum(row["judgement"] == verdicts.AS_DISTRIBUTION for row in chaotic)
+        said += f" Chaotic conditions are judged as distributions: {alike} of {len(chaotic)} agree."
     if not touched:
         return said
     settled = max(row["settled_rate_error_deg_s"] for row in touched)
     return (
         f"{said} Pads touch in {len(touched)} of them: there rates differ by "
-        f"{percent(min(curves), '.2g')} to {percent(max(curves), '.2g')} % (L2) and settled rates "
+        f"{percent(min(errors), '.2g')} to {percent(max(errors), '.2g')} % (L2) and settled rates "
         f"by at most {number(settled, '.2g')} deg/s."
     )
 
