@@ -19,7 +19,8 @@ smartquotes = False  # they make dashes of the two hyphens before an option
 html_theme = "furo"
 html_math_renderer = "mathml"
 html_title = f"tipoff {release}"
-html_static_path: list[str] = []
+html_static_path = ["_static"]
+html_css_files = ["wide.css"]
 html_show_copyright = False
 
 myst_enable_extensions = ["dollarmath", "colon_fence"]

@@ -5,6 +5,7 @@ import subprocess
 import sys
 import sysconfig
 import tarfile
+import tomllib
 import venv
 import zipfile
 from pathlib import Path
@@ -79,6 +80,14 @@ def test_a_wheel_puts_one_name_into_an_environment(wheel):
     for held in ("highfi/run.py", "lowfi/run.py", "calibration/run.py", "meshes/l_rail.py"):
         assert f"tipoff/{held}" in names
     assert "tipoff/scenes/catalog/reference.toml" in names
+
+
+def test_the_citation_is_of_this_version():
+    metadata = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    cited = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"\nversion: {metadata['version']}\n" in cited
+    assert f"\nlicense: {metadata['license']}\n" in cited
+    assert all(author["name"] in cited for author in metadata["authors"])
 
 
 def test_a_source_distribution_gives_the_same_wheel(wheel, tmp_path):

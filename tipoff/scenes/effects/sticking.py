@@ -23,7 +23,7 @@ class StickingTable(Table):
     """``[friction] law = "sticking"``: coefficients (dimensionless), tangential stiffness (N/m) and
     damping (N s/m) of one held face, and the slip (m/s) below which a face that stops is held."""
 
-    #: Coulomb friction with stick, in the surrogate only.
+    #: Coulomb friction with stick, in the model springs only.
     law: Literal["sticking"]
     #: Static coefficient.
     static: NonNegativeNumber
