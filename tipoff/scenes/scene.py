@@ -153,6 +153,12 @@ class Scene(Table):
         reads it back."""
         return self.model_dump(mode="json", exclude_none=True)
 
+    @property
+    def origin(self) -> str:
+        """The name in the catalogue, or the path of the file, from which it was read."""
+        path = Path(self._source)
+        return path.stem if path.parent == CATALOG else self._source
+
     @cached_property
     def hash(self) -> str:
         """SHA-256 of the physical inputs. A file counts by its content and a measured thrust by its

@@ -221,16 +221,18 @@ def _errors(row: dict) -> str:
 
 
 def summary(rows: list[dict], words: str = "") -> str:
-    """How many of the ``words`` conditions agree."""
-    agreeing = [row for row in rows if row["passes"] and row["reference_converged"]]
+    """How many of the ``words`` conditions agree, cannot be judged, and miss."""
+    judged_rows = [row for row in rows if row["reference_converged"]]
+    agreeing = [row for row in judged_rows if row["passes"]]
     free = sum(not row["touches"] for row in agreeing)
-    doubtful = sum(not row["reference_converged"] for row in rows)
-    chaotic = sum(bool(row.get("chaotic")) for row in rows)
+    missing = len(judged_rows) - len(agreeing)
+    chaotic = sum(bool(row.get("chaotic")) for row in judged_rows)
     return (
         f"{len(agreeing)} of {len(rows)} {words}conditions agree"
-        + (f", {free} of them without contact" if free else "")
-        + (f"; for {doubtful} the reference is not converged" if doubtful else "")
-        + (f"; {chaotic} of the misses are where the reference is chaotic" if chaotic else "")
+        + (f" ({free} of them without contact)" if free else "")
+        + f", {len(rows) - len(judged_rows)} cannot be judged, "
+        + f"{missing} {'misses' if missing == 1 else 'miss'}"
+        + (f" ({chaotic} of them where the reference is chaotic)" if chaotic else "")
     )
 
 
