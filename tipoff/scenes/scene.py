@@ -100,6 +100,14 @@ class Scene(Table):
             )
         return output
 
+    def __repr__(self) -> str:
+        return (
+            f"Scene({self.name!r}, {self.payload.mass:g} kg, {len(self.pads)} pads, "
+            f"{len(self.conditions)} conditions, hash {self.hash[:8]})"
+        )
+
+    __str__ = __repr__
+
     def replace(self, overrides: Mapping[str, Any]) -> "Scene":
         """A new scene with dotted keys set. Text carries units, a bare number is SI, None or
         "absent" drops a table. What is set has the provenance "user", unless ``overrides`` give

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 _NOTE = (
     "Means over 2 ms after exit and burnout, by the finite elements. Velocity in the initial scene "
     "axes; rates inertial, in payload body axes: roll about X, transverse across it. ±: the largest "
-    "uncertainty of the reference by mesh, step and contact cells."
+    "uncertainty of the reference by mesh, step and contact cells. By hand: moment impulse over "
+    "inertia, where nothing or one pad touches."
 )
 
 
@@ -123,6 +124,7 @@ def _conditions(page: "Page", rows: list[dict], compared: dict[str, dict]) -> Ta
         Column(Markup("v<sub>x</sub> (m/s)"), form=".4f"),
         "roll rate (deg/s)",
         "transverse rate (deg/s)",
+        *(["by hand x, y, z (deg/s)"] if _by_hand(rows) else []),
         Column("off axis", "deg", ".2g"),
         "surrogate error (deg/s)",
         *(["limits"] if page.limits else []),
@@ -135,7 +137,9 @@ def _conditions(page: "Page", rows: list[dict], compared: dict[str, dict]) -> Ta
             [
                 row["condition"],
                 stated(page, row["condition"]),
-                *(_rates(settled, _uncertainty(other)) if settled else [None] * 4),
+                *(_rates(settled, _uncertainty(other)) if settled else [None] * 3),
+                *([_hand(row)] if _by_hand(rows) else []),
+                settled and settled["direction_error_deg"],
                 uncertain(other["settled_rate_error_deg_s"]) if other else None,
                 *([_words(settled, page.limits)] if page.limits else []),
                 other["verdict"] if other else row["status"],
@@ -150,8 +154,18 @@ def _rates(settled: dict, uncertainty: float | None) -> list:
         settled["velocity_m_s"][0],
         uncertain(settled["rate_deg_s"][0], uncertainty),
         uncertain(transverse(settled), uncertainty),
-        settled["direction_error_deg"],
     ]
+
+
+def _by_hand(rows: list[dict]) -> bool:
+    """Whether one of the rates can be computed by hand."""
+    return any(row.get("by_hand") for row in rows)
+
+
+def _hand(row: dict) -> str | None:
+    """Moment impulse over inertia, where nothing or one pad touches."""
+    found = row.get("by_hand")
+    return found and ", ".join(map(uncertain, found["rate_deg_s"]))
 
 
 def _words(settled: dict | None, limits: Sequence[Limit]) -> str:

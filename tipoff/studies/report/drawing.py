@@ -136,10 +136,10 @@ def _side(scene: Scene) -> list[str]:
     view.text((origin[0] + 10.0, origin[1] - 38.0), "Y")
     corner = view.point(scene.rail.end, b + wall)
     view.text((corner[0], corner[1] - 26.0), "open end")
-    words = "rails grey, pads orange"
+    words = "rails, pads (orange)"
     view.text(
         (_EDGE, 20.0),
-        f"From the side: {words}" + (", mounts black" if _mounts(scene) else ""),
+        f"From the side: {words}" + (", mounts (outside)" if _mounts(scene) else ""),
         "start",
     )
     travel = 1e3 * (scene.rail.end - scene.rail.start)

@@ -74,7 +74,9 @@ class Page:
         from plotly.offline import get_plotlyjs
 
         drawn: dict[str, list[Drawn]] = {title: [] for title in (*_GROUPS, _STUDIES)}
-        for item in sections():
+        order = [name for names in _GROUPS.values() for name in names]
+        ranked = {name: place for place, name in enumerate(order)}
+        for item in sorted(sections(), key=lambda item: ranked.get(item.anchor, len(order))):
             group = next(
                 (title for title, names in _GROUPS.items() if item.anchor in names), _STUDIES
             )
