@@ -80,6 +80,6 @@ footer { max-width: 1240px; margin: 60px auto 40px; padding: 0 28px; color: var(
   th, td, table.dense th, table.dense td { padding: 2px 4px 2px 2px; overflow-wrap: anywhere; }
   td.number { white-space: normal; } .dense td:last-child { min-width: 0; }
   table.judged td:last-child, table.judged th:last-child { position: static; box-shadow: none; }
-  .plotly-graph-div { zoom: 0.8; }
+  .plotly-graph-div { zoom: 0.78; }
 }
 """

@@ -2,6 +2,7 @@
 the make target of the result."""
 
 import datetime
+import shlex
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -107,9 +108,10 @@ class Page:
         """One line on the studies without a result, with the command as the user would type it."""
         if not self._missing:
             return []
-        names, scene = ", ".join(dict.fromkeys(self._missing)), self.scene.origin
-        command = f"tipoff NAME --scene {scene} --out {self.folder.parent}"
-        return [Missing(f"Not made: {names}. `{command}` makes the one of this NAME.")]
+        names = ", ".join(dict.fromkeys(self._missing))
+        return [
+            Missing(f"Not made: {names}. `{self._command('NAME')}` makes the one of this NAME.")
+        ]
 
     def _drawn(self, anchor: str, link: str, title: str, parts: Sequence[Part]) -> Drawn:
         """A section of ``parts``; empty where there are none."""
@@ -122,11 +124,16 @@ class Page:
         return list(body(found)) if found else [self.missing(result, target)]
 
     def missing(self, stage: str, target: str) -> Notice | Missing:
-        """The reason why a result is missing, or the make ``target`` that makes it."""
+        """The reason why a result is missing, or the command ``target`` that makes it."""
         if reason := self.problems.get(stage):
             return Notice(reason)
         self._missing.append(target)
-        return Missing(f"No result yet: {target}.")
+        return Missing(f"No result yet. `{self._command(target)}` makes it.")
+
+    def _command(self, name: str) -> str:
+        """The command ``name`` for this scene and folder, as the user would type it."""
+        scene, out = map(shlex.quote, (self.scene.origin, str(self.folder.parent)))
+        return f"tipoff {name} --scene {scene} --out {out}"
 
     def figure(self, chart: Chart | Picture, words: str) -> Markup:
         """A chart with a caption as HTML. Writes the chart as PNG and SVG."""
