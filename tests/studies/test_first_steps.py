@@ -127,3 +127,20 @@ def test_a_run_that_ends_too_early_is_no_success(tmp_path, stub):
         found = call(*asked)
         assert found.exit_code == 1
         assert "phi15: time_limit: " in found.stderr and "duration of" in found.stderr
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["calibrate", "--reference", "phi15=missing.csv"],
+        ["ensemble", "--table", "missing.csv"],
+        ["ensemble", "--vary", "missing.toml"],
+        ["droptest", "missing.toml"],
+        ["sensitivity", "--vary", "missing.toml"],
+        ["run", "--calibration", "missing.toml"],
+    ],
+)
+def test_files_are_looked_for_before_anything_is_computed(arguments, tmp_path):
+    found = call(*arguments, "--scene", "tiny", "--out", tmp_path / "out")
+    assert found.exit_code == 2 and "1 fault in the files" in found.stderr
+    assert "missing" in found.stderr and not (tmp_path / "out").exists()

@@ -118,7 +118,9 @@ def test_a_new_study_has_a_command_a_result_and_a_section(entry, study, monkeypa
     page, mass = study.path("report.html"), 3.0 * study.scene.payload.mass
 
     report.run(study)
-    assert "make heavier SCENE=tiny" in page.read_text()
+    assert (
+        f"heavier. <code>tipoff NAME --scene tiny --out {study.folder.parent}" in page.read_text()
+    )
 
     assert call(entry, study, "--times", "3").stdout == f"{mass:g} kg\n"
     written = json.loads(study.path("heavier.json").read_text())

@@ -77,6 +77,17 @@ class RailCompliance:
     warm: np.ndarray | None = None
     joints: JointTerms | None = None
 
+    def __repr__(self) -> str:
+        walls = (
+            "rigid"
+            if self.flexibility is None
+            else f"up to {1e9 * self.compliance().max():.3g} nm/N"
+        )
+        return (
+            f"RailCompliance({walls}, {self.travel.size} stations over {1e3 * np.ptp(self.travel):.4g} "
+            f"mm, {self.rail.size} faces, {self.frequency.shape[-1]} modes)"
+        )
+
     def of(self, scene: Scene) -> "RailCompliance":
         """This compliance at the factor that ``scene`` has on the stiffness of its mounts. Raises
         SceneError as ``require`` does."""

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tipoff.files import DamageError, require_whole, write_netcdf
-from tipoff.mechanics import ledger, outcome
+from tipoff.files import DamageError, require_whole, write_netcdf, write_text
+from tipoff.mechanics import ledger, outcome, shown
 from tipoff.mechanics.models import MODELS
 
 if TYPE_CHECKING:
@@ -154,6 +154,41 @@ class Trajectory:
                 f"{', '.join(lost)}: NaN or inf, which no result may hold (None says that there is "
                 f"no value)"
             )
+
+    def __repr__(self) -> str:
+        return shown.line(self)
+
+    def summary(self) -> str:
+        """What a user asks first, a line each: status, exit, settled velocity and rates (deg/s),
+        balances."""
+        return "\n".join(f"{title:10} {words}" for title, words in shown.facts(self).items())
+
+    def _repr_html_(self) -> str:
+        return shown.card("Trajectory", shown.facts(self))
+
+    def plot(self, **options: Any) -> list:
+        """Draw the rates (deg/s) over time (ms) with matplotlib; returns the lines. ``options`` are
+        those of ``xarray.plot.line``, such as ``ax``."""
+        data = self.to_xarray().rate
+        rates = data.assign_coords(time=1e3 * data.time) * (180.0 / math.pi)
+        rates.attrs |= {"long_name": "rate", "units": "deg/s"}
+        rates.time.attrs |= {"long_name": "time after ignition", "units": "ms"}
+        return rates.plot.line(x="time", hue="axis", **options)
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write time, position, velocity and rates of the payload, units in the header, atomically:
+        a file that ``tipoff calibrate --reference`` reads."""
+        columns = {"time [s]": self.time}
+        for name, unit, factor in (
+            ("position", "m", 1.0),
+            ("velocity", "m/s", 1.0),
+            ("rate", "deg/s", 180.0 / math.pi),
+        ):
+            values = factor * getattr(self, name)
+            columns |= {f"{name}_{axis} [{unit}]": values[:, i] for i, axis in enumerate(_VECTOR)}
+        rows = zip(*(values.tolist() for values in columns.values()))
+        lines = [",".join(columns), *(",".join(map(repr, row)) for row in rows)]
+        write_text(Path(path), "\n".join(lines) + "\n")
 
     def to_xarray(self) -> "xarray.Dataset":
         """Labelled copy with units as attributes; motion relative to the platform is added."""

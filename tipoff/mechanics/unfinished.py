@@ -5,11 +5,14 @@ The definitions of exit and settled window are those of ``mechanics.outcome``.
 """
 
 import math
+from typing import TYPE_CHECKING
 
 from tipoff.mechanics.outcome import SETTLE_DELAY, SETTLE_WINDOW, relative_motion
-from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.scene import Scene
+
+if TYPE_CHECKING:
+    from tipoff.mechanics.trajectory import Trajectory
 
 _HORIZON = 100.0  # durations of the scene within which the end of the thrust is looked for
 _BURNT = 1e-3  # of the peak, as in ``mechanics.outcome``
@@ -18,7 +21,7 @@ _STEP = 1e-5  # s, to which a duration is rounded up
 _MARGIN = 1e-3  # s: a payload that turns leaves the rail later than its mass centre tells
 
 
-def advice(scene: Scene, run: Trajectory) -> str:
+def advice(scene: Scene, run: "Trajectory") -> str:
     """Why a ``run`` of ``scene`` has the status ``time_limit`` and which duration would do; empty
     for any other status."""
     if run.status != "time_limit":
@@ -51,7 +54,7 @@ def _before_settling(exit_time: float, thrust_ends: float) -> str:
     return f"{cause}; settling needs a duration of {_ms(_up(start + SETTLE_WINDOW))}"
 
 
-def _on_the_rail(scene: Scene, run: Trajectory, thrust_ends: float) -> str:
+def _on_the_rail(scene: Scene, run: "Trajectory", thrust_ends: float) -> str:
     moved = relative_motion(run)
     place, speed = moved["relative_position"][:, 0], float(moved["relative_velocity"][-1, 0])
     way, whole = float(place[-1] - place[0]), way_to_exit(scene)

@@ -61,6 +61,13 @@ class Calibration:
     with_model_error: list[list[float]] = field(default_factory=list)
     verdict: str = ""
 
+    def __repr__(self) -> str:
+        fitted = ", ".join(
+            f"{name} {value:.4g}{'' if unit == '1' else f' {unit}'}"
+            for name, value, unit in zip(self.parameters, self.values, self.units)
+        )
+        return f"Calibration({fitted}; fitted to {', '.join(self.conditions)})"
+
     def apply(self, scene: Scene) -> Scene:
         """``scene``, of a condition where there is one, with the calibrated constants and changes;
         constants of an effect the scene lacks are left out."""

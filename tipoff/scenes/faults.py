@@ -45,7 +45,8 @@ class SceneError(InputError):
         self.faults = faults
         count = "1 fault" if len(faults) == 1 else f"{len(faults)} faults"
         of_options = all(fault.source.startswith("--") for fault in faults)
-        place = "options" if of_options else "scene"
+        of_files = all(fault.key in ("file", "vary") for fault in faults)
+        place = "options" if of_options else "files" if of_files else "scene"
         super().__init__(
             "\n".join([f"{count} in the {place}"] + [f"  {fault}" for fault in faults])
         )

@@ -122,6 +122,14 @@ class Scene(Table):
             )
         return output
 
+    def __repr__(self) -> str:
+        return (
+            f"Scene({self.name!r}, {self.payload.mass:g} kg, {len(self.pads)} pads, "
+            f"{len(self.conditions)} conditions, hash {self.hash[:8]})"
+        )
+
+    __str__ = __repr__
+
     def replace(self, overrides: Mapping[str, Any]) -> "Scene":
         """A new scene with dotted keys set. Text carries units, a bare number is SI, None or
         "absent" drops a table. What is set has the provenance "user", unless ``overrides`` give
@@ -174,6 +182,12 @@ class Scene(Table):
         """Every input in SI, as written into result files; ``parse(..., bare_numbers_are_si=True)``
         reads it back."""
         return self.model_dump(mode="json", exclude_none=True)
+
+    @property
+    def origin(self) -> str:
+        """The name in the catalogue, or the path of the file, from which it was read."""
+        path = Path(self._source)
+        return path.stem if path.parent == CATALOG else self._source
 
     @cached_property
     def hash(self) -> str:

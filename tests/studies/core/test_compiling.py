@@ -38,3 +38,14 @@ def test_each_kernel_is_compiled_once(runs, tmp_path, capfd):
 def test_a_run_alone_compiles_its_own(runs, tmp_path, count, workers):
     compiling.compile_ahead("kernels", runs[:count], workers)
     assert compiled(tmp_path) == 0
+
+
+def test_the_first_compilation_is_announced_once(runs, capfd):
+    first, other, same = runs
+    compiling.announce(first)
+    assert "compiling the kernels of model compliant" in capfd.readouterr().err
+    compiling.remember(first)
+    compiling.announce(same)  # the same effects
+    assert capfd.readouterr().err == ""
+    compiling.announce(other)
+    assert "once" in capfd.readouterr().err

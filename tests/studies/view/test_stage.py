@@ -225,7 +225,7 @@ def test_page_shows_peaks_and_says_what_would_show_more(viewed):
     shown = html(section.draw(page))
     assert "make view" not in shown and "make pictures" in shown and found["collection"] in shown
     without = Page(study.scene, study.folder, {}, Runs({}, {}, {}), {})
-    assert "make highfi SCENE=tiny" in html(section.draw(without))
+    assert "tipoff highfi --scene tiny --out" in html(section.draw(without))
 
 
 def test_page_warns_and_escapes():

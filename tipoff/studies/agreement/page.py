@@ -229,23 +229,22 @@ def _errors(row: dict) -> str:
 
 
 def summary(rows: list[dict], words: str = "") -> str:
-    """How many of the ``words`` conditions have each verdict."""
+    """How many of the ``words`` conditions agree, as curves and as distributions, cannot be judged, and
+    miss."""
     count = {word: sum(row["judgement"] == word for row in rows) for word in verdicts.JUDGEMENTS}
     free = sum(row["judgement"] == verdicts.AGREES and not row["touches"] for row in rows)
-    parts = [
+    alike, missing = count[verdicts.AS_DISTRIBUTION], count[verdicts.MISSES]
+    return (
         f"{count[verdicts.AGREES]} of {len(rows)} {words}conditions agree"
-        + (f" ({free} of them without contact)" if free else ""),
-        *(
-            f"{count[word]} {said}"
-            for word, said in (
-                (verdicts.AS_DISTRIBUTION, "agree as distributions"),
-                (verdicts.MISSES, "miss"),
-                (verdicts.CANNOT, "cannot be judged"),
-            )
-            if count[word]
-        ),
-    ]
-    return ", ".join(parts)
+        + (f" ({free} of them without contact)" if free else "")
+        + (
+            f", {alike} {'agrees as a distribution' if alike == 1 else 'agree as distributions'}"
+            if alike
+            else ""
+        )
+        + f", {count[verdicts.CANNOT]} cannot be judged, "
+        + f"{missing} {'misses' if missing == 1 else 'miss'}"
+    )
 
 
 def _agreement_row(row: dict) -> tuple:

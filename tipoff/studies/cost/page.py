@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
+from tipoff.studies.agreement import verdicts
 from tipoff.studies.cost import choice, scaling_page
 from tipoff.studies.render.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Heading, Part
@@ -14,7 +15,8 @@ if TYPE_CHECKING:
 _ERRORS = (
     "Condition {condition}. Errors against the finest finite-element mesh, whose uncertainty is the "
     "band: smaller errors count as the band in the Pareto front. Right: the part of the error that "
-    "a smaller tolerance removes. Labels: element size, tolerance, number of modes."
+    "a smaller tolerance removes. Labels: model, element size, tolerance, number of modes. The cross is "
+    "the recommended model: the fastest surrogate within the band or 0.1 deg/s, whichever is larger."
 )
 
 
@@ -170,10 +172,34 @@ def picture(cost: dict) -> Chart:
             )
             for model, style in look.items()
         ]
-        front = [_front(cost)] if shaded else []
+        front = [_front(cost), *_recommended(cost)] if shaded else []
         shown = [line for line in front + lines if len(line.x)]
         panels.append(Panel(title, "wall time of one run (s)", label, shown, True, shaded))
     return Chart("cost", [panel for panel in panels if panel.lines], columns=3, height=380)
+
+
+def recommended(cost: dict) -> dict | None:
+    """The fastest surrogate whose error is no larger than the uncertainty of the finest mesh, or
+    the limit of agreement if that is larger; without one, the most accurate surrogate."""
+    enough = max(cost["band_deg_s"] or 0.0, verdicts.CONVERGED_DEG_S)
+    points = [
+        point
+        for point in cost["points"]
+        if point["error_deg_s"] is not None and point["model"] != FINITE_ELEMENTS
+    ]
+    good = [point for point in points if point["error_deg_s"] <= enough]
+    if good:
+        return min(good, key=lambda point: point["wall_s"])
+    return min(points, key=lambda point: point["error_deg_s"], default=None)
+
+
+def _recommended(cost: dict) -> list[Line]:
+    point = recommended(cost)
+    if point is None or not point["error_deg_s"]:
+        return []
+    name = f"recommended: {point['model']}, {point['numerics']}"
+    place = [point["wall_s"]], [point["error_deg_s"]]
+    return [Line(*place, name, "#000000", 1.6, "", marker="x", size=16.0)]
 
 
 def _front(cost: dict) -> Line:
@@ -216,7 +242,10 @@ def _cost_line(
         and not varied
         and (error != "integration_error_deg_s" or model != COMPLIANT)
     ):
-        labels = [""] * len(labels)
+        # the curve by its name, at its fastest point, where errors are shown
+        named = min(points, key=lambda point: point["wall_s"], default=None)
+        is_first = error == "error_deg_s"
+        labels = [model if is_first and point is named else "" for point in points]
     return Line(
         [p["wall_s"] for p in points],
         [p[error] for p in points],

@@ -1,9 +1,16 @@
 """The look of the page: one column, system fonts, no colour that carries meaning alone."""
 
 CSS = """
-:root { --ink: #24292f; --soft: #59636e; --rule: #d9dee3; --tint: #f5f7f9; --accent: #1d3461; }
+:root { color-scheme: light dark; --ink: #24292f; --soft: #59636e; --rule: #d9dee3; --tint: #f5f7f9; \
+--accent: #1d3461; --paper: #fff; --warn: #fdf6ee; --good: #1a7f37; --bad: #b42318; }
+@media (prefers-color-scheme: dark) {
+  :root { --ink: #e6e8eb; --soft: #a3adb8; --rule: #39424c; --tint: #1d242c; --accent: #9db8ea; \
+--paper: #13181e; --warn: #2b2115; --good: #4ac26b; --bad: #ff8a80; }
+  .js-plotly-plot, .plotly-graph-div, main img { background: #fff; border-radius: 6px; }
+}
+html { scroll-padding-top: 84px; }
 * { box-sizing: border-box; }
-body { margin: 0; color: var(--ink); background: #fff; \
+body { margin: 0; color: var(--ink); background: var(--paper); \
 font: 16px/1.55 system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif; }
 main, header { max-width: 1240px; margin: 0 auto; padding: 0 28px; }
 header { padding-top: 40px; }
@@ -13,8 +20,12 @@ h3 { font-size: 16px; margin: 26px 0 8px; }
 p { max-width: 78ch; margin: 8px 0; }
 .lead { font-size: 18px; color: var(--soft); }
 .caption { color: var(--soft); font-size: 14px; max-width: 92ch; }
-nav { margin: 20px 0 0; font-size: 14px; }
-nav a { margin-right: 14px; white-space: nowrap; }
+nav { position: sticky; top: 0; z-index: 5; background: var(--paper); border-bottom: 1px solid var(--rule); \
+font-size: 13px; padding: 6px max(28px, calc((100% - 1184px) / 2)); max-height: 30vh; overflow-y: auto; }
+nav b { color: var(--soft); font-weight: 600; margin-right: 10px; }
+nav span { display: inline-block; margin-right: 18px; }
+nav a { margin-right: 10px; white-space: nowrap; }
+h2.part { font-size: 26px; border: 0; margin: 64px 0 0; padding: 0; color: var(--accent); }
 a { color: var(--accent); }
 code { font: 0.9em/1.4 ui-monospace, "SF Mono", Menlo, Consolas, monospace; \
 background: var(--tint); padding: 1px 4px; border-radius: 3px; }
@@ -29,9 +40,11 @@ td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: 
 table.dense { font-size: 13px; } .dense td:last-child { min-width: 190px; } \
 .dense th { padding-right: 8px; } .dense td { padding-right: 8px; }
 tbody tr:nth-child(even) { background: var(--tint); }
-tr.good td:last-child::before { content: "\\2713\\00a0"; }
+table.judged td:last-child, table.judged th:last-child { position: sticky; right: 0; background: var(--paper); \
+box-shadow: -1px 0 0 var(--rule); }
+tr.good td:last-child::before { color: var(--good); content: "\\2713\\00a0"; }
 tr.bad td:last-child { font-weight: 600; }
-tr.bad td:last-child::before { content: "\\2717\\00a0"; }
+tr.bad td:last-child::before { color: var(--bad); content: "\\2717\\00a0"; }
 tr.doubt td:last-child { font-style: italic; }
 .none { color: #9aa1a9; }
 .small { color: var(--soft); font-size: 12px; }
@@ -39,13 +52,34 @@ tr.doubt td:last-child { font-style: italic; }
 .figures div { border: 1px solid var(--rule); border-radius: 6px; padding: 10px 16px; min-width: 150px; }
 .figures b { display: block; font-size: 22px; font-variant-numeric: tabular-nums; }
 .figures span { color: var(--soft); font-size: 13px; }
-.notice { border-left: 4px solid #b4540a; background: #fdf6ee; padding: 8px 14px; margin: 12px 0; max-width: 92ch; }
+.notice { border-left: 4px solid #b4540a; background: var(--warn); padding: 8px 14px; margin: 12px 0; max-width: 92ch; }
 .absent { border-left: 4px solid var(--rule); padding: 6px 14px; color: var(--soft); }
 img { max-width: 100%; height: auto; }
 details { margin: 10px 0; } summary { cursor: pointer; color: var(--accent); }
 footer { max-width: 1240px; margin: 60px auto 40px; padding: 0 28px; color: var(--soft); font-size: 13px; }
+.drawing { display: flex; flex-wrap: wrap; gap: 14px; }
+.drawing svg { flex: 1 1 440px; min-width: 0; max-width: 640px; }
+.drawing text { fill: var(--ink); font-size: 13px; }
+.drawing .payload { fill: var(--tint); stroke: var(--soft); } .drawing .rail { fill: var(--soft); }
+.drawing .mount { fill: var(--ink); } .drawing .pad { fill: #e8a33d; stroke: #8c6d46; stroke-width: .6; }
+.drawing line, .drawing path { fill: none; stroke-width: 1.6; stroke: var(--accent); }
+.drawing path.tip { fill: context-stroke; stroke: none; }
+.drawing .thrust { stroke: #d1495b; stroke-width: 3; } .drawing .tilt { stroke: #d1495b; stroke-width: 2.4; }
+.drawing .shift { stroke: #2e8b7a; stroke-width: 2.4; stroke-dasharray: 5 3; }
+@media (max-width: 700px) {
+  main, header { padding: 0 14px; } header { padding-top: 20px; } h1 { font-size: 24px; }
+  nav { padding: 6px 14px; max-height: 74px; } .figures { display: block; } .figures div { margin: 8px 0; }
+  .drawing { display: block; } .js-plotly-plot { overflow-x: auto; }
+}
+@page { size: A4 landscape; margin: 12mm; }
 @media print {
-  body { font-size: 11pt; } main, header, footer { max-width: none; padding: 0; } nav { display: none; }
-  h2 { break-after: avoid; } table, img, .plotly-graph-div { break-inside: avoid; }
+  :root { --ink: #000; --soft: #444; --rule: #bbb; --tint: #f2f2f2; --accent: #1d3461; --paper: #fff; --warn: #fff; }
+  body { font-size: 10pt; } main, header, footer { max-width: none; padding: 0; } nav { display: none; }
+  h2, h3 { break-after: avoid; } tr, img, .plotly-graph-div, .drawing, .figures { break-inside: avoid; }
+  .wide { overflow: visible; } table { width: 100%; font-size: 8pt; } table.dense { font-size: 6.5pt; }
+  th, td, table.dense th, table.dense td { padding: 2px 4px 2px 2px; overflow-wrap: anywhere; }
+  td.number { white-space: normal; } .dense td:last-child { min-width: 0; }
+  table.judged td:last-child, table.judged th:last-child { position: static; box-shadow: none; }
+  .plotly-graph-div { zoom: 0.78; }
 }
 """

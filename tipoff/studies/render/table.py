@@ -160,7 +160,8 @@ def html(table: Table) -> Markup:
         (kind, [_cell(value, column) for value, column in zip(row, _records(table))])
         for row, kind in zip(table.rows, _kinds(table))
     ]
-    return Markup(_TEMPLATE.render(table=table, rows=rows))
+    judged = bool({"good", "bad", "doubt"} & set(table.kinds))
+    return Markup(_TEMPLATE.render(table=table, rows=rows, judged=judged))
 
 
 def inline(text: str) -> Markup:
@@ -180,7 +181,7 @@ _TEMPLATE = _ENVIRONMENT.from_string(
 {% if table.title %}<p>{{ table.title | inline }}</p>{% endif %}
 <div class="wide"><table
 {%- if table.name %} id="{{ table.name }}"{% endif %}
-{%- if table.dense %} class="dense"{% endif %}>
+{%- if table.dense or judged %} class="{{ "dense" if table.dense }}{{ " judged" if judged }}"{% endif %}>
 <thead><tr>{% for head in table.heads %}<th>{{ head | inline }}</th>{% endfor %}</tr></thead>
 <tbody>
 {% for kind, cells in rows %}

@@ -33,6 +33,15 @@ def report(
             "reason where the scene does not allow one.",
         ),
     ] = False,
+    limit: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--limit",
+            metavar="[AXIS=]RATE",
+            help='Limit of a rate, "x=2 deg/s", or of the total rate, "5 deg/s", that the page '
+            "judges; repeatable.",
+        ),
+    ] = None,
     element_size: ElementSize = None,
     workers: Workers = None,
     json_: Json = False,
@@ -45,11 +54,12 @@ def report(
     """
 
     def work() -> dict:
+        from tipoff.studies.populations import exceedance
         from tipoff.studies.report import stage
 
-        return stage.run(
-            study_of(scene, out, set_, element_size=element_size, workers=workers), every
-        )
+        limits = exceedance.limits(limit or [])
+        study = study_of(scene, out, set_, element_size=element_size, workers=workers)
+        return stage.run(study, every, limits)
 
     def shown(found: dict) -> list[str]:
         return [found["verdict"]] if found["verdict"] else []

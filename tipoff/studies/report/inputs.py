@@ -18,6 +18,7 @@ from tipoff.studies.render.document import Fold, Part
 from tipoff.studies.render.table import Table, number
 
 _SCALED = ("m", "s", "N", "Pa", "m/s", "Hz")
+_ASSUMED = ("assumed", "not stated", "inferred")  # origins that stand first
 _APART = {"name", "description", "conditions", "provenance", "agreement", "pads"}
 
 
@@ -92,6 +93,7 @@ def scene_tables(scene: Scene) -> list[Part]:
             assert scene.contact is not None
             unit = f"N/m**{scene.contact.exponent:g}"
         rows.append((f"`{key}`", readable(value, unit), provenance(scene, key, stated)))
+    rows.sort(key=lambda row: not row[2].startswith(_ASSUMED))
     pads = [
         (
             index + 1,

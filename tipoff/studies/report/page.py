@@ -2,6 +2,7 @@
 the make target of the result."""
 
 import datetime
+import shlex
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -11,33 +12,53 @@ from tipoff.mechanics.trajectory import versions
 from tipoff.scenes import plausibility
 from tipoff.scenes.scene import Scene
 from tipoff.studies.core import machine
+from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.registry import sections
 from tipoff.studies.render import document
 from tipoff.studies.render.chart import Chart, Picture, to_files, to_html
-from tipoff.studies.render.document import Caption, KeyFigures, Missing, Notice, Part
-from tipoff.studies.render.table import Column, Table
-from tipoff.studies.report import inputs, template
+from tipoff.studies.render.document import Caption, Missing, Notice, Part
+from tipoff.studies.render.table import Table
+from tipoff.studies.report import answer, drawing, inputs, template
 from tipoff.studies.report.promises import promises, table
-from tipoff.studies.report.template import Drawn
+from tipoff.studies.report.template import Drawn, Group
 from tipoff.studies.runs.figures import Runs
 
-_SETTLED = (
-    "Settled values of the finite-element reference: means over 2 ms after exit and burnout. "
-    "Velocities are in the initial scene axes, rates are inertial in payload body axes. "
-    "Reference ±: the largest uncertainty by mesh, step and contact cells. Surrogate "
-    "error: the largest error of compliant contact over the axes."
-)
+_EVIDENCE, _STUDIES = "Evidence", "Studies"
+_GROUPS = {
+    "Motion": ("thrust", "figure6", "contact-forces", "energy", "stress"),
+    _EVIDENCE: (
+        "agreement-section",
+        "growth-section",
+        "speedup",
+        "cost",
+        "convergence",
+        "blind",
+        "calibration",
+        "compliance",
+        "mesh",
+        "stability",
+        "ablation",
+        "rails",
+        "bench",
+    ),
+}
 
 
 class Page:
     """One report.
 
     ``documents`` are result files by stage (None where missing). ``problems`` are the reasons why a
-    stage has no result.
+    stage has no result. ``limits`` are those of the rates that the user gave.
     """
 
     def __init__(
-        self, scene: Scene, folder: Path, documents: dict, runs: Runs, problems: dict[str, str]
+        self,
+        scene: Scene,
+        folder: Path,
+        documents: dict,
+        runs: Runs,
+        problems: dict[str, str],
+        limits: Sequence[Limit] = (),
     ):
         self.scene, self.folder, self.documents, self.runs, self.problems = (
             scene,
@@ -46,28 +67,51 @@ class Page:
             runs,
             problems,
         )
+        self.limits, self._missing = limits, list[str]()
         self.pictures: list[Path] = []
 
     def render(self) -> str:
         """The whole page as HTML. Writes every figure as PNG and SVG."""
         from plotly.offline import get_plotlyjs
 
-        drawn = [
-            self._drawn("answer", "Answer", "Velocity and rates after exit", self._answer()),
-            self._drawn("scene", "Scene", "Scene", inputs.scene_tables(self.scene)),
-        ]
-        drawn += [
-            self._drawn(item.anchor, item.link, item.title, item.draw(self)) for item in sections()
-        ]
-        checked = promises(self.rows(), self.documents)
-        drawn += [
-            self._drawn("promises", "Promises", "Promises", [table(checked)]),
+        drawn: dict[str, list[Drawn]] = {title: [] for title in (*_GROUPS, _STUDIES)}
+        order = [name for names in _GROUPS.values() for name in names]
+        ranked = {name: place for place, name in enumerate(order)}
+        for item in sorted(sections(), key=lambda item: ranked.get(item.anchor, len(order))):
+            group = next(
+                (title for title, names in _GROUPS.items() if item.anchor in names), _STUDIES
+            )
+            parts = item.draw(self)
+            if not (parts and all(isinstance(part, Missing) for part in parts)):
+                drawn[group].append(self._drawn(item.anchor, item.link, item.title, parts))
+        kept = table(promises(self.rows(), self.documents))
+        drawn[_EVIDENCE].append(self._drawn("promises", "Promises", "Promises", [kept]))
+        first = self._drawn("answer", "Answer", "Velocity and rates after exit", self._answer())
+        last = [
+            self._drawn("scene", "Inputs", "Inputs", inputs.scene_tables(self.scene)),
             self._drawn("colophon", "Origin", "Origin of the results", self._colophon()),
         ]
-        shown = [item for item in drawn if item.html]
+        groups = [
+            Group("", [first]),
+            *(
+                Group(title, [item for item in found if item.html])
+                for title, found in drawn.items()
+            ),
+            Group("Appendix", last, self.parts(self._not_made())),
+        ]
+        shown = [group for group in groups if group.sections or group.end]
         return template.page(
             f"tipoff: {self.scene.name}", self.scene.description, get_plotlyjs(), shown
         )
+
+    def _not_made(self) -> list[Part]:
+        """One line on the studies without a result, with the command as the user would type it."""
+        if not self._missing:
+            return []
+        names = ", ".join(dict.fromkeys(self._missing))
+        return [
+            Missing(f"Not made: {names}. `{self._command('NAME')}` makes the one of this NAME.")
+        ]
 
     def _drawn(self, anchor: str, link: str, title: str, parts: Sequence[Part]) -> Drawn:
         """A section of ``parts``; empty where there are none."""
@@ -80,10 +124,16 @@ class Page:
         return list(body(found)) if found else [self.missing(result, target)]
 
     def missing(self, stage: str, target: str) -> Notice | Missing:
-        """The reason why a result is missing, or the make ``target`` that makes it."""
+        """The reason why a result is missing, or the command ``target`` that makes it."""
         if reason := self.problems.get(stage):
             return Notice(reason)
-        return Missing(f"No result yet. `make {target} SCENE={self.scene.name}` makes it.")
+        self._missing.append(target)
+        return Missing(f"No result yet. `{self._command(target)}` makes it.")
+
+    def _command(self, name: str) -> str:
+        """The command ``name`` for this scene and folder, as the user would type it."""
+        scene, out = map(shlex.quote, (self.scene.origin, str(self.folder.parent)))
+        return f"tipoff {name} --scene {scene} --out {out}"
 
     def figure(self, chart: Chart | Picture, words: str) -> Markup:
         """A chart with a caption as HTML. Writes the chart as PNG and SVG."""
@@ -102,59 +152,12 @@ class Page:
         }
 
     def _answer(self) -> list[Part]:
-        """Warnings, wall times, and the settled velocities and rates of all conditions."""
+        """Warnings, then the answer, and the launcher with its axes."""
         warnings = [
             f"Implausible: {warning}" for warning in plausibility.of_all_conditions(self.scene)
         ]
         warnings += [f"{stage}: {reason}" for stage, reason in self.problems.items()]
-        return [*map(Notice, warnings), KeyFigures(self._speeds()), self._settled()]
-
-    def _speeds(self) -> list[tuple[str, str]]:
-        """Wall times of one run and their ratios, each with its meaning; empty before the
-        comparison of both models."""
-        agreement = self.documents.get("agreement") or {}
-        if not (speed := agreement.get("speedup_compliant")):
-            return []
-        facts = [
-            (f"{speed['highfi_wall_s']:.3g} s", "one reference run"),
-            (f"{1e3 * speed['lowfi_wall_s']:.3g} ms", "one surrogate run"),
-            (f"{speed['ratio']:,.0f} ×", f"faster ({speed['low']:,.0f} to {speed['high']:,.0f})"),
-        ]
-        if equal := (self.documents.get("convergence") or {}).get("equal_accuracy"):
-            bound = "" if equal["surer"] else "at least, "
-            mesh = f"{1e3 * equal['element_size_m']:g} mm"
-            facts.append((f"{equal['ratio']:,.0f} ×", f"{bound}at equal accuracy (mesh of {mesh})"))
-        return facts
-
-    def _settled(self) -> Table:
-        agreement = self.documents.get("agreement") or {}
-        compared = {row["condition"]: row for row in agreement.get("compliant", [])}
-        rows = []
-        for found in self.rows()["highfi"]:
-            settled, errors = found["settled"] or {}, compared.get(found["condition"], {})
-            rows.append(
-                (
-                    found["condition"],
-                    found["status"],
-                    settled.get("velocity_m_s", [None])[0],
-                    settled.get("lateral_velocity_m_s"),
-                    settled.get("direction_error_deg"),
-                    *settled.get("rate_deg_s", [None] * 3),
-                    errors.get("reference_uncertainty_deg_s"),
-                    errors.get("settled_rate_error_deg_s"),
-                )
-            )
-        columns: tuple[Column | str, ...] = (
-            "condition",
-            "status",
-            Column(Markup("v<sub>x</sub> (m/s)"), form=".4f"),
-            Column("lateral v", "mm/s", scale=1e3),
-            Column("off axis", "deg"),
-            *(Column(f"{axis} rate", "deg/s", "+.3f") for axis in ("roll", "y", "z")),
-            Column("reference ±", "deg/s", ".2g"),
-            Column("surrogate error", "deg/s", ".2g"),
-        )
-        return Table(columns, rows, notes=(_SETTLED,))
+        return [*answer.draw(self), drawing.launcher(self.scene), *map(Notice, warnings)]
 
     def _colophon(self) -> list[Part]:
         here = machine.describe()

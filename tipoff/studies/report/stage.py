@@ -1,6 +1,7 @@
 """Stage ``report``: makes the stages that compare both models, then one page of their results and of
 all other stored results."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from tipoff import sources
@@ -10,17 +11,18 @@ from tipoff.studies.agreement import stage as compare
 from tipoff.studies.core.progress import say
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.question import Result
 from tipoff.studies.registry import results
 from tipoff.studies.runs import stage as runs
 
 
-def run(study: Study, every: bool = False) -> dict:
+def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict:
     """Make missing results and write report.html; ``verdict`` is one sentence on the agreement of
     both models, ``failed`` contains the failures of all stages.
 
     With ``every``, each study without a present result is made too; the page gives the reason where
-    the scene does not allow one.
+    the scene does not allow one. The page says whether the rates are within ``limits``.
     """
     documents: dict[str, dict | None] = {}
     problems: dict[str, str] = {}
@@ -44,6 +46,7 @@ def run(study: Study, every: bool = False) -> dict:
             documents | there,
             _trajectories(study, documents),
             problems | absent,
+            limits,
         )
         path = study.path("report.html")
         write_text(path, page.render())
@@ -59,7 +62,7 @@ def run(study: Study, every: bool = False) -> dict:
         name: study.path(f"{name}.json").read_text() for name, found in documents.items() if found
     }
     drawn = sources.digest("tipoff.studies.report.page")
-    shown = study.key(__name__, drawn, study.scene.resolved().get("flight"))
+    shown = study.key(__name__, drawn, study.scene.resolved().get("flight"), list(limits))
     key = content_hash(keys, content_hash(made_at), content_hash(there), problems | absent, shown)
     return study.stage("report", key, make)
 

@@ -17,6 +17,14 @@ class Drawn(NamedTuple):
     html: str
 
 
+class Group(NamedTuple):
+    """Sections under one ``title``; ``end`` is a paragraph of HTML below them."""
+
+    title: str
+    sections: Sequence[Drawn]
+    end: str = ""
+
+
 _ENVIRONMENT = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
 _PAGE = _ENVIRONMENT.from_string(
     """<!doctype html>
@@ -32,15 +40,25 @@ _PAGE = _ENVIRONMENT.from_string(
 <header>
 <h1>{{ title }}</h1>
 <p class="lead">{{ lead }}</p>
-<nav>
-{% for section in sections %}
+</header>
+<nav aria-label="Contents">
+{% for group in groups %}
+<span>{% if group.title %}<b>{{ group.title }}</b>{% endif %}
+
+{% for section in group.sections %}
 <a href="#{{ section.anchor }}">{{ section.link }}</a>
 {% endfor %}
+</span>
+{% endfor %}
 </nav>
-</header>
 <main>
-{% for section in sections %}
+{% for group in groups %}
+{% if group.title %}<h2 class="part">{{ group.title }}</h2>{% endif %}
+
+{% for section in group.sections %}
 {{ section.html | safe }}
+{% endfor %}
+{{ group.end | safe }}
 {% endfor %}
 </main>
 </body>
@@ -52,11 +70,11 @@ _SECTION = _ENVIRONMENT.from_string(
 )
 
 
-def page(title: str, lead: str, script: str, sections: Sequence[Drawn]) -> str:
+def page(title: str, lead: str, script: str, groups: Sequence[Group]) -> str:
     """The whole page; ``script`` is the JavaScript of its charts, ``lead`` the line below the
     title."""
     return _PAGE.render(
-        title=title, lead=lead, style=Markup(CSS), script=Markup(script), sections=sections
+        title=title, lead=lead, style=Markup(CSS), script=Markup(script), groups=groups
     )
 
 

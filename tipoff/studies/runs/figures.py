@@ -1,6 +1,6 @@
 """Figures of the trajectories of both models."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -56,26 +56,61 @@ def thrust_curve(scene: Scene) -> Chart:
 
 
 def figure6(runs: Runs, conditions: list[str]) -> Chart:
-    """Figure 6 of the paper: v_x, then the three rates of each fitted condition, all models."""
-    shades = dict(zip(conditions, (NAVY, VERMILION, AMBER, TEAL, GREY) * 4))
+    """Figure 6 of the paper: v_x of each condition and its three rates, all models, with what the
+    surrogates differ from the reference beside them. The colour is the axis, the line the model."""
+    first = conditions[0]
     speed = [
-        _line(run.time, run.velocity[:, 0], shades[name], kind, legend=False)
-        for kind in _STYLES
-        for name, run in getattr(runs, kind).items()
-        if name in shades
+        _line(found.time, found.velocity[:, 0], NAVY, kind, legend=False)
+        for kind, found in _of(runs, first).items()
     ]
-    panels = [Panel("(a) velocity along X, all conditions", _MILLISECONDS, "v_x (m/s)", speed)]
+    slower = _differences(runs, first, lambda run: run.velocity[:, :1], {"x": NAVY}, 1e3)
+    panels = [
+        Panel(f"(a) {first}: velocity along X", _MILLISECONDS, "v_x (m/s)", speed),
+        Panel("difference of v_x", _MILLISECONDS, "difference (mm/s)", slower),
+    ]
     for letter, name in zip("bcdefghijk", conditions):
-        drawn = {kind: getattr(runs, kind)[name] for kind in _STYLES if name in getattr(runs, kind)}
         lines = [
             _line(
                 run.time, np.degrees(run.rate[:, i]), colour, kind, f"rate about {axis.upper()}, "
             )
-            for kind, run in drawn.items()
+            for kind, run in _of(runs, name).items()
             for i, (axis, colour) in enumerate(AXIS_COLOURS.items())
         ]
-        panels.append(Panel(f"({letter}) {name}", _MILLISECONDS, "rate (deg/s)", lines))
-    return Chart("figure6", panels, columns=3 if len(panels) > 4 else 2, height=290)
+        other = _differences(runs, name, lambda run: np.degrees(run.rate), AXIS_COLOURS)
+        panels += [
+            Panel(f"({letter}) {name}: rates", _MILLISECONDS, "rate (deg/s)", lines),
+            Panel(f"{name}: difference of the rates", _MILLISECONDS, "difference (deg/s)", other),
+        ]
+    return Chart("figure6", panels, columns=2, height=290)
+
+
+def _of(runs: Runs, name: str) -> dict[str, Trajectory]:
+    """The runs of one condition by model."""
+    return {kind: getattr(runs, kind)[name] for kind in _STYLES if name in getattr(runs, kind)}
+
+
+def _differences(
+    runs: Runs,
+    name: str,
+    measured: Callable[[Trajectory], np.ndarray],
+    colours: Mapping[str, str],
+    factor: float = 1.0,
+) -> list[Line]:
+    """Surrogates minus reference, as long as both have samples; uncalibrated springs, which differ
+    most, are left out."""
+    found = _of(runs, name)
+    if (reference := found.get("highfi")) is None:
+        return []
+    lines = []
+    for kind in ("compliant", "calibrated"):
+        if (run := found.get(kind)) is None:
+            continue
+        time = run.time[run.time <= reference.time[-1]]
+        for i, colour in enumerate(colours.values()):
+            own = measured(run)[: time.size, i]
+            there = np.interp(time, reference.time, measured(reference)[:, i])
+            lines.append(_line(time, factor * (own - there), colour, kind, legend=False))
+    return lines
 
 
 def _line(time, values, colour: str, kind: str, name: str = "", legend: bool = True) -> Line:

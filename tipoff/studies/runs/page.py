@@ -12,9 +12,9 @@ if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
 _CURVES = (
-    "The paper's Figure 6 for this scene. Broad pale lines: finite elements; thin: compliant "
-    "contact; dashed: springs, calibrated; dotted: springs before calibration. Rates are inertial, "
-    "in payload body axes."
+    "The paper's Figure 6 for this scene. The colour is the axis, the line the model: broad and pale "
+    "finite elements, thin compliant contact, dashed springs, calibrated, dotted springs before "
+    "calibration. Right: surrogate minus finite elements. Rates are inertial, in payload body axes."
 )
 
 

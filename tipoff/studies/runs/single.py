@@ -12,8 +12,9 @@ from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.cost import choice
 from tipoff.studies.cost import stage as cost
+from tipoff.studies.render.uncertain import uncertain
 from tipoff.studies.runs import disturbed
-from tipoff.studies.runs.stage import failure, row
+from tipoff.studies.runs.stage import beside, failure, row
 
 
 def run(
@@ -83,6 +84,7 @@ def result_of(study: Study, condition: str, request: Run, quiet: bool) -> dict:
     compiling.remember(request)
     calibrated, modes = request.calibration is not None, getattr(request.numerics, "modes", 0)
     result = row(condition, found, study.relative(study.store.path(request)))
+    result |= beside(request, found)
     result["agreement"] = kept.words(study, request.model, condition, calibrated, modes)
     if request.fidelity == "lowfi" and found.outcome.rate is not None:
         result["disturbed"] = disturbed.of(request, found, study.settings.clearance_change)
@@ -113,14 +115,17 @@ def lines(result: dict, made_with: str, study: Study) -> list[str]:
     if settled := result["settled"]:
         text.append(
             "  velocity      "
-            + ", ".join(f"{value:.5g}" for value in settled["velocity_m_s"])
+            + ", ".join(uncertain(value, least=1e-4) for value in settled["velocity_m_s"])
             + " m/s (x, y, z)"
         )
         text.append(
             "  rate          "
-            + ", ".join(f"{value:.4g}" for value in settled["rate_deg_s"])
+            + ", ".join(map(uncertain, settled["rate_deg_s"]))
             + " deg/s (x, y, z)"
         )
+        if hand := result.get("by_hand"):
+            rates = ", ".join(map(uncertain, hand["rate_deg_s"]))
+            text.append(f"  by hand       {rates} deg/s: {hand['words']}")
         text.append(
             f"  direction     {settled['direction_error_deg']:.4g} deg off axis, "
             f"{1e3 * settled['lateral_velocity_m_s']:.4g} mm/s across"

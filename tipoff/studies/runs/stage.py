@@ -4,7 +4,7 @@ compliant contact."""
 import math
 from pathlib import Path
 
-from tipoff.mechanics import unfinished
+from tipoff.mechanics import hand_calculation, unfinished
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.convergence import stresses
@@ -32,8 +32,7 @@ def run(study: Study, fidelity: str) -> dict:
         runs = dict(zip(requested, study.store.fill(fidelity, asked)))
         compiling.remember(asked[0])
         rows = [
-            row(name, runs[name], study.relative(study.store.path(run)))
-            | {"advice": unfinished.advice(run.scene, runs[name])}
+            row(name, runs[name], study.relative(study.store.path(run))) | beside(run, runs[name])
             for name, run in requested.items()
         ]
         failed = [
@@ -46,6 +45,17 @@ def run(study: Study, fidelity: str) -> dict:
     return study.stage(
         fidelity, study.key(__name__, [item.key for item in requested.values()]), make
     )
+
+
+def beside(request: Run, found: Trajectory) -> dict:
+    """``advice`` for a run that ended too early, and the rates ``by_hand`` (deg/s) with what they
+    count, None where more than one pad touches."""
+    hand = hand_calculation.rates(request.scene, found)
+    return {
+        "advice": unfinished.advice(request.scene, found),
+        "by_hand": hand
+        and {"rate_deg_s": [math.degrees(rate) for rate in hand.rate], "words": hand.words},
+    }
 
 
 def failure(name: str, request: Run, found: Trajectory) -> list[str]:

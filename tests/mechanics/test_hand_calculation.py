@@ -1,0 +1,71 @@
+"""Moment impulse over inertia against runs, and the oracle that a run is for it."""
+
+import numpy as np
+import pytest
+
+from tests.studies.synthetic import flight
+from tipoff import lowfi
+from tipoff.mechanics import hand_calculation
+from tipoff.scenes import load
+
+FREE = {"contact": None, "friction": None}
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return load("tiny").replace(FREE)
+
+
+def test_one_component_is_impulse_times_arm_over_inertia():
+    """Thrust along X at a height h above the mass centre turns a body without products of inertia
+    about Y by I h / J_yy alone."""
+    scene = load("tiny").replace(
+        {
+            **FREE,
+            "payload.inertia.xy": None,
+            "payload.inertia.xz": None,
+            "thrust_offset": {"eccentricity": {"axial": "1 mm", "radial": "0 deg"}},
+        }
+    )
+    impulse = 36e3 * 1.5e-3 * np.sqrt(2.0 * np.pi)  # of the whole pulse
+    by_hand = hand_calculation.rates(scene, flight())
+    assert by_hand.pad is None and "no pad touches" in by_hand.words
+    # 0.13 % of the pulse comes before ignition
+    assert by_hand.rate == pytest.approx([0.0, 1e-3 * impulse / 0.134, 0.0], rel=2e-3)
+
+
+@pytest.mark.parametrize("condition", ["phi0", "phi60", "h5", "h6", "h9"])
+def test_without_contact_it_is_the_rate_of_a_run(scene, condition):
+    one = scene.condition(condition)
+    run = lowfi.run(one)
+    found = hand_calculation.rates(one, run).rate
+    # what is left out, w x J w over half the run, is 1e-2 of the rate at 0.5 deg/s
+    assert found == pytest.approx(run.outcome.rate, abs=1e-2 * np.linalg.norm(run.outcome.rate))
+    assert np.linalg.norm(found) > 1e-3
+
+
+def test_rates_at_ignition_are_added(scene):
+    one = scene.replace({"thrust_offset": None, "initial.rate.x": "2 deg/s"})
+    assert hand_calculation.rates(one, flight()).rate == pytest.approx([np.radians(2.0), 0.0, 0.0])
+
+
+def test_one_pad_that_touches_adds_its_impulse():
+    """A force f for a time T at c gives J^-1 c x f T."""
+    scene = load("tiny").replace({"thrust_offset": None})
+    force = np.zeros((601, 16, 3))
+    force[101:200, 2, 1] = 50.0
+    run = flight(pad_force=force)
+    interval = run.time[1] - run.time[0]
+    found = hand_calculation.rates(scene, run)
+    assert found.pad == 1 and "pad 2 alone touches" in found.words
+    from tipoff.mechanics.model import build
+
+    model = build(scene)
+    moment = 50.0 * 99 * interval * np.cross(model.faces.centre[2], [0.0, 1.0, 0.0])
+    assert found.rate == pytest.approx(np.linalg.solve(model.payload.inertia, moment), rel=1e-9)
+
+
+def test_two_pads_are_not_counted_by_hand():
+    force = np.zeros((601, 16, 3))
+    force[100:200, 2, 1] = force[300, 6, 1] = 50.0
+    assert hand_calculation.rates(load("tiny"), flight(pad_force=force)) is None

@@ -1,0 +1,127 @@
+"""The first screen of the page: what it says of known rows."""
+
+import re
+
+import numpy as np
+import pytest
+
+from tests.studies.shown import html
+from tests.studies.synthetic import flight
+from tipoff import scenes
+from tipoff.studies.populations.exceedance import Limit
+from tipoff.studies.report import answer, drawing
+from tipoff.studies.report.page import Page
+from tipoff.studies.runs.figures import Runs
+from tipoff.studies.runs.stage import row
+
+
+def settled(x, y, z):
+    rate = [float(np.radians(value)) for value in (x, y, z)]
+    outcome = flight().outcome._replace(rate=rate, velocity=[13.6457, 0.0, 0.0])
+    cost = {"wall_s": 1.0, "compile_s": 0.0, "steps": 1, "dt_s": 1e-6}
+    return flight(outcome=outcome, cost=cost | {"elements": 1, "ns_per_element_step": 1.0})
+
+
+def judged(name, uncertainty, converged=True, passes=True):
+    return {
+        "condition": name,
+        "reference_uncertainty_deg_s": uncertainty,
+        "settled_rate_error_deg_s": 0.0312,
+        "floor_deg_s": 0.043,
+        "reference_converged": converged,
+        "passes": passes,
+        "verdict": "agrees" if passes else "misses",
+    }
+
+
+@pytest.fixture
+def page(tmp_path):
+    rows = [
+        row("phi15", settled(-28.458, 3.0, 4.0), ""),
+        row("phi60", settled(1.0, 0.3, 0.4), ""),
+    ]
+    agreement = {
+        "compliant": [judged("phi15", 13.2, converged=False), judged("phi60", 7.64e-11)],
+        "speedup_compliant": {"ratio": 183.2, "highfi_wall_s": 1.03, "lowfi_wall_s": 5.6e-3},
+    }
+    return Page(
+        scenes.load("tiny"),
+        tmp_path,
+        {"highfi": {"conditions": rows}, "agreement": agreement},
+        Runs({}, {}, {}),
+        {},
+        [Limit("x", 6.0), Limit("total", 50.0)],
+    )
+
+
+def test_numbers_are_rounded_to_their_uncertainty(page):
+    shown = html(answer.draw(page))
+    assert "-28 ± 13" in shown and "-28.458" not in shown
+    assert "1.000 ± &lt;0.001" in shown and "e-11" not in shown
+    assert "28 ± 13" in shown and "largest roll rate (deg/s): phi15" in shown
+    assert "5 ± 13" in shown  # across: 3 and 4
+
+
+def test_limits_that_the_user_gave(page):
+    shown = html(answer.draw(page))
+    assert "<b>fail</b>" in shown and "above in phi15" in shown
+    assert "✗ rate about x 6 deg/s" in shown and "✓ pass" in shown
+    page.limits = [Limit("total", 50.0)]
+    assert "<b>pass</b>" in html(answer.draw(page))
+    page.limits = []
+    assert "<b>pass</b>" not in html(answer.draw(page))
+
+
+def test_agreement_speed_and_trust(page):
+    shown = html(answer.draw(page))
+    assert "1 agree, 1 cannot be judged, 0 miss" in shown
+    assert "183 ×" in shown and "not at equal accuracy" in shown
+    assert "Numerics: " in shown and "not converged on phi15" in shown
+    assert "Model: " in shown and "within 0.031 deg/s" in shown
+    assert "validated against a measurement" in shown
+    assert re.search(r"Inputs: \d+ of \d+ values are assumed", shown)
+    equal = {"ratio": 12.0, "surer": False, "element_size_m": 4e-3}
+    page.documents["convergence"] = {"equal_accuracy": equal}
+    assert "at least, at equal accuracy (mesh of 4 mm)" in html(answer.draw(page))
+
+
+def test_counts():
+    rows = [judged("a", 0.0), judged("b", 0.0, passes=False), judged("c", 0.0, converged=False)]
+    assert answer.counts(rows) == "1 agree, 1 cannot be judged, 1 misses"
+
+
+def test_a_condition_is_stated_in_its_row(page):
+    assert answer.stated(page, "phi60") == "misalignment radial 60 deg"
+    assert answer.stated(page, "nominal") == "the scene itself"
+
+
+@pytest.mark.parametrize("name", ["reference", "channel"])
+def test_the_drawing_has_the_launcher_to_scale_with_both_clock_angles(name):
+    scene = scenes.load(name)
+    shown = str(drawing.launcher(scene))
+    for words in (
+        "from +Y towards +Z",
+        "from +Z towards +Y",
+        "thrust",
+        "open end",
+        "X towards you",
+    ):
+        assert words in shown
+    widths = [float(width) for width in re.findall(r'class="payload"[^>]* width="([\d.]+)"', shown)]
+    rails = [float(width) for width in re.findall(r'class="rail"[^>]* width="([\d.]+)"', shown)]
+    length = scene.payload.size[0] if scene.payload.size else None
+    if length:
+        assert rails[0] / widths[0] == pytest.approx(
+            (scene.rail.end - scene.rail.start) / length, rel=2e-3
+        )
+    mounts = len(getattr(scene.rail, "mounts", ()))
+    assert shown.count('class="mount"') == 2 * mounts
+    assert shown.count("<svg") == shown.count("</svg>") == 2
+
+
+def test_assumptions_stand_first_in_the_appendix():
+    from tipoff.studies.report import inputs
+
+    table = inputs.scene_tables(scenes.load("reference"))[0]
+    doubtful = [row[2].startswith(("assumed", "inferred", "not stated")) for row in table.rows]
+    assert doubtful == sorted(doubtful, reverse=True) and True in doubtful and False in doubtful

@@ -1,0 +1,30 @@
+"""Numbers are rounded to their uncertainty."""
+
+import pytest
+
+from tipoff.studies.render.uncertain import uncertain
+
+
+@pytest.mark.parametrize(
+    "value, uncertainty, shown",
+    [
+        (-28.458, 13.2, "-28 ± 13"),
+        (-28.458, 29.0, "-30 ± 30"),
+        (5.0701, 0.113, "5.07 ± 0.11"),
+        (5.0701, 0.27, "5.1 ± 0.3"),
+        (5.0701, 0.0971, "5.07 ± 0.10"),
+        (5.0701, 7.64e-11, "5.070 ± <0.001"),
+        (5.0701, 0.0, "5.070 ± <0.001"),
+        (-3e-18, 0.02, "0.00 ± 0.02"),
+        (12345.6, 210.0, "12,300 ± 200"),
+        (5.07018, 0.001, "5.070 ± 0.001"),
+        (5.07018, None, "5.070"),
+        (None, 1.0, "–"),
+    ],
+)
+def test_rounding(value, uncertainty, shown):
+    assert uncertain(value, uncertainty) == shown
+
+
+def test_another_least_step():
+    assert uncertain(13.6457, 2e-6, 1e-4) == "13.6457 ± <0.0001"

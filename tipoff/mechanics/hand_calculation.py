@@ -1,0 +1,55 @@
+"""Rates of a payload by hand, beside those of a run: moment impulse over inertia.
+
+    w = w_0 + J^-1 (r x d I + sum over the pad of integral of c x f dt)
+
+with the inertia J, the impulse I of the thrust along d at r from the mass centre, and the force f on
+the one pad that touches, at c; all in body axes. Left out are the gyroscopic term w x J w and what a
+second pad would do. So it holds where nothing or one pad touches.
+"""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from tipoff.kernels import rotation
+from tipoff.mechanics import model as models
+from tipoff.scenes.effects import thrust_law
+from tipoff.scenes.scene import Scene
+
+if TYPE_CHECKING:
+    from tipoff.mechanics.trajectory import Trajectory
+
+
+class ByHand(NamedTuple):
+    """``rate`` (3,) rad/s in body axes, and the index of the ``pad`` that touches, None for none."""
+
+    rate: np.ndarray
+    pad: int | None
+
+    @property
+    def words(self) -> str:
+        """What it counts."""
+        touched = "no pad touches" if self.pad is None else f"pad {self.pad + 1} alone touches"
+        return f"moment impulse over inertia, {touched}"
+
+
+def rates(scene: Scene, run: "Trajectory") -> ByHand | None:
+    """Rates of a settled ``run`` of ``scene`` by hand; None where more than one pad touches in its
+    samples, or where it did not settle."""
+    if run.outcome.rate is None:
+        return None
+    model = models.build(scene)
+    touching = np.flatnonzero((run.pad_force != 0.0).any(axis=(0, 2)))
+    pads = sorted(set(model.faces.pad[touching].tolist()))
+    if len(pads) > 1:
+        return None
+    moment = np.zeros(3)
+    if model.thrust_offset is not None:
+        offset, impulse = model.thrust_offset, thrust_law.impulse(model.thrust, scene.duration)
+        moment += impulse * np.cross(offset.arm, offset.direction)
+    for face in touching:
+        # scene axes to body axes
+        force = np.einsum("nji,nj->ni", rotation.matrices(run.quaternion), run.pad_force[:, face])
+        moment += np.cross(model.faces.centre[face], np.trapezoid(force, run.time, axis=0))
+    begun = np.array(model.initial.rate)
+    return ByHand(begun + model.payload.inverse_inertia @ moment, pads[0] if pads else None)

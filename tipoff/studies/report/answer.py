@@ -1,0 +1,245 @@
+"""The first screen of the page: velocity and rates with their uncertainty, whether they are within
+the user's limits, agreement and speed-up, and how far the answer can be trusted."""
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from markupsafe import Markup
+
+from tipoff.scenes import provenance
+from tipoff.studies.populations.exceedance import TOTAL, Limit
+from tipoff.studies.render.document import Bullets, Heading, KeyFigures, Part
+from tipoff.studies.render.table import Column, Table, number
+from tipoff.studies.render.uncertain import uncertain
+from tipoff.studies.report import inputs
+
+if TYPE_CHECKING:
+    from tipoff.studies.report.page import Page
+
+_NOTE = (
+    "Means over 2 ms after exit and burnout, by the finite elements. Velocity in the initial scene "
+    "axes; rates inertial, in payload body axes: roll about X, transverse across it. ±: the largest "
+    "uncertainty of the reference by mesh, step and contact cells. By hand: moment impulse over "
+    "inertia, where nothing or one pad touches."
+)
+
+
+def draw(page: "Page") -> list[Part]:
+    """Key figures, one row a condition, and what the answer rests on."""
+    rows = page.rows()["highfi"]
+    if not rows:
+        return [page.missing("highfi", "highfi")]
+    compared = {
+        row["condition"]: row
+        for row in (page.documents.get("agreement") or {}).get("compliant", [])
+    }
+    return [
+        KeyFigures([*_largest(rows, compared), *_limits(rows, page.limits), *_models(page)]),
+        _conditions(page, rows, compared),
+        Heading("How far it can be trusted"),
+        Bullets([*_numerics(compared), *_model(page, compared), *_inputs(page, compared)]),
+    ]
+
+
+def counts(rows: Sequence[dict]) -> str:
+    """How many conditions agree, cannot be judged, and miss."""
+    judged = [row for row in rows if row["reference_converged"]]
+    agree = sum(bool(row["passes"]) for row in judged)
+    return (
+        f"{agree} agree, {len(rows) - len(judged)} cannot be judged, {len(judged) - agree} "
+        f"{'misses' if len(judged) - agree == 1 else 'miss'}"
+    )
+
+
+def transverse(settled: dict) -> float:
+    """Rate (deg/s) across the payload's axis."""
+    return math.hypot(*settled["rate_deg_s"][1:])
+
+
+def above(settled: dict, limits: Sequence[Limit]) -> list[str]:
+    """The limits that the rates of a condition are above, as text."""
+    rates = settled["rate_deg_s"]
+    return [
+        limit.words
+        for limit in limits
+        if (math.hypot(*rates) if limit.axis == TOTAL else abs(rates["xyz".index(limit.axis)]))
+        > limit.deg_s
+    ]
+
+
+def _largest(rows: list[dict], compared: dict[str, dict]) -> list[tuple[str, str]]:
+    settled = {row["condition"]: row["settled"] for row in rows if row["settled"]}
+    if not settled:
+        return [("–", "no condition settled")]
+    speeds = [found["velocity_m_s"][0] for found in settled.values()]
+    low, high = f"{min(speeds):.4g}", f"{max(speeds):.4g}"
+    figures = [(low if low == high else f"{low} to {high}", "v_x (m/s)")]
+    measures = {
+        "largest transverse rate (deg/s)": transverse,
+        "largest roll rate (deg/s)": lambda found: abs(found["rate_deg_s"][0]),
+    }
+    for words, measure in measures.items():
+        name = max(settled, key=lambda name: measure(settled[name]))
+        value = uncertain(measure(settled[name]), _uncertainty(compared.get(name)))
+        figures.append((value, f"{words}: {name}"))
+    name = max(settled, key=lambda name: settled[name]["direction_error_deg"])
+    off = settled[name]["direction_error_deg"]
+    return [*figures, (f"{off:.2g}", f"largest angle off axis (deg): {name}")]
+
+
+def _uncertainty(row: dict | None) -> float | None:
+    return None if row is None else row["reference_uncertainty_deg_s"]
+
+
+def _limits(rows: list[dict], limits: Sequence[Limit]) -> list[tuple[str, str]]:
+    if not limits:
+        return []
+    asked = ", ".join(limit.words for limit in limits)
+    failed = [
+        row["condition"] for row in rows if not row["settled"] or above(row["settled"], limits)
+    ]
+    words = f"limits {asked}" + (f": above in {', '.join(failed)}" if failed else "")
+    return [("fail" if failed else "pass", words)]
+
+
+def _models(page: "Page") -> list[tuple[str, str]]:
+    """Agreement and speed-up; empty before the comparison of both models."""
+    agreement = page.documents.get("agreement") or {}
+    if not (speed := agreement.get("speedup_compliant")):
+        return []
+    found = [(counts(agreement["compliant"]), "surrogate against finite elements, conditions")]
+    if equal := (page.documents.get("convergence") or {}).get("equal_accuracy"):
+        bound = "" if equal["surer"] else "at least, "
+        words = f"faster, {bound}at equal accuracy (mesh of {1e3 * equal['element_size_m']:g} mm)"
+        return [*found, (f"{equal['ratio']:,.0f} ×", words)]
+    walls = f"{speed['highfi_wall_s']:.2g} s against {1e3 * speed['lowfi_wall_s']:.2g} ms"
+    return [*found, (f"{speed['ratio']:,.0f} ×", f"faster ({walls}); not at equal accuracy")]
+
+
+def _conditions(page: "Page", rows: list[dict], compared: dict[str, dict]) -> Table:
+    columns: tuple[Column | str, ...] = (
+        "condition",
+        "what it changes",
+        Column(Markup("v<sub>x</sub> (m/s)"), form=".4f"),
+        "roll rate (deg/s)",
+        "transverse rate (deg/s)",
+        *(["by hand x, y, z (deg/s)"] if _by_hand(rows) else []),
+        Column("off axis", "deg", ".2g"),
+        "surrogate error (deg/s)",
+        *(["limits"] if page.limits else []),
+        "verdict",
+    )
+    found, kinds = [], []
+    for row in rows:
+        settled, other = row["settled"], compared.get(row["condition"])
+        found.append(
+            [
+                row["condition"],
+                stated(page, row["condition"]),
+                *(_rates(settled, _uncertainty(other)) if settled else [None] * 3),
+                *([_hand(row)] if _by_hand(rows) else []),
+                settled and settled["direction_error_deg"],
+                uncertain(other["settled_rate_error_deg_s"]) if other else None,
+                *([_words(settled, page.limits)] if page.limits else []),
+                other["verdict"] if other else row["status"],
+            ]
+        )
+        kinds.append(_kind(other))
+    return Table(columns, found, notes=(_NOTE,), kinds=kinds, name="answer-table")
+
+
+def _rates(settled: dict, uncertainty: float | None) -> list:
+    return [
+        settled["velocity_m_s"][0],
+        uncertain(settled["rate_deg_s"][0], uncertainty),
+        uncertain(transverse(settled), uncertainty),
+    ]
+
+
+def _by_hand(rows: list[dict]) -> bool:
+    """Whether one of the rates can be computed by hand."""
+    return any(row.get("by_hand") for row in rows)
+
+
+def _hand(row: dict) -> str | None:
+    """Moment impulse over inertia, where nothing or one pad touches."""
+    found = row.get("by_hand")
+    return found and ", ".join(map(uncertain, found["rate_deg_s"]))
+
+
+def _words(settled: dict | None, limits: Sequence[Limit]) -> str:
+    if settled is None:
+        return "✗ not settled"
+    return f"✗ {', '.join(over)}" if (over := above(settled, limits)) else "✓ pass"
+
+
+def _kind(row: dict | None) -> str:
+    if row is None:
+        return ""
+    return "doubt" if not row["reference_converged"] else "good" if row["passes"] else "bad"
+
+
+def stated(page: "Page", name: str) -> str:
+    """What a condition changes in the scene."""
+    changes = page.scene.conditions.get(name, {})
+    short = {
+        key.rpartition(".")[0].rpartition(".")[2] + " " + key.rpartition(".")[2]: value
+        for key, value in changes.items()
+    }
+    return ", ".join(f"{key.strip()} {value}" for key, value in short.items()) or "the scene itself"
+
+
+def _numerics(compared: dict[str, dict]) -> list[str]:
+    known = {
+        name: value for name, row in compared.items() if (value := _uncertainty(row)) is not None
+    }
+    if not known:
+        return ["numerics: the uncertainty of the reference is not measured"]
+    name = max(known, key=lambda name: known[name])
+    open_ = [name for name, row in compared.items() if not row["reference_converged"]]
+    return [
+        f"numerics: mesh, step and contact cells leave at most {number(known[name], '.2g')} deg/s "
+        f"({name}) uncertain in the reference"
+        + (f"; it is not converged on {', '.join(open_)}" if open_ else "")
+    ]
+
+
+def _model(page: "Page", compared: dict[str, dict]) -> list[str]:
+    errors = [
+        row["settled_rate_error_deg_s"]
+        for row in compared.values()
+        if row["reference_converged"] and row["settled_rate_error_deg_s"] is not None
+    ]
+    found = (
+        f"model: where it can be judged, the surrogate is within {number(max(errors), '.2g')} deg/s of "
+        "the finite elements; "
+        if errors
+        else "model: the surrogate cannot be judged against the finite elements; "
+    )
+    return [f"{found}neither was validated against a measurement"]
+
+
+def _inputs(page: "Page", compared: dict[str, dict]) -> list[str]:
+    assumed, every = 0, 0
+    for key, _, _, was_stated in inputs.values(page.scene):
+        every += 1
+        text = provenance.of(page.scene.provenance, key) or ""
+        assumed += text.startswith("assumed") or (was_stated and not text)
+    floors = [row["floor_deg_s"] for row in compared.values() if row["floor_deg_s"] is not None]
+    moved = (
+        f"; 1 µm of clearance moves a rate by up to {number(max(floors), '.2g')} deg/s"
+        if floors
+        else ""
+    )
+    interface = [
+        abs(row["reference_change_deg_s"])
+        for row in (page.documents.get("agreement") or {}).get("interface", [])
+        if row["reference_change_deg_s"] is not None
+    ]
+    if interface:
+        moved += (
+            f"; a quarter or four times the interface stiffness by up to "
+            f"{number(max(interface), '.2g')} deg/s"
+        )
+    return [f"inputs: {assumed} of {every} values are assumed or have no origin{moved}"]

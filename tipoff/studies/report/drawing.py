@@ -1,0 +1,247 @@
+"""A drawing of the launcher to scale, as SVG in the colours of the page: seen from the side, and from
+the open end with the clock angles.
+
+Two conventions of clock angles are in use, and the drawing has both: the tilt of the thrust counts
+from +Y towards +Z, an eccentricity from +Z towards +Y.
+"""
+
+import math
+from collections.abc import Iterable
+
+from markupsafe import Markup
+
+from tipoff.scenes.rail import SectionTable
+from tipoff.scenes.scene import Scene
+
+_WIDTH, _HEIGHT, _GAP, _EDGE = 640.0, 330.0, 40.0, 46.0  # px
+
+
+class _View:
+    """Shapes in a plane of the scene: its first axis to the right, its second one upwards, with
+    ``scale`` px per metre from a point of the scene at ``at`` (px)."""
+
+    def __init__(self, at: tuple[float, float], scale: float, centre: tuple[float, float]):
+        self.at, self.scale, self.centre = at, scale, centre
+        self.shapes: list[str] = []
+
+    def point(self, x: float, y: float) -> tuple[float, float]:
+        """Place (px) of a point of the scene (m)."""
+        return (
+            self.at[0] + self.scale * (x - self.centre[0]),
+            self.at[1] - self.scale * (y - self.centre[1]),
+        )
+
+    def box(self, kind: str, low: tuple[float, float], high: tuple[float, float]) -> None:
+        """A rectangle between two corners (m)."""
+        left, bottom = self.point(*low)
+        right, top = self.point(*high)
+        self.shapes.append(
+            f'<rect class="{kind}" x="{left:.1f}" y="{top:.1f}" width="{right - left:.1f}" '
+            f'height="{bottom - top:.1f}"/>'
+        )
+
+    def arrow(
+        self, begin: tuple[float, float], end: tuple[float, float], kind: str = "axis"
+    ) -> None:
+        """An arrow between two places (px)."""
+        (a, b), (c, d) = begin, end
+        self.shapes.append(
+            f'<line class="{kind}" x1="{a:.1f}" y1="{b:.1f}" x2="{c:.1f}" y2="{d:.1f}" '
+            f'marker-end="url(#tip)"/>'
+        )
+
+    def arc(self, begin: float, end: float, radius: float, kind: str) -> None:
+        """An arc with an arrow about the centre; angles (rad) from the first axis to the second,
+        ``radius`` in px."""
+        (a, b), (c, d) = (
+            (
+                self.at[0] + radius * math.cos(angle),
+                self.at[1] - radius * math.sin(angle),
+            )
+            for angle in (begin, end)
+        )
+        sweep = 0 if end > begin else 1
+        self.shapes.append(
+            f'<path class="{kind}" d="M {a:.1f} {b:.1f} A {radius:.1f} {radius:.1f} 0 0 {sweep} '
+            f'{c:.1f} {d:.1f}" marker-end="url(#tip)"/>'
+        )
+
+    def text(self, place: tuple[float, float], words: str, anchor: str = "middle") -> None:
+        """Words at a place (px)."""
+        self.shapes.append(
+            str(
+                Markup('<text x="{}" y="{}" text-anchor="{}">{}</text>').format(
+                    f"{place[0]:.1f}", f"{place[1]:.1f}", anchor, words
+                )
+            )
+        )
+
+
+def launcher(scene: Scene) -> Markup:
+    """Both views with their labels as HTML."""
+    # all of it is made here; what comes from the scene are numbers
+    return Markup(
+        '<div class="drawing">'
+        f"{_svg('Launcher from the side', _side(scene))}{_svg('From the open end', _end(scene))}"
+        "</div>"
+    )
+
+
+def _svg(title: str, shapes: Iterable[str]) -> str:
+    return (
+        f'<svg viewBox="0 0 {_WIDTH:g} {_HEIGHT:g}" role="img" aria-label="{title}">'
+        '<defs><marker id="tip" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" '
+        'markerHeight="7" orient="auto-start-reverse"><path class="tip" d="M0 0 8 4 0 8z"/>'
+        f"</marker></defs>{''.join(shapes)}</svg>"
+    )
+
+
+def _halves(scene: Scene) -> tuple[float, float, float]:
+    """Half sizes (m) of the payload; those of the box of its pads where it has no size."""
+    pads = [max(abs(pad.position[axis]) for pad in scene.pads) for axis in range(3)]
+    size = scene.payload.size
+    return (
+        (0.5 * size[0], 0.5 * size[1], 0.5 * size[2]) if size else (1.3 * pads[0], pads[1], pads[2])
+    )
+
+
+def _side(scene: Scene) -> list[str]:
+    a, b, _ = _halves(scene)
+    arm = getattr(scene.thrust, "arm", 0.0) or 0.0
+    wall = _thickness(scene)
+    low, high = min(scene.rail.start, -a, -arm), max(scene.rail.end, a)
+    scale = min(
+        (_WIDTH - 2 * _EDGE - 60.0) / (high - low), (_HEIGHT - 130.0) / (2.0 * b + 4.0 * wall)
+    )
+    view = _View((0.5 * _WIDTH + 20.0, 0.5 * _HEIGHT - 8.0), scale, (0.5 * (low + high), 0.0))
+    view.box("payload", (-a, -b), (a, b))
+    for side in (-1.0, 1.0):
+        near, far = sorted((side * b, side * (b + wall)))
+        view.box("rail", (scene.rail.start, near), (scene.rail.end, far))
+        for begin, end in _mounts(scene):
+            outside = sorted((side * (b + wall), side * (b + 2.2 * wall)))
+            view.box("mount", (begin, outside[0]), (end, outside[1]))
+    for x, y, length in dict.fromkeys(
+        (pad.position[0], pad.position[1], pad.length) for pad in scene.pads
+    ):
+        inner = sorted((y, y - math.copysign(0.35 * length, y)))
+        view.box("pad", (x - 0.5 * length, inner[0]), (x + 0.5 * length, inner[1]))
+    tip = view.point(-arm, 0.0)
+    view.arrow((tip[0] - 56.0, tip[1]), tip, "thrust")
+    view.text((tip[0] - 30.0, tip[1] - 8.0), "thrust")
+    origin = view.point(0.0, 0.0)
+    view.arrow(origin, (origin[0] + 60.0, origin[1]))
+    view.text((origin[0] + 70.0, origin[1] + 4.0), "X")
+    view.arrow(origin, (origin[0], origin[1] - 44.0))
+    view.text((origin[0] + 10.0, origin[1] - 38.0), "Y")
+    corner = view.point(scene.rail.end, b + wall)
+    view.text((corner[0], corner[1] - 26.0), "open end")
+    words = "rails, pads (orange)"
+    view.text(
+        (_EDGE, 20.0),
+        f"From the side: {words}" + (", mounts (outside)" if _mounts(scene) else ""),
+        "start",
+    )
+    travel = 1e3 * (scene.rail.end - scene.rail.start)
+    view.text((0.5 * _WIDTH, _HEIGHT - 14.0), f"rail {travel:.4g} mm, payload {2e3 * a:.4g} mm")
+    return view.shapes
+
+
+def _end(scene: Scene) -> list[str]:
+    _, b, c = _halves(scene)
+    wall, leg = _thickness(scene), _leg(scene)
+    scale = (_HEIGHT - 110.0) / (2.0 * max(b, c) + 4.0 * wall)
+    view = _View((0.32 * _WIDTH, 0.5 * _HEIGHT), scale, (0.0, 0.0))
+    view.box("payload", (-b, -c), (b, c))
+    for y in (-1.0, 1.0):
+        for z in (-1.0, 1.0):
+            if isinstance(scene.rail, SectionTable):
+                _corner(view, (y, z), (b, c), leg, wall)
+    for pad in dict.fromkeys(
+        (pad.position[1:], pad.normals, pad.width, pad.inset) for pad in scene.pads
+    ):
+        _pad(view, *pad)
+    at, reach = view.at, scale * max(b, c)
+    view.arrow(at, (at[0] + reach + 52.0, at[1]))
+    view.text((at[0] + reach + 62.0, at[1] + 4.0), "Y")
+    view.arrow(at, (at[0], at[1] - reach - 34.0))
+    view.text((at[0] + 12.0, at[1] - reach - 26.0), "Z")
+    view.text((at[0] - 10.0, at[1] + 16.0), "X towards you")
+    first, second = math.radians(4.0), math.radians(56.0)
+    view.arc(first, second, 0.72 * reach, "tilt")
+    view.arc(math.radians(86.0), math.radians(34.0), 0.46 * reach, "shift")
+    left = at[0] + reach + 84.0
+    for row, (kind, lines) in enumerate(_LEGEND.items()):
+        y = 0.30 * _HEIGHT + 92.0 * row
+        view.shapes.append(
+            f'<line class="{kind}" x1="{left:.1f}" y1="{y - 4.0:.1f}" x2="{left + 24.0:.1f}" '
+            f'y2="{y - 4.0:.1f}"/>'
+        )
+        for line, words in enumerate(lines):
+            view.text((left + (32.0 if not line else 0.0), y + 18.0 * line), words, "start")
+    view.text((_EDGE, 20.0), "From the open end: clock angles", "start")
+    return view.shapes
+
+
+_LEGEND = {
+    "tilt": ("tilt of the thrust:", "from +Y towards +Z", "thrust_offset.misalignment"),
+    "shift": (
+        "eccentricities:",
+        "from +Z towards +Y",
+        "thrust_offset.eccentricity,",
+        "mass_offset.eccentricity",
+    ),
+}
+
+
+def _corner(
+    view: _View, signs: tuple[float, float], half: tuple[float, float], leg: float, wall: float
+) -> None:
+    """The two legs of an L around one edge of the payload."""
+    (y, z), (b, c) = signs, half
+    spans = {
+        "across": (sorted((y * b, y * (b + wall))), sorted((z * (c + wall), z * (c + wall - leg)))),
+        "along": (sorted((y * (b + wall), y * (b + wall - leg))), sorted((z * c, z * (c + wall)))),
+    }
+    for (left, right), (bottom, top) in spans.values():
+        view.box("rail", (left, bottom), (right, top))
+
+
+def _pad(
+    view: _View, corner: tuple[float, float], normals: tuple[str, ...], width: float, inset: float
+) -> None:
+    """The faces of a pad as bars of its width, ``inset`` from its corner."""
+    y, z = corner
+    for normal in normals:
+        depth = 0.12 * width
+        if normal.endswith("y"):
+            middle, inner = z - math.copysign(inset, z), y - math.copysign(depth, y)
+            (left, right), (bottom, top) = (
+                sorted((y, inner)),
+                (middle - 0.5 * width, middle + 0.5 * width),
+            )
+        else:
+            middle, inner = y - math.copysign(inset, y), z - math.copysign(depth, z)
+            (left, right), (bottom, top) = (
+                (middle - 0.5 * width, middle + 0.5 * width),
+                sorted((z, inner)),
+            )
+        view.box("pad", (left, bottom), (right, top))
+
+
+def _thickness(scene: Scene) -> float:
+    """Thickness (m) of a wall as drawn: its own, else a twentieth of the payload's width."""
+    own = getattr(scene.rail, "thickness", None)
+    return own or 0.05 * _halves(scene)[1]
+
+
+def _leg(scene: Scene) -> float:
+    return scene.rail.leg if isinstance(scene.rail, SectionTable) else 0.0
+
+
+def _mounts(scene: Scene) -> list[tuple[float, float]]:
+    """Stretches (m) along X at which a built-in rail is held."""
+    if not isinstance(scene.rail, SectionTable):
+        return []
+    start = scene.rail.start
+    return [(start + span.start, start + span.end) for span in scene.rail.mounts]
