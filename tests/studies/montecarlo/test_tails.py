@@ -15,10 +15,10 @@ from tipoff.scenes.faults import SceneError
 from tipoff.studies.core import store
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.study import Study
-from tipoff.studies.montecarlo import draws, paired_statistics, tails, tails_page
-from tipoff.studies.montecarlo.draws import Draws
+from tipoff.studies.montecarlo import paired_statistics, tails, tails_page
 from tipoff.studies.montecarlo.stage import Options as Cases
-from tipoff.studies.populations import answers, exceedance, random_factors
+from tipoff.studies.populations import answers, draws, exceedance, random_factors
+from tipoff.studies.populations.draws import Draws
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.populations.random_factors import Reading
 from tipoff.studies.render.document import terminal

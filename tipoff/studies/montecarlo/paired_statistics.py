@@ -6,7 +6,6 @@ from collections.abc import Callable
 import numpy as np
 
 from tipoff.lowfi.ensemble.columns import Columns
-from tipoff.studies.montecarlo.draws import Draws
 from tipoff.studies.populations import (
     allocation,
     answers,
@@ -16,6 +15,7 @@ from tipoff.studies.populations import (
     spread,
 )
 from tipoff.studies.populations.control_variate import Estimate, Pairs
+from tipoff.studies.populations.draws import Draws
 from tipoff.studies.populations.population import Population
 
 RATES = (*answers.RATES, answers.TOTAL_RATE)
