@@ -166,16 +166,13 @@ def _row(found: Estimate, runs: int) -> dict:
 
 
 def pairs(drawn: Draws, whole: Population) -> dict:
-    """Rates of both models (deg/s) and the contacts of every draw that settled in both, and
-    quantiles of all cases at the ranks of these draws."""
+    """Rates of both models (deg/s) and the contacts of every draw that settled in both."""
     both = both_settled(drawn, whole)
-    ranks = (np.arange(both.sum()) + 0.5) / both.sum()
-    rates = {}
-    for item in RATES:
-        values = item.of(whole.results)
-        rates[item.name] = {
+    rates = {
+        item.name: {
             "reference": item.of(drawn.reference)[both].tolist(),
-            "surrogate": values[: both.size][both].tolist(),
-            "all_cases": np.quantile(values[whole.settled], ranks).tolist(),
+            "surrogate": item.of(whole.results)[: both.size][both].tolist(),
         }
+        for item in RATES
+    }
     return {"contacts": drawn.contacts[both].tolist(), "rates": rates}

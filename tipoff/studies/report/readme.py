@@ -15,6 +15,7 @@ from tipoff.studies.agreement.other_rails import beside
 from tipoff.studies.agreement.page import by_factor
 from tipoff.studies.convergence import equal_accuracy
 from tipoff.studies.core.study import read
+from tipoff.studies.montecarlo import tails_page
 from tipoff.studies.render.document import Part, markdown
 from tipoff.studies.render.table import Column, Table, number, percent
 from tipoff.studies.report import further
@@ -25,6 +26,10 @@ _TITLE = """# Further results on the reference scene
 Written by `python -m tipoff.studies.report.readme` from the files of `make full-report` and `make bench`; times
 of different tables may be those of different days and are not to be divided by each other. Terms
 are those of README."""
+_TAILS = """# Random errors checked by the reference
+
+Scene {scene}. Written by `python -m tipoff.studies.report.readme` from the file of
+`tipoff montecarlo --cases {cases} --reference {draws} --finer {fine}`."""
 _BEGIN, _END = "<!-- results: python -m tipoff.studies.report.readme -->", "<!-- end of results -->"
 
 
@@ -39,6 +44,15 @@ def main(folder: Path) -> None:
     write_text(_ROOT / "docs" / "results.md", f"{_TITLE}\n\n{further.details(folder)}\n")
     for name in ("figure6.png", "cost.png"):
         shutil.copyfile(folder / "figures" / name, _ROOT / "docs" / name)
+    if (found := read(folder / "tails.json")) is not None:
+        tails(found, folder)
+
+
+def tails(found: dict, folder: Path) -> None:
+    """Write the page of random errors that the reference has checked, with its picture."""
+    text = markdown(tails_page.document(found))
+    write_text(_ROOT / "docs" / "tails.md", f"{_TAILS.format(**found)}\n\n{text}\n")
+    shutil.copyfile(folder / "figures" / "tails.png", _ROOT / "docs" / "tails.png")
 
 
 def section(folder: Path) -> str:
