@@ -70,8 +70,8 @@ sweeps: $(READY) ## how large misalignment and eccentricities may be: 3,600 case
 montecarlo: $(READY) ## the paper's random errors, its 1,000 cases and 1,000,000 (CASES=10000 for fewer): rates, tails, readings (REFERENCE=60: checked by 60 runs of the reference)
 	$(TIPOFF) montecarlo $(ASKED) $(if $(CASES),--cases $(CASES)) $(if $(REFERENCE),--reference $(REFERENCE))
 
-limits: $(READY) ## tolerances that keep the rates below limits (LIMIT="5 deg/s" PROBABILITY=0.99), beside those the paper advises
-	$(TIPOFF) limits $(ASKED) $(if $(LIMIT),--limit "$(LIMIT)") $(if $(PROBABILITY),--probability $(PROBABILITY))
+limits: $(READY) ## tolerances that keep the rates below limits (LIMIT="5 deg/s" PROBABILITY=0.99; CERTIFY=200: checked by runs of the reference), beside those the paper advises
+	$(TIPOFF) limits $(ASKED) $(if $(LIMIT),--limit "$(LIMIT)") $(if $(PROBABILITY),--probability $(PROBABILITY)) $(if $(CERTIFY),--certify $(CERTIFY))
 
 paper: $(READY) ## what the paper's unpublished inputs must have been, its tables beside ours
 	$(TIPOFF) paper $(ASKED)

@@ -15,10 +15,10 @@ from tipoff.scenes.faults import SceneError
 from tipoff.studies.core import store
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.study import Study
-from tipoff.studies.montecarlo import draws, paired_statistics, tails, tails_page
-from tipoff.studies.montecarlo.draws import Draws
+from tipoff.studies.montecarlo import paired_statistics, tails, tails_page
 from tipoff.studies.montecarlo.stage import Options as Cases
-from tipoff.studies.populations import answers, exceedance, random_factors
+from tipoff.studies.populations import answers, draws, exceedance, random_factors
+from tipoff.studies.populations.draws import Draws
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.populations.random_factors import Reading
 from tipoff.studies.render.document import terminal
@@ -36,7 +36,7 @@ def study(tmp_path_factory):
     return Study(
         free_flight.scene(),
         tmp_path_factory.mktemp("out"),
-        Settings(element_size=0.004, workers=1),
+        Settings(element_size=0.008, workers=1),
     )
 
 
@@ -105,8 +105,8 @@ def test_runs_and_time_are_announced_before(study, found, capsys):
     wanted, finer, _ = draws.requests(study, nominal(study), [{}, {"payload.mass": 9.0}], 1)
     draws.announce(study, [*wanted, *finer])
     said = " ".join(capsys.readouterr().err.split())
-    assert "2 of 2 runs of the reference on elements of 8 mm are to be made" in said
-    assert "1 of 1 runs of the reference on elements of 4 mm" in said
+    assert "2 of 2 runs of the reference on elements of 16 mm are to be made" in said
+    assert "1 of 1 runs of the reference on elements of 8 mm" in said
     assert "on one core" in said and "GB for each of 1 at once" in said
 
 

@@ -76,6 +76,15 @@ Condition = Annotated[
     str | None,
     typer.Option("--condition", metavar="NAME", help="Named condition; default: the scene."),
 ]
+Certify = Annotated[
+    int | None,
+    typer.Option(
+        "--certify",
+        metavar="N",
+        help="Check the tolerances that are scaled together by N runs of the finite-element "
+        "reference: an upper bound of its probability above a limit.",
+    ),
+]
 Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of all draws.")]
 
 
@@ -95,6 +104,7 @@ def add(app: typer.Typer) -> None:
         others: Fixed = Others.scene,
         draws: Draws = None,
         condition: Condition = None,
+        certify: Certify = None,
         seed: Seed = 1,
         model: Surrogate = None,
         workers: Workers = None,
@@ -108,6 +118,7 @@ def add(app: typer.Typer) -> None:
 
           tipoff limits --limit "x=2 deg/s" --limit "5 deg/s" --probability 0.99
           tipoff limits --limit "10 deg/s" --others zero --tolerances table3
+          tipoff limits --limit "10 deg/s" --probability 0.95 --certify 200
         """
 
         def work() -> dict:
@@ -125,6 +136,7 @@ def add(app: typer.Typer) -> None:
                 draws,
                 model and model.value,
                 condition,
+                certify,
             )
             return stage.run(study_of(scene, out, set_, workers=workers), options)
 

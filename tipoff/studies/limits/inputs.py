@@ -11,6 +11,7 @@ from tipoff.studies.populations.exceedance import Limit
 # times the fewest cases: some cases may then be above a limit
 TIMES_NEEDED = 10
 DRAWS, _MOST_DRAWS = 8, 1000
+_FEWEST_RUNS = 20  # of the reference: with fewer, a bound says nothing
 
 
 @dataclass(frozen=True)
@@ -20,7 +21,7 @@ class Options:
     ``tolerances`` that are scaled together, "advised" or "table3"; ``others``, errors that do not
     vary, as in the "scene" or "zero"; ``draws`` of the calibrated constants, for springs alone
     (None: eight); name of the ``model`` (None: the default); name of a ``condition`` (None: the
-    scene)."""
+    scene); number of runs of the reference that ``certify`` the result (None: none)."""
 
     limits: tuple[str, ...] = ("5 deg/s",)
     probability: float = 0.99
@@ -32,6 +33,7 @@ class Options:
     draws: int | None = None
     model: str | None = None
     condition: str | None = None
+    certify: int | None = None
 
 
 def checked(options: Options) -> tuple[list[Limit], int]:
@@ -61,6 +63,9 @@ def _cases(options: Options) -> int:
         faults.append(
             Fault("--confidence", "value", f"{options.confidence:g}", "0.5 or more and less than 1")
         )
+    if options.certify is not None and options.certify < _FEWEST_RUNS:
+        expected = f"{_FEWEST_RUNS} or more runs"
+        faults.append(Fault("--certify", "value", str(options.certify), expected))
     if options.draws is not None and options.model != SPRINGS:
         expected = (
             f"used with --model {SPRINGS} alone; the constants of compliant contact are not drawn"

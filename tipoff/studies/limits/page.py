@@ -4,6 +4,7 @@ share of cases above a limit by tolerance, and a map of two tolerances."""
 from collections.abc import Callable
 from typing import Any
 
+from tipoff.studies.limits import certificate_page
 from tipoff.studies.limits.search import ALL, FOUND, LOST, NONE, SMALL
 from tipoff.studies.limits.within import TOGETHER
 from tipoff.studies.populations import exceedance, population
@@ -82,7 +83,12 @@ def summary(found: dict) -> list[Part]:
         f"{found['confidence']:.0%} confidence; {found['cases']:,} cases"
     )
     odd = [f"{row['words']}: {line}" for row in found["rows"] for line in _odd(row)]
-    return [Bullets([run, population.model_line(found), *odd]), table_of(found)]
+    lines = [run, population.model_line(found), *certificate_page.lines(found)]
+    return [
+        Bullets([*lines, *odd]),
+        table_of(found),
+        *certificate_page.tables(found["certificate"]),
+    ]
 
 
 def table_of(found: dict) -> Table:

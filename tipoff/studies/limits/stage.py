@@ -20,7 +20,7 @@ from tipoff.studies.core.checked import together
 from tipoff.studies.core.progress import Board
 from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study
-from tipoff.studies.limits import constants, search, within
+from tipoff.studies.limits import certificate, constants, search, within
 from tipoff.studies.limits.inputs import DRAWS, Options, checked
 from tipoff.studies.limits.search import Found
 from tipoff.studies.limits.within import ADVISED, SETS, TOGETHER, Cases, Factor
@@ -130,8 +130,22 @@ class Search:
             **shown,
             "rows": rows,
             "map": self.pairs(searched[PAIR[0]].scale or 0.1),
+            "certificate": self.certified(full[TOGETHER], searched[TOGETHER]),
             "evaluations": self.evaluations,
         }
+
+    def certified(self, tolerances: dict[str, float], found: Found) -> dict | None:
+        """The set of ``tolerances`` at the ``found`` scale, checked by the reference; None where that was
+        not asked for, or where there is no such scale."""
+        if self.options.certify is None or found.scale is None:
+            return None
+        name = self.options.condition
+        reference = Surrogate(self.study.condition(name) if name else self.study.scene, None, None)
+        if self.options.others != "scene":
+            reference = within.without_errors(reference)
+        sizes = {key: found.scale * size for key, size in tolerances.items()}
+        checked_within = certificate.Within(self.model, reference.scene, sizes)
+        return certificate.made(self.study, self.options, self.limits, self.cases, checked_within)
 
     def _above(self, cases: Cases, limits: list[Limit]) -> Callable[[float], int]:
         def count(scale: float) -> int:

@@ -6,7 +6,6 @@ from collections.abc import Callable
 import numpy as np
 
 from tipoff.lowfi.ensemble.columns import Columns
-from tipoff.studies.montecarlo.draws import Draws
 from tipoff.studies.populations import (
     allocation,
     answers,
@@ -16,6 +15,7 @@ from tipoff.studies.populations import (
     spread,
 )
 from tipoff.studies.populations.control_variate import Estimate, Pairs
+from tipoff.studies.populations.draws import Draws
 from tipoff.studies.populations.population import Population
 
 RATES = (*answers.RATES, answers.TOTAL_RATE)
@@ -166,16 +166,13 @@ def _row(found: Estimate, runs: int) -> dict:
 
 
 def pairs(drawn: Draws, whole: Population) -> dict:
-    """Rates of both models (deg/s) and the contacts of every draw that settled in both, and
-    quantiles of all cases at the ranks of these draws."""
+    """Rates of both models (deg/s) and the contacts of every draw that settled in both."""
     both = both_settled(drawn, whole)
-    ranks = (np.arange(both.sum()) + 0.5) / both.sum()
-    rates = {}
-    for item in RATES:
-        values = item.of(whole.results)
-        rates[item.name] = {
+    rates = {
+        item.name: {
             "reference": item.of(drawn.reference)[both].tolist(),
-            "surrogate": values[: both.size][both].tolist(),
-            "all_cases": np.quantile(values[whole.settled], ranks).tolist(),
+            "surrogate": item.of(whole.results)[: both.size][both].tolist(),
         }
+        for item in RATES
+    }
     return {"contacts": drawn.contacts[both].tolist(), "rates": rates}

@@ -14,10 +14,8 @@ from tipoff.studies.agreement import verdicts
 from tipoff.studies.core.checked import together
 from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study, StudyError
-from tipoff.studies.montecarlo import draws as paired
 from tipoff.studies.montecarlo import paired_statistics
 from tipoff.studies.montecarlo import stage as montecarlo
-from tipoff.studies.montecarlo.draws import Draws
 from tipoff.studies.montecarlo.paired_statistics import RATES, both_settled
 from tipoff.studies.populations import (
     answers,
@@ -27,7 +25,9 @@ from tipoff.studies.populations import (
     random_factors,
     spread,
 )
+from tipoff.studies.populations import draws as paired
 from tipoff.studies.populations.derived import Derived
+from tipoff.studies.populations.draws import Draws
 from tipoff.studies.populations.population import Population, Surrogate
 
 NAME = "tails"

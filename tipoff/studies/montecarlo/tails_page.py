@@ -16,8 +16,7 @@ _GROUPS = (
 )
 _CAPTION = (
     "Above: settled rates of {paired} draws in the reference and in the surrogate, by the number of "
-    "contacts. Below: quantiles of the reference against those of all {settled:,} settled cases of "
-    "the surrogate at the same ranks. On the grey line both are equal."
+    "contacts. Below: quantiles of the same draws. On the grey line both are equal."
 )
 _CONTACTS = (
     "A contact is a stretch of time in which some pad bears a force in the surrogate; stretches less "
@@ -33,7 +32,8 @@ _INTERVALS = (
     "{confidence:.0%} intervals. The reference alone: its {paired} draws without correction. "
     "Equivalent runs: runs of the reference alone with an interval of the same width. A dash: too few "
     "draws for a bound. Intervals of quantiles and probabilities allow for rare differences that no "
-    "draw has shown, so they gain less than those of a mean."
+    "draw has shown, so they gain less than those of a mean, which "
+    "take the draws to show the largest differences."
 )
 _TAILS = (
     "A case that did not settle counts as above. Missed: draws above the limit in the reference and "
@@ -66,6 +66,16 @@ def summary(found: dict) -> list[Part]:
         by_contacts(found),
         statistics(found),
         *_tails(found),
+    ]
+
+
+def document(found: dict) -> list[Part]:
+    """A page of its own."""
+    return [
+        Bullets(sentences(found)),
+        "![Settled rates of both models, and their quantiles](tails.png)",
+        by_contacts(found),
+        Bullets(_run(found)),
     ]
 
 
@@ -128,12 +138,32 @@ def _run(found: dict) -> list[str]:
         *([f"not settled in the reference: {lost}"] if lost else []),
         population.model_line(found),
         f"random errors: {found['reading']}; {found['cases']:,} cases",
+        *_mesh(found),
         f"a run of the reference takes {cost['reference_cpu_s']:.3g} s of one core, on the finer mesh "
         f"{cost['fine_cpu_s']:.3g} s, a case of the surrogate {1e3 * cost['surrogate_cpu_s']:.2g} ms",
         f"optimal for the mean total rate: "
         f"{'no case too many' if cases is None else f'{cases:,.0f} cases'} of the surrogate per run "
         f"of the reference, {number(best['variance_ratio'], '.2g')} of the variance of the reference "
         "alone at the same cost",
+    ]
+
+
+def _mesh(found: dict) -> list[str]:
+    """The change by a finer mesh, and the difference of the surrogate from that."""
+    rows = [row for row in found["errors"] if row["name"] in (*_NAMES, _TOTAL)]
+    changes, differences = ([row[name] for row in rows if row[name]] for name in ("mesh", "finer"))
+    if not changes:
+        return []
+    sizes = (
+        max(row[key] for row in part)
+        for part in (changes, differences)
+        for key in ("median", "most")
+    )
+    change, worst, difference, largest = (number(size, ".2g") for size in sizes)
+    return [
+        f"on {found['fine']} draws the finer mesh changes a rate of the reference by {change} deg/s "
+        f"(median of the axis that changes most) and at most {worst} deg/s; the population differs "
+        f"from the finer mesh by {difference} and at most {largest} deg/s"
     ]
 
 
@@ -161,12 +191,12 @@ def _scatter(rate: tuple[str, dict, list[int]]) -> Panel:
 
 def _quantiles(rate: tuple[str, dict, list[int]]) -> Panel:
     name, pair, _ = rate
-    x, y = pair["all_cases"], sorted(pair["reference"])
+    x, y = sorted(pair["surrogate"]), sorted(pair["reference"])
     lines = [
         _diagonal(x, y),
         Line(x, y, "quantiles", TEAL, dash="", marker="D", size=4.0, opacity=0.8),
     ]
-    return Panel(f"Quantiles about {name[5]}", "surrogate, all (deg/s)", "reference (deg/s)", lines)
+    return Panel(f"Quantiles about {name[5]}", "surrogate (deg/s)", "reference (deg/s)", lines)
 
 
 def _diagonal(x: list[float], y: list[float]) -> Line:

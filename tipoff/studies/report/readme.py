@@ -15,6 +15,7 @@ from tipoff.studies.agreement.other_rails import beside
 from tipoff.studies.agreement.page import by_factor
 from tipoff.studies.convergence import equal_accuracy
 from tipoff.studies.core.study import read
+from tipoff.studies.montecarlo import tails_page
 from tipoff.studies.render.document import Part, markdown
 from tipoff.studies.render.table import Column, Table, number, percent
 from tipoff.studies.report import further
@@ -28,6 +29,10 @@ of different tables may be those of different days and are not to be divided by 
 
 Conditions `phi0` to `phi90` are the paper's (0.1 deg of thrust misalignment, that clock angle) and were
 fitted; `h1` to `h10` were not. No pad touches a rail in `h5` and `h6`: their agreement tests free flight."""
+_TAILS = """# Random errors checked by the reference
+
+Scene {scene}. Written by `python -m tipoff.studies.report.readme` from the file of
+`tipoff montecarlo --cases {cases} --reference {draws} --finer {fine}`."""
 _BEGIN, _END = "<!-- results: python -m tipoff.studies.report.readme -->", "<!-- end of results -->"
 
 
@@ -41,6 +46,15 @@ def main(folder: Path) -> None:
     write_text(_ROOT / "docs" / "results.md", page)
     for name in ("figure6.png", "cost.png"):
         shutil.copyfile(folder / "figures" / name, _ROOT / "docs" / name)
+    if (found := read(folder / "tails.json")) is not None:
+        tails(found, folder)
+
+
+def tails(found: dict, folder: Path) -> None:
+    """Write the page of random errors that the reference has checked, with its picture."""
+    text = markdown(tails_page.document(found))
+    write_text(_ROOT / "docs" / "tails.md", f"{_TAILS.format(**found)}\n\n{text}\n")
+    shutil.copyfile(folder / "figures" / "tails.png", _ROOT / "docs" / "tails.png")
 
 
 def headline(folder: Path) -> str:

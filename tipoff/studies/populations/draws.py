@@ -23,7 +23,7 @@ from tipoff.lowfi.ensemble.threads import completed
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.models import COMPLIANT
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.scenes.scene import NOMINAL
+from tipoff.scenes.scene import NOMINAL, Scene
 from tipoff.studies.agreement import growth
 from tipoff.studies.core.progress import say
 from tipoff.studies.core.store import Run
@@ -60,19 +60,15 @@ def run(study: Study, model: Surrogate, rows: Rows, fine: int) -> Draws:
     mesh too. Runs are kept in the store of the study, so that an interrupted call goes on."""
     coarse, finer, beside = requests(study, model, rows, fine)
     announce(study, [*coarse, *finer])
-    many = _filled(study, "tails, reference", coarse)
-    few = _filled(study, "tails, finer mesh", finer)
-    surrogate = _filled(study, "tails, surrogate", beside)
+    many = filled(study, "tails, reference", coarse)
+    few = filled(study, "tails, finer mesh", finer)
+    surrogate = filled(study, "tails, surrogate", beside)
     return Draws(
-        columns.of([each.case for each in many]),
-        columns.of([each.case for each in surrogate]),
-        columns.of([each.case for each in few]),
+        results(many),
+        results(surrogate),
+        results(few),
         np.array([each.contacts for each in surrogate]),
-        [
-            {"run": request.label, "status": each.case.status, "message": each.case.message}
-            for request, each in zip([*coarse, *finer], [*many, *few])
-            if each.case.outcome.rate is None
-        ],
+        [*lost(coarse, many), *lost(finer, few)],
         statistics.median(each.cpu_s for each in many),
         statistics.median(each.cpu_s for each in few),
         many[0].elements,
@@ -84,33 +80,35 @@ def requests(
     study: Study, model: Surrogate, rows: Rows, fine: int
 ) -> tuple[list[Run], list[Run], list[Run]]:
     """The runs of the reference, those on the finer mesh, and those of the surrogate."""
-    sizes = (study.settings.coarse_size, study.settings.element_size)
+    coarse_size, fine_size = study.settings.coarse_size, study.settings.element_size
+    labels = [f"{NOMINAL}-draw{number}" for number in range(len(rows))]
     coarse, finer = (
         [
-            replace(
-                study.highfi(NOMINAL, tag=f"-draw{number}{tag}", element_size=size),
-                # the scene itself, whatever condition has the name
-                scene=study.scene.replace(dict(row)),
-            )
-            for number, row in enumerate(part)
+            reference(study, label + tag, study.scene.replace(dict(row)), size)
+            for label, row in zip(labels, part)
         ]
-        for size, tag, part in zip(sizes, ("-coarse", ""), (rows, rows[:fine]))
+        for part, tag, size in ((rows, "-coarse", coarse_size), (rows[:fine], "", fine_size))
     )
     under = model.compliance
     if model.name == COMPLIANT and study.scene.contact is not None:
-        under = study.rail_compliance(study.scene, element_size=sizes[0])
+        under = study.rail_compliance(study.scene, element_size=coarse_size)
     beside = [
         Run(
             "lowfi",
-            f"{NOMINAL}-draw{number}-{model.name}",
+            f"{label}-{model.name}",
             model.at(dict(row)).scene,
             Numerics(),
             None,
             under,
         )
-        for number, row in enumerate(rows)
+        for label, row in zip(labels, rows)
     ]
     return coarse, finer, beside
+
+
+def reference(study: Study, label: str, scene: Scene, element_size: float) -> Run:
+    """A run of the reference of a changed ``scene`` on elements of ``element_size`` (m)."""
+    return replace(study.highfi(NOMINAL, element_size=element_size), label=label, scene=scene)
 
 
 def announce(study: Study, runs: Sequence[Run]) -> None:
@@ -151,8 +149,9 @@ def seconds_per_case(model: Surrogate, rows: Rows) -> float:
     return statistics.median(once(rows) for _ in range(_REPEATS))
 
 
-class _Kept(NamedTuple):
-    """What remains of a run."""
+class Kept(NamedTuple):
+    """What remains of a run: its result, number of contacts, processor seconds, and number of
+    elements (zero in the surrogate)."""
 
     case: Case
     contacts: int
@@ -160,7 +159,31 @@ class _Kept(NamedTuple):
     elements: int
 
 
-def _kept(found: Trajectory) -> _Kept:
+def results(runs: Sequence[Kept]) -> Columns:
+    """Results of runs as columns."""
+    return columns.of([each.case for each in runs])
+
+
+def lost(requested: Sequence[Run], runs: Sequence[Kept]) -> list[dict]:
+    """Label, status and message of each run that did not settle."""
+    return [
+        {"run": request.label, "status": each.case.status, "message": each.case.message}
+        for request, each in zip(requested, runs)
+        if each.case.outcome.rate is None
+    ]
+
+
+def filled(study: Study, title: str, runs: Sequence[Run]) -> list[Kept]:
+    """What remains of each of ``runs``, few of which are in memory at once."""
+    found: list[Kept] = []
+    for begin in range(0, len(runs), _PIECE):
+        piece = runs[begin : begin + _PIECE]
+        label = f"{title} {begin + 1} to {begin + len(piece)} of {len(runs)}:"
+        found += [_kept(each) for each in study.store.fill(label, piece)]
+    return found
+
+
+def _kept(found: Trajectory) -> Kept:
     cost = found.cost
     steps = int(cost["steps"])
     case = Case(found.status, found.message, found.outcome, steps, cost["wall_s"])
@@ -169,19 +192,9 @@ def _kept(found: Trajectory) -> _Kept:
         if found.pad_force.size
         else np.zeros(found.time.size, dtype=bool)
     )
-    return _Kept(
+    return Kept(
         case,
         len(growth.contacts(found.time, loaded)),
         cost.get("cpu_s", cost["wall_s"]),
         int(cost.get("elements", 0)),
     )
-
-
-def _filled(study: Study, title: str, runs: Sequence[Run]) -> list[_Kept]:
-    """What remains of each of ``runs``, few of which are in memory at once."""
-    found: list[_Kept] = []
-    for begin in range(0, len(runs), _PIECE):
-        piece = runs[begin : begin + _PIECE]
-        label = f"{title} {begin + 1} to {begin + len(piece)} of {len(runs)}:"
-        found += [_kept(each) for each in study.store.fill(label, piece)]
-    return found

@@ -1,0 +1,110 @@
+"""Tolerances checked by the reference, on a launch without contact, where the probability of a rate
+above its limit is known."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from tests.studies import free_flight
+from tipoff.scenes.faults import SceneError
+from tipoff.studies.core import store
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study
+from tipoff.studies.limits import certificate, certificate_page, inputs
+from tipoff.studies.limits.certificate import Within
+from tipoff.studies.limits.inputs import Options
+from tipoff.studies.populations.exceedance import Limit
+from tipoff.studies.populations.population import Surrogate
+from tipoff.studies.populations.stratified import Runs
+from tipoff.studies.render.document import terminal
+
+pytest.importorskip("zarr")
+
+LIMIT = Limit("total", 6.0)
+TILT = math.radians(0.35)  # three sigma
+OPTIONS = Options(("6 deg/s",), probability=0.7, cases=200, certify=20)
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    return Study(
+        free_flight.scene(), tmp_path_factory.mktemp("out"), Settings(element_size=0.008, workers=1)
+    )
+
+
+def within(study, arm: float) -> Within:
+    """Tolerance of misalignment; the thrust of the reference acts at ``arm`` times the distance."""
+    scene = study.scene.replace({"thrust.arm": arm * free_flight.ARM})
+    return Within(Surrogate(study.scene, None, None), scene, {"misalignment": TILT})
+
+
+@pytest.fixture(scope="module")
+def found(study):
+    return certificate.made(study, OPTIONS, [LIMIT], 200, within(study, 1.0))
+
+
+def truth(arm: float) -> float:
+    """Probability that the tilt, normal and cut at three sigma, is above that of the limit."""
+    sigmas = 3.0 * LIMIT.deg_s / (free_flight.RATE_PER_RADIAN * arm * TILT)
+    return float(1.0 - stats.truncnorm(-3.0, 3.0).cdf(sigmas)) * 2.0
+
+
+def test_both_models_agree_and_the_bound_is_above_the_closed_form(study, found):
+    strata = {each["name"]: each for each in found["strata"]}
+    assert found["cases"] == sum(each["cases"] for each in strata.values()) == 2000
+    assert strata["near"]["runs"] + strata["far"]["runs"] == 20
+    assert strata["near"]["events"] == strata["far"]["events"] == 0
+    exact, share = truth(1.0), strata["above"]["cases"] / 2000
+    assert share == pytest.approx(exact, abs=4.0 * math.sqrt(exact / 2000))
+    assert found["estimate"] == share and exact < found["upper"] < exact + 0.25
+    assert found["certified"] and found["needed"] <= 20 and found["lost"] == []
+    shown = {"asked": {"certify": 20}, "certificate": found, "confidence": 0.95, "probability": 0.7}
+    shown["rows"] = [{"name": "together", "nominal": {"tolerance": 1.0}}]
+    said = " ".join(certificate_page.lines(shown))
+    assert "20 runs at 1 times the set" in said and said.count("certified") == 1
+    assert "at least 90% of a limit" in terminal(certificate_page.tables(found))
+
+
+def test_a_reference_that_is_worse_is_seen(study, found):
+    """The control: a third more arm puts every case near the limit above it."""
+    worse = certificate.made(study, OPTIONS, [LIMIT], 200, within(study, 4.0 / 3.0))
+    strata = {each["name"]: each for each in worse["strata"]}
+    assert strata["near"]["events"] == strata["near"]["runs"] > 0
+    assert worse["upper"] > max(found["upper"], truth(4.0 / 3.0))
+    assert worse["estimate"] > found["estimate"]
+
+
+def test_runs_are_kept(study, found, monkeypatch):
+    monkeypatch.setattr(store, "execute", lambda *_, **__: pytest.fail("made again"))
+    assert certificate.made(study, OPTIONS, [LIMIT], 200, within(study, 1.0)) == found
+
+
+def test_strata_by_the_largest_ratio_to_a_limit():
+    """A case that did not settle is above."""
+    limits = [Limit("x", 2.0), Limit("total", 10.0)]
+    rates = np.array([[1.7, 0, 0], [1.9, 0, 0], [2.1, 0, 0], [0, 9.5, 0], [0, 8, 7], [np.nan] * 3])
+    above, near, far = (part.tolist() for part in certificate.strata(rates, limits))
+    assert (above, near, far) == ([2, 4, 5], [1, 3], [0])
+
+
+def test_number_of_runs_that_would_certify():
+    """The bound of that number is small enough, and that of one less is not. None where too many cases
+    of the surrogate are above."""
+    options = Options(probability=0.99)
+    counts, near = (20, 10, 9970), Runs(10, 0)
+    runs = certificate.needed(counts, near, Runs(100, 0), options)
+
+    def upper(number: int) -> float:
+        found = certificate.stratified.upper_bound(counts, near, Runs(number - 10, 0), 0.95)
+        return found.upper
+
+    assert upper(runs) <= 0.01 < upper(runs - 1)
+    assert certificate.needed((120, 10, 9870), near, Runs(100, 0), options) is None
+
+
+def test_too_few_runs_are_refused():
+    with pytest.raises(SceneError, match="--certify.*19.*20 or more"):
+        inputs.checked(replace(OPTIONS, certify=19))

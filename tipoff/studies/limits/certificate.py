@@ -1,0 +1,108 @@
+"""Tolerances checked by the finite-element reference: an upper bound of the probability that a rate of
+the reference is above its limit, at the tolerances that the surrogate certifies.
+
+New cases within these tolerances are put into strata by the largest ratio of a rate to its limit in the
+surrogate: above one, near it, and the others. The reference runs the first cases of the last two, and
+``populations.stratified`` bounds the probability. The cases are not those of the search, which has chosen
+the tolerances by them.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.mechanics.models import FINITE_ELEMENTS
+from tipoff.scenes.scene import NOMINAL, Scene
+from tipoff.studies.core.study import Study
+from tipoff.studies.limits.inputs import Options
+from tipoff.studies.limits.within import Cases
+from tipoff.studies.populations import draws, exceedance, stratified
+from tipoff.studies.populations.exceedance import Limit
+from tipoff.studies.populations.population import Surrogate
+from tipoff.studies.populations.stratified import Runs
+
+TIMES = 10  # cases for each case of the search, so that the weights are known well
+NEAR = 0.9  # of a limit
+STRATA = ("above", "near", "far")
+_MOST = 10**7  # runs
+
+
+class Within(NamedTuple):
+    """Cases within tolerances (SI) by name of an error: the surrogate ``model``, and the ``scene`` of the
+    reference with the same errors."""
+
+    model: Surrogate
+    scene: Scene
+    tolerances: dict[str, float]
+
+
+def made(
+    study: Study, options: Options, limits: Sequence[Limit], cases: int, within: Within
+) -> dict:
+    """The bound with its ``strata`` from ``options.certify`` runs of the reference, among ten times
+    the ``cases`` of the search."""
+    assert options.certify is not None
+    tried = Cases(study, "limits", within.model, within.tolerances, TIMES * cases, options.seed + 1)
+    above, *places = strata(tried.rates(1.0), limits)
+    counts = (len(above), len(places[0]), len(places[1]))
+    numbers = stratified.allocated(counts, options.certify, options.confidence)
+    chosen = [place[:count] for place, count in zip(places, numbers)]
+    source = tried.source(1.0)
+    requested = [
+        draws.reference(
+            study,
+            f"{options.condition or NOMINAL}-tolerances-case{case}-coarse",
+            within.scene.replace(dict(source.rows(case, case + 1)[0])),
+            study.settings.coarse_size,
+        )
+        for case in np.concatenate(chosen).tolist()
+    ]
+    draws.announce(study, requested)
+    kept = draws.filled(study, "limits, reference", requested)
+    events = exceedance.any_above(np.degrees(draws.results(kept).rate), limits)
+    near, far = (Runs(len(part), int(part.sum())) for part in np.split(events, [len(chosen[0])]))
+    bound = stratified.upper_bound(counts, near, far, options.confidence)
+    return {
+        "model": FINITE_ELEMENTS,
+        "element_size_m": study.settings.coarse_size,
+        "tolerances": within.tolerances,
+        "cases": sum(counts),
+        "near": NEAR,
+        "strata": [
+            {"name": name, "cases": count, **runs._asdict()}
+            for name, count, runs in zip(STRATA, counts, (Runs(0, 0), near, far))
+        ],
+        **bound._asdict(),
+        "certified": bound.upper <= 1.0 - options.probability,
+        "plain": exceedance.at_most(0, len(events), options.confidence),
+        "needed": needed(counts, near, far, options),
+        "lost": draws.lost(requested, kept),
+    }
+
+
+def strata(rates: np.ndarray, limits: Sequence[Limit]) -> tuple[np.ndarray, ...]:
+    """The cases, of ``rates`` (n,3) in deg/s, that are above a limit, near one, and far from all. One
+    that did not settle is above."""
+    above = exceedance.any_above(rates, limits)
+    close = exceedance.any_above(rates, [Limit(limit.axis, NEAR * limit.deg_s) for limit in limits])
+    return tuple(np.flatnonzero(part) for part in (above, close & ~above, ~close))
+
+
+def needed(counts: tuple[int, int, int], near: Runs, far: Runs, options: Options) -> int | None:
+    """The smallest number of runs that certifies the probability if the further ones, all far from the
+    limits, show no rate above them; None where no number does."""
+
+    def enough(runs: int) -> bool:
+        found = stratified.upper_bound(counts, near, Runs(runs, far.events), options.confidence)
+        return found.upper <= 1.0 - options.probability
+
+    low, high = far.runs, _MOST
+    if enough(max(low, 1)):
+        return near.runs + low
+    if not enough(high):
+        return None
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if enough(middle) else (middle, high)
+    return near.runs + high

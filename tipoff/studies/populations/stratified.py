@@ -1,0 +1,81 @@
+"""An upper bound of the probability of an event in the reference, from strata of the surrogate.
+
+The surrogate puts each of N independent cases into a stratum: it shows the event itself (above), it nearly
+does (near), or not (far). The reference runs some cases of the last two, of which some show the event. With
+the weight W of a stratum, and P the probability of the event in it,
+
+    p = W_above P_above + W_near P_near + W_far P_far
+      <= U_far + (U_near - U_far) V_near + (1 - U_near) V_above,     U_near >= U_far
+
+where the U bound P, V_above bounds W_above and V_near bounds W_above + W_near: upper bounds of Clopper and
+Pearson, whose error probabilities add up to 1 - confidence. So the bound holds for any population. P_above
+is at most one and takes no run.
+
+n runs without the event leave a bound of -ln(a) / n at an error probability a: 1.5 % after 200 plain runs,
+and no stratum of most cases has a smaller one. What strata remove is chance in the events
+themselves: how many cases are above or near is known from many cases of the surrogate, and a difference
+of both models near the limit counts with the small weight of the cases there.
+"""
+
+import math
+from typing import NamedTuple
+
+from tipoff.studies.populations import exceedance
+
+# Parts of the error probability: of both bounds of weights, of the near stratum, and of the far one,
+# whose bound is the largest part.
+_OF_WEIGHTS, _OF_NEAR, _OF_FAR = 0.1, 0.2, 0.7
+
+
+class Runs(NamedTuple):
+    """Number of runs of the reference in a stratum, and of ``events`` among them."""
+
+    runs: int
+    events: int
+
+
+class Bound(NamedTuple):
+    """``upper`` bound of the probability in the reference, its ``estimate``, and the bounds of the
+    probability in the near and the far stratum."""
+
+    upper: float
+    estimate: float
+    near_share: float
+    far_share: float
+
+
+def upper_bound(cases: tuple[int, int, int], near: Runs, far: Runs, confidence: float) -> Bound:
+    """The bound from the numbers of ``cases`` of the surrogate that are above, near and far, and the
+    ``near`` and ``far`` runs of the reference. The estimate takes a case above as one, and so does
+    not fall below the surrogate's own."""
+    total, error = sum(cases), 1.0 - confidence
+    far_share = _at_most(far, _OF_FAR * error)
+    near_share = max(_at_most(near, _OF_NEAR * error), far_share)
+    sure = 1.0 - 0.5 * _OF_WEIGHTS * error
+    above, within = (
+        exceedance.at_most(count, total, sure) for count in (cases[0], cases[0] + cases[1])
+    )
+    upper = far_share + (near_share - far_share) * within + (1.0 - near_share) * above
+    estimate = sum(
+        count * (part.events / part.runs if part.runs else 1.0)
+        for count, part in zip(cases, (Runs(0, 0), near, far))
+    )
+    return Bound(min(upper, 1.0), estimate / total, near_share, far_share)
+
+
+def _at_most(found: Runs, error: float) -> float:
+    return exceedance.at_most(found.events, found.runs, 1.0 - error) if found.runs else 1.0
+
+
+def allocated(cases: tuple[int, int, int], runs: int, confidence: float) -> tuple[int, int]:
+    """Runs near and far, at most the ``cases`` there: the smallest bound W ln(1/a) / n of both if
+    no run shows the event, so n is proportional to sqrt(W ln(1/a))."""
+    _, near, far = cases
+    wish_near, wish_far = (
+        math.sqrt(-count * math.log(part * (1.0 - confidence)))
+        for count, part in ((near, _OF_NEAR), (far, _OF_FAR))
+    )
+    if near + far <= runs or not near:
+        return near, min(far, runs)
+    first = min(near, max(1, round(runs * wish_near / (wish_near + wish_far))))
+    return first, min(far, runs - first)
