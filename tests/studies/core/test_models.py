@@ -23,12 +23,21 @@ ROW = {
     "reference_converged": True,
     "passes": True,
     "touches": True,
+    "judged_as": "curve",
+    "judgement": "agrees",
     "verdict": "agrees",
     "settled_rate_error_deg_s": 0.012,
     "rate_relative_l2": 0.0033,
 }
+UNKNOWN = ROW | {
+    "condition": "h8",
+    "reference_converged": False,
+    "passes": False,
+    "judgement": "cannot be judged",
+    "verdict": "cannot be judged: reference not converged",
+}
 TABLE = {
-    "compliant": [ROW, ROW | {"condition": "h8", "reference_converged": False, "passes": False}],
+    "compliant": [ROW, UNKNOWN],
     "modal": [],
     "rail_modes": 4,
     "fitted": [ROW | {"settled_rate_error_deg_s": 0.14}],
@@ -129,7 +138,7 @@ def test_a_run_is_not_answered_by_a_model_that_its_agreement_rejects(study, monk
     """Controls: the same condition by name; one whose reference is not converged."""
     missed = TABLE | {
         "compliant": [
-            ROW | {"passes": False, "verdict": "misses: rate L2 2 x limit"},
+            ROW | {"passes": False, "judgement": "misses", "verdict": "misses: rate L2 2 x limit"},
             TABLE["compliant"][1],
         ]
     }
@@ -140,3 +149,33 @@ def test_a_run_is_not_answered_by_a_model_that_its_agreement_rejects(study, monk
         single.run(replace(study, only=("phi15",)), "phi15")
     assert single.run(study, "phi15", models.Options(COMPLIANT)) == {"made": True}
     models.require_accepted(study, None, "h8")
+
+
+@pytest.mark.parametrize(
+    "judgement, accepted",
+    [("agrees as distribution", True), ("cannot be judged", True), ("misses", False)],
+)
+def test_a_chaotic_condition_rejects_the_default_model_only_where_its_distribution_misses(
+    study, monkeypatch, judgement, accepted
+):
+    """Its curve misses the gates in every case, converged or not."""
+    for converged in (True, False):
+        chaotic = UNKNOWN | {
+            "reference_converged": converged,
+            "judged_as": "distribution",
+            "judgement": judgement,
+            "verdict": judgement,
+        }
+        table = TABLE | {"compliant": [ROW, chaotic]}
+        monkeypatch.setattr("tipoff.studies.agreement.stage.stored", lambda _, found=table: found)
+        for condition in ("h8", None):
+            if accepted:
+                models.require_accepted(study, None, condition)
+            else:
+                with pytest.raises(StudyError, match="h8: misses"):
+                    models.require_accepted(study, None, condition)
+        models.require_accepted(study, None, "phi15")
+        said = kept.words(study, COMPLIANT, "h8")
+        assert said.endswith(f"moves the reference as much there; it {judgement}")
+        more = "; 1 more agree as distributions"
+        assert (more in kept.words(study, COMPLIANT)) is (judgement == "agrees as distribution")
