@@ -12,6 +12,7 @@ from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.scenes import load
 from tipoff.studies.agreement import distribution_page, distributions, growth, interface, verdicts
 from tipoff.studies.agreement.stage import Candidate
+from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core.settings import defaults
 from tipoff.studies.core.store import Store
 from tipoff.studies.core.study import Study
@@ -219,3 +220,15 @@ def test_figure_and_tables(study, monkeypatch):
     middle = np.interp(0.5, springs.y, springs.x)
     assert middle == pytest.approx(0.4, abs=0.2)
     assert len(parts) == 4
+
+
+@pytest.mark.slow
+def test_control_calibrated_springs_miss_where_compliant_contact_agrees(study):
+    """Real runs of the reference on elements of 16 mm. Nothing is fitted on compliant contact; the
+    springs are fitted to this very condition."""
+    springs = Candidate("calibrated", "springs, calibrated", calibrate.load(study))
+    compliance = study.rail_compliances(["phi15"], study.settings.coarse_size)
+    compliant = Candidate("compliant", "compliant", compliance=compliance)
+    (found,) = distributions.judge(study, {"phi15": 8}, [springs, compliant], LIMIT)
+    words = {name: item["judgement"] for name, item in found["models"].items()}
+    assert words == {"calibrated": "misses", "compliant": "agrees as distribution"}

@@ -25,6 +25,7 @@ FURTHER = 1000  # draws of the surrogates beside those of the reference
 _CURVE = tuple(round(0.01 * share, 2) for share in range(1, 100))  # of distributions that are drawn
 _STABLE_SHARE = 4  # a reference that 1 um does not move much needs fewer neighbours
 _LEAST = 4
+_FORETOLD = 20
 
 
 class Surrogate(Protocol):
@@ -202,9 +203,12 @@ def _why(word: str, found: list[equivalence.Comparison], draws: int) -> str:
         times = abs(worst.difference_deg_s) / worst.margin_deg_s
         return f": {_place(worst)} {times:.3g} x margin"
     worst = max(found, key=lambda item: item.width)
+    needed = equivalence.needed(found, draws)
+    # far beyond, the width of so few draws foretells nothing
+    words = f"about {needed}" if needed <= _FORETOLD * draws else f"more than {_FORETOLD * draws}"
     return (
         f": {draws} neighbours leave the {_place(worst)} of the reference uncertain by "
-        f"{worst.width:.2g} x margin; about {equivalence.needed(found, draws)} are needed"
+        f"{worst.width:.2g} x margin; {words} are needed"
     )
 
 
