@@ -21,7 +21,7 @@ from tipoff.studies.core.progress import Board, say
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study
 
-FURTHER = 1000  # draws of the surrogates beside those of the reference
+FURTHER = 8  # draws of the surrogates beside each of the reference; more would add little
 _CURVE = tuple(round(0.01 * share, 2) for share in range(1, 100))  # of distributions that are drawn
 _STABLE_SHARE = 4  # a reference that 1 um does not move much needs fewer neighbours
 _LEAST = 4
@@ -68,7 +68,7 @@ def judge(
         if neighbours.possible(study.condition(name), distance)
     }
     drawn = {
-        name: neighbours.draw(study.condition(name), distance, count + FURTHER)
+        name: neighbours.draw(study.condition(name), distance, (1 + FURTHER) * count)
         for name, count in possible.items()
     }
     reference = _reference(study, possible, drawn)
@@ -80,7 +80,7 @@ def judge(
             }
             titles = {item.name: item.title for item in surrogates}
             found.append(_judged(name, reference[name], own, titles, limit))
-            board.finished(name, f"{count + FURTHER} draws of each model")
+            board.finished(name, f"{(1 + FURTHER) * count} draws of each model")
     return found
 
 
@@ -152,7 +152,7 @@ def _judged(
     return {
         "condition": name,
         "neighbours": len(reference),
-        "further": FURTHER,
+        "further": FURTHER * len(reference),
         "limit_deg_s": limit,
         "reference_deg_s": np.round(reference, 7).tolist(),
         "models": {
