@@ -145,3 +145,15 @@ def test_values_that_did_not_settle_are_refused():
     for spoilt in (sound[:1], np.full((4, 3), np.nan)):
         with pytest.raises(ValueError, match="settled"):
             equivalence.compare(spoilt, sound, sound, LIMIT)
+
+
+def test_verdicts_do_not_depend_on_the_mean_of_the_rates():
+    """Nor do any bounds: a rate of 100 deg/s that both models have."""
+    generator = np.random.default_rng(9)
+    sets = [SD * generator.standard_normal((count, 3)) for count in (32, 32, 256)]
+    middle = equivalence.compare(*sets, LIMIT)
+    away = equivalence.compare(*(part + 100.0 for part in sets), LIMIT)
+    for one, other in zip(middle, away):
+        assert [other.low, other.high, other.width] == pytest.approx(
+            [one.low, one.high, one.width], rel=1e-6
+        )

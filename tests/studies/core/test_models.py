@@ -152,30 +152,41 @@ def test_a_run_is_not_answered_by_a_model_that_its_agreement_rejects(study, monk
 
 
 @pytest.mark.parametrize(
-    "judgement, accepted",
-    [("agrees as distribution", True), ("cannot be judged", True), ("misses", False)],
+    "judgement, said",
+    [
+        ("agrees as distribution", "; 1 more agree as distributions"),
+        ("cannot be judged", ""),
+        ("misses", "; as distributions it misses h8"),
+    ],
 )
-def test_a_chaotic_condition_rejects_the_default_model_only_where_its_distribution_misses(
-    study, monkeypatch, judgement, accepted
+@pytest.mark.parametrize("converged", [True, False])
+def test_a_chaotic_condition_rejects_the_default_model_where_its_own_distribution_misses(
+    study, monkeypatch, judgement, said, converged
 ):
-    """Its curve misses the gates in every case, converged or not."""
-    for converged in (True, False):
-        chaotic = UNKNOWN | {
-            "reference_converged": converged,
-            "judged_as": "distribution",
-            "judgement": judgement,
-            "verdict": judgement,
-        }
-        table = TABLE | {"compliant": [ROW, chaotic]}
-        monkeypatch.setattr("tipoff.studies.agreement.stage.stored", lambda _, found=table: found)
-        for condition in ("h8", None):
-            if accepted:
-                models.require_accepted(study, None, condition)
-            else:
-                with pytest.raises(StudyError, match="h8: misses"):
-                    models.require_accepted(study, None, condition)
-        models.require_accepted(study, None, "phi15")
-        said = kept.words(study, COMPLIANT, "h8")
-        assert said.endswith(f"moves the reference as much there; it {judgement}")
-        more = "; 1 more agree as distributions"
-        assert (more in kept.words(study, COMPLIANT)) is (judgement == "agrees as distribution")
+    """On that condition and nowhere else. Its curve misses the gates in every case. Control: as a curve
+    the same miss rejects the model for the whole scene."""
+    chaotic = UNKNOWN | {
+        "reference_converged": converged,
+        "judged_as": "distribution",
+        "judgement": judgement,
+        "verdict": judgement,
+    }
+
+    def table(row):
+        found = TABLE | {"compliant": [ROW, row]}
+        monkeypatch.setattr("tipoff.studies.agreement.stage.stored", lambda _: found)
+
+    table(chaotic)
+    for condition in (None, "phi15"):
+        models.require_accepted(study, None, condition)
+    if judgement == "misses":
+        with pytest.raises(StudyError, match="h8: misses"):
+            models.require_accepted(study, None, "h8")
+    else:
+        models.require_accepted(study, None, "h8")
+    words = kept.words(study, COMPLIANT)
+    assert words.endswith(f"where that is converged and pads touch{said}")
+    assert kept.words(study, COMPLIANT, "h8").endswith(f"it {judgement}")
+    table(chaotic | {"judged_as": "curve", "judgement": "misses"})
+    with pytest.raises(StudyError, match="h8: "):
+        models.require_accepted(study, None)

@@ -94,7 +94,7 @@ def compare(
     level, count = 1.0 - CONFIDENCE, len(reference)
     low, high = np.quantile(ratios, _tails(level, count), axis=0)
     least, most = np.quantile(ratios, _tails(level / ratios[0].size, count), axis=0)
-    below, above = np.quantile(own / margins, _tails(level, count), axis=0)
+    below, above = np.quantile((own - found) / margins, _tails(level, count), axis=0)
     margin = _margin(found[None], limit)[0]
     return [
         Comparison(
