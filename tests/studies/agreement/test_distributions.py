@@ -18,6 +18,7 @@ from tipoff.studies.core.store import Store
 from tipoff.studies.core.study import Study
 from tipoff.studies.render import document
 from tipoff.studies.render.chart import to_html
+from tipoff.studies.report import further
 
 LIMIT = 0.1  # deg/s
 
@@ -211,7 +212,8 @@ def test_figure_and_tables(study, monkeypatch):
     assert "agrees as distribution" in text and "springs, calibrated" in text
     assert "agrees as distribution" in document.terminal([distribution_page.verdicts_of(found)])
     assert "phi15 " in distribution_page.sentence(found, "calibrated")
-    assert distribution_page.parts({"distributions": []}) == []
+    assert distribution_page.parts({"distributions": []}) == further.distributions([]) == []
+    assert "Springs are the control" in document.markdown(further.distributions(found))
     chart = distribution_page.picture(distribution_page.most_spread(found))
     assert "settled rate" in to_html(chart)
     reference, _, springs = chart.panels[0].lines
