@@ -198,11 +198,12 @@ def _why(word: str, found: list[equivalence.Comparison], draws: int) -> str:
     """What decides a verdict, as text behind its word."""
     if word == verdicts.AS_DISTRIBUTION:
         return ""
-    if word == verdicts.MISSES and not any(item.shown for item in found):
+    shown = [item for item in found if item.shown]
+    if word == verdicts.MISSES and not shown:
         widest = max(found, key=lambda item: item.bound)
         return f": {_place(widest)} within {widest.bound:.3g} x margin only"
     if word == verdicts.MISSES:
-        worst = max(found, key=lambda item: abs(item.difference_deg_s) / item.margin_deg_s)
+        worst = max(shown, key=lambda item: abs(item.difference_deg_s) / item.margin_deg_s)
         times = abs(worst.difference_deg_s) / worst.margin_deg_s
         return f": {_place(worst)} {times:.3g} x margin"
     worst = max(found, key=lambda item: item.width)
