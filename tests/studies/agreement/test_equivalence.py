@@ -6,9 +6,10 @@ from scipy.stats import norm
 from scipy.stats.mstats import hdquantiles
 
 from tipoff.studies.agreement import equivalence
+from tipoff.studies.agreement.distributions import FURTHER
 from tipoff.studies.agreement.equivalence import AGREES, MARGIN_SHARE, MISSES, SHARES, UNKNOWN
 
-TRIALS, FURTHER, LIMIT, SD = 60, 1000, 0.1, 4.0  # the last two in deg/s
+TRIALS, LIMIT, SD = 60, 0.1, 4.0  # the last two in deg/s
 MARGIN = MARGIN_SHARE * 2.0 * norm.ppf(0.9) * SD
 SPREADS = {"normal": lambda draw: draw, "skewed": lambda draw: np.exp(0.5 * draw) / 0.604}
 
@@ -26,7 +27,7 @@ def trials(draws, correlation, shift=0.0, law="normal", stretch=1.0, count=TRIAL
             for part in (
                 correlation * common + alone * one,
                 correlation * common + alone * other,
-                generator.standard_normal((FURTHER, 3)),
+                generator.standard_normal((FURTHER * draws, 3)),
             )
         )
         for part in (surrogate, further):
@@ -73,7 +74,7 @@ def test_bounds_cover_the_known_difference():
     generator, held = np.random.default_rng(3), np.zeros((2, 9))
     for _ in range(100):
         reference, surrogate = generator.standard_normal((2, 40, 3)) * SD
-        further = generator.standard_normal((FURTHER, 3)) * SD
+        further = generator.standard_normal((40 * FURTHER, 3)) * SD
         found = equivalence.compare(reference, surrogate, further, 1e3)  # a margin that is known
         held[0] += [item.low <= 0.0 for item in found]
         held[1] += [item.high >= 0.0 for item in found]
@@ -93,7 +94,7 @@ def test_pairs_count_where_the_models_follow_each_other():
     same values in another order."""
     generator = np.random.default_rng(5)
     reference = SD * generator.standard_normal((32, 3))
-    further = SD * generator.standard_normal((FURTHER, 3)) + 0.2
+    further = SD * generator.standard_normal((32 * FURTHER, 3)) + 0.2
     paired = equivalence.compare(reference, reference + 0.2, further, LIMIT)
     shuffled = generator.permutation(reference + 0.2)
     apart = equivalence.compare(reference, shuffled, further, LIMIT)
@@ -119,7 +120,8 @@ def test_more_draws_are_asked_for_by_the_root_of_their_number():
     found = [
         equivalence.needed(
             equivalence.compare(
-                *(SD * generator.standard_normal((count, 3)) for count in (32, 32, FURTHER)), LIMIT
+                *(SD * generator.standard_normal((count, 3)) for count in (32, 32, 32 * FURTHER)),
+                LIMIT,
             ),
             32,
         )
@@ -143,3 +145,15 @@ def test_values_that_did_not_settle_are_refused():
     for spoilt in (sound[:1], np.full((4, 3), np.nan)):
         with pytest.raises(ValueError, match="settled"):
             equivalence.compare(spoilt, sound, sound, LIMIT)
+
+
+def test_verdicts_do_not_depend_on_the_mean_of_the_rates():
+    """Nor do any bounds: a rate of 100 deg/s that both models have."""
+    generator = np.random.default_rng(9)
+    sets = [SD * generator.standard_normal((count, 3)) for count in (32, 32, 256)]
+    middle = equivalence.compare(*sets, LIMIT)
+    away = equivalence.compare(*(part + 100.0 for part in sets), LIMIT)
+    for one, other in zip(middle, away):
+        assert [other.low, other.high, other.width] == pytest.approx(
+            [one.low, one.high, one.width], rel=1e-6
+        )

@@ -87,7 +87,9 @@ def agreeing():
         "condition": "phi15",
         "passes": True,
         "reference_converged": True,
+        "judgement": "agrees",
         "verdict": "agrees",
+        "touches": True,
     }
 
 
@@ -101,8 +103,9 @@ def test_a_miss_at_one_factor_is_a_miss_of_the_condition(study, monkeypatch):
     (whole,) = interface.combined([agreeing()], found)
     assert (whole["passes"], whole["verdict"]) == (
         False,
-        "misses at 4 times the interface stiffness",
+        "misses: at 4 times the interface stiffness",
     )
+    assert whole["judgement"] == verdicts.MISSES
     unknown = rows(study, uncertainty=0.2)
     assert {row["verdict"] for row in unknown} == {verdicts.NOT_CONVERGED}
     (same,) = interface.combined([agreeing()], unknown)
@@ -121,18 +124,11 @@ def test_a_chaotic_reference_is_not_judged(study, monkeypatch):
     assert whole["passes"] and not whole.get("chaotic")
 
 
-def test_a_miss_where_the_reference_is_chaotic_says_both(study, monkeypatch):
-    """It is still no agreement. Control: without growth the row is a plain miss."""
-    missing = agreeing() | {"passes": False, "verdict": "misses: rate L2 2 x limit"}
-    for grows, words in ((5.0, "; reference chaotic"), (0.0, "")):
+def test_a_condition_that_is_chaotic_at_the_nominal_stiffness_is_named(study, monkeypatch):
+    """It is judged as a distribution. Control: without growth the miss is one of a curve."""
+    for grows, names in ((5.0, ["phi15"]), (0.0, [])):
         settle(monkeypatch, lambda factor: 0.3, grows=grows)
-        (row,) = interface.combined([missing], rows(study))
-        assert row["verdict"] == missing["verdict"] + words
-        assert not row["passes"] and row["chaotic"] is bool(words)
-        said = page.summary([row | {"touches": True}])
-        assert said.startswith("0 of 1 conditions agree")
-        assert "0 cannot be judged, 1 misses" in said
-        assert ("1 of them where the reference is chaotic" in said) is bool(words)
+        assert interface.chaotic(rows(study)) == names
 
 
 def test_verdicts_are_on_the_page_in_markdown_and_in_the_terminal(study, monkeypatch):

@@ -8,7 +8,7 @@ import pytest
 from tests.studies.synthetic import flight
 from tipoff import highfi, lowfi
 from tipoff.scenes import load
-from tipoff.studies.agreement import metrics, verdicts
+from tipoff.studies.agreement import metrics, page, verdicts
 from tipoff.studies.agreement import refined as refined_runs
 from tipoff.studies.agreement.refinement import Refinement
 from tipoff.studies.agreement.verdicts import Context, Spread
@@ -56,7 +56,8 @@ def test_row_holds_every_key_other_tools_read():
 
 def test_agreement_within_all_gates():
     found = row(constant(3.0, 0.05, 4.0))
-    assert found["passes"] and found["verdict"] == "agrees"
+    assert found["passes"] and found["verdict"] == found["judgement"] == "agrees"
+    assert found["judged_as"] == "curve"
     assert found["rate_relative_l2"] == pytest.approx(0.01, rel=1e-9)
     assert found["settled_rate_error_deg_s"] == pytest.approx(0.05, rel=1e-9)
 
@@ -77,6 +78,7 @@ def test_missed_gate_says_by_how_much():
     assert not found["passes"]
     assert found["gates"]["settled_rate_error_deg_s"]["times_limit"] == pytest.approx(4.0, rel=1e-9)
     assert found["verdict"] == "misses: rate L2 1.6 x limit, settled rate 4 x limit"
+    assert found["judgement"] == "misses"
 
 
 def test_gates_are_those_of_the_scene_or_twice_the_floor():
@@ -97,9 +99,10 @@ def test_gates_are_those_of_the_scene_or_twice_the_floor():
 
 def test_reference_that_is_not_converged_forbids_any_claim():
     found = row(constant(3.0, 0.0, 4.0), [refined("mesh", 0.18)])
-    assert found["verdict"] == "reference not converged"
+    assert found["verdict"] == "cannot be judged: reference not converged"
     assert found["reference_uncertainty_deg_s"] == 0.18
-    assert row(constant(3.0, 0.0, 4.0), [])["verdict"] == "reference not converged"
+    assert found["judgement"] == verdicts.CANNOT
+    assert row(constant(3.0, 0.0, 4.0), [])["verdict"] == verdicts.NOT_CONVERGED
 
 
 def test_floor_is_the_own_one_where_measured_else_the_largest():
@@ -176,3 +179,14 @@ def test_compliant_walls_agree_with_finite_elements_on_the_same_mesh(coarse_wall
     springs = metrics.compare(reference, lowfi.run(scene, "springs"))
     assert springs.rate_relative_l2 > GATES["rate_relative_l2"]
     assert springs.settled_rate_error_deg_s > GATES["settled_rate_error_deg_s"]
+
+
+def test_conditions_are_counted_by_their_word():
+    words = [verdicts.AGREES] * 3 + [verdicts.AS_DISTRIBUTION] * 2 + [verdicts.MISSES]
+    rows = [{"judgement": word, "touches": number > 0} for number, word in enumerate(words)]
+    assert page.summary(rows) == (
+        "3 of 6 conditions agree (1 of them without contact), 2 agree as distributions, 1 miss"
+    )
+    assert page.summary([{"judgement": verdicts.CANNOT, "touches": True}], "fitted ") == (
+        "0 of 1 fitted conditions agree, 1 cannot be judged"
+    )

@@ -23,12 +23,21 @@ ROW = {
     "reference_converged": True,
     "passes": True,
     "touches": True,
+    "judged_as": "curve",
+    "judgement": "agrees",
     "verdict": "agrees",
     "settled_rate_error_deg_s": 0.012,
     "rate_relative_l2": 0.0033,
 }
+UNKNOWN = ROW | {
+    "condition": "h8",
+    "reference_converged": False,
+    "passes": False,
+    "judgement": "cannot be judged",
+    "verdict": "cannot be judged: reference not converged",
+}
 TABLE = {
-    "compliant": [ROW, ROW | {"condition": "h8", "reference_converged": False, "passes": False}],
+    "compliant": [ROW, UNKNOWN],
     "modal": [],
     "rail_modes": 4,
     "fitted": [ROW | {"settled_rate_error_deg_s": 0.14}],
@@ -129,7 +138,7 @@ def test_a_run_is_not_answered_by_a_model_that_its_agreement_rejects(study, monk
     """Controls: the same condition by name; one whose reference is not converged."""
     missed = TABLE | {
         "compliant": [
-            ROW | {"passes": False, "verdict": "misses: rate L2 2 x limit"},
+            ROW | {"passes": False, "judgement": "misses", "verdict": "misses: rate L2 2 x limit"},
             TABLE["compliant"][1],
         ]
     }
@@ -140,3 +149,44 @@ def test_a_run_is_not_answered_by_a_model_that_its_agreement_rejects(study, monk
         single.run(replace(study, only=("phi15",)), "phi15")
     assert single.run(study, "phi15", models.Options(COMPLIANT)) == {"made": True}
     models.require_accepted(study, None, "h8")
+
+
+@pytest.mark.parametrize(
+    "judgement, said",
+    [
+        ("agrees as distribution", "; 1 more agree as distributions"),
+        ("cannot be judged", ""),
+        ("misses", "; as distributions it misses h8"),
+    ],
+)
+@pytest.mark.parametrize("converged", [True, False])
+def test_a_chaotic_condition_rejects_the_default_model_where_its_own_distribution_misses(
+    study, monkeypatch, judgement, said, converged
+):
+    """On that condition and nowhere else. Its curve misses the gates in every case. Control: as a curve
+    the same miss rejects the model for the whole scene."""
+    chaotic = UNKNOWN | {
+        "reference_converged": converged,
+        "judged_as": "distribution",
+        "judgement": judgement,
+        "verdict": judgement,
+    }
+
+    def table(row):
+        found = TABLE | {"compliant": [ROW, row]}
+        monkeypatch.setattr("tipoff.studies.agreement.stage.stored", lambda _: found)
+
+    table(chaotic)
+    for condition in (None, "phi15"):
+        models.require_accepted(study, None, condition)
+    if judgement == "misses":
+        with pytest.raises(StudyError, match="h8: misses"):
+            models.require_accepted(study, None, "h8")
+    else:
+        models.require_accepted(study, None, "h8")
+    words = kept.words(study, COMPLIANT)
+    assert words.endswith(f"where that is converged and pads touch{said}")
+    assert kept.words(study, COMPLIANT, "h8").endswith(f"it {judgement}")
+    table(chaotic | {"judged_as": "curve", "judgement": "misses"})
+    with pytest.raises(StudyError, match="h8: "):
+        models.require_accepted(study, None)

@@ -46,13 +46,15 @@ def test_a_model_that_the_agreement_table_rejects_must_be_named(tmp_path, monkey
             "condition": "h1",
             "reference_converged": True,
             "passes": False,
+            "judgement": "misses",
             "verdict": "misses: settled rate 3 x limit",
         },
         {
             "condition": "h8",
             "reference_converged": False,
             "passes": False,
-            "verdict": "reference not converged",
+            "judgement": "cannot be judged",
+            "verdict": "cannot be judged: reference not converged",
         },
     ]
     monkeypatch.setattr(kept, "rows", lambda *_, **__: rows)

@@ -10,7 +10,7 @@ from tests.studies.shown import html
 from tests.studies.synthetic import flight
 from tipoff import scenes
 from tipoff.studies import registry
-from tipoff.studies.agreement import rails_page
+from tipoff.studies.agreement import rails_page, verdicts
 from tipoff.studies.agreement.page import starred
 from tipoff.studies.calibration.page import calibration
 from tipoff.studies.core.settings import defaults
@@ -181,6 +181,8 @@ def judged(condition, l2, settled, touches=True, converged=True, passes=True):
         "touches": touches,
         "reference_converged": converged,
         "passes": passes,
+        "judged_as": "curve",
+        "judgement": verdicts.judgement(passes, converged),
     }
 
 
@@ -194,6 +196,8 @@ def test_other_rails_are_judged_where_a_pad_touches_and_the_reference_is_converg
             judged("h5", 0.9, 9.0, touches=False),
             judged("h8", 0.8, 8.0, converged=False, passes=False),
             judged("h9", None, None, passes=False),
+            judged("h7", 0.7, 7.0)
+            | {"judged_as": "distribution", "judgement": "agrees as distribution"},
         ],
     }
     scene = {
@@ -204,9 +208,9 @@ def test_other_rails_are_judged_where_a_pad_touches_and_the_reference_is_converg
     }
     table, constants = rails_page.parts([scene])
     springs, compliant = table.rows
-    assert springs == ("thin", 4e-3, "springs, calibrated", "2 of 2", 1, 0.12, 0.3, "")
-    assert compliant == ("thin", 4e-3, "compliant", "3 of 4", 2, 0.005, 0.02, "h8")
-    assert "| thin | 4 | compliant | 3 of 4 | 2 | 0.5 | 0.02 | h8 |" in markdown(table)
+    assert springs == ("thin", 4e-3, "springs, calibrated", "2 of 2", 1, 0, 0.12, 0.3, "")
+    assert compliant == ("thin", 4e-3, "compliant", "4 of 5", 2, 1, 0.005, 0.02, "h8")
+    assert "| thin | 4 | compliant | 4 of 5 | 2 | 1 | 0.5 | 0.02 | h8 |" in markdown(table)
     assert constants.rows == [("thin", "stiffness 2e+07")]
 
 

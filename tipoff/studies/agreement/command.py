@@ -26,7 +26,7 @@ def compare(
             min=4,
             max=10_000,
             help="Runs of the reference within 1 µm of each condition that is judged as a "
-            "distribution; default: as many as the last time, else 32 (scene tiny: 4).",
+            "distribution; default: as many as in the present result, else 32 (scene tiny: 4).",
         ),
     ] = None,
     element_size: ElementSize = None,

@@ -95,6 +95,18 @@ def summary(found: list[dict]) -> Table:
     return Table(heads, rows, (note,), "", "distributions", kinds, dense=True)
 
 
+def verdicts_of(found: list[dict]) -> Table:
+    """The same for the terminal: the largest bound of each model, and its verdict."""
+    heads = ("condition", "model", "neighbours", Column("bound", "margins", ".2g"), "verdict")
+    rows = [
+        (item["condition"], own["title"], item["neighbours"], _worst(own)[4], own["verdict"])
+        for item in found
+        for own in item["models"].values()
+    ]
+    title = "Conditions judged as distributions over neighbours, both models on the coarse mesh."
+    return Table(heads, rows, title=title)
+
+
 def kind(judgement: str) -> str:
     """Look of a row with this word."""
     return {

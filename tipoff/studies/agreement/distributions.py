@@ -21,10 +21,11 @@ from tipoff.studies.core.progress import Board, say
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study
 
-FURTHER = 1000  # draws of the surrogates beside those of the reference
+FURTHER = 8  # draws of the surrogates beside each of the reference; more would add little
 _CURVE = tuple(round(0.01 * share, 2) for share in range(1, 100))  # of distributions that are drawn
 _STABLE_SHARE = 4  # a reference that 1 um does not move much needs fewer neighbours
 _LEAST = 4
+_FORETOLD = 20
 
 
 class Surrogate(Protocol):
@@ -67,7 +68,7 @@ def judge(
         if neighbours.possible(study.condition(name), distance)
     }
     drawn = {
-        name: neighbours.draw(study.condition(name), distance, count + FURTHER)
+        name: neighbours.draw(study.condition(name), distance, (1 + FURTHER) * count)
         for name, count in possible.items()
     }
     reference = _reference(study, possible, drawn)
@@ -79,7 +80,7 @@ def judge(
             }
             titles = {item.name: item.title for item in surrogates}
             found.append(_judged(name, reference[name], own, titles, limit))
-            board.finished(name, f"{count + FURTHER} draws of each model")
+            board.finished(name, f"{(1 + FURTHER) * count} draws of each model")
     return found
 
 
@@ -151,7 +152,7 @@ def _judged(
     return {
         "condition": name,
         "neighbours": len(reference),
-        "further": FURTHER,
+        "further": FURTHER * len(reference),
         "limit_deg_s": limit,
         "reference_deg_s": np.round(reference, 7).tolist(),
         "models": {
@@ -197,14 +198,21 @@ def _why(word: str, found: list[equivalence.Comparison], draws: int) -> str:
     """What decides a verdict, as text behind its word."""
     if word == verdicts.AS_DISTRIBUTION:
         return ""
+    shown = [item for item in found if item.shown]
+    if word == verdicts.MISSES and not shown:
+        widest = max(found, key=lambda item: item.bound)
+        return f": {_place(widest)} within {widest.bound:.3g} x margin only"
     if word == verdicts.MISSES:
-        worst = max(found, key=lambda item: abs(item.difference_deg_s) / item.margin_deg_s)
+        worst = max(shown, key=lambda item: abs(item.difference_deg_s) / item.margin_deg_s)
         times = abs(worst.difference_deg_s) / worst.margin_deg_s
         return f": {_place(worst)} {times:.3g} x margin"
     worst = max(found, key=lambda item: item.width)
+    needed = equivalence.needed(found, draws)
+    # far beyond, the width of so few draws foretells nothing
+    words = f"about {needed}" if needed <= _FORETOLD * draws else f"more than {_FORETOLD * draws}"
     return (
         f": {draws} neighbours leave the {_place(worst)} of the reference uncertain by "
-        f"{worst.width:.2g} x margin; about {equivalence.needed(found, draws)} are needed"
+        f"{worst.width:.2g} x margin; {words} are needed"
     )
 
 

@@ -19,7 +19,7 @@ that they hold the uncertainty of the margin too.
 * **misses**: a bound shows a difference above the margin, at a level that is divided by the number of
   quantiles, where there are draws enough to enclose the quantile; or agreement is not shown although the
   interval of every quantile of the reference is narrower than ``KNOWN`` margins, where equal
-  distributions agree in about nine of ten trials.
+  distributions agree in nine of ten trials (some 140 independent draws).
 * **cannot be judged**: neither is shown, and some quantile of the reference is less well known.
 
 Sources: Harrell and Davis, Biometrika 69 (1982) 635; Wilcox et al., Behav. Res. Methods 46 (2014)
@@ -94,7 +94,7 @@ def compare(
     level, count = 1.0 - CONFIDENCE, len(reference)
     low, high = np.quantile(ratios, _tails(level, count), axis=0)
     least, most = np.quantile(ratios, _tails(level / ratios[0].size, count), axis=0)
-    below, above = np.quantile(own / margins, _tails(level, count), axis=0)
+    below, above = np.quantile((own - found) / margins, _tails(level, count), axis=0)
     margin = _margin(found[None], limit)[0]
     return [
         Comparison(

@@ -25,12 +25,18 @@ def rows(study: Study, model: str, calibrated: bool = False, modes: int = 0) -> 
 
 
 def missed(study: Study, model: str, condition: str | None = None) -> list[dict]:
-    """Rows (of ``condition``, if given) that ``model`` misses: as a curve, or as a distribution where
-    the reference is chaotic or not converged."""
+    """Rows that ``model`` misses: of ``condition``, or without one of the whole scene. A miss of a
+    distribution counts for its own condition alone. There the model is wrong by more than a share of
+    what 1 um does, which tells nothing of cases that differ by far more."""
     return [
         row
         for row in rows(study, model)
-        if row["judgement"] == verdicts.MISSES and condition in (None, row["condition"])
+        if row["judgement"] == verdicts.MISSES
+        and (
+            row["judged_as"] == verdicts.CURVE
+            if condition is None
+            else row["condition"] == condition
+        )
     ]
 
 
@@ -52,12 +58,21 @@ def words(
     if not judged:
         return "not measured for this scene with this code (tipoff compare measures it)"
     where = "" if condition in (None, NOMINAL) else f"; {condition} is not one of them"
-    alike = sum(row["judgement"] == verdicts.AS_DISTRIBUTION for row in touched)
-    others = f"; {alike} more agree as distributions" if alike else ""
+    others = _others(touched)
     return (
         f"at most {max(row['settled_rate_error_deg_s'] for row in judged):.2g} deg/s from the "
         f"reference on the "
         f"{len(judged)} conditions where that is converged and pads touch{others}{where}"
+    )
+
+
+def _others(rows: list[dict]) -> str:
+    """How many conditions agree, and which miss, as distributions; empty without one."""
+    alike = [row for row in rows if row["judged_as"] == verdicts.DISTRIBUTION]
+    agree = sum(row["judgement"] == verdicts.AS_DISTRIBUTION for row in alike)
+    lost = [row["condition"] for row in alike if row["judgement"] == verdicts.MISSES]
+    return (f"; {agree} more agree as distributions" if agree else "") + (
+        f"; as distributions it misses {', '.join(lost)}" if lost else ""
     )
 
 

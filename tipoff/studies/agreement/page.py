@@ -75,7 +75,7 @@ def terminal(document: dict) -> list[Part]:
     alike = document["distributions"]
     return [
         Table(heads, rows, title=title),
-        *([distribution_page.summary(alike)] if alike else []),
+        *([distribution_page.verdicts_of(alike)] if alike else []),
         *by_factor(document["interface"]),
     ]
 

@@ -115,17 +115,14 @@ def run(study: Study, options: Options | None = None) -> dict:
         own_context = Context([*floor, *own[static.name]], changes, gates)
         stiffnesses = interface.rows(study, on_coarse[static.name].request, own_context)
         grown = _growths(study, static, table["compliant"])
-        as_distributions = distributions.counts(
+        wanted_alike = distributions.counts(
             table["compliant"], grown, interface.chaotic(stiffnesses), chosen.neighbours
         )
         alike = distributions.judge(
-            study,
-            as_distributions,
-            list(on_coarse.values()),
-            gates["settled_rate_error_deg_s"],
+            study, wanted_alike, list(on_coarse.values()), gates["settled_rate_error_deg_s"]
         )
         table = {
-            name: distributions.combined(found, alike, as_distributions, name)
+            name: distributions.combined(found, alike, wanted_alike, name)
             for name, found in table.items()
         }
         table["compliant"] = interface.combined(table["compliant"], stiffnesses)

@@ -1,8 +1,9 @@
-"""Tables of docs/results.md: balances, time at equal accuracy, error of the reference, speeds."""
+"""Tables of docs/results.md: balances, chaotic conditions, time at equal accuracy, error of the reference, speeds."""
 
 from pathlib import Path
 
 from tipoff.files import read_json
+from tipoff.studies.agreement import distribution_page
 from tipoff.studies.bench import reference
 from tipoff.studies.convergence import summary
 from tipoff.studies.core.study import read
@@ -14,14 +15,30 @@ from tipoff.studies.render.table import Column, Table, number
 def details(folder: Path) -> str:
     """Markdown of all these tables; raises DamageError or OSError without the runs of both models."""
     highfi, lowfi = (read_json(folder / f"{name}.json") for name in ("highfi", "lowfi"))
-    refined, cost = (read(folder / f"{name}.json") for name in ("convergence", "cost_study"))
+    refined, cost, agreement = (
+        read(folder / f"{name}.json") for name in ("convergence", "cost_study", "agreement")
+    )
     parts: list[Part] = [_promises(highfi, lowfi)]
+    parts += distributions(agreement["distributions"]) if agreement is not None else []
     parts += [_cost(cost), _scaling(cost["scaling"])] if cost is not None else []
     parts += _convergence(refined) if refined is not None else []
     if (found := reference.stored(folder.parent)) is not None:
         parts += [_bench(found["rows"])] if found["rows"] else []
         parts += [_surrogate(found["lowfi"])] if found["lowfi"] else []
     return markdown(parts)
+
+
+def distributions(found: list[dict]) -> list[Part]:
+    """Verdicts on conditions that no single run can judge; nothing where there is none."""
+    if not found:
+        return []
+    table = distribution_page.verdicts_of(found)
+    title = (
+        "Conditions judged as distributions (`make compare`): bound of the largest difference of a "
+        "quantile, in margins. Agreement\nneeds less than 1. Springs are the control. "
+        "[chaotic_conditions.md](chaotic_conditions.md) explains the test."
+    )
+    return [Table(table.columns, table.rows, title=title)]
 
 
 def _cost(found: dict) -> Table:
