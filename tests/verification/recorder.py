@@ -6,22 +6,22 @@ and asserts of the form ``error < tolerance``. Only comparisons of a result with
 those of a closed form with its tabulated value do not (`reading.Test.compares_answers_alone`).
 """
 
+import inspect
 import linecache
 import math
 import operator
 import re
-import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from _pytest.approx import ApproxScalar
 
 from tests.verification import reading
 
 _NUMBER = r"(?:np\.float64\()?(-?\d[\d.]*(?:e[+-]?\d+)?)\)?"
 _BOUND = re.compile(rf"{_NUMBER} (<=|<|>=|>) {_NUMBER}(?!\S)")
+_SCALAR = type(pytest.approx(1.0))  # what arrays and lists are compared by as well
 _EXPLAINS = str(Path("_pytest", "assertion"))
 _ERROR = re.compile(r"abs\(|error|norm\(|drift|checks\[|residual|allclose|miss")
 _HOLDS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
@@ -48,7 +48,7 @@ class Recorder:
         self._entry()
         try:
             with pytest.MonkeyPatch.context() as patch:
-                patch.setattr(ApproxScalar, "__eq__", self._scalar(ApproxScalar.__eq__))
+                patch.setattr(_SCALAR, "__eq__", self._scalar(_SCALAR.__eq__))
                 patch.setattr(np.testing, "assert_allclose", self._arrays())
                 return (yield)
         finally:
@@ -106,7 +106,7 @@ class Recorder:
     def _line(self) -> int | None:
         """Line of the test function that is being executed; None outside, and where pytest compares
         once more to explain an assert."""
-        frame = sys._getframe(1)
+        frame = inspect.currentframe()
         while frame is not None and _EXPLAINS not in frame.f_code.co_filename:
             if frame.f_code is self._code:
                 return frame.f_lineno
