@@ -30,12 +30,23 @@ _ORDERS = re.compile(r"(?:array\()?\[([^\[\]]+)\]\)? = \w*(?:slopes?|orders?)\("
 
 class Recorder:
     """``kept`` has an entry for each test function, by file and name: its cases, how many
-    comparisons were made, the one nearest to its tolerance, orders and controls."""
+    comparisons were made, the one nearest to its tolerance, orders and controls. With ``first``
+    each test runs with its first parameters alone."""
 
-    def __init__(self) -> None:
+    def __init__(self, first: bool = False) -> None:
         self.kept: dict[str, dict[str, Any]] = {}
+        self._first = first
         self._test: reading.Test | None = None
         self._code: Any = None
+
+    @pytest.hookimpl(trylast=True)  # when tests that are not asked for are gone
+    def pytest_collection_modifyitems(self, items):
+        """Leave the first parameters of each test where these were asked for."""
+        if self._first:
+            found: dict[str, pytest.Item] = {}
+            for item in items:
+                found.setdefault(item.nodeid.split("[")[0], item)
+            items[:] = found.values()
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_call(self, item):
