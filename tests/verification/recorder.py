@@ -6,11 +6,13 @@ and asserts of the form ``error < tolerance``. Only comparisons of a result with
 those of a closed form with its tabulated value do not (`reading.Test.compares_answers_alone`).
 """
 
+import ast
 import inspect
 import linecache
 import math
 import operator
 import re
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -19,12 +21,21 @@ import pytest
 
 from tests.verification import reading
 
-_NUMBER = r"(?:np\.float64\()?(-?\d[\d.]*(?:e[+-]?\d+)?)\)?"
-_BOUND = re.compile(rf"{_NUMBER} (<=|<|>=|>) {_NUMBER}(?!\S)")
+_NUMBER = r"-?\d[\d.]*(?:e[+-]?\d+)?"
+_COMPARED = {ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge}
+_SIGNS = {operator.lt: "<", operator.le: "<=", operator.gt: ">", operator.ge: ">="}
+_BELOW = (operator.lt, operator.le)
+_ARITHMETIC = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+}
+_LARGEST = 0.1  # a larger bound is that of a quantity, not that of an error
 _SCALAR = type(pytest.approx(1.0))  # what arrays and lists are compared by as well
 _EXPLAINS = str(Path("_pytest", "assertion"))
 _ERROR = re.compile(r"abs\(|error|norm\(|drift|checks\[|residual|allclose|miss")
-_HOLDS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
 _ORDERS = re.compile(r"(?:array\()?\[([^\[\]]+)\]\)? = \w*(?:slopes?|orders?)\(")
 
 
@@ -70,14 +81,12 @@ class Recorder:
         source = linecache.getline(str(item.path), lineno).strip()
         if self._test is None or not source.startswith("assert"):
             return
-        said = expl.split("\n")[0]
-        for left, sign, right in _BOUND.findall(said):
-            value, bound = float(left), float(right)
-            if not _HOLDS[sign](value, bound):
+        for value, sign, bound in _bounds(expl.split("\n")[0]):
+            if not sign(value, bound):
                 continue  # one side of an "or"
             if self._test.is_control(lineno):
-                self._control(f"{value:.3g} {sign} {bound:.3g}")
-            elif sign in ("<", "<=") and _ERROR.search(orig) and value >= 0.0:
+                self._control(f"{value:.3g} {_SIGNS[sign]} {bound:.3g}")
+            elif sign in _BELOW and bound <= _LARGEST and value >= 0.0 and _ERROR.search(orig):
                 self._compared(lineno, value, 0.0, bound)
         for values in _ORDERS.findall(expl):
             finest = float(re.findall(_NUMBER, values)[-1])
@@ -153,6 +162,35 @@ class Recorder:
         entry["comparisons"] += 1
         if entry["worst"] is None or ratio > entry["worst"]["ratio"]:
             entry["worst"] = {"ours": ours, "answer": answer, "allowed": allowed, "ratio": ratio}
+
+
+def _bounds(said: str) -> Iterator[tuple[float, Callable, float]]:
+    """Every comparison of two numbers in an explanation such as ``3e-13 < (1e-12 * 4.0)``."""
+    try:
+        tree = ast.parse(said, mode="eval")
+    except SyntaxError:  # shortened, or with values that are no Python
+        return
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in _COMPARED:
+            left, right = _value(node.left), _value(node.comparators[0])
+            if left is not None and right is not None:
+                yield left, _COMPARED[type(node.ops[0])], right
+
+
+def _value(node: ast.expr) -> float | None:
+    """The number that an expression of numbers has; None for any other expression."""
+    if isinstance(node, ast.Constant) and type(node.value) in (int, float):
+        return float(node.value)
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+        inner = _value(node.operand)
+        return None if inner is None else -inner
+    if isinstance(node, ast.Call) and ast.unparse(node.func) == "np.float64":
+        return _value(node.args[0])
+    if isinstance(node, ast.BinOp) and type(node.op) in _ARITHMETIC:
+        left, right = _value(node.left), _value(node.right)
+        if left is not None and right is not None:
+            return float(_ARITHMETIC[type(node.op)](left, right))
+    return None
 
 
 def _code(test) -> Any:
