@@ -135,7 +135,8 @@ def _spoken(name: str) -> str:
 
 
 def _sentence(words: str) -> str:
-    first = words[0].upper() if words.split()[0].isalpha() else words[0]
+    code = set(words.split()[0]) & set("()_.")
+    first = words[0] if code else words[0].upper()
     return first + words[1:].rstrip(".") + "."
 
 

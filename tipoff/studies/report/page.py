@@ -27,6 +27,10 @@ _SETTLED = (
     "Reference ±: the largest uncertainty by mesh, step and contact cells. Surrogate "
     "error: the largest error of compliant contact over the axes."
 )
+_VALIDATION = (
+    "Promises are checked on the runs of this page. `docs/verification_and_validation.md` has the cases "
+    "with known answers, the published measurements, and what is not validated."
+)
 
 
 class Page:
@@ -61,7 +65,7 @@ class Page:
         ]
         checked = promises(self.rows(), self.documents)
         drawn += [
-            self._drawn("promises", "Promises", "Promises", [table(checked)]),
+            self._drawn("promises", "Promises", "Promises", [table(checked), Caption(_VALIDATION)]),
             self._drawn("colophon", "Origin", "Origin of the results", self._colophon()),
         ]
         shown = [item for item in drawn if item.html]
