@@ -135,7 +135,8 @@ def _spoken(name: str) -> str:
 
 
 def _sentence(words: str) -> str:
-    first = words[0].upper() if words.split()[0].isalpha() else words[0]
+    code = set(words.split()[0]) & set("()_.")
+    first = words[0] if code else words[0].upper()
     return first + words[1:].rstrip(".") + "."
 
 
@@ -152,15 +153,17 @@ def _targets(node: ast.AST) -> set[str]:
 
 
 def _answers(tree: ast.Module, function: ast.FunctionDef) -> set[str]:
-    """Modules of closed forms, arguments of the test, and what is computed from these alone."""
+    """Modules of closed forms, constants, arguments of the test, and what is computed from these
+    alone. A variable that is filled later, such as a list, is none."""
     known = {argument.arg for argument in function.args.args}
     for node in tree.body:
         if isinstance(node, ast.ImportFrom):
             closed = (node.module or "").startswith("tests.exact")
             names = {alias.asname or alias.name for alias in node.names}
             known |= {name for name in names if closed or name.isupper()}
+    filled = _filled(function)
     assignments = [
-        (target, node.value)
+        (_targets(target) - filled, node.value)
         for scope in (tree.body, list(ast.walk(function)))
         for node in scope
         if isinstance(node, ast.Assign)
@@ -169,10 +172,25 @@ def _answers(tree: ast.Module, function: ast.FunctionDef) -> set[str]:
     while True:
         new = {
             name
-            for target, value in assignments
+            for targets, value in assignments
             if _names(value) <= known | _PLAIN
-            for name in _targets(target)
+            for name in targets
+            if name.isupper() or _names(value) - _PLAIN
         } - known
         if not new:
             return known
         known |= new
+
+
+def _filled(function: ast.FunctionDef) -> set[str]:
+    """Variables that change after their first value: by an operator, an index or a method."""
+    found = set()
+    for node in ast.walk(function):
+        if isinstance(node, ast.AugAssign):
+            found |= _targets(node.target)
+        elif isinstance(node, ast.Assign):
+            for target in node.targets:
+                found |= _targets(target) if isinstance(target, ast.Subscript) else set()
+        elif isinstance(node, ast.Attribute) and node.attr in ("append", "extend", "update"):
+            found |= _targets(node.value)
+    return found

@@ -6,36 +6,58 @@ and asserts of the form ``error < tolerance``. Only comparisons of a result with
 those of a closed form with its tabulated value do not (`reading.Test.compares_answers_alone`).
 """
 
+import ast
+import inspect
 import linecache
 import math
 import operator
 import re
-import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from _pytest.approx import ApproxScalar
 
 from tests.verification import reading
 
-_NUMBER = r"(?:np\.float64\()?(-?\d[\d.]*(?:e[+-]?\d+)?)\)?"
-_BOUND = re.compile(rf"{_NUMBER} (<=|<|>=|>) {_NUMBER}(?!\S)")
+_NUMBER = r"-?\d[\d.]*(?:e[+-]?\d+)?"
+_COMPARED = {ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge}
+_SIGNS = {operator.lt: "<", operator.le: "<=", operator.gt: ">", operator.ge: ">="}
+_BELOW = (operator.lt, operator.le)
+_ARITHMETIC = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+}
+_LARGEST = 0.1  # a larger bound is that of a quantity, not that of an error
+_SCALAR = type(pytest.approx(1.0))  # what arrays and lists are compared by as well
 _EXPLAINS = str(Path("_pytest", "assertion"))
 _ERROR = re.compile(r"abs\(|error|norm\(|drift|checks\[|residual|allclose|miss")
-_HOLDS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
 _ORDERS = re.compile(r"(?:array\()?\[([^\[\]]+)\]\)? = \w*(?:slopes?|orders?)\(")
 
 
 class Recorder:
     """``kept`` has an entry for each test function, by file and name: its cases, how many
-    comparisons were made, the one nearest to its tolerance, orders and controls."""
+    comparisons were made, the one nearest to its tolerance, orders and controls. With ``first``
+    each test runs with its first parameters alone."""
 
-    def __init__(self) -> None:
+    def __init__(self, first: bool = False) -> None:
         self.kept: dict[str, dict[str, Any]] = {}
+        self._first = first
         self._test: reading.Test | None = None
         self._code: Any = None
+
+    @pytest.hookimpl(trylast=True)  # when tests that are not asked for are gone
+    def pytest_collection_modifyitems(self, items):
+        """Leave the first parameters of each test where these were asked for."""
+        if self._first:
+            found: dict[str, pytest.Item] = {}
+            for item in items:
+                found.setdefault(item.nodeid.split("[")[0], item)
+            items[:] = found.values()
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_call(self, item):
@@ -48,7 +70,7 @@ class Recorder:
         self._entry()
         try:
             with pytest.MonkeyPatch.context() as patch:
-                patch.setattr(ApproxScalar, "__eq__", self._scalar(ApproxScalar.__eq__))
+                patch.setattr(_SCALAR, "__eq__", self._scalar(_SCALAR.__eq__))
                 patch.setattr(np.testing, "assert_allclose", self._arrays())
                 return (yield)
         finally:
@@ -59,14 +81,12 @@ class Recorder:
         source = linecache.getline(str(item.path), lineno).strip()
         if self._test is None or not source.startswith("assert"):
             return
-        said = expl.split("\n")[0]
-        for left, sign, right in _BOUND.findall(said):
-            value, bound = float(left), float(right)
-            if not _HOLDS[sign](value, bound):
+        for value, sign, bound in _bounds(expl.split("\n")[0]):
+            if not sign(value, bound):
                 continue  # one side of an "or"
             if self._test.is_control(lineno):
-                self._control(f"{value:.3g} {sign} {bound:.3g}")
-            elif sign in ("<", "<=") and _ERROR.search(orig) and value >= 0.0:
+                self._control(f"{value:.3g} {_SIGNS[sign]} {bound:.3g}")
+            elif sign in _BELOW and bound <= _LARGEST and value >= 0.0 and _ERROR.search(orig):
                 self._compared(lineno, value, 0.0, bound)
         for values in _ORDERS.findall(expl):
             finest = float(re.findall(_NUMBER, values)[-1])
@@ -106,7 +126,7 @@ class Recorder:
     def _line(self) -> int | None:
         """Line of the test function that is being executed; None outside, and where pytest compares
         once more to explain an assert."""
-        frame = sys._getframe(1)
+        frame = inspect.currentframe()
         while frame is not None and _EXPLAINS not in frame.f_code.co_filename:
             if frame.f_code is self._code:
                 return frame.f_lineno
@@ -142,6 +162,35 @@ class Recorder:
         entry["comparisons"] += 1
         if entry["worst"] is None or ratio > entry["worst"]["ratio"]:
             entry["worst"] = {"ours": ours, "answer": answer, "allowed": allowed, "ratio": ratio}
+
+
+def _bounds(said: str) -> Iterator[tuple[float, Callable, float]]:
+    """Every comparison of two numbers in an explanation such as ``3e-13 < (1e-12 * 4.0)``."""
+    try:
+        tree = ast.parse(said, mode="eval")
+    except SyntaxError:  # shortened, or with values that are no Python
+        return
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in _COMPARED:
+            left, right = _value(node.left), _value(node.comparators[0])
+            if left is not None and right is not None:
+                yield left, _COMPARED[type(node.ops[0])], right
+
+
+def _value(node: ast.expr) -> float | None:
+    """The number that an expression of numbers has; None for any other expression."""
+    if isinstance(node, ast.Constant) and type(node.value) in (int, float):
+        return float(node.value)
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+        inner = _value(node.operand)
+        return None if inner is None else -inner
+    if isinstance(node, ast.Call) and ast.unparse(node.func) == "np.float64":
+        return _value(node.args[0])
+    if isinstance(node, ast.BinOp) and type(node.op) in _ARITHMETIC:
+        left, right = _value(node.left), _value(node.right)
+        if left is not None and right is not None:
+            return float(_ARITHMETIC[type(node.op)](left, right))
+    return None
 
 
 def _code(test) -> Any:

@@ -17,6 +17,10 @@ SOURCE = '''
         """A sentence. Control: the weak method is off."""
         answer = exact.answer(MASS, **STEEL)
         found = measure(MASS, step)
+        filled = []
+        for _ in range(3):
+            filled.append(found)
+        assert filled == pytest.approx([answer] * 3)
         assert answer == pytest.approx(6.0)
         assert found == pytest.approx(answer)
         # Control: half the steps
@@ -75,6 +79,7 @@ def test_a_closed_form_beside_its_tabulated_value_is_no_result(tmp_path):
     alone = found["test_one"].compares_answers_alone
     assert alone(number["assert answer == pytest.approx(6.0)"])
     assert not alone(number["assert found == pytest.approx(answer)"])
+    assert not alone(number["assert filled == pytest.approx([answer] * 3)"])
 
 
 def test_every_marked_test_of_the_project_is_read():

@@ -28,7 +28,8 @@ TESTS = """
         found = measure()
         assert found == pytest.approx([2.0, 3.0], abs=2e-4)
         np.testing.assert_allclose(found, [2.0, 3.0], rtol=1e-3)
-        assert abs(found[1] - 3.0) < 1e-3
+        assert abs(found[1] - 3.0) < 1e-3 and abs(found[1] - 3.0) <= 1e-4 * found[0]
+        assert abs(found[0]) < 3.0  # a bound of a quantity
         assert (np.array(slopes()) > 1.7).all() and max(slopes()) < 2.1
         assert found[0] < 100.0
         # Control: the coarse one is off.
@@ -79,7 +80,7 @@ def test_the_comparison_nearest_to_its_tolerance_is_kept(kept):
     assert entry["cases"] == ["O1"]
     assert entry["worst"]["ours"] == 3.0001 and entry["worst"]["answer"] == 3.0
     assert entry["worst"]["ratio"] == pytest.approx(0.5)
-    assert entry["comparisons"] == 2 * (2 + 1 + 1)
+    assert entry["comparisons"] == 2 * (2 + 1 + 2)
 
 
 def test_the_finest_order_and_the_control_are_kept_apart(kept):

@@ -41,4 +41,5 @@ def test_thick_cylinder(refinement, poisson_ratio, answer):
 @pytest.mark.parametrize("poisson_ratio, locked", [(0.499, 0.9), (0.4999, 0.4)])
 def test_nearly_incompressible_cylinder_does_not_lock(refinement, poisson_ratio, locked):
     assert ratio(refinement, poisson_ratio) == pytest.approx(1.0, rel=0.02)
-    assert ratio(refinement, poisson_ratio, bubbles=False) < locked  # control: without bubbles it locks
+    # Control: without bubbles it locks.
+    assert ratio(refinement, poisson_ratio, bubbles=False) < locked

@@ -126,6 +126,7 @@ def test_page_of_a_reference_alone_names_the_targets_that_make_the_rest(tmp_path
     assert {"mesh", "compare", "cost", "stability", "ablation"} <= set(line[1].split(", "))
     assert line[2] == f"tipoff NAME --scene tiny --out {tmp_path.parent}"
     assert "phi15 diverged" in page
+    assert "docs/verification_and_validation.md" in page
     assert (tmp_path / "figures" / "figure6.png").is_file()
     # One page, no network: nothing is fetched from anywhere. The library itself mentions addresses,
     # so only tags count.

@@ -23,6 +23,10 @@ from tipoff.studies.report.promises import promises, table
 from tipoff.studies.report.template import Drawn, Group
 from tipoff.studies.runs.figures import Runs
 
+_VALIDATION = (
+    "Promises are checked on the runs of this page. `docs/verification_and_validation.md` has the cases "
+    "with known answers, the published measurements, and what is not validated."
+)
 _EVIDENCE, _STUDIES = "Evidence", "Studies"
 _GROUPS = {
     "Motion": ("thrust", "figure6", "contact-forces", "energy", "stress"),
@@ -85,7 +89,9 @@ class Page:
             if not (parts and all(isinstance(part, Missing) for part in parts)):
                 drawn[group].append(self._drawn(item.anchor, item.link, item.title, parts))
         kept = table(promises(self.rows(), self.documents))
-        drawn[_EVIDENCE].append(self._drawn("promises", "Promises", "Promises", [kept]))
+        drawn[_EVIDENCE].append(
+            self._drawn("promises", "Promises", "Promises", [kept, Caption(_VALIDATION)])
+        )
         first = self._drawn("answer", "Answer", "Velocity and rates after exit", self._answer())
         last = [
             self._drawn("scene", "Inputs", "Inputs", inputs.scene_tables(self.scene)),
