@@ -347,7 +347,7 @@ def test_lock_holds_every_dependency():
     normal = {re.sub(r"[-_.]+", "-", name).lower() for name in pinned}
     assert {re.match(r"[A-Za-z0-9_.-]+", name).group().lower() for name in asked} <= normal
     # Extras for pictures and for developers have locks of their own, beside the first one.
-    for extra in ("view", "check"):
+    for extra in ("view", "check", "peers"):
         lock = (ROOT / f"requirements-{extra}.lock").read_text()
         added = set(re.findall(r"^([A-Za-z0-9_.-]+)==", lock, re.MULTILINE))
         wanted = {re.match(r"[A-Za-z0-9_.-]+", name).group() for name in extras[extra]}

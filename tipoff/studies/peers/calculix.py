@@ -12,7 +12,6 @@ import resource
 import shutil
 import subprocess
 import tempfile
-
 from pathlib import Path
 from typing import NamedTuple
 
@@ -73,7 +72,9 @@ def version() -> str:
 def _program() -> str:
     program = shutil.which("ccx")
     if program is None:
-        raise PeerMissing("ccx is not on the path; on Debian, as root: apt-get install calculix-ccx")
+        raise PeerMissing(
+            "ccx is not on the path; on Debian, as root: apt-get install calculix-ccx"
+        )
     return program
 
 
