@@ -113,7 +113,7 @@ def _case(name: str, settings: dict[str, Setting], same: float) -> Case:
     def within(setting: str, quantity: str) -> float:
         if "bubbles" in quantity:
             return same
-        return {4.0: 0.03, 2.0: 0.015, 1.0: 3e-3}[settings[setting].ours]
+        return {4.0: 0.03, 2.0: 0.015, 1.0: 2e-3}[settings[setting].ours]
 
     distorted = "; C3D8I around the holes, where elements are no bricks" if same > 1e-6 else ""
     kinds = ("lumped", "with bubbles")

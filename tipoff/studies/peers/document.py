@@ -10,7 +10,7 @@ from tipoff.files import write_text
 from tipoff.studies.peers import page, stage
 from tipoff.studies.render.document import Figure, markdown
 
-_DOCS = Path(__file__).resolve().parents[3] / "docs"
+DOCS = Path(__file__).resolve().parents[3] / "docs"
 _TITLE = """# Compared with other codes
 
 Written by `python -m tipoff.studies.peers.document` from `tipoff/studies/peers/kept`, which `make peers KEEP=1`
@@ -29,13 +29,19 @@ def keep(out: Path) -> None:
 
 def write() -> None:
     """The page and the picture of the kept results."""
-    peers = stage.stored(stage.KEPT)
-    drawn = page.figure(peers, _DOCS)
+    page.figure(stage.stored(stage.KEPT), DOCS)
+    write_text(DOCS / "peers.md", text())
+
+
+def text() -> str:
+    """The page of the kept results."""
     parts = [
-        f"![{part.caption}]({drawn.name})\n\n{part.caption}" if isinstance(part, Figure) else part
-        for part in page.parts(peers)
+        f"![Error over processor time](peers.png)\n\n{part.caption}"
+        if isinstance(part, Figure)
+        else part
+        for part in page.parts(stage.stored(stage.KEPT))
     ]
-    write_text(_DOCS / "peers.md", f"{_TITLE}\n\n{markdown(parts)}\n")
+    return f"{_TITLE}\n\n{markdown(parts)}\n"
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """Comparisons with other codes as tables, and a diagram of work and precision."""
 
+from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,12 +15,19 @@ if TYPE_CHECKING:
     from tipoff.studies.core.study import Study
     from tipoff.studies.report.page import Page
 
-_STYLES = ((VERMILION, "s"), (TEAL, "^"), (AMBER, "D"), (GREY, "v"))
+_STYLES = (
+    (VERMILION, "s"),
+    (VERMILION, "D"),
+    (TEAL, "^"),
+    (AMBER, "s"),
+    (AMBER, "D"),
+    (GREY, "v"),
+)
 _EQUAL = 1e-5  # rows with a smaller limit differ by rounding, printed digits and time steps alone
 _CAPTION = (
-    "Error over processor time of one thread. The error of the finite elements is against quadratic "
-    "elements of 2 mm, that of the rigid bodies against tipoff at a tolerance of 1e-11, which Exudyn "
-    "confirms. Exudyn and MuJoCo call Python in every step, for contact and for thrust."
+    "Error over processor time of one thread. Errors of finite elements are against quadratic ones of "
+    "2 mm (rail) and 3 mm (impact), those of rigid bodies against tipoff at a tolerance of 1e-11, "
+    "which Exudyn confirms. Exudyn and MuJoCo call Python in every step, for contact and for thrust."
 )
 
 
@@ -45,7 +53,27 @@ def parts(peers: list[dict]) -> list[Part]:
         for case in peer.get("cases", ()):
             found += [Heading(case["title"]), _table(peer, case)]
     chart = picture(peers)
-    return [*found, Figure(chart, _CAPTION)] if chart.panels else found
+    return (
+        [*found, Heading("Work and precision"), Figure(chart, _CAPTION), equal_error(peers)]
+        if chart.panels
+        else found
+    )
+
+
+def equal_error(peers: list[dict]) -> Table:
+    """Processor time of each code at the smallest error that all codes of a case reach."""
+    rows = []
+    for case in (case for peer in peers for case in peer.get("cases", ()) if case["work"]):
+        codes: dict[str, list[dict]] = {}
+        for point in case["work"]:
+            codes.setdefault(point["code"], []).append(point)
+        reached = max(min(point["error"] for point in points) for points in codes.values())
+        for code, points in codes.items():
+            enough = [point for point in points if point["error"] <= reached]
+            best = min(enough, key=lambda point: point["cpu_s"])
+            rows.append((case["error_of"], reached, code, best["setting"], best["cpu_s"]))
+    columns = ("error of", Column("at most", "%", ".2g"), "code", "setting", Column("CPU", "s"))
+    return Table(columns, rows, title="Time at equal error:")
 
 
 def _versions(peers: list[dict]) -> Table:
@@ -118,11 +146,10 @@ def _table(peer: dict, case: dict) -> Table:
 
 def picture(peers: list[dict]) -> Chart:
     """One panel for each case with points of work and precision."""
-    panels = []
+    panels, others = [], cycle(_STYLES)
     for peer in peers:
         for case in peer.get("cases", ()):
             codes = list(dict.fromkeys(point["code"] for point in case["work"]))
-            others = iter(_STYLES)
             lines = []
             for code in codes:
                 colour, marker = (NAVY, "o") if code == OURS else next(others)

@@ -12,6 +12,8 @@ from tipoff.studies.core import machine
 from tipoff.studies.core.progress import say
 from tipoff.studies.peers import (
     calculix,
+    calculix_event,
+    calculix_impact,
     calculix_modes,
     calculix_rail,
     exudyn_model,
@@ -27,7 +29,11 @@ PEERS = (
         "CalculiX",
         "finite elements, implicit",
         calculix.version,
-        lambda: (*calculix_rail.cases(), *calculix_modes.cases()),
+        lambda: tuple(
+            case
+            for part in (calculix_rail, calculix_modes, calculix_impact, calculix_event)
+            for case in part.cases()
+        ),
     ),
     Peer("scikit-fem", "quadratic elements, leapfrog in NumPy", quadratic.version, quadratic.cases),
     Peer("Exudyn", "rigid and flexible bodies", exudyn_model.version, springs_cases.exudyn_cases),
