@@ -1,23 +1,32 @@
 """What is written for other codes, and what is said of one that is missing."""
 
 import importlib.util
+import shutil
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets, read
 from tipoff.meshes import bricks
+from tipoff.scenes import load
+from tipoff.scenes.faults import SceneError
+from tipoff.studies.cli import app
+from tipoff.studies.core.settings import defaults
+from tipoff.studies.core.study import Study
 from tipoff.studies.peers import (
     calculix,
     calculix_impact,
     exudyn_model,
     impact_problem,
+    page,
     quadratic,
     springs_cases,
     springs_problem,
     stage,
 )
 from tipoff.studies.peers.case import PeerMissing
+from tipoff.studies.render import document
 
 LINES = [np.array([0.0, 1.0, 3.0]), np.array([0.0, 1.0]), np.array([0.0, 2.0])]
 
@@ -73,6 +82,33 @@ def test_a_missing_code_is_a_row_that_says_how_to_install_it(tmp_path, monkeypat
     (row,) = stage.run(tmp_path, ["CalculiX"])["peers"]
     assert row["peer"] == "CalculiX" and "apt-get install calculix-ccx" in row["missing"]
     assert not (tmp_path / "peers").exists()
+    said = document.terminal(page.parts([row]))
+    assert "missing" in said and "apt-get" in said
+
+
+def test_the_command_says_what_is_missing(tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    found = CliRunner().invoke(app, ["peers", "calculix", "--out", str(tmp_path)])
+    assert found.exit_code == 0 and "missing" in found.output
+    assert CliRunner().invoke(app, ["peers", "abaqus"]).exit_code == 2
+
+
+def test_the_section_shows_what_was_run(tmp_path):
+    """The kept results stand on the page of a folder that has them, and the page is empty without."""
+    study = Study(load("tiny"), tmp_path / "tiny", defaults("tiny"))
+    assert page.stored(study) is None
+    shutil.copytree(stage.KEPT, tmp_path / "peers")
+    found = page.stored(study)
+    parts = page.parts(found["peers"])
+    said = document.markdown(parts)
+    assert "h10" in said and "Time at equal error" in said
+    (chart,) = (part.chart for part in parts if isinstance(part, document.Figure))
+    assert len(chart.panels) == 4 and all(len(panel.lines) >= 2 for panel in chart.panels)
+
+
+def test_unknown_codes_are_bad_input(tmp_path):
+    with pytest.raises(SceneError, match="(?s)'abaqus'.*'adams'.*CalculiX, scikit-fem"):
+        stage.run(tmp_path, ["abaqus", "Exudyn", "adams"])
 
 
 @pytest.mark.skipif(importlib.util.find_spec("exudyn") is not None, reason="exudyn is installed")

@@ -36,7 +36,7 @@ START = {
 }
 FACE = 6  # the face of pad 3 along +y
 _DIVISIONS, _PLATE = 16, 2e-3  # along each edge of the pad; m, its thickness
-SETTINGS = {f"4 mm, {1e6 * step:g} us": step for step in (1e-5, 5e-6)}
+SETTINGS = {f"4 mm, {1e6 * step:g} us": step for step in (2e-5, 1e-5)}
 UNITS = {
     "normal impulse": "N s",
     "friction impulse": "N s",

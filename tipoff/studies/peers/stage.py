@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from tipoff.files import read_json, write_json
+from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.core import machine
 from tipoff.studies.core.progress import say
 from tipoff.studies.peers import (
@@ -43,8 +44,13 @@ PEERS = (
 
 def run(out: Path, names: Iterable[str] = ()) -> dict:
     """Solve the cases of all peers, or of those named; writes ``out``/peers/<peer>.json. A peer that
-    is not installed is a ``missing`` row and keeps the file it has."""
+    is not installed is a ``missing`` row and keeps the file it has. Raises SceneError for a name that
+    no peer has."""
     wanted, folder, rows = {name.lower() for name in names}, Path(out) / "peers", []
+    known = [peer.name for peer in PEERS]
+    if unknown := sorted(wanted - {name.lower() for name in known}):
+        expected = f"one of {', '.join(known)}"
+        raise SceneError([Fault("PEER", "name", repr(name), expected) for name in unknown])
     for peer in PEERS:
         if not wanted or peer.name.lower() in wanted:
             try:
