@@ -22,7 +22,7 @@ QUICK = tests/test_layers.py tests/test_sources.py tests/scenes tests/mechanics 
   tests/studies/core/test_models.py tests/studies/report
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest paper recovery report view pictures convergence rails full-report bench docs check coverage hooks test test-slow fuzz clean
+.PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest paper recovery report view pictures peers convergence rails full-report bench docs check coverage hooks test test-slow fuzz clean
 
 help: ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-12s %s\n", $$1, $$2}' Makefile
@@ -93,6 +93,10 @@ view: $(READY) ## one run to look at: VTK files for ParaView, and pictures if `m
 
 pictures: $(READY) ## add pyvista (0.6 GB) to .venv, with which `make view` draws too
 	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements-view.lock
+
+peers: $(READY) ## the same work in other codes: installs exudyn and mujoco into .venv, runs them and ccx (apt-get install calculix-ccx)
+	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements-peers.lock
+	$(TIPOFF) peers --out $(OUT) $(if $(KEEP),--keep)
 
 convergence: $(READY) ## the error of the reference itself: meshes, steps, interface stiffness, quadrature (minutes)
 	$(TIPOFF) convergence $(ASKED)

@@ -16,6 +16,7 @@ from tipoff.studies import (
     mesh,
     montecarlo,
     paper,
+    peers,
     recovery,
     runs,
     sensitivity,
@@ -50,7 +51,7 @@ QUESTIONS: tuple[Entry, ...] = (
     paper.QUESTION,
     recovery.QUESTION,
 )
-BENCHMARKS: tuple[Entry, ...] = (bench.ENTRY,)
+BENCHMARKS: tuple[Entry, ...] = (bench.ENTRY, peers.ENTRY)
 
 # The first sections of the page in their order; those of all other studies follow.
 _FIRST = (
@@ -69,6 +70,7 @@ _FIRST = (
     "cost",
     "convergence",
     "bench",
+    "peers",
     "stability",
     "ablation",
 )

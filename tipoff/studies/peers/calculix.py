@@ -12,7 +12,6 @@ import resource
 import shutil
 import subprocess
 import tempfile
-
 from pathlib import Path
 from typing import NamedTuple
 
@@ -73,7 +72,9 @@ def version() -> str:
 def _program() -> str:
     program = shutil.which("ccx")
     if program is None:
-        raise PeerMissing("ccx is not on the path; on Debian, as root: apt-get install calculix-ccx")
+        raise PeerMissing(
+            "ccx is not on the path; on Debian, as root: apt-get install calculix-ccx"
+        )
     return program
 
 
@@ -111,20 +112,28 @@ def shares(nodes: np.ndarray) -> np.ndarray:
     return np.full(4, 0.25) if nodes.shape[1] == 4 else np.repeat([-1.0 / 12.0, 1.0 / 3.0], 4)
 
 
-def head(of: Solid, material: tuple[float, float, float], extra: str = "") -> str:
-    """Nodes, elements and the ``material`` (density, Young's modulus, Poisson's ratio), with
-    ``extra`` cards of it."""
+def head(
+    of: Solid,
+    material: tuple[float, float, float],
+    extra: str = "",
+    first: tuple[int, int] = (0, 0),
+    name: str = "SOLID",
+) -> str:
+    """Nodes (set N<name>), elements (set <name>) and the ``material`` (density, Young's modulus,
+    Poisson's ratio) of a solid, with ``extra`` cards of it; ``first`` are the numbers of nodes and
+    elements before it."""
     density, modulus, ratio = material
+    points = enumerate(of.points, first[0] + 1)
     return "\n".join(
         [
-            "*NODE, NSET=ALL",
-            *(f"{i + 1},{x:.13g},{y:.13g},{z:.13g}" for i, (x, y, z) in enumerate(of.points)),
-            f"*ELEMENT, TYPE={of.kind}, ELSET=SOLID",
-            *(_element(i + 1, nodes + 1) for i, nodes in enumerate(of.cells)),
-            "*MATERIAL, NAME=METAL",
+            f"*NODE, NSET=N{name}",
+            *(f"{i},{x:.13g},{y:.13g},{z:.13g}" for i, (x, y, z) in points),
+            f"*ELEMENT, TYPE={of.kind}, ELSET={name}",
+            *(_element(i, nodes + 1 + first[0]) for i, nodes in enumerate(of.cells, first[1] + 1)),
+            f"*MATERIAL, NAME=M{name}",
             f"*ELASTIC\n{modulus:.13g},{ratio:.13g}",
             f"*DENSITY\n{density:.13g}",
-            f"{extra}*SOLID SECTION, ELSET=SOLID, MATERIAL=METAL\n",
+            f"{extra}*SOLID SECTION, ELSET={name}, MATERIAL=M{name}\n",
         ]
     )
 
@@ -148,6 +157,13 @@ def members(kind: str, name: str, numbers: np.ndarray) -> str:
 def held(of: Solid, facets: np.ndarray) -> str:
     """The set HELD of all nodes of ``facets`` (m,4), fixed in all directions."""
     return members("NSET", "HELD", sides(of, facets)[2]) + "*BOUNDARY\nHELD,1,3\n"
+
+
+def surface(name: str, of: Solid, facets: np.ndarray, first: int) -> str:
+    """A surface of element faces; ``first`` elements stand before those of the solid."""
+    element, face, _ = sides(of, facets)
+    lines = [f"{e + 1 + first},S{f + 1}" for e, f in zip(element, face)]
+    return "\n".join([f"*SURFACE, NAME={name}, TYPE=ELEMENT", *lines, ""])
 
 
 def pressure(of: Solid, facets: np.ndarray, value: float) -> str:

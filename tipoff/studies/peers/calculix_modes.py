@@ -19,11 +19,17 @@ from tipoff.highfi.statics import assembly, vibration
 from tipoff.highfi.statics.solve import Clamped
 from tipoff.scenes.rail import MaterialTable
 from tipoff.studies.peers import calculix
-from tipoff.studies.peers.calculix import LINEAR
-from tipoff.studies.peers.calculix_rail import Setting, constants, rail
+from tipoff.studies.peers.calculix import LINEAR, QUADRATIC
+from tipoff.studies.peers.calculix_rail import SETTINGS, Setting, constants, rail
+from tipoff.studies.peers.case import Case
 
 MODES = 4
 _BUBBLES = 3
+CHANNEL = {
+    "C3D8I 4 mm, ours 4 mm": Setting(LINEAR, 4.0, 4.0),
+    "C3D8I 2 mm, ours 2 mm": Setting(LINEAR, 2.0, 2.0),
+    "C3D20R 4 mm, ours 2 mm": Setting(QUADRATIC, 4.0, 2.0),
+}
 
 
 def here(name: str, chosen: Setting) -> dict[str, float]:
@@ -59,7 +65,9 @@ def _has_same_mass(chosen: Setting) -> bool:
 
 
 def _named(mass: str, frequencies: np.ndarray) -> dict[str, float]:
-    return {f"f{number + 1}, mass {mass}": value for number, value in enumerate(frequencies.tolist())}
+    return {
+        f"f{number + 1}, mass {mass}": value for number, value in enumerate(frequencies.tolist())
+    }
 
 
 def _with_bubbles(mesh: RailMesh, material: MaterialTable) -> np.ndarray:
@@ -82,9 +90,7 @@ def _with_bubbles(mesh: RailMesh, material: MaterialTable) -> np.ndarray:
     factor = splu(stiffness, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
     inverse = LinearOperator(stiffness.shape, matvec=factor.solve, dtype=float)
     start = np.random.default_rng(1).standard_normal(stiffness.shape[0])
-    squares = eigsh(
-        stiffness, MODES, mass, 0.0, v0=start, OPinv=inverse, return_eigenvectors=False
-    )
+    squares = eigsh(stiffness, MODES, mass, 0.0, v0=start, OPinv=inverse, return_eigenvectors=False)
     return np.sqrt(np.sort(squares)) / (2.0 * np.pi)
 
 
@@ -94,3 +100,34 @@ def _assembled(blocks: np.ndarray, freedom: np.ndarray, free: np.ndarray) -> csc
     places = np.repeat(freedom, width, axis=1).ravel(), np.tile(freedom, (1, width)).ravel()
     whole = coo_array((blocks.ravel(), places), shape=(free.size, free.size)).tocsr()
     return csc_array(whole[free][:, free])
+
+
+def cases() -> tuple[Case, ...]:
+    """The rails of ``reference`` and ``channel``."""
+    return _case("reference", SETTINGS, 1e-6), _case("channel", CHANNEL, 3e-4)
+
+
+def _case(name: str, settings: dict[str, Setting], same: float) -> Case:
+    """``same``: the largest difference with equal elements and masses."""
+
+    def within(setting: str, quantity: str) -> float:
+        if "bubbles" in quantity:
+            return same
+        return {4.0: 0.03, 2.0: 0.015, 1.0: 2e-3}[settings[setting].ours]
+
+    distorted = "; C3D8I around the holes, where elements are no bricks" if same > 1e-6 else ""
+    kinds = ("lumped", "with bubbles")
+    return Case(
+        name=f"calculix-modes-{name}",
+        title=f"Lowest frequencies of a rail of scene `{name}`, held at its mounts",
+        inputs=lambda: {"scene": name},
+        matched="mesh, material, held nodes; in C3D8I the stiffness too; `mass with bubbles`: the "
+        "mass of CalculiX in tipoff",
+        unmatched=f"`mass lumped`: CalculiX has no lumped masses{distorted}",
+        settings=tuple(settings),
+        units={f"f{number + 1}, mass {kind}": "Hz" for kind in kinds for number in range(MODES)},
+        ours=lambda setting: here(name, settings[setting]),
+        theirs=lambda setting: there(name, settings[setting]),
+        within=within,
+        slow=tuple(key for key, chosen in settings.items() if chosen.ours < 4.0),
+    )

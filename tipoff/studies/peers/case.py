@@ -1,24 +1,39 @@
 """A comparison with another code: one case, solved here and by the peer from the same inputs."""
 
+import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 
 class PeerMissing(RuntimeError):
     """The peer is not installed here; the message says how to install it."""
 
 
+class Point(NamedTuple):
+    """Error (%) and processor time (s) of a ``code`` with a ``setting``."""
+
+    code: str
+    setting: str
+    error: float
+    cpu_s: float
+
+
+OURS = "tipoff"
+_LONG = 2.0  # s
+
+
 @dataclass(frozen=True)
 class Case:
     """One case.
 
-    ``name``: its file, ``title``: in the page. ``inputs``: plain values, kept with the result.
+    ``name`` is unique, ``title`` stands on the page. ``inputs``: plain values, kept with the result.
     ``matched`` and ``unmatched``: what both sides share, and what the peer cannot express.
-    ``settings``: names of meshes or steps. ``units``: the unit of each quantity. ``ours`` and
-    ``theirs`` map a setting to the values of these quantities, in that unit. ``within``: largest
-    relative difference of a quantity at the settings it names, relative to its largest value over
-    the settings; ``slow``: settings that take more than a few seconds here.
+    ``settings``: meshes or conditions. ``units``: the unit of each quantity. ``ours`` and ``theirs``
+    map a setting to quantities in these units, and ``cpu_s``, the processor time, where they measure
+    it themselves. ``within`` maps a setting and a quantity to the largest difference, relative to the
+    largest value of this quantity. ``slow``: settings that take more than a few seconds here.
+    ``work``: points of the diagram of work and precision, with what their error is measured on.
     """
 
     name: str
@@ -30,8 +45,10 @@ class Case:
     units: Mapping[str, str]
     ours: Callable[[str], Mapping[str, float]]
     theirs: Callable[[str], Mapping[str, float]]
-    within: Mapping[str, float]
-    slow: tuple[str, ...] = field(default=())
+    within: Callable[[str, str], float]
+    slow: tuple[str, ...] = ()
+    work: Callable[[], list[Point]] | None = None
+    error_of: str = ""
 
 
 @dataclass(frozen=True)
@@ -39,6 +56,26 @@ class Peer:
     """Another code. ``version`` raises PeerMissing where it is not installed."""
 
     name: str
-    what: str  # kind of code, in words
+    what: str
     version: Callable[[], str]
     cases: Callable[[], tuple[Case, ...]]
+
+
+def timed(solve: Callable[[], Mapping[str, float]]) -> tuple[dict[str, float], float]:
+    """What ``solve`` finds, and its processor time (s): its own where it gives one; else that of the
+    call, or of a second one where the first took so short that compilation may be most of it."""
+    began = time.process_time()
+    found = dict(solve())
+    spent = time.process_time() - began
+    if "cpu_s" in found:
+        return found, found.pop("cpu_s")
+    if spent < _LONG:
+        began = time.process_time()
+        solve()
+        spent = time.process_time() - began
+    return found, spent
+
+
+def percent(value: float, exact: float) -> float:
+    """Relative error in per cent."""
+    return 100.0 * abs(value / exact - 1.0)

@@ -16,7 +16,8 @@ from tipoff.studies.peers.case import PeerMissing
 from tipoff.studies.peers.springs_problem import Problem
 
 FIXED, ADAPTIVE = "RK44", "DOPRI5"
-_LONGEST = 2e-4  # s, of an adaptive step, so that none passes over a contact
+# s, of an adaptive step: none passes over a contact, and each may be as short as a touch needs
+_LONGEST, _SHORTEST = 2e-4, 1e-12
 
 
 class Run(NamedTuple):
@@ -178,5 +179,6 @@ def _settings(exudyn, method: str, setting: float, until: float):
     else:
         steps.numberOfSteps = math.ceil(until / _LONGEST)
         steps.automaticStepSize = True
+        steps.minimumStepSize = _SHORTEST
         steps.relativeTolerance, steps.absoluteTolerance = setting, 1e-3 * setting
     return chosen

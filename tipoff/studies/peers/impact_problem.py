@@ -9,6 +9,7 @@ throughout.
 import tempfile
 from pathlib import Path
 
+import meshio
 import numpy as np
 
 from tipoff import highfi
@@ -28,6 +29,12 @@ FRICTION = 0.2
 STIFFNESS = 1.8e12  # N/m3, times a factor
 DURATION = 0.4e-3  # s
 _INTERVAL = 5e-6  # s
+UNITS = {
+    "rebound": "m/s",
+    "pitch rate": "rad/s",
+    "normal impulse": "N s",
+    "friction impulse": "N s",
+}
 
 
 def inputs() -> dict:
@@ -53,7 +60,7 @@ def solve(size: float, factor: float) -> dict[str, float]:
     away from the bar (m/s), pitch rate (rad/s), impulses along z and x (N s)."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "bar.msh")
-        msh.save(_bar(size), path)
+        msh.save(bar(size), path)
         found = highfi.run(_scene(path, factor), highfi.Numerics(element_size=size))
     if found.message:
         raise RuntimeError(found.message)
@@ -67,7 +74,8 @@ def solve(size: float, factor: float) -> dict[str, float]:
     }
 
 
-def _bar(size: float):
+def bar(size: float) -> meshio.Mesh:
+    """The bar in elements of ``size`` (m), with its upper side and its clamped ends."""
     lines = [
         np.linspace(low, high, round((high - low) / size) + 1)
         for low, high in (

@@ -27,8 +27,8 @@ IMPEDANCE = 1e-4
 RADIUS = 1e-3  # m of the balls
 _THICK = 4e-3  # m of the walls
 _REACH = 12e-3  # m, half the width of the walls
-_FRICTION_DAMPING = 0.02  # N s/m
-_IMPRATIO = 1e5
+_FRICTION_DAMPING = 0.4  # N s/m
+_IMPRATIO = 1e3
 
 
 class Run(NamedTuple):

@@ -115,7 +115,7 @@ def window(condition: str, law: str, friction: bool) -> float:
 
 def rates(found: Trajectory) -> np.ndarray:
     """Settled rates (3,) deg/s of a run of ours."""
-    return np.rad2deg(found.outcome.rate)
+    return np.rad2deg(np.array(found.outcome.rate, dtype=float))
 
 
 def settled(time: np.ndarray, rate: np.ndarray, start: float) -> np.ndarray:
