@@ -17,6 +17,8 @@ class Numerics:
     cells: int | None = None
     safety: float = 0.9  # fraction of the critical step
     step: float | None = None  # s, requested; refused above the limit
+    # True: also step the rails that rest (``dynamics.resting``), and take no long steps
+    step_everything: bool = False
 
     def __post_init__(self):
         faults = []
