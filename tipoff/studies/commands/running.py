@@ -20,11 +20,12 @@ def study_of(
     workers=None,
     checkpoint_every=None,
     resume=True,
+    **settings,
 ):
     """The study of a scene with the options of a command.
 
     ``overrides`` are texts "KEY=VALUE"; ``element_size`` is in mm; ``checkpoint_every`` is a time
-    with its unit. Raises SceneError, every fault listed.
+    with its unit; further ``settings`` are fields of ``Settings``. Raises SceneError, every fault listed.
     """
     from tipoff import scenes
     from tipoff.scenes import plausibility
@@ -37,15 +38,15 @@ def study_of(
     if wrong := [item for item, (_, equals, _) in zip(overrides or [], pairs) if not equals]:
         raise SceneError([Fault("--set", item, "no value", "KEY=VALUE") for item in wrong])
     found = scenes.load(scene).replace({key.strip(): value.strip() for key, _, value in pairs})
-    settings = replace(defaults(found.name), resume=resume)
+    chosen = replace(defaults(found.name), resume=resume, **settings)
     if element_size is not None:
-        settings = replace(settings, element_size=1e-3 * element_size)
+        chosen = replace(chosen, element_size=1e-3 * element_size)
     if workers is not None:
-        settings = replace(settings, workers=workers)
+        chosen = replace(chosen, workers=workers)
     every = quantity("--checkpoint-every", checkpoint_every, "s")
     if every is not None:
-        settings = replace(settings, checkpoint_every=every)
-    study = Study(found, Path(out) / found.name, settings, tuple(conditions or ()))
+        chosen = replace(chosen, checkpoint_every=every)
+    study = Study(found, Path(out) / found.name, chosen, tuple(conditions or ()))
     _ = study.conditions  # raises for a bad override or an unknown condition before anything runs
     for warning in plausibility.of_all_conditions(found):
         say(f"implausible: {warning}")
