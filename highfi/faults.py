@@ -63,9 +63,23 @@ def _approach_speed(loop) -> float:
     """Bound (m/s) of the speed across the rail at which any pad and any point of a wall can approach
     each other now."""
     state, payload = loop.state, loop.system.model.payload
-    spin = np.linalg.norm(payload.inverse_inertia, 2) * np.linalg.norm(state.payload.spin)
-    reach = np.linalg.norm(loop.system.faces.centre, axis=1).max()
-    turn = rotation.matrices(state.platform.quaternion[None])[0]
-    across = (state.payload.velocity @ turn)[1:]
-    nodes = np.linalg.norm(state.velocity[loop.walls, 1:] - across, axis=1).max()
-    return float(magnification(loop.system.surface) * nodes + spin * reach)
+    # the Frobenius norm, which is not below the spectral one and far faster
+    spin = np.linalg.norm(payload.inverse_inertia) * np.linalg.norm(state.payload.spin)
+    reach = np.sqrt((loop.system.faces.centre**2).sum(axis=1).max())
+    turn = rotation.single(state.platform.quaternion)
+    _, across_y, across_z = state.payload.velocity @ turn
+    walls = loop.now.walls
+    y, z = state.velocity.T[1][walls] - across_y, state.velocity.T[2][walls] - across_z
+    moving = magnification(loop.system.surface) * np.sqrt((y * y + z * z).max(initial=0.0))
+    return float(max(moving, _approach_of_rigid_part(loop, turn)) + spin * reach)
+
+
+def _approach_of_rigid_part(loop, turn: np.ndarray) -> float:
+    """Bound (m/s) of the speed across the rail between the payload's mass centre and walls at rest
+    in the frame, whose rotation is ``turn``."""
+    state, frame = loop.state, loop.now.frame
+    if frame is None:
+        return float(np.linalg.norm((state.payload.velocity @ turn)[1:]))
+    spin = np.linalg.norm(frame.inverse_inertia @ (turn.T @ state.platform.spin))
+    away = ((state.payload.velocity - state.platform.velocity) @ turn)[1:]
+    return float(np.linalg.norm(away) + spin * loop.reach)

@@ -20,6 +20,8 @@ class Numerics:
     safety: float = 0.9
     #: Requested step (s), refused above the limit; None: the critical step times ``safety``.
     step: float | None = None
+    #: True: also step the rails that rest (``dynamics.resting``), and take no long steps.
+    step_everything: bool = False
 
     def __post_init__(self):
         faults = []

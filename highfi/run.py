@@ -10,11 +10,14 @@ from pathlib import Path
 import numpy as np
 
 from tipoff.files import tell
-from tipoff.highfi.dynamics import ending, linear_range, observe, samples
+from tipoff.highfi import result
+from tipoff.highfi.dynamics import ending, jolts, linear_range, observe, resting
 from tipoff.highfi.dynamics.checkpoint import Checkpoint, restore
+from tipoff.highfi.dynamics.resting import Rails
 from tipoff.highfi.dynamics.step import ADVANCE, EVALUATE, KICK, OPEN, Task, perform
-from tipoff.highfi.dynamics.step_size import Stepping, choose
+from tipoff.highfi.dynamics.step_size import STEPS_PER_CHECK, Stepping, choose
 from tipoff.highfi.dynamics.system import System, build, initial_state
+from tipoff.highfi.dynamics.waking import Watch
 from tipoff.highfi.faults import fault
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
@@ -26,15 +29,13 @@ from tipoff.highfi.state import records
 from tipoff.highfi.state.threads import Team, processors, team_of
 from tipoff.highfi.stress import monitor, peak
 from tipoff.kernels import rotation
-from tipoff.mechanics import comoving, ledger, models, outcome
+from tipoff.mechanics import outcome
 from tipoff.mechanics.ending import DONE, WINDOW, is_left_out
-from tipoff.mechanics.promises import FINITE_ELEMENTS, broken
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.effects.friction import require_two_step
 from tipoff.scenes.scene import Scene
 
 _ELEMENTS_PER_THREAD = 4000
-_STEPS_PER_CHECK = 250  # at most, from one check of the balances to the next
 _REPORT_EVERY = 20  # checks from one report of progress to the next
 _ROUNDING = 1e-9
 MESHES: dict[tuple, RailMesh] = {}  # made by this process, by geometry and element size (m)
@@ -96,7 +97,8 @@ def run(
     stepping = choose(system, scene, numerics)
     if words := step_cost.long_run(system.mesh, scene, stepping.dt_s):
         tell(words)
-    loop = Loop(scene, system, stepping, threads or _threads_for(system))
+    rails = None if numerics.step_everything else resting.build(scene, system, stepping)
+    loop = Loop(scene, system, stepping, threads or _threads_for(system), rails)
     kept = (
         Checkpoint(checkpoint, checkpoint_every, loop, numerics) if checkpoint is not None else None
     )
@@ -114,6 +116,7 @@ def run(
         "kernel_s": loop.wall,
         "cpu_s": set_up_cpu + loop.cpu + loop.other_cpu,
         "steps": loop.steps,
+        **loop.resting(),
         **loop.stepping.as_dict(),
         "elements": elements,
         "ns_per_element_step": 1e9 * loop.wall / max(loop.steps * elements, 1),
@@ -127,14 +130,25 @@ def _threads_for(system: System) -> int:
 
 
 class Loop:
-    """State of a run in progress and its samples."""
+    """State of a run in progress and its samples. Without ``rails`` everything is stepped."""
 
-    def __init__(self, scene: Scene, system: System, stepping: Stepping, threads: int = 1):
+    def __init__(
+        self,
+        scene: Scene,
+        system: System,
+        stepping: Stepping,
+        threads: int = 1,
+        rails: Rails | None = None,
+    ):
         self.scene, self.system, self.stepping = scene, system, stepping
+        self.watch = None if rails is None else Watch(system, rails)
+        self.rests = np.zeros(0 if rails is None else len(rails.blocks), dtype=np.bool_)
+        self.stride = 1  # steps in one long step
+        self.jolts = jolts.begin(rails)
         self.team, self.pool = team_of(threads), ThreadPoolExecutor(threads)
         self.state, self.active = initial_state(system)
         self.exit, self.book = ending.build(system)
-        self.walls = np.unique(system.surface.facets)
+        self.reach = float(np.linalg.norm(system.rail.points, axis=1).max())  # m
         self.small = linear_range.small(system)  # m
         self.slow = spin.rate_never_checked(scene, system.mesh)  # rad/s, of the platform
         self.milestones = outcome.milestones(scene, system.model)
@@ -142,6 +156,7 @@ class Loop:
         self.most = int(scene.duration / stepping.dt_s * (1.0 + _ROUNDING))  # steps
         self.wall, self.cpu, self.other_cpu = 0.0, 0.0, 0.0  # s
         self.steps, self.checks = 0, 0  # done
+        self.taken, self.block_steps = 0, 0  # long steps, and blocks in them that were stepped
         self.damping = 0.0  # largest step * friction damping / mass of a node
         self.scale = 0.0  # J, largest transverse energy
         self.message = ""  # why the run stopped
@@ -157,7 +172,7 @@ class Loop:
 
     def constants(self) -> records.Constants:
         """Constant records of the kernels."""
-        s, m = self.system, self.system.model
+        s, m = self.now, self.system.model
         return records.Constants(
             rail=s.rail,
             surface=s.surface,
@@ -172,14 +187,38 @@ class Loop:
             body_force=m.body_force,
             exit=self.exit,
             milestones=self.milestones,
-            dt=self.stepping.dt_s,
+            dt=self.step,
         )
+
+    @property
+    def now(self) -> System:
+        """The system with the rails that rest now as parts of the rigid part."""
+        return self.system if self.watch is None else self.watch.view(self.rests)
+
+    @property
+    def step(self) -> float:
+        """Length (s) of a long step, or of a step where none is taken."""
+        return self.stride * self.stepping.dt_s
+
+    def set_stride(self, stride: int) -> None:
+        """Go on with steps ``stride`` times as long; velocities are set back by half of one."""
+        before, self.stride = self.step, stride
+        if before != self.step:
+            self.kick(0.5 * (before - self.step))
+            self.active.wait[:] = 0
 
     def arguments(
         self,
     ) -> tuple[records.Constants, records.State, records.Active, np.ndarray, Team]:
         """Records that the time loop takes, in their order."""
-        return self.constants(), self.state, self.active, self.book, self.team
+        return self.constants(), self.state, self.active, self.book, self.team_now
+
+    @property
+    def team_now(self) -> Team:
+        """One thread alone where no rail is stepped, else all of them."""
+        if self.watch is not None and self.rests.all():
+            return self.watch.alone
+        return self.team
 
     def begin(self) -> None:
         """First forces, velocities set back to -1/2 so that they pass through the given ones at t =
@@ -189,6 +228,8 @@ class Loop:
         """
         self.evaluate()
         self.kick(-0.5 * self.stepping.dt_s)
+        if self.watch is not None:
+            self.watch.begin(self)
         self._perform(OPEN)
         self.advance_steps(0)
         self._check(keep=True)
@@ -228,43 +269,48 @@ class Loop:
     def _advance_to_check(self) -> None:
         """Step to the next sample, or part of the way where that is long, and check the balances
         there."""
-        there, left = (
-            self.stepping.steps_per_sample - self.steps % self.stepping.steps_per_sample,
-            self.most - self.steps,
-        )
-        count = min(there, _STEPS_PER_CHECK, left if left > 0 else there)
+        per_sample, left = self.stepping.steps_per_sample, self.most - self.steps
+        there = per_sample - self.steps % per_sample
+        count = min(there, STEPS_PER_CHECK, left if left > 0 else there)
+        if self.watch is not None:
+            count = min(count, self.watch.adapt(self))
+        if count < self.stride:
+            self.set_stride(1)
         self.advance_steps(count)
         self.checks += 1
-        self._check(keep=count == there)
+        self._check(keep=self.steps % per_sample == 0)
 
     def advance_steps(self, count: int) -> None:
-        """``count`` steps, by all threads of the team."""
+        """``count`` steps, by all threads of the team; fewer where a pad comes near a rail that
+        rests."""
+        count //= self.stride
 
         def part(thread):
             began = clock.thread_time()
             return self._perform(ADVANCE, thread, steps=count), clock.thread_time() - began
 
-        others = [self.pool.submit(part, thread) for thread in range(1, self.team.size)]
-        self.damping = max(self.damping, part(0)[0])
+        others = [self.pool.submit(part, thread) for thread in range(1, self.team_now.size)]
+        (taken, damping), _ = part(0)
+        self.damping = max(self.damping, damping)
         self.other_cpu += sum(other.result()[1] for other in others)
-        self.steps += count
+        self.steps += taken * self.stride
+        self.taken += taken
+        self.block_steps += taken * int(self.state.stepped.in_use[0])
 
     def _check(self, keep: bool) -> None:
         """Check whether the run may go on, and ``keep`` a sample."""
-        state, step = self.state, self.stepping.dt_s
-        before = observe.moving(state)
-        self.kick(step)
-        row = observe.sample(self.system, self.team, state, before, observe.moving(state))
-        observe.restore(state, before)
+        state, now = self.state, self.now
+        before = observe.moving(now, state)
+        self.kick(self.step)
+        row = observe.sample(now, self.team, state, before, observe.moving(now, state))
+        observe.restore(now, state, before)
         self.message = fault(self, row)
         if keep and not self.message:
             self.message = self._out_of_range(row)
         if keep and np.isfinite(row).all():
             self.rows.append(row)
             self.work.append(state.work.copy())
-            self.forces.append(
-                state.face_force @ rotation.matrices(state.platform.quaternion[None])[0].T
-            )
+            self.forces.append(state.face_force @ rotation.single(state.platform.quaternion).T)
             self._monitor_stress()
 
     @cached_property
@@ -288,7 +334,9 @@ class Loop:
         """Stresses at the sample just taken."""
         if self.monitor.patch is not None:
             self.gauges.append(monitor.gauge(self.monitor, self.deformed()))
-        if (len(self.rows) - 1) % self.monitor.every == 0:
+        # Rails at rest have the stress of the first sample.
+        at_rest = len(self.rows) > 1 and self.rests.size and self.rests.all()
+        if (len(self.rows) - 1) % self.monitor.every == 0 and not at_rest:
             monitor.scan(
                 self.monitor, self.deformed(), self.steps * self.stepping.dt_s, self.peak, self.pool
             )
@@ -299,6 +347,15 @@ class Loop:
         warm = self.system.warm
         return self.state.displacement if warm is None else self.state.displacement + warm
 
+    def resting(self) -> dict[str, float]:
+        """What resting rails saved, and what it left out."""
+        whole = max(self.steps, 1) * self.state.stepped.block.size
+        return {
+            "steps_taken": self.taken,
+            "stepped_share": self.block_steps / whole,
+            "left_out_m": float(self.jolts.most[0]),
+        }
+
     def evaluate(self) -> None:
         """Forces at the present places of rails at rest in their frame."""
         self._perform(EVALUATE)
@@ -308,68 +365,9 @@ class Loop:
         self._perform(KICK, span=span)
 
     def _perform(self, kind: int, thread: int = 0, steps: int = 0, span: float = 0.0) -> float:
-        task = Task(kind, self.steps, steps, span)
+        task = Task(kind, self.steps, steps, span, self.stride)
         return perform(*self.arguments(), thread, task)
-
-    def _motion(self) -> outcome.Motion:
-        return samples.motion(
-            np.array(self.rows), self.scene.output.interval, self.system.body_offset
-        )
-
-    def _stress(self) -> dict:
-        return monitor.record(
-            self.monitor, self.system, self.peak, self.scene.rail.material.yield_strength
-        )
-
-    def _broken(self, checks: dict[str, float]) -> str:
-        """The accuracy limits that the run exceeded, and what helps, or nothing. A run is never
-        repeated with smaller steps: its cost is the user's decision."""
-        words = broken(checks, FINITE_ELEMENTS)
-        return f"{words}; lower safety or element_size" if words else ""
 
     def trajectory(self, cost: dict, numerics: Numerics) -> Trajectory:
         """The result of the samples so far."""
-        rows, moved = np.array(self.rows), self._motion()
-        total, transverse = samples.ledgers(rows, np.array(self.work))
-        status, result = ending.found(self.system, self.book)
-        forces = np.array(self.forces)
-        linear, angular = samples.momentum_errors(
-            rows, moved, self.system.model.payload.mass, forces, self.steps
-        )
-        friction = (
-            np.diff(total[:, ledger.ENTRIES.index("friction")], prepend=0.0)
-            / self.scene.output.interval
-        )
-        checks = {
-            "energy_error": ledger.total_error(total, FINITE_ELEMENTS),
-            "transverse_energy_error": ledger.transverse_error(transverse, total, FINITE_ELEMENTS),
-            "linear_momentum_error": linear,
-            "angular_momentum_error": angular,
-            "quaternion_error": float(np.abs(np.linalg.norm(moved.quaternion, axis=1) - 1.0).max()),
-            "friction_power_max": float(-friction.min()),
-            "friction_step_ratio": float(self.damping),
-        }
-        broken = self._broken(checks)
-        if self.message or broken:
-            status, result = "diverged", outcome.Outcome()
-        pressed = (
-            outcome.pressed_at_ignition(self.system.faces, self.forces[0]) if self.forces else ""
-        )
-        message = "; ".join(filter(None, [self.message, broken, pressed]))
-        seen_from = comoving.frame(self.system.model)
-        return Trajectory(
-            model=models.FINITE_ELEMENTS,
-            status=status,
-            message=message,
-            **comoving.motion(seen_from, moved)._asdict(),
-            pad_force=forces,
-            energy=total,
-            transverse_energy=transverse,
-            outcome=comoving.outcome(seen_from, result),
-            checks=checks,
-            cost=cost,
-            scene=self.scene.resolved(),
-            numerics=numerics.as_dict(),
-            stress=None if status == "diverged" else self._stress(),
-            wall_stress=np.array(self.gauges).reshape(len(rows), -1, 6) if self.gauges else None,
-        )
+        return result.trajectory(self, cost, numerics)

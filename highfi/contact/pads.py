@@ -19,7 +19,10 @@ elastic force of the rails (``dynamics.step``). Momentum is exact as well. Frict
 normal, at the sliding velocity of the half step, with opposite forces on both sides.
 
 A face whose nearest cell is a gap away is skipped until something that approaches at
-``FASTEST_APPROACH`` could have closed it. That speed is checked at every sample.
+``FASTEST_APPROACH`` could have closed it. That speed is checked at every sample. Where a rail rests
+(``dynamics.resting``) the face is ``near`` once it cannot be skipped for a step, and the rail is
+stepped from then on: before a cell can press it, and for a face that slides onto its wall after the
+first step over it.
 
 A wall is a plate: a point behind its surface by its thickness or more is behind the wall, without
 contact force. A face that was over no wall, or behind it, may come over it with a penetration of
@@ -60,7 +63,7 @@ _ENTRY = 1e-4
 # of the wall meanwhile
 _FARTHEST = 1e-3
 # m/s along the wall: a face this far from the border is skipped until it could arrive
-_FASTEST_SLIDE = 1000.0
+FASTEST_SLIDE = 1000.0
 
 
 @inlined
@@ -136,10 +139,12 @@ def _forces_of_face(touch, friction, face):
         overlap = _overlap(touch, here)
         _check_wall(touch, here, overlap)
         if overlap < 0.0:
-            active.wait[face] = int(-overlap / (_FASTEST_SLIDE * touch.dt))
+            active.wait[face] = int(-overlap / (FASTEST_SLIDE * touch.dt))
         elif active.struck[face].depth == 0.0:
             gap = _forces_of_cells(touch, friction, here)
             active.wait[face] = max(0, int(gap / (FASTEST_APPROACH * touch.dt)) - 1)
+            if active.wait[face] == 0 and active.rests[touch.group]:
+                active.near[touch.group] = True
 
 
 @inlined
@@ -148,12 +153,13 @@ def _forces_of_cells(touch, friction, face):
     is at most ``_FARTHEST``."""
     cells, thickness = touch.surface.cells, touch.surface.thickness
     wall, deepest, spot = nearest_wall(touch, face), -np.inf, no_spot()
+    presses = not touch.active.rests[touch.group]
     for row in range(cells[face.number, 0]):
         for column in range(cells[face.number, 1]):
             place = place_of(touch, face, row, column)
             depth = face.sign * place[face.axis] - wall
             deepest = max(deepest, depth)
-            if depth > 0.0:
+            if depth > 0.0 and presses:
                 spot = spot_under(touch, face, place, spot)
                 if spot.facet >= 0 and 0.0 < spot.penetration < thickness:
                     press(touch, friction, face, place, spot)

@@ -26,7 +26,7 @@ from tipoff import sources
 from tipoff.files import content_hash, replacing
 from tipoff.mechanics.trajectory import versions
 
-FORMAT = 4
+FORMAT = 5
 # What a Loop is built from.
 CONSTANT = (
     "scene",
@@ -38,8 +38,9 @@ CONSTANT = (
     "exit",
     "last",
     "most",
-    "walls",
     "monitor",
+    "watch",
+    "reach",
 )
 _LINE = re.compile(rb"tipoff checkpoint (\d+) ([0-9a-f]{64})")
 _OTHER = {

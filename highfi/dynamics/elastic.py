@@ -100,10 +100,10 @@ def finish_load(rail, state, team, thread, dt):
 
 
 @kernel
-def _share(columns, team, thread):
-    """First and last chunk of a thread."""
-    chunks = columns.chunks.size - 1
-    return chunks * thread // team.size, chunks * (thread + 1) // team.size
+def _share(stepped, team, thread):
+    """First and last place of a thread among the chunks that are stepped."""
+    count = stepped.in_use[0]
+    return count * thread // team.size, count * (thread + 1) // team.size
 
 
 @kernel
@@ -150,29 +150,35 @@ def _damp(damping, rail, state, block, dt, lanes):
 @kernel
 def _sweep_columns(columns, rail, frame, state, team, thread, dt):
     if columns is not None:
-        first, last = _share(columns, team, thread)
+        order = state.stepped.block
+        first, last = _share(state.stepped, team, thread)
         following = first
-        for chunk in range(first, last):
+        for k in range(first, last):
+            chunk = order[k]
             move_nodes(rail, frame, state, dt, rail.blocks[chunk], rail.blocks[chunk + 1])
-            while following < last and columns.highest[following] <= chunk:
-                if columns.lowest[following] >= first:
-                    _load_chunk(columns, rail, state, following, team.lanes[thread], dt)
+            # A chunk depends on chunks of its own rail alone, which are stepped as well.
+            while following < last and columns.highest[order[following]] <= chunk:
+                if columns.lowest[order[following]] >= order[first]:
+                    _load_chunk(columns, rail, state, order[following], team.lanes[thread], dt)
                 following += 1
 
 
 @kernel
 def _load_borders(columns, rail, state, team, thread, dt):
     if columns is not None:
-        first, last = _share(columns, team, thread)
-        for chunk in range(first, last):
-            if columns.lowest[chunk] < first or columns.highest[chunk] >= last:
+        order = state.stepped.block
+        first, last = _share(state.stepped, team, thread)
+        for k in range(first, last):
+            chunk = order[k]
+            if columns.lowest[chunk] < order[first] or columns.highest[chunk] > order[last - 1]:
                 _load_chunk(columns, rail, state, chunk, team.lanes[thread], dt)
 
 
 @kernel
 def _move_blocks(elements, rail, frame, state, team, thread, dt):
     if elements is not None:
-        for block in range(thread, state.turning.shape[0], team.size):
+        for k in range(thread, state.stepped.in_use[0], team.size):
+            block = state.stepped.block[k]
             first, last = rail.blocks[block], rail.blocks[block + 1]
             move_nodes(rail, frame, state, dt, first, last)
             state.resistance[first:last] = 0.0
@@ -181,6 +187,9 @@ def _move_blocks(elements, rail, frame, state, team, thread, dt):
 @kernel
 def _load_slabs(elements, rail, state, team, thread, dt):
     if elements is not None:
+        # Elements are not sorted by rails, so all rails are stepped or none is.
+        if state.stepped.in_use[0] == 0:
+            return
         lanes = team.lanes[thread]
         for parity in range(2):
             for slab in range(parity + 2 * thread, elements.slabs.size - 1, 2 * team.size):

@@ -105,6 +105,7 @@ def _fill(frame, constants, state, book, share):
     base = NOW + BODY
     if frame is not None:
         _fill_body(state.platform, frame.inverse_inertia, book[base:], book[BEFORE + BODY :], share)
+        _count_from_origin(triple(frame.centre), book[base:])
     else:
         for i in range(BODY):
             book[base + i] = 0.0
@@ -132,6 +133,20 @@ def _fill_body(body, inverse_inertia, row, before, share):
         row[PLACE + i], row[SPEED + i], row[SPIN + i] = body.position[i], body.velocity[i], rate[i]
     for i in range(4):
         row[ATTITUDE + i] = q[i]
+
+
+@kernel
+def _count_from_origin(centre, row):
+    """Turn place and velocity of the mass centre of the rigid part into those of the frame's
+    origin."""
+    turn, rate = rotation.matrix(_four(row)), triple(row[SPIN:])
+    arm, speed = (
+        rotation.rotate(turn, centre),
+        rotation.rotate(turn, rotation.cross(rate, centre)),
+    )
+    for i in range(3):
+        row[PLACE + i] -= arm[i]
+        row[SPEED + i] -= speed[i]
 
 
 @kernel

@@ -6,7 +6,7 @@ then an identity for every force, and the ledgers show only what is not conserva
 """
 
 from tipoff.highfi.contact.pads import friction_power
-from tipoff.highfi.state.pose import body_matrix, body_rate, triple
+from tipoff.highfi.state.pose import body_matrix, body_rate, origin_of_frame, triple
 from tipoff.highfi.state.records import AXIAL, TOTAL
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined, kernel
@@ -159,15 +159,17 @@ def _add_body_force(body_force, constants, state, pose, dt):
         g, drive = triple(body_force), constants.drive
         payload = triple(state.payload.position)
         _add_weight(state.impulse, g, constants.payload.mass, payload, dt)
-        _add_weight(state.impulse, g, drive.moving_mass, _centre_of_rails(drive, state, pose), dt)
+        if drive.moving_mass > 0.0:
+            place = _centre_of_rails(constants.frame, drive, state, pose)
+            _add_weight(state.impulse, g, drive.moving_mass, place, dt)
         _add_platform_weight(constants.frame, state, g, dt)
 
 
 @kernel
-def _centre_of_rails(drive, state, pose):
-    """Mass centre of the moving nodes in inertial axes (m)."""
+def _centre_of_rails(frame, drive, state, pose):
+    """Mass centre of the nodes that are stepped, in inertial axes (m)."""
     turned = rotation.rotate(pose.frame, triple(state.rail_moment))
-    p, m = state.platform.position, drive.moving_mass
+    p, m = origin_of_frame(frame, state.platform, pose.frame), drive.moving_mass
     return (p[0] + turned[0] / m, p[1] + turned[1] / m, p[2] + turned[2] / m)
 
 

@@ -31,29 +31,29 @@ class Moving(NamedTuple):
     spin: np.ndarray  # (3,) kg m2/s, of the payload
     platform_velocity: np.ndarray  # (3,) m/s
     platform_spin: np.ndarray  # (3,) kg m2/s
-    nodes: np.ndarray  # (n,3) m/s
+    nodes: np.ndarray  # (p,3) m/s, those of ``System.nodes``
     rail_momentum: np.ndarray  # (3,) kg m/s
     impulse: np.ndarray  # (6,) N s, N m s
 
 
-def moving(state: records.State) -> Moving:
-    """Copy of what a kick changes."""
-    return Moving(*(part.copy() for part in _changed(state)))
+def moving(system, state: records.State) -> Moving:
+    """Copy of what a kick changes; of nodes, ``system.nodes``."""
+    return Moving(*(part.copy(order="K") for part in _changed(system, state)))
 
 
-def restore(state: records.State, saved: Moving) -> None:
+def restore(system, state: records.State, saved: Moving) -> None:
     """Put back what ``moving`` copied."""
-    for part, value in zip(_changed(state), saved):
+    for part, value in zip(_changed(system, state), saved):
         part[:] = value
 
 
-def _changed(state):
+def _changed(system, state):
     return (
         state.payload.velocity,
         state.payload.spin,
         state.platform.velocity,
         state.platform.spin,
-        state.velocity,
+        state.velocity[system.nodes],
         state.rail_momentum,
         state.impulse,
     )
@@ -64,9 +64,7 @@ def sample(system, team, state: records.State, before: Moving, after: Moving) ->
     after them."""
     row = np.zeros(SAMPLE_SIZE)
     middle = Moving(*(0.5 * (a + b) for a, b in zip(before, after)))
-    turn, base = (
-        rotation.matrices(body.quaternion[None])[0] for body in (state.payload, state.platform)
-    )
+    turn, base = (rotation.single(body.quaternion) for body in (state.payload, state.platform))
     row[POSITION : POSITION + 3], row[QUATERNION : QUATERNION + 4] = (
         state.payload.position,
         state.payload.quaternion,
@@ -79,20 +77,27 @@ def sample(system, team, state: records.State, before: Moving, after: Moving) ->
     )
     row[RATE : RATE + 3] = system.model.payload.inverse_inertia @ (turn.T @ middle.spin)
     if system.frame is not None:
-        row[PLATFORM_RATE : PLATFORM_RATE + 3] = system.frame.inverse_inertia @ (
-            base.T @ middle.platform_spin
-        )
+        rate = system.frame.inverse_inertia @ (base.T @ middle.platform_spin)
+        row[PLATFORM_RATE : PLATFORM_RATE + 3] = rate
+        row[PLATFORM_POSITION : PLATFORM_POSITION + 3] -= base @ system.frame.centre
+        row[PLATFORM_VELOCITY : PLATFORM_VELOCITY + 3] -= base @ _cross(rate, system.frame.centre)
     row[IMPULSE : IMPULSE + 6] = middle.impulse
     row[KINETIC], row[AXIAL_KINETIC] = _kinetic(system, turn, base, before, after)
-    row[STRAIN], row[CONTACT] = _strain(system.rail, state, team), float(state.load[0]["stored"])
+    row[STRAIN], row[CONTACT] = strain(system, state, team), float(state.load[0]["stored"])
     row[LINEAR : LINEAR + 3], row[ANGULAR : ANGULAR + 3] = _momenta(system, state, base, middle)
     return row
 
 
-def _strain(rail, state, team) -> float:
+def strain(system, state: records.State, team) -> float:
+    """Strain energy (J) of the rails."""
+    part = system.nodes
+    if part.start == part.stop:
+        return 0.0
     force = zeros(state.displacement.shape, order="F")
     mounting = None if state.mounting is None else np.empty_like(state.mounting)
-    elastic_force(rail, state.displacement, force, np.empty_like(state.turning), mounting, team)
+    elastic_force(
+        system.rail, state.displacement, force, np.empty_like(state.turning), mounting, team
+    )
     # Not a BLAS product: its threads would wait for each other where several runs share the
     # processor.
     return 0.5 * float((state.displacement * force).sum())
@@ -101,7 +106,8 @@ def _strain(rail, state, team) -> float:
 def _kinetic(system, turn, base, before: Moving, after: Moving) -> tuple[float, float]:
     """Kinetic energy (J) of everything, and its axial part."""
     payload, frame = system.model.payload, system.frame
-    nodes = sum((system.moving_mass * (a * b)).sum() for a, b in zip(before.nodes.T, after.nodes.T))
+    mass = system.moving_mass[system.nodes]
+    nodes = sum((mass * (a * b)).sum() for a, b in zip(before.nodes.T, after.nodes.T))
     kinetic = 0.5 * (payload.mass * before.velocity @ after.velocity + nodes)
     kinetic += _spin_energy(turn, payload.inverse_inertia, before.spin, after.spin)
     axial = 0.5 * payload.mass * before.velocity[0] * after.velocity[0]
@@ -125,20 +131,25 @@ def _spin_energy(turn, inverse_inertia, before, after) -> float:
 def _momenta(system, state, base, middle: Moving) -> tuple[np.ndarray, np.ndarray]:
     """Linear and angular momentum (about the scene origin), summed anew over every node and
     body."""
-    px, py, pz = (system.moving_mass * component for component in middle.nodes.T)
-    x, y, z = (system.rail.points + state.displacement).T
+    part, origin = system.nodes, state.platform.position
+    px, py, pz = (system.moving_mass[part] * component for component in middle.nodes.T)
+    x, y, z = (system.rail.points[part] + state.displacement[part]).T
     rails = base @ [px.sum(), py.sum(), pz.sum()]
     turning = base @ [(y * pz - z * py).sum(), (z * px - x * pz).sum(), (x * py - y * px).sum()]
+    if system.frame is not None:
+        origin = origin - base @ system.frame.centre
     own = system.model.payload.mass * middle.velocity
     linear = own + rails
-    angular = (
-        np.cross(state.payload.position, own)
-        + middle.spin
-        + turning
-        + np.cross(state.platform.position, rails)
-    )
+    angular = _cross(state.payload.position, own) + middle.spin + turning + _cross(origin, rails)
     if system.frame is not None:
         carried = system.frame.mass * middle.platform_velocity
         linear = linear + carried
-        angular = angular + np.cross(state.platform.position, carried) + middle.platform_spin
+        angular = angular + _cross(state.platform.position, carried) + middle.platform_spin
     return linear, angular
+
+
+def _cross(a, b) -> np.ndarray:
+    """Vector product of two triples; numpy's own spends far longer on finding out which axis is
+    meant."""
+    (x, y, z), (p, q, r) = a.tolist(), b.tolist()
+    return np.array([y * r - z * q, z * p - x * r, x * q - y * p])

@@ -39,7 +39,7 @@ from tipoff.highfi.dynamics.loads import (
 )
 from tipoff.highfi.dynamics.mounts import collect_mounts
 from tipoff.highfi.state.nodes import kick_nodes
-from tipoff.highfi.state.pose import drift_body, pose_in_frame, small_turn, triple
+from tipoff.highfi.state.pose import drift_body, less, pose_in_frame, small_turn, triple
 from tipoff.highfi.state.threads import barrier, reset_queue
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import entry, inlined, kernel
@@ -52,8 +52,9 @@ class Task(NamedTuple):
 
     kind: int  # EVALUATE, KICK, OPEN or ADVANCE
     first_step: int  # number of the step to begin with, whose places are the present ones
-    steps: int = 0  # to advance by
+    steps: int = 0  # to advance by at most, of length ``Constants.dt``
     span: float = 0.0  # s, of a kick
+    stride: int = 1  # what a step adds to the number of the step
 
 
 @entry
@@ -63,7 +64,8 @@ def perform(constants, state, active, book, team, thread, task):
     EVALUATE: all forces at the present places of rails at rest in their frame. KICK: advance all
     velocities, but no place, by the present forces. OPEN: begin the ``book`` (``mechanics.ending``)
     at ignition, with the velocities of half a step before. ADVANCE: take steps; all threads of the
-    team must be called. Returns the largest step * friction damping / mass of a node in them.
+    team must be called, and return early where a pad comes near a rail that rests. Returns the steps
+    taken, and the largest step * friction damping / mass of a node in them.
     """
     if task.kind == ADVANCE:
         return _advance(constants, state, active, book, team, thread, task)
@@ -73,7 +75,7 @@ def perform(constants, state, active, book, team, thread, task):
         _kick(constants, state, task)
     else:
         begin(constants, state, book)
-    return 0.0
+    return 0, 0.0
 
 
 @inlined
@@ -91,7 +93,8 @@ def _evaluate(constants, state, active, team):
 @inlined
 def _kick(constants, state, task):
     pose = pose_in_frame(state, constants.payload, constants.frame)
-    thrust = thrust_load(constants, state, task.first_step * constants.dt)
+    unit = constants.dt / task.stride
+    thrust = thrust_load(constants, state, task.first_step * unit)
     _kick_bodies(constants, state, pose, thrust, task.span)
     acceleration = body_force_in_frame(constants.body_force, pose)
     inverse_mass = constants.rail.inverse_mass
@@ -117,11 +120,6 @@ def _sum(a, b):
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
-@kernel
-def _less(a, b):
-    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
-
-
 @inlined
 def _kick_bodies(constants, state, pose, thrust, dt):
     """Advance all velocities but those of the nodes over ``dt`` by the present forces; counts the
@@ -130,14 +128,14 @@ def _kick_bodies(constants, state, pose, thrust, dt):
     n, f = load.normal_force, load.friction_force
     on_rail = (-n[0] - f[0], -n[1] - f[1], -n[2] - f[2])
     # Force and moment of the rails on the frame, in inertial axes.
-    force = rotation.rotate(pose.frame, _less(on_rail, total))
-    couple = rotation.rotate(pose.frame, _less(load.moment_on_rail, moment))
+    force = rotation.rotate(pose.frame, less(on_rail, total))
+    couple = rotation.rotate(pose.frame, less(load.moment_on_rail, moment))
     add_external_impulse(constants.frame, constants, state, pose, thrust, (force, couple), dt)
     acceleration = body_force_in_frame(constants.body_force, pose)
     for i in range(3):
         state.rail_momentum[i] += dt * (total[i] + constants.drive.moving_mass * acceleration[i])
     _kick_payload(constants, state, pose, thrust, dt)
-    _kick_platform(constants.frame, constants, state, (force, couple), thrust, dt)
+    _kick_platform(constants.frame, constants, state, pose, (force, couple), thrust, dt)
 
 
 @inlined
@@ -152,16 +150,19 @@ def _kick_payload(constants, state, pose, thrust, dt):
 
 
 @inlined
-def _kick_platform(frame, constants, state, rails, thrust, dt):
-    """``rails``: force (N) and moment (N m) of the rails on the frame, in inertial axes."""
+def _kick_platform(frame, constants, state, pose, rails, thrust, dt):
+    """``rails``: force (N) and moment about the frame's origin (N m) of the rails on the frame, in
+    inertial axes."""
     if frame is not None:
         body, (force, couple) = state.platform, rails
+        offset = rotation.rotate(pose.frame, triple(frame.centre))
+        couple = less(couple, rotation.cross(offset, force))
         back = (0.0, 0.0, 0.0)
         turn = (0.0, 0.0, 0.0)
         if constants.drive.reacts_on_platform:
             point, push = thrust[2], thrust[0]
             back = (-push[0], -push[1], -push[2])
-            turn = rotation.cross(_less(point, triple(body.position)), back)
+            turn = rotation.cross(less(point, triple(body.position)), back)
         for i in range(3):
             body.velocity[i] += dt * (force[i] + back[i]) / frame.mass
             body.spin[i] += dt * (couple[i] + turn[i])
@@ -192,8 +193,9 @@ def _drift_frame(frame, drive, state, pose, dt):
             state.rail_moment[i] -= dt * drive.moving_mass * velocity[i]
         for i in range(9):
             motion.turn[i] = turn[i]
+        m, c, whole = drive.moving_mass, frame.centre, state.rail_moment
         moment, momentum = (
-            rotation.rotate(turn, triple(state.rail_moment)),
+            rotation.rotate(turn, (whole[0] - m * c[0], whole[1] - m * c[1], whole[2] - m * c[2])),
             rotation.rotate(turn, triple(state.rail_momentum)),
         )
         for i in range(3):
@@ -206,16 +208,17 @@ def _advance(constants, state, active, book, team, thread, task):
     """``book`` follows the payload off the rail. On entry and on return forces are those of the
     present places and work is counted up to the present time."""
     rail, frame, dt = constants.rail, constants.frame, constants.dt
-    damping = 0.0
-    for n in range(task.first_step, task.first_step + task.steps):
+    unit, damping, taken = dt / task.stride, 0.0, 0
+    while taken < task.steps and not _is_near(active):
+        n = task.first_step + taken * task.stride
         if thread == 0:
             pose = pose_in_frame(state, constants.payload, frame)
-            thrust = thrust_load(constants, state, n * dt)
+            thrust = thrust_load(constants, state, n * unit)
             _kick_bodies(constants, state, pose, thrust, dt)
             pose = pose_in_frame(state, constants.payload, frame)
             add_work(constants, state, active, pose, thrust, dt)
             drift_bodies(constants, state, pose)
-            follow(constants, state, book, n * dt)
+            follow(constants, state, book, n * unit)
             reset_queue(team)
         barrier(team)
         move_and_load(rail, frame, state, team, thread, dt)
@@ -225,7 +228,18 @@ def _advance(constants, state, active, book, team, thread, task):
         barrier(team)
         if thread == 0:
             collect(constants.interface_stiffness, constants, state, active)
-            thrust = thrust_load(constants, state, (n + 1) * dt)
+            thrust = thrust_load(constants, state, (n + task.stride) * unit)
             add_work(constants, state, active, pose, thrust, 0.0)
             damping = max(damping, state.load[0].damping_ratio)
-    return damping
+        taken += 1
+    return taken, damping
+
+
+@kernel
+def _is_near(active):
+    """Whether a pad is near a rail that rests. Threads agree on it: it changes between the two
+    barriers of a step alone."""
+    for group in range(active.near.size):
+        if active.near[group]:
+            return True
+    return False

@@ -19,6 +19,7 @@ from tipoff.highfi.numerics import Numerics
 from tipoff.scenes.scene import Scene
 
 RASTER = 5e-5  # s, the interval of a scene that names none
+STEPS_PER_CHECK = 250  # at most, from one check of the balances to the next
 _ROUNDING = 1e-9
 
 
@@ -41,6 +42,13 @@ class Stepping:
         """Share of the stability condition in ``step_limit`` that the step uses; the critical step
         uses 1."""
         return used(self.dt_s, self.dt_limit_s, self.damping_ratio)
+
+
+def raster_steps(stepping: Stepping, interval: float) -> int:
+    """Steps in the time that the step divides, ``RASTER`` or the sampling ``interval`` (s)."""
+    count = round(RASTER / stepping.dt_s)
+    divides = abs(count * stepping.dt_s - RASTER) <= _ROUNDING * RASTER
+    return count if divides and interval >= RASTER else stepping.steps_per_sample
 
 
 def choose(system: System, scene: Scene, numerics: Numerics) -> Stepping:

@@ -32,7 +32,9 @@ class System(NamedTuple):
     operator: assembly.Operator
     number: np.ndarray  # (n,) of each mesh node in the nodal arrays
     rail: records.Rail
-    moving_mass: np.ndarray  # kg, of the nodal arrays, zero where clamped
+    moving_mass: np.ndarray  # kg, of the nodal arrays, zero where clamped or at rest
+    nodes: slice  # part of the nodal arrays outside which all nodes are at rest
+    walls: np.ndarray  # numbers of the nodes of the walls that move against the frame
     surface: records.Surface
     faces: scene_model.Faces
     frame: records.Frame | None  # None: fixed platform
@@ -76,6 +78,8 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
         number=number,
         rail=rail,
         moving_mass=masses,
+        nodes=slice(0, masses.size),
+        walls=moving_walls(walls, masses),
         surface=walls,
         faces=faces,
         frame=frame,
@@ -84,6 +88,12 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
         body_offset=offset,
         warm=warm,
     )
+
+
+def moving_walls(surfaces: records.Surface, moving_mass: np.ndarray) -> np.ndarray:
+    """Numbers of the nodes of the walls that have a ``moving_mass`` (n,) kg."""
+    found = np.unique(surfaces.facets)
+    return found[moving_mass[found] > 0.0]
 
 
 def _warmed(
@@ -188,7 +198,10 @@ def _rigid_part(scene, platform, points, moving) -> tuple[records.Frame, np.ndar
             ]
         )
     frame = records.Frame(
-        mass=mass, inverse_inertia=np.linalg.inv(inertia), total_mass=platform.mass
+        mass=mass,
+        inverse_inertia=np.linalg.inv(inertia),
+        total_mass=platform.mass,
+        centre=np.zeros(3),
     )
     return frame, centre
 
@@ -228,6 +241,7 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
     state = records.State(
         payload=payload,
         platform=platform,
+        stepped=records.Stepped(block=np.arange(blocks), in_use=np.array([blocks])),
         displacement=zeros(nodes, order="F"),
         velocity=velocity,
         resistance=zeros(nodes, order="F"),
@@ -262,6 +276,8 @@ def _active(system: System, groups: int) -> records.Active:
         node_damping=np.zeros(nodes),
         wait=np.zeros(faces, dtype=np.int64),
         side=np.full(faces, records.UNKNOWN),
+        rests=np.zeros(groups, dtype=np.bool_),
+        near=np.zeros(groups, dtype=np.bool_),
         struck=np.zeros(faces, records.STRUCK),
     )
 

@@ -8,7 +8,7 @@ frame.
 import numpy as np
 
 from tipoff.highfi.extruded.mesh import LANES
-from tipoff.highfi.state.pose import triple
+from tipoff.highfi.state.pose import less, triple
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import entry, kernel
 
@@ -48,7 +48,7 @@ def move_nodes(rail, frame, state, dt, first, last):
         for i in range(3):
             _move_component(rail, state, i, dt, first, last)
     if frame is not None:
-        _move_in_frame(rail, state, dt, first, last)
+        _move_in_frame(rail, state, triple(frame.centre), dt, first, last)
 
 
 @kernel
@@ -61,13 +61,14 @@ def _move_component(rail, state, i, dt, first, last):
 
 
 @kernel
-def _move_in_frame(rail, state, dt, first, last):
+def _move_in_frame(rail, state, centre, dt, first, last):
     inverse_mass, motion = rail.inverse_mass, state.motion
     x, y, z = rail.points.T[0], rail.points.T[1], rail.points.T[2]
     u, v, w = state.displacement.T[0], state.displacement.T[1], state.displacement.T[2]
     p, q, r = state.velocity.T[0], state.velocity.T[1], state.velocity.T[2]
     a, b, c = state.resistance.T[0], state.resistance.T[1], state.resistance.T[2]
     # Read once: the compiler cannot know that the loop leaves them alone.
+    ox, oy, oz = centre
     fx, fy, fz = triple(motion.velocity)
     gx, gy, gz = triple(motion.acceleration)
     t0, t1, t2 = triple(motion.turn)
@@ -81,7 +82,7 @@ def _move_in_frame(rail, state, dt, first, last):
             _kicked(r[node], c[node], m, gz, dt),
         )
         dx, dy, dz = u[node] + dt * (px - fx), v[node] + dt * (py - fy), w[node] + dt * (pz - fz)
-        ax, ay, az = x[node] + dx, y[node] + dy, z[node] + dz
+        ax, ay, az = x[node] - ox + dx, y[node] - oy + dy, z[node] - oz + dz
         u[node] = dx + (t0 * ax + t1 * ay + t2 * az) if m > 0.0 else 0.0
         v[node] = dy + (t3 * ax + t4 * ay + t5 * az) if m > 0.0 else 0.0
         w[node] = dz + (t6 * ax + t7 * ay + t8 * az) if m > 0.0 else 0.0
@@ -137,6 +138,6 @@ def follow_frame(rail, state, frame, nodes, first, last):
         velocity, rate = triple(state.motion.velocity), triple(state.motion.rate)
         for k in range(first, last):
             node = nodes[k]
-            spin = rotation.cross(rate, triple(rail.points[node]))
+            spin = rotation.cross(rate, less(triple(rail.points[node]), frame.centre))
             for i in range(3):
                 state.velocity[node, i] = velocity[i] + spin[i]

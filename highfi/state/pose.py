@@ -1,7 +1,8 @@
 """Pose of the payload in frame axes, and the drift of bodies and frame over one step.
 
-With R the frame's rotation, r its origin, w = R' x_dot a node's inertial velocity in frame axes and
-Q = R(n+1)' R(n), the exact free drift x(n+1) = x(n) + dt x_dot reads in frame axes::
+With R the frame's rotation, w = R' x_dot a node's inertial velocity in frame axes, v that of the mass
+centre of the rigid part, from which X is counted here, and Q = R(n+1)' R(n), the exact free drift
+x(n+1) = x(n) + dt x_dot reads in frame axes::
 
     X + u(n+1) = Q [X + u(n) + dt (w - R' v)],       w(n+1) = Q w(n)
 
@@ -35,6 +36,12 @@ def triple(a):
 
 
 @kernel
+def less(a, b):
+    """a - b of two triples."""
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+@kernel
 def body_matrix(body):
     """Rotation matrix (nine numbers) of a body, to inertial axes."""
     q = body.quaternion
@@ -62,6 +69,26 @@ def frame_matrix(platform_state, frame):
 
 
 @kernel
+def _from_origin(separation, frame):
+    """A place from the mass centre of the rigid part, in frame axes, counted from the frame's
+    origin."""
+    place = separation
+    if frame is not None:
+        c = frame.centre
+        place = (separation[0] + c[0], separation[1] + c[1], separation[2] + c[2])
+    return place
+
+
+@kernel
+def origin_of_frame(frame, platform, base):
+    """Place (m) of the frame's origin in inertial axes; ``base``: rotation of the frame."""
+    place = triple(platform.position)
+    if frame is not None:
+        place = less(place, rotation.rotate(base, triple(frame.centre)))
+    return place
+
+
+@kernel
 def pose_in_frame(state, payload, frame):
     """Pose of the payload at this instant, with the velocities of the half step."""
     base = frame_matrix(state.platform, frame)
@@ -75,7 +102,7 @@ def pose_in_frame(state, payload, frame):
     rate = rotation.angular_velocity(turn, payload.inverse_inertia, triple(state.payload.spin))
     return Pose(
         turn=relative,
-        centre=rotation.unrotate(base, separation),
+        centre=_from_origin(rotation.unrotate(base, separation), frame),
         velocity=rotation.unrotate(base, triple(state.payload.velocity)),
         rate=rotation.unrotate(base, rate),
         frame=base,

@@ -1,9 +1,10 @@
 """Arrays of the time loop: what is constant in a run (Constants) and what evolves (State, Active).
 
 All places and nodal vectors are in the axes of the platform-fixed frame. Its origin is the mass
-centre of the platform's *rigid part* (platform without the moving rail nodes); for a fixed platform
-it is the scene origin. Nodal arrays are (n,3) with contiguous columns: one component of all nodes
-after the other, as vector instructions want them.
+centre of the platform without the moving rail nodes; for a fixed platform it is the scene origin.
+The *rigid part* of the platform includes the rails that rest (``dynamics.resting``), so its mass
+centre differs from the origin where rails rest. Nodal arrays are (n,3) with contiguous columns: one
+component of all nodes after the other, as vector instructions want them.
 
 Sizes: n nodes, e elements, b blocks of nodes, m facets of k nodes, f pad faces, g groups of faces.
 """
@@ -106,8 +107,9 @@ class Frame(NamedTuple):
     """Rigid part of the free platform."""
 
     mass: float  # kg
-    inverse_inertia: np.ndarray  # (3,3) 1/(kg m2)
+    inverse_inertia: np.ndarray  # (3,3) 1/(kg m2), about its mass centre
     total_mass: float  # kg, with the rails
+    centre: np.ndarray  # (3,) m, its mass centre from the frame's origin
 
 
 class Drive(NamedTuple):
@@ -115,7 +117,7 @@ class Drive(NamedTuple):
 
     arm: float  # m, from the nominal mass centre back to the point of thrust
     reacts_on_platform: bool
-    moving_mass: float  # kg, of the nodes that are not clamped
+    moving_mass: float  # kg, of the nodes that are stepped
 
 
 class Exit(NamedTuple):
@@ -156,7 +158,7 @@ class Body(NamedTuple):
 class Motion(NamedTuple):
     """What nodes need of the frame in the next drift, in frame axes."""
 
-    velocity: np.ndarray  # (3,) m/s, of the frame
+    velocity: np.ndarray  # (3,) m/s, of the mass centre of the rigid part
     turn: np.ndarray  # (9,) rotation of the frame over the step, less the identity
     rate: np.ndarray  # (3,) rad/s, of the frame
     acceleration: np.ndarray  # (3,) m/s2, of the body force
@@ -175,11 +177,19 @@ class History(NamedTuple):
     mounting: np.ndarray | None  # (b,6) N and N m, ``State.mounting`` one step ago
 
 
+class Stepped(NamedTuple):
+    """Blocks of the rails that do not rest."""
+
+    block: np.ndarray  # (b,) their numbers, ascending; the first ``in_use`` count
+    in_use: np.ndarray  # (1,)
+
+
 class State(NamedTuple):
     """Bodies, nodes and sums over them."""
 
     payload: Body
-    platform: Body
+    platform: Body  # its rigid part: place and velocity of its mass centre
+    stepped: Stepped
     displacement: np.ndarray  # (n,3) m
     velocity: np.ndarray  # (n,3) m/s at the half step, *inertial*, resolved in frame axes
     resistance: np.ndarray  # (n,3) N, K u and damping minus contact, zero where clamped
@@ -209,6 +219,9 @@ class Active(NamedTuple):
     node_damping: np.ndarray  # (n,) N s/m, damping of the nodes by friction
     wait: np.ndarray  # (f,) steps for which a face cannot touch
     side: np.ndarray  # (f,) whether a face was over its wall when last checked: OVER, AWAY, UNKNOWN
+    rests: np.ndarray  # (g,) whether a rail of the group rests
+    # (g,) whether a face of a group that rests may touch within two steps; the loop then returns
+    near: np.ndarray
     struck: np.ndarray  # (f,) STRUCK
 
 

@@ -7,6 +7,7 @@ import meshio
 import numpy as np
 
 from tipoff import highfi
+from tipoff.highfi.dynamics import resting
 from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.mesh.rail_mesh import RailMesh, read
@@ -128,10 +129,12 @@ class _StopAt:
 
 
 def begun(scene=None, numerics: Numerics = COARSE, threads: int = 1) -> Loop:
-    """A loop at its first sample."""
+    """A loop at its first sample, as ``highfi.run`` makes it."""
     scene = scene or tiny()
     system = build(scene, numerics, highfi.prepare(scene, numerics))
-    loop = Loop(scene, system, choose(system, scene, numerics), threads)
+    stepping = choose(system, scene, numerics)
+    rails = None if numerics.step_everything else resting.build(scene, system, stepping)
+    loop = Loop(scene, system, stepping, threads, rails)
     loop.begin()
     return loop
 

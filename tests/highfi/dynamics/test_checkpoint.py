@@ -16,7 +16,7 @@ from tests.highfi.support import COARSE, Stopped, begun, stopped, tiny
 from tipoff import highfi
 from tipoff.highfi import Numerics
 from tipoff.highfi.dynamics.checkpoint import CONSTANT, Checkpoint, arrays, digest, restore
-from tipoff.highfi.state.records import Active, Body, Motion, State
+from tipoff.highfi.state.records import Active, Body, Motion, State, Stepped
 from tipoff.mechanics.trajectory import Trajectory
 
 pytestmark = pytest.mark.case("X20")
@@ -112,7 +112,9 @@ def test_every_evolving_array_is_in_the_file(tmp_path):
     kept.write(loop)
     saved = kept.read()
     records = [
-        name for name in State._fields if isinstance(getattr(loop.state, name), Body | Motion)
+        name
+        for name in State._fields
+        if isinstance(getattr(loop.state, name), Body | Motion | Stepped)
     ]
     expected = {
         f"state.{record}.{name}": getattr(getattr(loop.state, record), name)
@@ -126,7 +128,7 @@ def test_every_evolving_array_is_in_the_file(tmp_path):
         if name not in records and getattr(loop.state, name) is not None
     }
     expected |= {f"active.{name}": getattr(loop.active, name) for name in Active._fields}
-    assert len(records) == 3
+    assert len(records) == 4
     assert {name.partition(".")[0] for name in saved} == set(vars(loop)) - set(CONSTANT)
     for name, array in expected.items():
         assert saved[name].dtype == array.dtype
@@ -156,8 +158,9 @@ def test_what_is_left_out_does_not_change():
         "exit",
         "last",
         "most",
-        "walls",
+        "reach",
         "monitor",
+        "watch",
     }
 
 

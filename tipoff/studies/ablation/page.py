@@ -43,7 +43,8 @@ def ablation(document: dict) -> Table:
     ]
     note = (
         f"Condition {document['condition']}. The first line of each model has all effects; effects "
-        "that the scene lacks have small values. Each further line lacks one effect. Times exclude "
+        "that the scene lacks have small values. Each further line lacks one effect; the last line of the "
+        "reference also steps the rails that rest. Times exclude "
         "compilation: a whole run of the reference with elements of "
         f"{1e3 * document['element_size_m']:g} mm, the time loop alone of the surrogate on "
         "compliant contact."

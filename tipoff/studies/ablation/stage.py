@@ -4,8 +4,8 @@ and time, and the effects in each compiled kernel.
 The baseline has all effects: those that the scene lacks are added with the small values in
 ``ADDED``, except those that need values of the scene (contact, friction, platform, and temperature
 for a material without expansion). The last lines are the scene itself and the scene without any
-effect. The surrogate runs all variants in turn, so that other load on the machine affects all of
-them alike.
+effect; the reference has one more, the baseline with the rails that rest stepped too. The surrogate
+runs all variants in turn, so that other load on the machine affects all of them alike.
 """
 
 import importlib
@@ -24,6 +24,7 @@ from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study
 from tipoff.studies.cost.timing import timed
 
+EVERYTHING = "all effects, every rail stepped"
 ADDED = {effect.key: effect.example for effect in EFFECTS if effect.example}
 
 
@@ -51,10 +52,14 @@ def run(study: Study) -> dict:
 
     def make() -> tuple[dict, list[Path]]:
         lines = variants(study.condition(name))
-        reference = [study.coarse(name, changes, _tag(line)) for line, changes in lines.items()]
+        stepped = lines | {EVERYTHING: lines["all effects"]}
+        reference = [
+            study.coarse(name, changes, _tag(line), step_everything=line == EVERYTHING)
+            for line, changes in stepped.items()
+        ]
         surrogate = surrogate_runs(study, name, lines)
         compile_ahead("ablation, kernels", reference + surrogate, study.settings.workers)
-        rows = _rows("highfi", lines, reference, *_timed_reference(study, reference)) + _rows(
+        rows = _rows("highfi", stepped, reference, *_timed_reference(study, reference)) + _rows(
             "lowfi", lines, surrogate, *timed_surrogate(study, surrogate)
         )
         return {

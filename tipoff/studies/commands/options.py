@@ -169,6 +169,15 @@ Resume = Annotated[
     ),
 ]
 
+StepEverything = Annotated[
+    bool,
+    typer.Option(
+        "--step-everything",
+        help="Also step rails that no pad has touched, or that the payload has left, and take no "
+        "long steps; default: such rails rest.",
+    ),
+]
+
 
 class Sampling(StrEnum):
     """Ways to draw the cases of an ensemble."""

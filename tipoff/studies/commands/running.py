@@ -28,12 +28,13 @@ def study_of(
     workers=None,
     checkpoint_every=None,
     resume=True,
+    **settings,
 ):
     """The study of a scene with the options of a command.
 
     ``overrides`` are texts "KEY=VALUE", ``conditions`` names, also several with commas between
-    them; ``element_size`` is in mm; ``checkpoint_every`` is a time with its unit. Raises
-    SceneError, every fault listed.
+    them; ``element_size`` is in mm; ``checkpoint_every`` is a time with its unit; further ``settings``
+    are fields of ``Settings``. Raises SceneError, every fault listed.
     """
     from tipoff import scenes
     from tipoff.scenes import plausibility, reading
@@ -50,16 +51,16 @@ def study_of(
     loaded = _of_option(named, lambda: scenes.load(scene))
     changes = {key.strip(): value.strip() for key, _, value in pairs}
     found = _of_option({"source": "--set"}, lambda: loaded.replace(changes))
-    settings = replace(defaults(found.name), resume=resume)
+    chosen = replace(defaults(found.name), resume=resume, **settings)
     if element_size is not None:
-        settings = replace(settings, element_size=1e-3 * element_size)
+        chosen = replace(chosen, element_size=1e-3 * element_size)
     if workers is not None:
-        settings = replace(settings, workers=workers)
+        chosen = replace(chosen, workers=workers)
     every = quantity("--checkpoint-every", checkpoint_every, "s")
     if every is not None:
-        settings = replace(settings, checkpoint_every=every)
+        chosen = replace(chosen, checkpoint_every=every)
     names = [name.strip() for item in conditions or () for name in item.split(",")]
-    study = Study(found, Path(out) / found.name, settings, tuple(dict.fromkeys(names)))
+    study = Study(found, Path(out) / found.name, chosen, tuple(dict.fromkeys(names)))
     # a bad override or an unknown condition, before anything runs
     asked = {"source": "--condition", "key": "name"} if names else {}
     _of_option(asked, lambda: study.conditions)

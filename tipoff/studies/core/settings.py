@@ -22,7 +22,8 @@ class Settings:
     repeats of timed runs; ``clearance_change`` (m) that defines the floor, and the number of
     ``neighbours`` within it that judge a chaotic condition; ``rail_modes`` of the
     surrogate whose rails vibrate; ``workers`` side by side; ``checkpoint_every`` seconds (wall
-    clock) of a run of the reference, and whether one that was interrupted may ``resume``. What the
+    clock) of a run of the reference, and whether one that was interrupted may ``resume``;
+    ``step_everything``: also rails of the reference that rest. What the
     convergence study compares, coarsest first: meshes by ``mesh_ratios`` to ``element_size``, one
     of them 1; ``safeties`` of the step, from that of every other stage down; ``contact_cells``; and
     factors of the scene's interface stiffness."""
@@ -38,6 +39,7 @@ class Settings:
     safeties: tuple[float, ...] = (0.9, 0.45, 0.225)
     contact_cells: tuple[int, ...] = (8, 16, 32)
     interface_stiffness_factors: tuple[float, ...] = (0.25, 1.0, 4.0, 16.0)
+    step_everything: bool = False
     workers: int = os.cpu_count() or 1
     checkpoint_every: float = 60.0
     resume: bool = True

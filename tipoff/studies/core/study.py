@@ -99,7 +99,9 @@ class Study:
         from tipoff import highfi
 
         numbers = _numerics(
-            highfi.Numerics, element_size=element_size or self.settings.element_size, **numerics
+            highfi.Numerics,
+            element_size=element_size or self.settings.element_size,
+            **{"step_everything": self.settings.step_everything} | numerics,
         )
         return Run("highfi", name + tag, self.condition(name).replace(overrides or {}), numbers)
 

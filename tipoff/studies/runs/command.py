@@ -18,6 +18,7 @@ from tipoff.studies.commands.options import (
     Resume,
     SceneName,
     Set,
+    StepEverything,
     Workers,
 )
 from tipoff.studies.commands.running import guarded, quantity, study_of
@@ -47,6 +48,7 @@ def highfi(
     workers: Workers = None,
     checkpoint_every: CheckpointEvery = None,
     resume: Resume = True,
+    step_everything: StepEverything = False,
     json_: Json = False,
 ) -> None:
     """Run the finite-element reference on every condition; writes highfi.json and a netCDF file
@@ -62,6 +64,7 @@ def highfi(
             workers,
             checkpoint_every,
             resume,
+            step_everything=step_everything,
         )
 
     _run("highfi", study, json_, out)

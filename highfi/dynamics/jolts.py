@@ -1,0 +1,88 @@
+"""What is left out of rails that rest on an accelerated platform: their vibration.
+
+For each term c of the acceleration (``statics.inertial``) a mode with a frequency w is followed,
+
+    s'' = w^2 (c - s)
+
+with the mean of c from one look to the next, in closed form; w is the lowest frequency by Rayleigh's
+quotient of the rail's deflections, since modes of higher frequency follow c more closely. The static
+deflection has s = c, so the deflection times the amplitude of s - c is what resting leaves out in one
+mode. Several modes leave out up to ``MODES`` times as much (tests/highfi/dynamics/test_resting.py).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.highfi.dynamics.resting import Rails
+from tipoff.highfi.dynamics.system import System
+from tipoff.highfi.state.records import State
+from tipoff.highfi.statics.inertial import TERMS
+from tipoff.kernels import rotation
+
+MODES = 4.0
+
+
+class Jolts(NamedTuple):
+    """What evolves."""
+
+    modes: np.ndarray  # (2,s,TERMS) s and s'/w of each solid in ``Rails.size``
+    rates: np.ndarray  # (11,) ``rates`` of the platform when last looked at, and that time (s)
+    left_out: np.ndarray  # (1,) m, at present
+    most: np.ndarray  # (1,) m, the most that a rail left out when it was stepped again
+
+
+def rates(system: System, state: State) -> np.ndarray:
+    """Attitude, velocity of the frame's origin and rate (10,), of half a step ago."""
+    frame, body = system.frame, state.platform
+    assert frame is not None
+    base = rotation.single(body.quaternion)
+    rate = frame.inverse_inertia @ (base.T @ body.spin)
+    velocity = body.velocity - base @ (_matrix(rate) @ frame.centre)
+    return np.concatenate([body.quaternion, velocity, rate])
+
+
+def terms(system: System, before: np.ndarray, after: np.ndarray, span: float) -> np.ndarray:
+    """Mean acceleration (TERMS,) of the rails' mounts between two ``rates``, ``span`` (s) apart,
+    less that of the body force."""
+    base = rotation.single(after[:4])
+    linear = (after[4:7] - before[4:7]) / span
+    if system.model.body_force is not None:
+        linear = linear - np.array(system.model.body_force)
+    spin = _matrix(after[7:10])
+    gradient = _matrix((after[7:10] - before[7:10]) / span) + spin @ spin
+    # Shapes count places from the scene origin.
+    return np.concatenate([base.T @ linear - gradient @ system.origin, gradient.ravel()])
+
+
+def _matrix(rate: np.ndarray) -> np.ndarray:
+    """W with W X = rate x X."""
+    x, y, z = rate.tolist()
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def begin(rails: Rails | None) -> Jolts:
+    """Modes at rest."""
+    solids = 0 if rails is None else len(rails.size)
+    return Jolts(
+        modes=np.zeros((2, solids, TERMS)),
+        rates=np.zeros(11),
+        left_out=np.zeros(1),
+        most=np.zeros(1),
+    )
+
+
+def follow(rails: Rails, modes: np.ndarray, amounts: np.ndarray, span: float) -> float:
+    """Advance ``modes`` by ``span`` (s) at the ``amounts`` (TERMS,); returns the largest deflection
+    (m) that a rail leaves out."""
+    angle = rails.frequency * span
+    cosine, sine = np.cos(angle), np.sin(angle)
+    away, speed = modes[0] - amounts, modes[1].copy()
+    modes[0] = amounts + away * cosine + speed * sine
+    modes[1] = speed * cosine - away * sine
+    return largest(rails, np.hypot(modes[0] - amounts, modes[1]))
+
+
+def largest(rails: Rails, amplitudes: np.ndarray) -> float:
+    """Bound (m) of the vibration of any rail under ``amplitudes`` (s,TERMS) or (TERMS,) of its terms."""
+    return MODES * float((rails.size * amplitudes).sum(axis=1).max(initial=0.0))

@@ -1,0 +1,87 @@
+"""Static deflection of a rail whose mounts are accelerated.
+
+Every point of the platform at X (m) has the acceleration a(X) = b + G X, with b in m/s2 and G, from
+angular acceleration and centrifugal terms, in 1/s2. Where it changes slowly against the periods of
+the rail, the rail follows it as in statics::
+
+    K u = -M a(X)
+
+So u is linear in the twelve numbers of b and G: one factor of K and twelve loads give all of it.
+A mirror image of a rail, by the signs S, has u'(SX) = S u(X) with b' = S b and G' = S G S.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.highfi.mesh import pieces
+from tipoff.highfi.mesh.rail_mesh import RailMesh
+from tipoff.highfi.statics import assembly
+from tipoff.highfi.statics.solve import Clamped
+from tipoff.scenes.effects.mount_stiffness import MountStiffness
+from tipoff.scenes.rail import MaterialTable
+
+TERMS = 12  # b, then G row by row
+
+
+class Deflection(NamedTuple):
+    """Static deflection of one solid with n nodes."""
+
+    own: np.ndarray  # (n,) its nodes in the mesh
+    shapes: np.ndarray  # (TERMS, n, 3) m of each term at the amount 1, of the solid it mirrors
+    signs: np.ndarray  # (3,) S
+    size: np.ndarray  # (TERMS,) m, largest deflection of each term
+    # (TERMS,) rad/s, frequency by Rayleigh's quotient of each shape; zero without deflection
+    frequency: np.ndarray
+
+    def under(self, terms: np.ndarray) -> np.ndarray:
+        """Displacement (n,3) m under ``terms`` (TERMS,)."""
+        return np.tensordot(self.mirrored() * terms, self.shapes, axes=1) * self.signs
+
+    def mirrored(self) -> np.ndarray:
+        """Signs (TERMS,) that turn terms of this solid into those of the solid it mirrors."""
+        return np.concatenate([self.signs, np.outer(self.signs, self.signs).ravel()])
+
+
+def deflections(
+    mesh: RailMesh, material: MaterialTable, joint: MountStiffness | None, most: int
+) -> list[Deflection] | None:
+    """Static deflection of each solid of ``mesh`` on rigid mounts or on a ``joint``; None where one
+    is not mounted, or has more than ``most`` nodes."""
+    found: list[tuple[RailMesh, Deflection]] = []
+    for own, solid in zip(pieces.nodes(mesh), pieces.pieces(mesh)):
+        if not solid.surfaces["mount"].size or own.size > most:
+            return None
+        for first, known in found:
+            if (signs := pieces.mirror(first, solid)) is not None:
+                found.append((solid, known._replace(own=own, signs=known.signs * signs)))
+                break
+        else:
+            found.append((solid, _solve(solid, own, material, joint)))
+    return [deflection for _, deflection in found]
+
+
+def _solve(
+    solid: RailMesh, own: np.ndarray, material: MaterialTable, joint: MountStiffness | None
+) -> Deflection:
+    operator = assembly.of_material(solid, material, joint=joint)
+    count = own.size
+    shapes, size, frequency = (
+        np.zeros((TERMS, count, 3)),
+        np.zeros(TERMS),
+        np.zeros(TERMS),
+    )
+    if operator.free.any():
+        clamped = Clamped(operator)
+        amounts = np.concatenate([np.ones((1, count)), solid.points.T])
+        loads = np.zeros((TERMS, count, 3))
+        for i in range(3):
+            loads[i, :, i] = -operator.mass
+            loads[3 + 3 * i : 6 + 3 * i, :, i] = -operator.mass * amounts[1:]
+        flat = loads.reshape(TERMS, -1)[:, clamped.free]
+        moved = clamped.solve(np.ascontiguousarray(flat.T)).T
+        shapes.reshape(TERMS, -1)[:, clamped.free] = moved
+        mass = np.repeat(operator.mass, 3)[clamped.free]
+        size = np.linalg.norm(shapes, axis=2).max(axis=1)
+        frequency = np.sqrt((moved * flat).sum(axis=1) / (moved**2 * mass).sum(axis=1))
+    return Deflection(own=own, shapes=shapes, signs=np.ones(3), size=size, frequency=frequency)
