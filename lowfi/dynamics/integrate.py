@@ -161,15 +161,8 @@ def _integrate(system, plan, tolerance, marks, loop, sampling):
         if time == clock.now:
             slot.copy_all(loop.end, loop.work, slot.modal_size(system.compliance))
         else:
-            interpolate(
-                clock.dt,
-                (time - clock.began) / clock.dt,
-                loop.start,
-                loop.stages,
-                slot.STATE_SIZE,
-                slot.modal_size(system.compliance),
-                loop.work,
-            )
+            theta = (time - clock.began) / clock.dt
+            interpolate(system, loop, clock.dt, theta, slot.STATE_SIZE, loop.work)
         if not observe(system, loop, sampling.rows[taken], sampling.forces[taken]):
             return NOT_FINITE
         counts.samples += 1

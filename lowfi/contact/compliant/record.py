@@ -46,6 +46,7 @@ class Modes(NamedTuple):
     cubic: (
         np.ndarray
     )  # (s-1, f, n, 4, p) 1/kg^0.5, shapes between stations, as ``Compliance.cubic``
+    reach: np.ndarray  # (f, n) 1/kg^0.5, bound of the displacement of a point under a face
     shape: np.ndarray  # (f, n, p) 1/kg^0.5, workspace: shapes at the faces
     offset: np.ndarray  # (f, p) m, workspace: displacement
     slope: np.ndarray  # (f, p) workspace: its derivative along the rail
@@ -169,6 +170,7 @@ def _modes(found: data.RailCompliance, cubic: np.ndarray, damping: Damping | Non
         square=square,
         drag=mass_rate + stiffness_time * square,
         cubic=cubic,
+        reach=np.abs(found.shape[..., :count]).sum(axis=2).max(axis=0),
         shape=zeros((faces, count, data.PATTERNS)),
         offset=zeros(by_pattern),
         slope=zeros(by_pattern),
