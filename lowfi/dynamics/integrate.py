@@ -4,6 +4,8 @@ import numpy as np
 
 from tipoff.kernels.jit import entry, inlined, kernel
 from tipoff.lowfi import state as slot
+from tipoff.lowfi.contact.compliant.neglected import follow
+from tipoff.lowfi.contact.compliant.neglected import reset as forget
 from tipoff.lowfi.contact.stick_slip import clear
 from tipoff.lowfi.contact.wall_ends import DEPTH
 from tipoff.lowfi.dynamics import audit, ending, stick_slip
@@ -47,6 +49,7 @@ def _begin(system, first_step, loop):
     _reset_audit(loop.audit)
     slot.copy(loop.start, loop.end, loop.start.size)
     _reset_compliance(system.compliance)
+    forget(system.neglected)
     loop.engaged[:] = False
     loop.depth_left[:] = 0.0
     loop.touching[:] = False
@@ -196,6 +199,7 @@ def advance(system, plan, tolerance, marks, loop):
     if not _has_finite_energy(loop.end, slot.modal_size(system.compliance)):
         return NOT_FINITE
     clock = loop.clock
+    follow(system.neglected, system, loop)
     ending.follow(system, marks, loop, ending.Step(clock.began, clock.now, clock.dt))
     return SAMPLED
 

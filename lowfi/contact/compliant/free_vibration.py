@@ -194,7 +194,7 @@ def _shortened(modes, faces, state, dt):
             before, after = faces.before[face], faces.after[face]
             if faces.engaged[face] and not faces.touching[face] and before[NEAR] < np.inf:
                 longest = _resolved(modes, faces.rail[face], face, state)
-                if dt > longest * (1.0 + 1e-9) and not cannot_touch(modes, before, after, dt):
+                if dt > longest * (1.0 + 1e-6) and not cannot_touch(modes, before, after, dt):
                     up_to = 0.5  # of the step, where both ends are away
                     if after[NEAR] > BEYOND:
                         up_to = _SHORT_OF * before[NEAR] / (before[NEAR] - after[NEAR])
