@@ -143,7 +143,12 @@ class Objective:
     ):
         self.model = model_of(scene, compliance)
         self.scene, self.targets, self.parameters = scene, targets, parameters
-        self.numerics, self.over, self.compliance = numerics, over, compliance
+        # a number of modes that changes from trial to trial would make the objective jump
+        self.numerics, self.over, self.compliance = (
+            numerics or lowfi.Numerics(modes=0),
+            over,
+            compliance,
+        )
         self.variations = {name: Variations(wanted.scene) for name, wanted in targets.items()}
         self.evaluations = 0
 

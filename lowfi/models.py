@@ -50,7 +50,7 @@ def require(
                     "none, or rigid walls where rails are warm: model='compliant' uses it",
                 )
             )
-        if numerics is not None and numerics.modes:
+        if numerics is not None and numerics.count:
             faults.append(
                 ("numerics.modes", str(numerics.modes), "0: springs stand on rigid rails")
             )

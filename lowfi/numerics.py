@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from tipoff.mechanics.promises import RIGID, Promises
 from tipoff.mechanics.rail_compliance import MODES
 
+AUTO = "auto"
 # A step of 0.1 % relative error is no longer a solution; below 1e-13 rounding decides.
 _COARSEST, _FINEST = 1e-2, 1e-13
 
@@ -18,7 +19,7 @@ class Numerics:
     ``speed_floor`` (m/s): speeds below it count as this much, so it is the absolute tolerance
     divided by the relative one; ``maximum_steps``: a run that needs more is given up; ``modes``:
     how many of the lowest modes of each rail vibrate on compliant contact, 0 for a rail without
-    inertia.
+    inertia, or ``"auto"`` for those that matter to the run (``lowfi.modes``).
 
     A run whose energy ledgers do not close as promised is run again at a tenth of the tolerance.
     The promises are those of the default; at a looser, faster tolerance they are looser in
@@ -28,7 +29,7 @@ class Numerics:
     relative_tolerance: float = 2e-7
     speed_floor: float = 1e-3
     maximum_steps: int = 500_000
-    modes: int = 0
+    modes: int | str = AUTO
 
     def __post_init__(self):
         faults = []
@@ -45,10 +46,18 @@ class Numerics:
             faults.append(
                 f"maximum_steps: given {self.maximum_steps!r}, expected a whole number above zero"
             )
-        if not (type(self.modes) is int and 0 <= self.modes <= MODES):
-            faults.append(f"modes: given {self.modes!r}, expected a whole number from 0 to {MODES}")
+        if self.modes != AUTO and not (type(self.modes) is int and 0 <= self.modes <= MODES):
+            faults.append(
+                f"modes: given {self.modes!r}, expected a whole number from 0 to {MODES}, or "
+                f"{AUTO!r}"
+            )
         if faults:
             raise ValueError("; ".join(faults))
+
+    @property
+    def count(self) -> int:
+        """The number of ``modes``; none as long as they are not chosen."""
+        return self.modes if isinstance(self.modes, int) else 0
 
     def tightened(self) -> "Numerics":
         """The same with a tenth of the tolerance, or the finest there is."""

@@ -2,17 +2,19 @@
 
 import time as clock
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
-from tipoff.lowfi import state, system
+from tipoff.lowfi import modes, state, system
 from tipoff.lowfi.contact import thermal_offset, wall_ends
+from tipoff.lowfi.contact.compliant import neglected
 from tipoff.lowfi.contact.compliant import record as compliance_record
 from tipoff.lowfi.dynamics import audit, balance, cases, integrate, local_error, plan
 from tipoff.lowfi.dynamics.loop import Sampling
 from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
 from tipoff.lowfi.models import require
-from tipoff.lowfi.numerics import Numerics, promises_of
+from tipoff.lowfi.numerics import AUTO, Numerics, promises_of
 from tipoff.mechanics import comoving, ending, outcome, promises
 from tipoff.mechanics import model as models
 from tipoff.mechanics.models import COMPLIANT
@@ -65,23 +67,46 @@ def solved(
     """``run`` without its check of the options: the model follows from ``compliance``."""
     began, cpu = clock.perf_counter(), clock.thread_time()
     scene = calibration.apply(scene) if calibration else scene
-    compiled = len(integrate.integrate.overloads)
+    numerics, spent = (
+        numerics or Numerics(),
+        {"compile_s": 0.0, "compile_cpu_s": 0.0, "kernel_s": 0.0},
+    )
+
+    def made(modes: int | None = None) -> Run:
+        chosen = numerics if modes is None else replace(numerics, modes=modes)
+        return _integrated(
+            Run(scene, chosen, compliance, watches=modes is not None), progress, spent
+        )
+
+    if numerics.modes == AUTO and model_of(scene, compliance) == COMPLIANT and scene.contact:
+        run_, choice = modes.choose(made)
+        result = run_.trajectory()
+        result.numerics["modes_why"] = choice.why
+        result.cost.update(choice.cost())
+    else:
+        result = made().trajectory()
+    compile_cpu = spent.pop("compile_cpu_s")
+    result.cost.update(wall_s=clock.perf_counter() - began - spent["compile_s"], **spent)
+    result.cost["cpu_s"] = clock.thread_time() - cpu - compile_cpu
+    return result
+
+
+def _integrated(
+    run_: "Run", progress: Callable[[float], None] | None, spent: dict[str, float]
+) -> "Run":
+    """``run_`` integrated, again with smaller steps where needed; its times (s) are added to
+    ``spent``."""
+    compiled, cpu = len(integrate.integrate.overloads), clock.thread_time()
     setting_up = clock.perf_counter()
-    run_ = Run(scene, numerics or Numerics(), compliance)
     run_.begin()
-    is_new = len(integrate.integrate.overloads) > compiled
-    compile_s = clock.perf_counter() - setting_up if is_new else 0.0
-    compile_cpu = clock.thread_time()
     integrating = clock.perf_counter()
+    if len(integrate.integrate.overloads) > compiled:
+        spent["compile_s"] += integrating - setting_up
+        spent["compile_cpu_s"] += clock.thread_time() - cpu
     run_.integrate(progress)
     run_ = improved(run_, progress)
-    kernel_s = clock.perf_counter() - integrating
-    result = run_.trajectory()
-    result.cost.update(
-        wall_s=clock.perf_counter() - began - compile_s, compile_s=compile_s, kernel_s=kernel_s
-    )
-    result.cost["cpu_s"] = clock.thread_time() - (compile_cpu if compile_s else cpu)
-    return result
+    spent["kernel_s"] += clock.perf_counter() - integrating
+    return run_
 
 
 def improved(first: "Run", progress: Callable[[float], None] | None = None) -> "Run":
@@ -96,7 +121,13 @@ def improved(first: "Run", progress: Callable[[float], None] | None = None) -> "
         ):
             break
         numerics = numerics.tightened()
-        finer = Run(first.scene, first.numerics, first.compliance, numerics)
+        finer = Run(
+            first.scene,
+            first.numerics,
+            first.compliance,
+            numerics,
+            first.system.neglected is not None,
+        )
         finer.reruns, finer.discarded = reruns, best.discarded + int(best.loop.counts.steps)
         finer.begin()
         finer.integrate(progress)
@@ -109,7 +140,8 @@ def improved(first: "Run", progress: Callable[[float], None] | None = None) -> "
 class Run:
     """State of a run in progress and its samples, the last with number ``end``; one that is
     ``whole`` goes on to the end of the scene also when exit and jam are settled. It keeps the
-    promises of ``numerics``, with the steps of ``finer`` ones if given."""
+    promises of ``numerics``, with the steps of ``finer`` ones if given. One that ``watches`` finds
+    what the modes that it neglects would do."""
 
     reruns, discarded = 0, 0  # runs of the scene before this one, and their steps
 
@@ -119,8 +151,10 @@ class Run:
         numerics: Numerics,
         compliance: RailCompliance | None = None,
         finer: Numerics | None = None,
+        watches: bool = False,
     ):
         self.scene, self.numerics, self.compliance = scene, numerics, compliance
+        self.modes = count = numerics.count
         self.promised = promises_of(numerics)
         self.used = used = finer or numerics
         self.model = model = models.build(scene)
@@ -132,8 +166,9 @@ class Run:
         self.tolerance = local_error.tolerance(used, self.promised, reach)
         self.system = system.build(
             model,
-            compliance=compliance_record.under_pads(scene, model, compliance, numerics.modes),
+            compliance=compliance_record.under_pads(scene, model, compliance, count),
             thermal_offset=thermal_offset.under_pads(scene, model, compliance),
+            neglected=neglected.watched(scene, model, compliance, count) if watches else None,
         )
         self.loop = integrate.ready(self.system, state.initial(model), self.plan.first)
         self.rows, self.forces = (
@@ -184,6 +219,12 @@ class Run:
         """Largest share that a ledger uses of half of what is promised of it at the ends of
         steps."""
         return float(audit.usage(self.loop.audit, self.tolerance.total, self.tolerance.transverse))
+
+    def neglected(self) -> np.ndarray:
+        """What each mode (n,) of all rails would do to the settled rates (rad/s) if it were not
+        neglected, of a run that watches."""
+        assert self.system.neglected is not None
+        return self.system.neglected.effect.copy()
 
     def lost_energy(self) -> bool:
         """Whether the run stopped because a tenth of its energy was lost."""

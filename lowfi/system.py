@@ -17,6 +17,7 @@ from tipoff.scenes.effects.thrust_law import Thrust
 from tipoff.scenes.effects.thrust_offset import ThrustOffset
 
 if TYPE_CHECKING:
+    from tipoff.lowfi.contact.compliant.neglected import Neglected
     from tipoff.lowfi.contact.compliant.record import Compliance
     from tipoff.lowfi.contact.thermal_offset import ThermalOffset
 
@@ -79,6 +80,7 @@ class System(NamedTuple):
     sticking: Sticking | None  # stick-slip law
     body_force: BodyForce | None
     ledger: bool | None  # True where work, losses and impulses are integrated
+    neglected: "Neglected | None"  # modes of the rails that are watched, None in most ensembles
 
 
 def build(
@@ -86,10 +88,11 @@ def build(
     ledger: bool = True,
     compliance: "Compliance | None" = None,
     thermal_offset: "ThermalOffset | None" = None,
+    neglected: "Neglected | None" = None,
 ) -> System:
     """Records of ``model``: contact springs at rigid walls, with a ``thermal_offset`` or without,
     or compliant contact with a ``compliance``. Without a ``ledger`` no work, loss or impulse is
-    integrated."""
+    integrated. Of ``neglected`` modes the effect is found."""
     contact, friction = None, model.friction
     if model.contact is not None and compliance is None:
         contact = Contact(*model.contact, thermal_offset)
@@ -111,6 +114,7 @@ def build(
         sticking=friction if isinstance(friction, Sticking) else None,
         body_force=model.body_force,
         ledger=True if ledger else None,
+        neglected=neglected,
     )
 
 

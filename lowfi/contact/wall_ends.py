@@ -30,8 +30,22 @@ BEYOND = 1e-12
 SOONEST = 1e-9  # an event in this first part of a step is the one the step began at
 # Columns of a survey (``lowfi.dynamics.survey``), one row per face: mode; penetration (m), its rate
 # (m/s) and pull; X (m); stick-slip margin; rate of X (m/s); place across the rail from the middle of
-# the wall (m) and its rate (m/s).
-MODE, DEPTH, CLOSING, PULL, ALONG, MARGIN, FORWARD, SIDE, SIDEWAYS, SURVEY_SIZE = range(10)
+# the wall (m) and its rate (m/s); where rails vibrate, the most penetration (m) that free vibration
+# may bring, and its rate (m/s) on a wall at rest.
+(
+    MODE,
+    DEPTH,
+    CLOSING,
+    PULL,
+    ALONG,
+    MARGIN,
+    FORWARD,
+    SIDE,
+    SIDEWAYS,
+    NEAR,
+    NEARING,
+    SURVEY_SIZE,
+) = range(12)
 OPEN, PRESSING, CUT_OFF = 0.0, 1.0, 2.0  # modes
 NOWHERE = -1
 

@@ -67,6 +67,7 @@ def system_of(common, cases, n):
         sticking=common.sticking,
         body_force=common.body_force,
         ledger=common.ledger,
+        neglected=common.neglected,
     )
 
 

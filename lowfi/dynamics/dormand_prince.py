@@ -13,6 +13,7 @@ below it.
 import numpy as np
 
 from tipoff.kernels.jit import inlined
+from tipoff.lowfi.contact.compliant.free_vibration import advance
 from tipoff.lowfi.dynamics.equations import derivative
 from tipoff.lowfi.state import DYNAMIC_SIZE, STATE_SIZE, copy, modal_size, normalise
 
@@ -59,6 +60,7 @@ def attempt(system, loop, stretch, time, dt, fresh):
         _combine_modes(stage, dt, start, stages, modal_size(system.compliance), end)
         if stage == STAGES - 1:
             normalise(end)
+            advance(system.compliance, loop.touching, dt, start, end, True)
         derivative(
             system,
             loop.touching,
@@ -147,10 +149,10 @@ def _difference(h, k, j):
 
 
 @inlined
-def interpolate(dt, theta, start, stages, size, modal, out):
-    """The first ``size`` slots of the state, and ``modal`` numbers of modes, at ``theta`` in 0..1
-    of a step."""
-    h = dt * theta
+def interpolate(system, loop, dt, theta, size, out):
+    """The first ``size`` slots of the state, and the modes of the rails, at ``theta`` in 0..1 of the
+    step of ``dt`` (s) that ``loop`` holds."""
+    start, stages, h = loop.start, loop.stages, dt * theta
     b0, b2, b3, b4, b5, b6 = (
         _polynomial(0, theta),
         _polynomial(2, theta),
@@ -168,7 +170,7 @@ def interpolate(dt, theta, start, stages, size, modal, out):
             + b5 * stages[5, j]
             + b6 * stages[6, j]
         )
-    for j in range(STATE_SIZE, STATE_SIZE + modal):
+    for j in range(STATE_SIZE, STATE_SIZE + modal_size(system.compliance)):
         out[j] = start[j] + h * (
             b0 * stages[0, j]
             + b2 * stages[2, j]
@@ -178,6 +180,7 @@ def interpolate(dt, theta, start, stages, size, modal, out):
             + b6 * stages[6, j]
         )
     normalise(out)
+    advance(system.compliance, loop.touching, h, start, out, size == STATE_SIZE)
 
 
 @inlined

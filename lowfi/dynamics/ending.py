@@ -171,13 +171,6 @@ def _fill(system, loop, step, time):
     elif time == step.began:
         slot.copy(loop.start, loop.work, slot.STATE_SIZE)
     else:
-        interpolate(
-            step.size,
-            (time - step.began) / step.size,
-            loop.start,
-            loop.stages,
-            slot.DYNAMIC_SIZE,
-            0,
-            loop.work,
-        )
+        theta = (time - step.began) / step.size
+        interpolate(system, loop, step.size, theta, slot.DYNAMIC_SIZE, loop.work)
     posture(system, loop.work, loop.book[NOW:])

@@ -229,10 +229,11 @@ def add_compliant_contact(compliance, faces, touching, bodies, state, out):
 @inlined
 def _add_modes(modes, workspace, pressed, ledger, state, out):
     """Add the vibration of a rail, ``pressed`` being its number and how many faces press it, and
-    what damping takes from it."""
+    what damping takes from it. A rail that none presses vibrates freely, which a step knows
+    beforehand (``lowfi.contact.compliant.free_vibration``)."""
     if modes is not None:
         rail, count = pressed
-        loss = vibrate(modes, workspace, rail, count, state, out)
+        loss = vibrate(modes, workspace, rail, count, state, out) if count > 0 else 0.0
         if ledger is not None:
             out[slot.STRUCTURAL] += loss
 

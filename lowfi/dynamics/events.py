@@ -15,6 +15,7 @@ import numpy as np
 from tipoff.kernels.jit import inlined
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip
+from tipoff.lowfi.contact.compliant.free_vibration import cannot_touch
 from tipoff.lowfi.contact.compliant.survey import depth as depth_in_compliance
 from tipoff.lowfi.contact.springs import across, along, load, penetration, relative_pose
 from tipoff.lowfi.contact.wall_ends import (
@@ -109,6 +110,8 @@ def _touch_on_compliance(is_compliant, system, loop, dt, span):
     if is_compliant is not None:
         for i in range(loop.engaged.size):
             before, after, theta = loop.before[i], loop.after[i], 1.0
+            if cannot_touch(system.compliance.modes, before, after, span * dt):
+                continue
             if loop.engaged[i] and not loop.touching[i] and after[DEPTH] > BEYOND > before[DEPTH]:
                 theta = _locate(system, loop, dt, span, i, DEPTH, BEYOND)
             elif loop.engaged[i] and not loop.touching[i] and after[MODE] == OPEN:
@@ -184,15 +187,7 @@ def _locate(system, loop, dt, span, face, kind, level):
             f_low, f_high, span * dt * before[CLOSING], span * dt * after[CLOSING], theta
         )
     for _ in range(60):
-        interpolate(
-            dt,
-            span * theta,
-            loop.start,
-            loop.stages,
-            slot.DYNAMIC_SIZE,
-            slot.modal_size(system.compliance),
-            loop.work,
-        )
+        interpolate(system, loop, dt, span * theta, slot.DYNAMIC_SIZE, loop.work)
         f = _quantity(system.is_compliant, system, loop, face, kind) - level
         if abs(f) < close or high - low < 1e-14:
             return theta

@@ -4,6 +4,8 @@ import numpy as np
 
 from tipoff.kernels.jit import entry, inlined, kernel
 from tipoff.lowfi import state as slot
+from tipoff.lowfi.contact.compliant.neglected import follow
+from tipoff.lowfi.contact.compliant.neglected import reset as forget
 from tipoff.lowfi.contact.stick_slip import clear
 from tipoff.lowfi.contact.wall_ends import DEPTH
 from tipoff.lowfi.dynamics import audit, ending, stick_slip
@@ -47,6 +49,7 @@ def _begin(system, first_step, loop):
     _reset_audit(loop.audit)
     slot.copy(loop.start, loop.end, loop.start.size)
     _reset_compliance(system.compliance)
+    forget(system.neglected)
     loop.engaged[:] = False
     loop.depth_left[:] = 0.0
     loop.touching[:] = False
@@ -161,15 +164,8 @@ def _integrate(system, plan, tolerance, marks, loop, sampling):
         if time == clock.now:
             slot.copy_all(loop.end, loop.work, slot.modal_size(system.compliance))
         else:
-            interpolate(
-                clock.dt,
-                (time - clock.began) / clock.dt,
-                loop.start,
-                loop.stages,
-                slot.STATE_SIZE,
-                slot.modal_size(system.compliance),
-                loop.work,
-            )
+            theta = (time - clock.began) / clock.dt
+            interpolate(system, loop, clock.dt, theta, slot.STATE_SIZE, loop.work)
         if not observe(system, loop, sampling.rows[taken], sampling.forces[taken]):
             return NOT_FINITE
         counts.samples += 1
@@ -203,6 +199,7 @@ def advance(system, plan, tolerance, marks, loop):
     if not _has_finite_energy(loop.end, slot.modal_size(system.compliance)):
         return NOT_FINITE
     clock = loop.clock
+    follow(system.neglected, system, loop)
     ending.follow(system, marks, loop, ending.Step(clock.began, clock.now, clock.dt))
     return SAMPLED
 

@@ -5,6 +5,7 @@ import numpy as np
 
 from tipoff.kernels.jit import inlined, kernel
 from tipoff.lowfi import state as slot
+from tipoff.lowfi.contact.compliant.free_vibration import longest_step, shortened
 from tipoff.lowfi.contact.compliant.step_limit import stiffness_and_damping
 from tipoff.lowfi.contact.compliant.survey import energy as energy_in_compliance
 from tipoff.lowfi.contact.compliant.survey import longest_step_at_ends
@@ -48,6 +49,7 @@ def step(system, plan, tolerance, loop):
         STABLE_RADIUS / rate,
         stop - start,
         _longest_at_ends(system.is_compliant, system, loop),
+        longest_step(system.compliance, loop.touching, loop.engaged, loop.before, loop.start),
     )
     ceiling = _within_predicted_limit(system, loop, ceiling)
     while True:
@@ -71,6 +73,10 @@ def step(system, plan, tolerance, loop):
             clock.wanted = _SAFETY * limit
             continue
         survey(system, loop, solved=True)
+        shorter = _within_reach_of_vibration(system, loop, dt)
+        if shorter < dt:
+            ceiling = shorter
+            continue
         smooth = ratio <= _SPARE and keeps_law(loop)
         span, face = _cut_at_event(system, loop, dt)
         if face >= 0:  # touches as the step begins, by rounding on the wrong side
@@ -154,6 +160,20 @@ def _longest_at_ends(is_compliant, system, loop):
 
 
 @inlined
+def _within_reach_of_vibration(system, loop, dt):
+    """``dt`` (s), or a shorter step before which no face comes within reach of a vibrating wall."""
+    return shortened(
+        system.compliance,
+        loop.touching,
+        loop.engaged,
+        loop.before,
+        loop.after,
+        loop.start,
+        dt,
+    )
+
+
+@inlined
 def _within_predicted_limit(system, loop, dt):
     """``dt`` (s), less where the proven limit of springs will have fallen below it by the end of
     such a step: a guess that saves attempts."""
@@ -208,15 +228,7 @@ def _cut_at_event(system, loop, dt):
             return span, -1 if loop.touching[face] or not loop.engaged[face] else face
         span *= theta
         loop.counts.events += 1
-        interpolate(
-            dt,
-            span,
-            loop.start,
-            loop.stages,
-            slot.STATE_SIZE,
-            slot.modal_size(system.compliance),
-            loop.end,
-        )
+        interpolate(system, loop, dt, span, slot.STATE_SIZE, loop.end)
         survey(system, loop, solved=False)
     return span, -1
 

@@ -180,7 +180,7 @@ class Family:
         common = system.build(
             model,
             compliance=compliance_record.under_pads(
-                scene, model, self.compliance, self.numerics.modes
+                scene, model, self.compliance, self.numerics.count
             ),
             thermal_offset=thermal_offset.under_pads(scene, model, self.compliance),
         )

@@ -11,6 +11,7 @@ import numpy as np
 from tipoff.lowfi.ensemble import columns, twins
 from tipoff.lowfi.ensemble.batch import Case
 from tipoff.lowfi.ensemble.fill import fill
+from tipoff.lowfi.ensemble.pilot import settled
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.rows import Drawn, Listed
 from tipoff.lowfi.ensemble.threads import PIECE, completed
@@ -62,7 +63,9 @@ def run_many(
     ``sensitivity=True`` there are also ``rate_change_by_clearance`` and
     ``rate_change_by_tolerance`` (rad/s): how far 1 um more of every clearance, and a tolerance of
     1e-10, move the settled rates of the case (``lowfi.ensemble.twins``); their time is
-    ``sensitivity_wall_s``, which ``wall_s`` does not contain.
+    ``sensitivity_wall_s``, which ``wall_s`` does not contain. With ``modes="auto"`` all cases have
+    one number of modes (``lowfi.ensemble.pilot``), which the attributes ``modes`` and ``modes_why``
+    state.
     """
     chosen = Execution(**execution)
     require(scene, model, compliance, calibration, numerics)
@@ -72,7 +75,12 @@ def run_many(
         Drawn(table) if isinstance(table, Uncertainty) else Listed(table),
         numerics or Numerics(),
     )
-    ensemble = Ensemble(scene, source, calibration, numerics, compliance)
+    ensemble, why = settled(Ensemble(scene, source, calibration, numerics, compliance))
+    found = _found(ensemble, chosen)
+    return found.assign_attrs(modes=ensemble.numerics.modes, **({"modes_why": why} if why else {}))
+
+
+def _found(ensemble: Ensemble, chosen: Execution) -> "xarray.Dataset":
     if chosen.store is not None:
         return _stored(ensemble, chosen, chosen.store)
     cases = _cases(ensemble, chosen)

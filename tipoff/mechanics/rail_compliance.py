@@ -142,6 +142,12 @@ class RailCompliance:
         return self._cubics[modes]
 
     @cached_property
+    def shapes(self) -> np.ndarray:
+        """Shapes (s-1,f,n,4,p) of all modes between stations, as in ``cubic``."""
+        between = cubic(self.travel, self.shape)
+        return np.ascontiguousarray(between.transpose(0, 1, 3, 4, 2))
+
+    @cached_property
     def _cubics(self) -> dict:
         return {}
 

@@ -5,8 +5,10 @@
 
 with W at the pads. The other modes respond without inertia. These are Lagrange's equations of the
 potential in ``loads`` and the modes' own energy sum_m (q_m'^2 + omega_m^2 q_m^2) / 2, so both
-ledgers close. At ignition a rail is at rest and straight, as in the reference. The step size
-follows the highest mode (``lowfi.dynamics.local_error``, ``lowfi.contact.compliant.step_limit``).
+ledgers close. At ignition a rail is at rest and straight, as in the reference. While
+faces press a rail the step size follows its highest mode (``lowfi.dynamics.local_error``,
+``lowfi.contact.compliant.step_limit``); otherwise its modes are free oscillators, integrated exactly
+(``lowfi.contact.compliant.free_vibration``).
 
 The motion of the mounts with the platform is neglected, in both directions: the inertial load
 -L_m a of the modes under its acceleration a, and the momentum L_m q_m' of a vibrating rail, by
@@ -114,16 +116,10 @@ def energies(modes, state):
 
 
 @inlined
-def fastest(modes, rail, pressed, state):
-    """Largest omega^2 (1/s2) and d (1/s) of the modes of a rail; zero while it is at rest without
-    load."""
+def fastest(modes, rail, pressed):
+    """Largest omega^2 (1/s2) and d (1/s) of the modes of a rail; zero while nothing presses it."""
     square, drag = 0.0, 0.0
     if modes is not None:
-        count = modes.square.shape[1]
-        first, rates = STATE_SIZE + rail * count, STATE_SIZE + modes.square.size + rail * count
-        moving = pressed
-        for i in range(count):
-            moving = moving or state[first + i] != 0.0 or state[rates + i] != 0.0
-        for i in range(count if moving else 0):
+        for i in range(modes.square.shape[1] if pressed else 0):
             square, drag = max(square, modes.square[rail, i]), max(drag, modes.drag[rail, i])
     return square, drag

@@ -46,6 +46,7 @@ class Modes(NamedTuple):
     cubic: (
         np.ndarray
     )  # (s-1, f, n, 4, p) 1/kg^0.5, shapes between stations, as ``Compliance.cubic``
+    reach: np.ndarray  # (f, n) 1/kg^0.5, bound of the displacement of a point under a face
     shape: np.ndarray  # (f, n, p) 1/kg^0.5, workspace: shapes at the faces
     offset: np.ndarray  # (f, p) m, workspace: displacement
     slope: np.ndarray  # (f, p) workspace: its derivative along the rail
@@ -92,8 +93,18 @@ def under_pads(
     found = found.of(scene)
     require_two_step(scene)
     data.require_modes(scene.name, found, modes)
-    damping = scene.rail.damping.record() if scene.rail.damping is not None else None
-    return build(found, model, modes=modes, damping=damping)
+    return build(found, model, modes=modes, damping=damping_of(scene))
+
+
+def damping_of(scene: Scene) -> Damping | None:
+    """Damping of the rails of ``scene``."""
+    return scene.rail.damping.record() if scene.rail.damping is not None else None
+
+
+def drag_of(square: np.ndarray, damping: Damping | None) -> np.ndarray:
+    """Damping rates (1/s) of modes of omega^2 ``square`` (1/s2)."""
+    mass_rate, stiffness_time = damping or (0.0, 0.0)
+    return mass_rate + stiffness_time * square
 
 
 def build(
@@ -163,12 +174,12 @@ def states(compliance: Compliance | None) -> int:
 def _modes(found: data.RailCompliance, cubic: np.ndarray, damping: Damping | None) -> Modes:
     count = cubic.shape[2]
     square = found.frequency[:, :count] ** 2
-    mass_rate, stiffness_time = damping or (0.0, 0.0)
     faces, by_pattern = found.rail.size, (found.rail.size, data.PATTERNS)
     return Modes(
         square=square,
-        drag=mass_rate + stiffness_time * square,
+        drag=drag_of(square, damping),
         cubic=cubic,
+        reach=np.abs(found.shape[..., :count]).sum(axis=2).max(axis=0),
         shape=zeros((faces, count, data.PATTERNS)),
         offset=zeros(by_pattern),
         slope=zeros(by_pattern),

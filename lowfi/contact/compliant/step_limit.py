@@ -8,7 +8,7 @@ U_2 + xi' U_4 + 2 eta' U_5 changes depth and tilts too, so each g has a force ac
 
     K = sum over rails of sum_ab T_ab (g_a . M^-1 g_b)
 
-Modes of rails that move or carry load add a diagonal of omega^2 and d to the matrices, which raises
+Modes of rails that carry load add a diagonal of omega^2 and d to the matrices, which raises
 their spectra by the largest of each (Weyl), and the trace of contact on the modes, W' T W.
 """
 
@@ -45,7 +45,7 @@ def stiffness_and_damping(compliance, friction, faces, platform, payload, touchi
     springs, dampers, square, drag = 0.0, 0.0, 0.0, 0.0
     for rail in range(compliance.members.shape[0]):
         count = solve_unless(solved, compliance, faces, rail, touching, place, turn, state)
-        by_rail = fastest(compliance.modes, rail, count > 0, state)
+        by_rail = fastest(compliance.modes, rail, count > 0)
         square, drag = max(square, by_rail[0]), max(drag, by_rail[1])
         for i in range(count):
             face = compliance.workspace.order[i]

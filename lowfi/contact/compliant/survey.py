@@ -6,6 +6,7 @@ from tipoff.kernels.jit import inlined, kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant import thermal_offset
 from tipoff.lowfi.contact.compliant.cells import deepest, deepest_at_rest, take_lever
+from tipoff.lowfi.contact.compliant.free_vibration import note_reach
 from tipoff.lowfi.contact.compliant.loads import energy as energy_of_rail
 from tipoff.lowfi.contact.compliant.modes import speed_at
 from tipoff.lowfi.contact.compliant.record import ASIDE, DRIFT, MIDDLE, SHIFT
@@ -59,20 +60,28 @@ def _deepest(compliance, faces, face, count, touching, place, turn, state):
 
 @inlined
 def _approach(compliance, faces, face, xi, eta, drift, swing):
-    """Rate (m/s) at which a point of the face approaches its wall, which only modes move."""
+    """Rate (m/s) at which a point of the face approaches its wall, which modes do not move."""
     y, z, half = faces[face, NORMAL_Y], faces[face, NORMAL_Z], compliance.half[face]
     turning = xi * half[0] * (y * swing[3] + z * swing[6]) + eta * half[1] * (
         y * swing[5] + z * swing[7]
     )
-    along, across = (
-        xi + compliance.workspace.lever[face, SHIFT],
-        eta + compliance.workspace.lever[face, ASIDE],
-    )
-    away = (
-        speed_at(compliance.modes, face, along, across)
-        + thermal_offset.slope(compliance.thermal_offset, face, along, across) * drift[0]
-    )
+    along, across = _on_wall(compliance, face, xi, eta)
+    away = thermal_offset.slope(compliance.thermal_offset, face, along, across) * drift[0]
     return approach(None, faces[face], None, None, drift, swing) + turning - away
+
+
+@inlined
+def _on_wall(compliance, face, xi, eta):
+    """xi' and eta' of the wall under a point of the face."""
+    lever = compliance.workspace.lever[face]
+    return xi + lever[SHIFT], eta + lever[ASIDE]
+
+
+@inlined
+def _speed_of_modes(compliance, face, xi, eta):
+    """Rate (m/s) at which modes move the wall away from a point of the face."""
+    along, across = _on_wall(compliance, face, xi, eta)
+    return speed_at(compliance.modes, face, along, across)
 
 
 @kernel
@@ -94,7 +103,11 @@ def survey(compliance, faces, platform, payload, touching, state, solved, out):
             if face >= 0:
                 p, xi, eta = _deepest(compliance, faces, face, count, touching, place, turn, state)
                 out[face, MODE], out[face, DEPTH] = PRESSING if p > 0.0 else OPEN, p
-                out[face, CLOSING] = _approach(compliance, faces, face, xi, eta, drift, swing)
+                speed = _speed_of_modes(compliance, face, xi, eta)
+                out[face, CLOSING] = (
+                    _approach(compliance, faces, face, xi, eta, drift, swing) - speed
+                )
+                note_reach(compliance.modes, rail, face, count, speed, state, out[face])
                 out[face, ALONG] = along(faces[face], place, turn)
                 out[face, FORWARD] = forward(faces[face], drift, swing)
                 out[face, SIDE] = across(faces[face], place, turn) - faces[face, SIDE_MIDDLE]

@@ -1,12 +1,13 @@
 """Error of a model from the stored agreement table for this scene and code."""
 
+from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes.scene import NOMINAL
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.core.study import Study
 
 
-def rows(study: Study, model: str, calibrated: bool = False, modes: int = 0) -> list[dict]:
+def rows(study: Study, model: str, calibrated: bool = False, modes: int | str = AUTO) -> list[dict]:
     """Rows of ``model`` with its options in the agreement table; none without a current table."""
     from tipoff.studies.agreement import stage as compare
 
@@ -16,7 +17,7 @@ def rows(study: Study, model: str, calibrated: bool = False, modes: int = 0) -> 
     if model == COMPLIANT:
         return (
             found["compliant"]
-            if modes == 0
+            if modes == AUTO
             else found["modal"]
             if modes == found["rail_modes"]
             else []
@@ -41,7 +42,11 @@ def missed(study: Study, model: str, condition: str | None = None) -> list[dict]
 
 
 def words(
-    study: Study, model: str, condition: str | None = None, calibrated: bool = False, modes: int = 0
+    study: Study,
+    model: str,
+    condition: str | None = None,
+    calibrated: bool = False,
+    modes: int | str = AUTO,
 ) -> str:
     """The error of ``model`` on ``condition``, or its largest over all conditions with contact and a
     converged reference, as text."""

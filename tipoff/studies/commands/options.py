@@ -7,6 +7,13 @@ from typing import Annotated
 import typer
 
 
+def modes_of(text: str) -> int | str:
+    """A number of modes, or ``auto``; raises BadParameter."""
+    if text == "auto" or text.isdecimal():
+        return text if text == "auto" else int(text)
+    raise typer.BadParameter(f"{text!r}: a whole number from zero, or auto")
+
+
 # The names of ``mechanics.models``, repeated because its import would slow ``--help`` down.
 class ModelName(StrEnum):
     """All models."""
@@ -120,12 +127,13 @@ Surrogate = Annotated[
     ),
 ]
 Modes = Annotated[
-    int | None,
+    str | None,
     typer.Option(
         "--modes",
         metavar="N",
-        min=0,
-        help="Vibration modes of each rail, with --model compliant; default: 0.",
+        parser=modes_of,
+        help="Vibration modes of each rail, with --model compliant, or auto (default): those that "
+        "matter to the rates.",
     ),
 ]
 CalibrationFile = Annotated[

@@ -4,6 +4,7 @@ another model is bad input."""
 from pathlib import Path
 from typing import NamedTuple
 
+from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SURROGATES
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.core.study import Study, StudyError
@@ -17,11 +18,17 @@ _OWNERS = {
 
 class Options(NamedTuple):
     """Options of a model: its ``name``, None for the default; the file of a ``calibration`` of a
-    surrogate; the number of ``modes`` of each rail on compliant contact."""
+    surrogate; the number of ``modes`` of each rail on compliant contact, or
+    ``"auto"``, the default."""
 
     name: str | None = None
     calibration: Path | None = None
-    modes: int | None = None
+    modes: int | str | None = None
+
+    @property
+    def asked(self) -> int | str:
+        """The modes in numerics."""
+        return AUTO if self.modes is None else self.modes
 
     @property
     def model(self) -> str:

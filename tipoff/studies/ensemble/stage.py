@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from tipoff.files import write_json
-from tipoff.lowfi.ensemble import columns, twins
+from tipoff.lowfi.ensemble import columns, pilot, twins
 from tipoff.lowfi.ensemble.fill import fill
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.rows import Drawn
@@ -23,7 +23,7 @@ from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.core import machine, models
-from tipoff.studies.core.progress import Board
+from tipoff.studies.core.progress import Board, say
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.ensemble import sensitivity, summary
 
@@ -65,7 +65,7 @@ def request(study: Study, options: Options) -> Ensemble:
     else:
         source = Drawn(uncertainty.load(options.vary, study.scene, **changed))
     try:
-        numerics = Numerics(relative_tolerance=options.tolerance, modes=options.model.modes or 0)
+        numerics = Numerics(relative_tolerance=options.tolerance, modes=options.model.asked)
     except ValueError as fault:
         given = f"{options.tolerance:g}, {options.model.modes}"
         raise SceneError([Fault("--tolerance, --modes", "numerics", given, str(fault))]) from None
@@ -81,7 +81,10 @@ def request(study: Study, options: Options) -> Ensemble:
     scene = study.scene
     if fitted is not None and not springs:  # before a case, which may vary a constant
         scene, fitted = fitted.split(scene)
-    return Ensemble(scene, source, fitted, numerics, found)
+    ensemble, why = pilot.settled(Ensemble(scene, source, fitted, numerics, found))
+    if why:
+        say(f"modes of the rails: {why}")
+    return ensemble
 
 
 def run(study: Study, options: Options) -> dict:
@@ -161,7 +164,7 @@ def _agreement(study: Study, options: Options) -> str:
         options.model.model,
         None,
         options.model.calibration is not None,
-        options.model.modes or 0,
+        options.model.asked,
     )
 
 

@@ -132,11 +132,12 @@ class Cases:
 
     def _run(self, scale: float) -> np.ndarray:
         drawn = self.source(scale)
+        # one number of modes at every scale, or the search would meet jumps
         ensemble = Ensemble(
             self._model.scene,
             drawn,
             None,
-            Numerics(relative_tolerance=population.TOLERANCE),
+            Numerics(relative_tolerance=population.TOLERANCE, modes=0),
             self._model.compliance,
         )
         path = self._study.path(f"{self._folder}/{ensemble.key[:16]}.nc")

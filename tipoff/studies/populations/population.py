@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tipoff.lowfi.ensemble import columns
+from tipoff.lowfi.ensemble import columns, pilot
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.lowfi.ensemble.fill import fill
 from tipoff.lowfi.ensemble.request import Ensemble
@@ -103,8 +103,10 @@ def run(
 ) -> Population:
     """Results of every case of ``source`` (``lowfi.ensemble.rows``), in a store named after
     ``name``. Raises StudyError when the store fails."""
-    ensemble = Ensemble(
-        model.scene, source, None, Numerics(relative_tolerance=tolerance), model.compliance
+    ensemble, _ = pilot.settled(
+        Ensemble(
+            model.scene, source, None, Numerics(relative_tolerance=tolerance), model.compliance
+        )
     )
     path = study.path(f"{name}-{ensemble.key[:8]}")
     try:

@@ -18,6 +18,8 @@ def of(run: Run, nominal: Trajectory, clearance_change: float) -> dict[str, floa
     settle."""
     if run.calibration is not None:  # its clearance is the one that is changed
         run = replace(run, scene=run.calibration.apply(run.scene), calibration=None)
+    if "modes_why" in nominal.numerics:  # the same equations, or a change of modes would show
+        run = replace(run, numerics=replace(run.numerics, modes=nominal.numerics["modes"]))
     tight = twins.tight(run.numerics)
     found: dict[str, float | None] = {
         "tolerance": tight.relative_tolerance,

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 
+from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.agreement import stage as compare
@@ -33,11 +34,11 @@ def run(
         return result_of(study, condition, study.lowfi(condition, fitted), quiet)
     models.require_accepted(study, options.name, condition)
     # checks the number of modes before the rail compliance is computed
-    vibrating = study.lowfi(condition, fitted, modes=options.modes or 0)
+    vibrating = study.lowfi(condition, fitted, modes=options.asked)
     if scene.contact is None:
         return result_of(study, condition, vibrating, quiet)
     found = study.rail_compliance(scene, judged=False)
-    request = study.lowfi(condition, fitted, compliance=found, modes=options.modes or 0)
+    request = study.lowfi(condition, fitted, compliance=found, modes=options.asked)
     return result_of(study, condition, request, quiet)
 
 
@@ -82,7 +83,7 @@ def result_of(study: Study, condition: str, request: Run, quiet: bool) -> dict:
         compiling.announce(request)
     found = study.store.get(request)
     compiling.remember(request)
-    calibrated, modes = request.calibration is not None, getattr(request.numerics, "modes", 0)
+    calibrated, modes = request.calibration is not None, getattr(request.numerics, "modes", AUTO)
     result = row(condition, found, study.relative(study.store.path(request)))
     result |= beside(request, found)
     result["agreement"] = kept.words(study, request.model, condition, calibrated, modes)
@@ -97,10 +98,8 @@ def model(request: Run) -> str:
     """The model of a run with its numerics."""
     if request.fidelity == "highfi":
         return f"{FINITE_ELEMENTS}, {1e3 * request.numerics.element_size:g} mm"
-    found, modes = (
-        words.model(request.scene, request.calibration is not None, request.compliance),
-        request.numerics.modes,
-    )
+    found = words.model(request.scene, request.calibration is not None, request.compliance)
+    modes = request.numerics.count
     return found + (f", {modes} modes of each rail" if modes and request.model == COMPLIANT else "")
 
 
@@ -141,6 +140,8 @@ def lines(result: dict, made_with: str, study: Study) -> list[str]:
     if "disturbed" in result:
         limit = verdicts.gates(study.scene)["settled_rate_error_deg_s"]
         text += disturbed.lines(result["disturbed"], limit)
+    if why := result["numerics"].get("modes_why"):
+        text.append(f"  rail modes    {why}")
     text.append(f"  agreement     {result['agreement']}")
     text.append(f"  took          {result['wall_s']:.3g} s, {result['steps']} steps")
     text.append(f"  trajectory    {study.path(result['trajectory'])}")

@@ -7,6 +7,7 @@ from tests.highfi.support import COARSE, tiny
 from tipoff import highfi, lowfi
 
 SOFT = {"rail__mount_stiffness__normal": 2e12, "rail__mount_stiffness__shear": 1e12}
+STATIC = lowfi.Numerics(modes=0)
 KEY = "rail.mount_stiffness.factor"
 
 
@@ -30,10 +31,16 @@ def test_surrogate_and_reference_agree(compliance):
 def test_cases_of_an_ensemble_have_the_bits_of_single_runs(compliance):
     factors = [0.5, 1.0, 2.0, 0.5]
     cases = lowfi.run_many(
-        tiny(**SOFT), [{KEY: factor} for factor in factors], compliance=compliance, workers=1
+        tiny(**SOFT),
+        [{KEY: factor} for factor in factors],
+        compliance=compliance,
+        numerics=STATIC,
+        workers=1,
     )
     rates = [
-        lowfi.run(tiny(**SOFT).replace({KEY: factor}), compliance=compliance).outcome.rate
+        lowfi.run(
+            tiny(**SOFT).replace({KEY: factor}), compliance=compliance, numerics=STATIC
+        ).outcome.rate
         for factor in factors
     ]
     np.testing.assert_array_equal(cases["rate"].values, rates)

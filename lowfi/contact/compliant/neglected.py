@@ -1,0 +1,210 @@
+"""What the modes that a run takes as quasi-static would do to the rates, from the forces of that run.
+
+The force of the pads on a neglected mode m, linear between the ends of steps, drives an oscillator
+beside the run, exactly::
+
+    f_m = sum_ia W_iam P_ia,    q_m'' + d_m q_m' + omega_m^2 q_m = f_m
+
+A quasi-static mode has q_m = f_m / omega_m^2: no energy stays in it when the pads leave. The rest is
+E_m = (q_m'^2 + omega_m^2 q_m^2) / 2, for a half-sine of duration T on a mode of frequency f at rest
+the closed form of shock spectra (Harris' Shock and Vibration Handbook, chapter on shock response
+spectra: the residual spectrum)::
+
+    omega sqrt(2 E) / F = |4 f T cos(pi f T) / (1 - 4 f^2 T^2)|
+
+This energy is missing, or in excess, where the pad leaves the wall at the speed v. With the effective
+mass M of both bodies at that pad, along its normal n, the impulse changes by dJ, and the rate by::
+
+    dJ = M |v - sqrt(max(0, v^2 - 2 dE / M))|,    d omega = |I^-1 (arm x n)| dJ
+
+dE being the change of E_m in this contact: a wall that still vibrates from the contact before may give
+energy back. The sum over all contacts is the effect of the mode. It is an estimate: contacts that
+follow may enlarge it, and the phase of several modes may cancel.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.kernels import rotation
+from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.memory import zeros
+from tipoff.lowfi import state as slot
+from tipoff.lowfi.contact.compliant.free_vibration import is_pressed, oscillated
+from tipoff.lowfi.contact.compliant.record import damping_of, drag_of
+from tipoff.lowfi.contact.compliant.solution import between_stations
+from tipoff.lowfi.contact.springs import outward, pad_point, relative_pose
+from tipoff.lowfi.contact.step_limit import inverse_mass
+from tipoff.lowfi.contact.wall_ends import CLOSING
+from tipoff.mechanics.model import Model
+from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance
+from tipoff.scenes.scene import Scene
+
+
+class Neglected(NamedTuple):
+    """All n modes of each of r rails under f faces, and what those that a run neglects would do."""
+
+    first: int  # number of the lowest that is neglected
+    square: np.ndarray  # (r, n) 1/s2
+    drag: np.ndarray  # (r, n) 1/s
+    cubic: np.ndarray  # (s-1, f, n, 4, p) 1/kg^0.5, as in ``record.Modes``
+    amplitude: np.ndarray  # (r, n) kg^0.5 m
+    rate: np.ndarray  # (r, n) kg^0.5 m/s
+    force: np.ndarray  # (r, n) kg^0.5 m/s2
+    before: np.ndarray  # (r, n) J, energy as the contact began
+    time: np.ndarray  # (r,) s, of these
+    pressed: np.ndarray  # (r,) whether a contact goes on
+    impulse: np.ndarray  # (f,) N s, of the contact that goes on
+    leaving: np.ndarray  # (f,) m/s, last speed away from the wall
+    effect: np.ndarray  # (n,) rad/s, of the mode of this number on all rails
+
+
+def watched(
+    scene: Scene, model: Model, found: RailCompliance | None, first: int
+) -> Neglected | None:
+    """Record of the modes of the rail compliance ``found``, of which those from number ``first`` on
+    are neglected; None without contact and for rigid walls."""
+    if found is None or found.flexibility is None or model.contact is None:
+        return None
+    found = found.of(scene)
+    square = found.frequency**2
+    return build(square, drag_of(square, damping_of(scene)), found.shapes, first)
+
+
+def build(square: np.ndarray, drag: np.ndarray, cubic: np.ndarray, first: int) -> Neglected:
+    """Record at rest."""
+    rails, faces = square.shape[0], cubic.shape[1]
+    by_mode = [zeros(square.shape) for _ in range(4)]
+    return Neglected(
+        first,
+        square,
+        drag,
+        cubic,
+        *by_mode,
+        time=zeros((rails,)),
+        pressed=np.zeros(rails, dtype=np.bool_),
+        impulse=zeros((faces,)),
+        leaving=zeros((faces,)),
+        effect=zeros((square.shape[1],)),
+    )
+
+
+@inlined
+def reset(neglected):
+    """Bring all rails to rest."""
+    if neglected is not None:
+        for values in (neglected.amplitude, neglected.rate, neglected.force, neglected.before):
+            values[:] = 0.0
+        for numbers in (neglected.time, neglected.impulse, neglected.leaving, neglected.effect):
+            numbers[:] = 0.0
+        neglected.pressed[:] = False
+
+
+@kernel
+def follow(neglected, system, loop):
+    """Drive the neglected modes through the step just taken."""
+    if neglected is not None:
+        compliance, clock = system.compliance, loop.clock
+        for rail in range(compliance.members.shape[0]):
+            if is_pressed(compliance.members, rail, loop.touching):
+                if not neglected.pressed[rail]:
+                    _begin(neglected, compliance.members, rail, clock.began)
+                _press(neglected, system, loop, rail)
+            elif neglected.pressed[rail]:
+                _leave(neglected, system, loop.start, rail)
+
+
+@kernel
+def _begin(neglected, members, rail, time):
+    """Let the modes of a rail swing freely up to the ``time`` (s) at which a contact begins."""
+    neglected.pressed[rail] = True
+    for i in range(neglected.first, neglected.square.shape[1]):
+        neglected.force[rail, i] = 0.0
+        drive(neglected, rail, i, time - neglected.time[rail], 0.0)
+        neglected.before[rail, i] = energy(neglected, rail, i)
+    neglected.time[rail] = time
+    for k in range(members.shape[1]):
+        if members[rail, k] >= 0:
+            neglected.impulse[members[rail, k]] = 0.0
+
+
+@kernel
+def _press(neglected, system, loop, rail):
+    compliance, dt = system.compliance, loop.clock.now - neglected.time[rail]
+    payload = system.payload
+    body = slot.motion(payload.mass, payload.inverse_inertia, loop.end, slot.PAYLOAD)
+    place, _ = relative_pose(system.platform, body, slot.frame(system.platform, loop.end))
+    station, way, _ = between_stations(compliance, place[0] + system.faces[0, 0])
+    for i in range(neglected.first, neglected.square.shape[1]):
+        total = 0.0
+        for k in range(compliance.members.shape[1]):
+            face = compliance.members[rail, k]
+            if face >= 0 and loop.touching[face]:
+                c, pressure = neglected.cubic[station, face, i], compliance.workspace.force[face]
+                for a in range(PATTERNS):
+                    value = c[0, a] + way * (c[1, a] + way * (c[2, a] + way * c[3, a]))
+                    total += value * pressure[a]
+        drive(neglected, rail, i, dt, total)
+    for k in range(compliance.members.shape[1]):
+        face = compliance.members[rail, k]
+        if face >= 0 and loop.touching[face]:
+            neglected.impulse[face] += dt * compliance.workspace.force[face, 0]
+            neglected.leaving[face] = -loop.after[face, CLOSING]
+    neglected.time[rail] = loop.clock.now
+
+
+@inlined
+def drive(neglected, rail, i, dt, force):
+    """Move one mode by ``dt`` (s) under a force that changes linearly up to ``force``: the particular
+    solution is linear too."""
+    square, drag = neglected.square[rail, i], neglected.drag[rail, i]
+    slope = (force - neglected.force[rail, i]) / dt if dt > 0.0 else 0.0
+    lag = drag * slope / square
+    q, rate = oscillated(
+        square,
+        drag,
+        dt,
+        neglected.amplitude[rail, i] - (neglected.force[rail, i] - lag) / square,
+        neglected.rate[rail, i] - slope / square,
+    )
+    neglected.amplitude[rail, i] = q + (force - lag) / square
+    neglected.rate[rail, i] = rate + slope / square
+    neglected.force[rail, i] = force
+
+
+@inlined
+def energy(neglected, rail, i):
+    """Energy (J) of one mode."""
+    q, rate = neglected.amplitude[rail, i], neglected.rate[rail, i]
+    return 0.5 * (rate * rate + neglected.square[rail, i] * q * q)
+
+
+@kernel
+def _leave(neglected, system, state, rail):
+    """End the contact of a rail at ``state`` and add what each mode would do to the rates."""
+    compliance, payload, platform = system.compliance, system.payload, system.platform
+    neglected.pressed[rail] = False
+    face = _most_pressed(compliance.members, neglected.impulse, rail)
+    body = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD)
+    base = slot.frame(platform, state)
+    point, n = pad_point(system.faces[face], body), outward(system.faces[face], base)
+    mass = 1.0 / inverse_mass(platform, payload, body, base, point, n)
+    p, speed = body.place, abs(neglected.leaving[face])
+    arm = (point[0] - p[0], point[1] - p[1], point[2] - p[2])
+    turned = rotation.angular_velocity(body.turn, payload.inverse_inertia, rotation.cross(arm, n))
+    by_impulse = np.sqrt(rotation.dot(turned, turned))
+    for i in range(neglected.first, neglected.square.shape[1]):
+        gained = energy(neglected, rail, i) - neglected.before[rail, i]
+        left = np.sqrt(max(0.0, speed * speed - 2.0 * gained / mass))
+        neglected.effect[i] += by_impulse * mass * abs(speed - left)
+
+
+@inlined
+def _most_pressed(members, impulse, rail):
+    """The face on ``rail`` with the largest impulse."""
+    most = members[rail, 0]
+    for k in range(members.shape[1]):
+        face = members[rail, k]
+        if face >= 0 and impulse[face] > impulse[most]:
+            most = face
+    return most

@@ -1,0 +1,99 @@
+"""How many modes of each rail vibrate in a run with ``modes="auto"``.
+
+The first run has none. From its forces follows what each neglected mode would do to the settled rates
+(``lowfi.contact.compliant.neglected``). While the sum over the neglected modes is above
+``THRESHOLD``, the scene is run again with the fewest lowest modes of each rail that bring it below.
+The change of the rates from run to run shows by how much later contacts enlarge such a sum, and the
+next number is chosen with this factor. The third run has all modes and is the last. The last run is
+the result, and ``cost`` has the sum of all.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from tipoff.lowfi.run import Run
+
+THRESHOLD = math.radians(0.02)  # rad/s, of the settled rates
+_MOST_RUNS = 3
+
+
+@dataclass(frozen=True)
+class Choice:
+    """``modes`` of each rail that vibrate, and ``why``, one line of text; ``runs`` that were made for
+    it before the last one."""
+
+    modes: int
+    why: str
+    runs: tuple["Run", ...] = ()
+
+    def cost(self) -> dict[str, float]:
+        """``modes``; for how many runs before the last, and their steps."""
+        steps = sum(int(run.loop.counts.steps) + run.discarded for run in self.runs)
+        before = {"auto_runs": len(self.runs), "auto_steps": steps} if self.runs else {}
+        return {"modes": self.modes} | before
+
+
+def choose(run: "Callable[[int], Run]") -> tuple["Run", Choice]:
+    """The run with the modes that matter, and the choice; ``run`` makes one with so many modes that
+    has watched the others."""
+    made, enlarged = [run(0)], 1.0
+    effects = [made[0].neglected()]
+    if made[0].message:
+        return made[0], Choice(0, "none: the run without modes failed")
+    while needed(effects[-1] * enlarged) > made[-1].modes and len(made) < _MOST_RUNS:
+        last = len(made) == _MOST_RUNS - 1
+        made.append(run(effects[0].size if last else needed(effects[-1] * enlarged)))
+        effects.append(made[-1].neglected())
+        if made[-1].message:
+            break
+        enlarged = max(1.0, _enlarged(made[-2:], effects[-2]))
+    return made[-1], Choice(made[-1].modes, _why(made, effects, enlarged), tuple(made[:-1]))
+
+
+def needed(effect: np.ndarray) -> int:
+    """The fewest lowest modes without which the others have no more ``effect`` (n,) rad/s in sum than
+    ``THRESHOLD``."""
+    rest = np.append(np.cumsum(effect[::-1])[::-1], 0.0)
+    return int(np.argmax(rest <= THRESHOLD))
+
+
+def _enlarged(last: "list[Run]", effect: np.ndarray) -> float:
+    """Change of the settled rates from one run to the next, over the sum that stood for it."""
+    before, after = (found.judged()[1].rate for found in last)
+    if before is None or after is None:
+        return 1.0
+    stood = float(effect[last[0].modes : last[1].modes].sum())
+    change = float(np.abs(np.subtract(after, before)).max())
+    return change / stood if change > THRESHOLD else 1.0
+
+
+def _why(made: "list[Run]", effects: list[np.ndarray], enlarged: float) -> str:
+    held = effects[0].size
+    if held == 0:
+        return "none: this rail compliance holds no modes"
+    rest = np.degrees(effects[-1].sum() * enlarged)
+    first = np.degrees(effects[0].sum())
+    limit = f"{np.degrees(THRESHOLD):g} deg/s"
+    if len(made) == 1:
+        return (
+            f"none: all {held} of each rail would move the settled rates by {first:.2g} deg/s, "
+            f"below {limit}"
+        )
+    rates = [found.judged()[1].rate for found in (made[0], made[-1])]
+    moved = (
+        ""
+        if None in rates
+        else f"; they moved them by {np.degrees(np.abs(np.subtract(*rates)).max()):.2g} deg/s"
+    )
+    text = (
+        f"{made[-1].modes} of {held} of each rail: without them the settled rates would move by "
+        f"about {first:.2g} deg/s, above {limit}{moved}"
+    )
+    if made[-1].modes == held:
+        return text + ". Higher modes are quasi-static"
+    return text + f". The others would move them by {rest:.2g} deg/s"

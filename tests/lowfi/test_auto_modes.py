@@ -1,0 +1,134 @@
+"""``modes="auto"``: on rails whose first frequencies span a factor of more than ten the surrogate
+agrees with the reference on the same mesh, and no mode vibrates where none matters."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.highfi.support import COARSE
+from tests.lowfi.compliance import REFERENCE, reference_compliance
+from tipoff import highfi, lowfi
+from tipoff.lowfi import Numerics
+from tipoff.scenes import load
+
+STEEL = {"density": 7850.0, "youngs_modulus": 210e9, "poisson_ratio": 0.3}
+TITANIUM = {"density": 4430.0, "youngs_modulus": 113.8e9, "poisson_ratio": 0.342}
+
+
+def mounts(*spans) -> list[dict]:
+    """Spans (mm) along a rail."""
+    return [{"start": 1e-3 * start, "end": 1e-3 * end} for start, end in spans]
+
+
+def legs(thickness: float) -> dict:
+    return {"rail.thickness": thickness, "rail.mount_width": thickness}
+
+
+def of(material: dict) -> dict:
+    return {f"rail.material.{key}": value for key, value in material.items()}
+
+
+RAILS = {
+    "strip of steel, two mounts": of(STEEL)
+    | legs(2e-3)
+    | {"rail.mounts": mounts((8, 16), (160, 168))},
+    "titanium, uneven mounts, a free end": of(TITANIUM)
+    | {"rail.mounts": mounts((8, 24), (48, 64), (88, 96), (136, 144))},
+    "tiny": {},
+    "thick, many mounts": legs(8e-3)
+    | {"rail.mounts": mounts((0, 32), (48, 80), (96, 128), (144, 176), (192, 224))},
+}
+STRIP, THICK = "strip of steel, two mounts", "thick, many mounts"
+
+
+def scene(name: str):
+    return load("tiny").condition("phi60").replace(RAILS[name])
+
+
+def error(name: str, *numerics: Numerics) -> list[float]:
+    """Largest errors of the settled rates (deg/s) on the mesh of the reference."""
+    asked = scene(name)
+    reference = highfi.run(asked, COARSE).outcome.rate
+    compliance = highfi.condense(asked, COARSE.element_size)
+    return [
+        float(
+            np.degrees(
+                np.abs(
+                    np.subtract(
+                        lowfi.run(asked, compliance=compliance, numerics=each).outcome.rate,
+                        reference,
+                    )
+                ).max()
+            )
+        )
+        for each in numerics
+    ]
+
+
+@pytest.mark.parametrize("name", [name for name in RAILS if name != STRIP])
+def test_settled_rates_within_a_tenth_of_a_degree(name):
+    (found,) = error(name, Numerics())
+    assert found < 0.1
+
+
+def test_a_soft_rail_needs_its_modes():
+    """Control: without modes it is off by more than a tenth of a degree per second."""
+    found, static = error(STRIP, Numerics(), Numerics(modes=0))
+    assert found < 0.1 < static
+
+
+def test_frequencies_of_the_rails_span_a_factor_of_ten():
+    first = [
+        highfi.condense(scene(name), COARSE.element_size).frequency.min() for name in (STRIP, THICK)
+    ]
+    assert first[1] > 10.0 * first[0]
+
+
+def test_no_modes_where_none_matter():
+    """The bits of a run without modes, and the reason."""
+    asked, compliance = REFERENCE.condition("phi15"), reference_compliance()
+    static, auto = (
+        lowfi.run(asked, compliance=compliance, numerics=each)
+        for each in (Numerics(modes=0), Numerics())
+    )
+    np.testing.assert_array_equal(auto.rate, static.rate)
+    assert auto.numerics["modes"] == auto.cost["modes"] == 0
+    assert auto.numerics["modes_why"].startswith("none: all 20 of each rail would move")
+    assert auto.cost["steps"] == static.cost["steps"] and "auto_runs" not in auto.cost
+
+
+def test_the_chosen_number_gives_the_bits_of_the_same_number_by_hand():
+    asked = scene(STRIP)
+    compliance = highfi.condense(asked, COARSE.element_size)
+    auto = lowfi.run(asked, compliance=compliance)
+    count = auto.numerics["modes"]
+    hand = lowfi.run(asked, compliance=compliance, numerics=Numerics(modes=count))
+    assert 0 < count == auto.cost["modes"] and auto.cost["auto_runs"] >= 1
+    assert f"{count} of 20 of each rail" in auto.numerics["modes_why"]
+    np.testing.assert_array_equal(auto.rate, hand.rate)
+
+
+def test_a_compliance_without_modes_says_so():
+    compliance = reference_compliance()
+    bare = replace(
+        compliance, frequency=compliance.frequency[:, :0], shape=compliance.shape[..., :0]
+    )
+    found = lowfi.run(REFERENCE.condition("phi15"), compliance=bare)
+    assert found.numerics["modes_why"] == "none: this rail compliance holds no modes"
+
+
+def test_an_ensemble_has_one_number_of_modes():
+    """That of its pilot cases; each case has the bits of a single run with it."""
+    asked = scene(STRIP)
+    compliance = highfi.condense(asked, COARSE.element_size)
+    rows = [{"payload.mass": mass} for mass in (9.8, 10.0)]
+    found = lowfi.run_many(asked, rows, compliance=compliance, workers=1)
+    count = found.attrs["modes"]
+    assert count > 0 and "cases that chose" in found.attrs["modes_why"]
+    numerics = Numerics(modes=count)
+    single = [
+        lowfi.run(asked.replace(row), compliance=compliance, numerics=numerics).outcome.rate
+        for row in rows
+    ]
+    np.testing.assert_array_equal(found["rate"].values, single)
