@@ -91,18 +91,20 @@ def test_strata_by_the_largest_ratio_to_a_limit():
 
 
 def test_number_of_runs_that_would_certify():
-    """The bound of that number is small enough, and that of one less is not. None where too many cases
-    of the surrogate are above."""
+    """The bound of that number is small enough, that of nine tenths is not, and few runs near the
+    limits do not stay few. None where too many cases of the surrogate are above."""
     options = Options(probability=0.99)
-    counts, near = (20, 10, 9970), Runs(10, 0)
-    runs = certificate.needed(counts, near, Runs(100, 0), options)
+    counts = (20, 100, 9880)
+    runs = certificate.needed(counts, Runs(3, 0), Runs(100, 0), options)
 
     def upper(number: int) -> float:
-        found = certificate.stratified.upper_bound(counts, near, Runs(number - 10, 0), 0.95)
-        return found.upper
+        parts = certificate.stratified.allocated(counts, number, 0.95)
+        near, far = (Runs(count, 0) for count in parts)
+        return certificate.stratified.upper_bound(counts, near, far, 0.95).upper
 
-    assert upper(runs) <= 0.01 < upper(runs - 1)
-    assert certificate.needed((120, 10, 9870), near, Runs(100, 0), options) is None
+    assert upper(runs) <= 0.01 < upper(9 * runs // 10)
+    assert certificate.needed(counts, Runs(3, 1), Runs(100, 0), options) > runs
+    assert certificate.needed((120, 10, 9870), Runs(10, 0), Runs(100, 0), options) is None
 
 
 def test_too_few_runs_are_refused():

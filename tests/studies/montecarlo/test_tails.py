@@ -6,12 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 from tests.studies import free_flight
 from tests.studies.shown import html
 from tipoff.lowfi.ensemble import columns
 from tipoff.scenes import load
 from tipoff.scenes.faults import SceneError
+from tipoff.studies.cli import app
 from tipoff.studies.core import store
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.study import Study
@@ -201,3 +203,10 @@ def test_every_fault_is_listed(study):
         tails.run(study, wrong)
     assert [item.key for item in fault.value.faults] == ["w", "value", "value"]
     assert "10 to 120" in str(fault.value) and "4 to 200" in str(fault.value)
+
+
+def test_the_command_refuses_before_it_computes(tmp_path):
+    arguments = ["montecarlo", "--cases", "100", "--reference", "5", "--finer", "9"]
+    told = CliRunner().invoke(app, [*arguments, "--limit", "w=1 deg/s", "--out", str(tmp_path)])
+    assert told.exit_code == 2 and list(tmp_path.iterdir()) == []
+    assert all(words in told.stderr for words in ("10 to 100", "4 to 5", "w=1 deg/s"))

@@ -25,7 +25,6 @@ from tipoff.studies.populations.stratified import Runs
 TIMES = 10  # cases for each case of the search, so that the weights are known well
 NEAR = 0.9  # of a limit
 STRATA = ("above", "near", "far")
-_MOST = 10**7  # runs
 
 
 class Within(NamedTuple):
@@ -90,19 +89,24 @@ def strata(rates: np.ndarray, limits: Sequence[Limit]) -> tuple[np.ndarray, ...]
 
 
 def needed(counts: tuple[int, int, int], near: Runs, far: Runs, options: Options) -> int | None:
-    """The smallest number of runs that certifies the probability if the further ones, all far from the
-    limits, show no rate above them; None where no number does."""
+    """The number of runs, allocated as above, that certifies the probability if no further one shows a
+    rate above its limit; None where that of all ``counts`` cases does not."""
+
+    def split(runs: int) -> tuple[Runs, Runs]:
+        wanted = stratified.allocated(counts, runs, options.confidence)
+        first, second = (
+            Runs(max(count, done.runs), done.events) for count, done in zip(wanted, (near, far))
+        )
+        return first, second
 
     def enough(runs: int) -> bool:
-        found = stratified.upper_bound(counts, near, Runs(runs, far.events), options.confidence)
+        found = stratified.upper_bound(counts, *split(runs), options.confidence)
         return found.upper <= 1.0 - options.probability
 
-    low, high = far.runs, _MOST
-    if enough(max(low, 1)):
-        return near.runs + low
+    low, high = 0, sum(counts)
     if not enough(high):
         return None
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (low, middle) if enough(middle) else (middle, high)
-    return near.runs + high
+    return sum(part.runs for part in split(high))

@@ -30,7 +30,8 @@ def lines(found: dict) -> list[str]:
     ]
     if not shown["certified"]:
         lines.append(
-            "no number of runs would certify it: make the tolerances smaller"
+            "too many cases of the surrogate are above a limit for any number of runs: make the tolerances "
+            "smaller"
             if shown["needed"] is None
             else f"{shown['needed']:,} runs would certify it, if no further one is above a limit"
         )
