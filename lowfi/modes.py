@@ -31,7 +31,7 @@ class Choice:
     why: str
     runs: tuple["Run", ...] = ()
 
-    def cost(self) -> dict[str, float]:
+    def cost(self) -> dict[str, int]:
         """``modes``; for how many runs before the last, and their steps."""
         steps = sum(int(run.loop.counts.steps) + run.discarded for run in self.runs)
         before = {"auto_runs": len(self.runs), "auto_steps": steps} if self.runs else {}
@@ -84,12 +84,11 @@ def _why(made: "list[Run]", effects: list[np.ndarray], enlarged: float) -> str:
             f"none: all {held} of each rail would move the settled rates by {first:.2g} deg/s, "
             f"below {limit}"
         )
-    rates = [found.judged()[1].rate for found in (made[0], made[-1])]
-    moved = (
-        ""
-        if None in rates
-        else f"; they moved them by {np.degrees(np.abs(np.subtract(*rates)).max()):.2g} deg/s"
-    )
+    before, after = (found.judged()[1].rate for found in (made[0], made[-1]))
+    moved = ""
+    if before is not None and after is not None:
+        change = np.degrees(np.abs(np.subtract(after, before)).max())
+        moved = f"; they moved them by {change:.2g} deg/s"
     text = (
         f"{made[-1].modes} of {held} of each rail: without them the settled rates would move by "
         f"about {first:.2g} deg/s, above {limit}{moved}"

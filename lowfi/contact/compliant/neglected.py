@@ -74,13 +74,15 @@ def watched(
 def build(square: np.ndarray, drag: np.ndarray, cubic: np.ndarray, first: int) -> Neglected:
     """Record at rest."""
     rails, faces = square.shape[0], cubic.shape[1]
-    by_mode = [zeros(square.shape) for _ in range(4)]
     return Neglected(
-        first,
-        square,
-        drag,
-        cubic,
-        *by_mode,
+        first=first,
+        square=square,
+        drag=drag,
+        cubic=cubic,
+        amplitude=zeros(square.shape),
+        rate=zeros(square.shape),
+        force=zeros(square.shape),
+        before=zeros(square.shape),
         time=zeros((rails,)),
         pressed=np.zeros(rails, dtype=np.bool_),
         impulse=zeros((faces,)),

@@ -13,12 +13,16 @@ OMEGA = 2.0 * np.pi * 3000.0  # 1/s
 
 
 @entry
-def driven(record, forces, dt):
-    """Energy (J) and amplitude after each of ``forces`` (n,), ``dt`` (s) apart."""
-    found = np.zeros((forces.size, 2))
+def drive(record, forces, dt, found):
     for i in range(forces.size):
         neglected.drive(record, 0, 0, dt, forces[i])
         found[i, 0], found[i, 1] = neglected.energy(record, 0, 0), record.amplitude[0, 0]
+
+
+def driven(record: neglected.Neglected, forces: np.ndarray, dt: float) -> np.ndarray:
+    """Energy (J) and amplitude after each of ``forces`` (n,), ``dt`` (s) apart."""
+    found = np.zeros((forces.size, 2))
+    drive(record, forces, dt, found)
     return found
 
 
