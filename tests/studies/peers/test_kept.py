@@ -4,6 +4,7 @@ import pytest
 
 from tipoff.files import read_json
 from tipoff.studies.peers import document, stage
+from tipoff.studies.peers.case import PeerMissing
 
 KEPT = {
     case["name"]: case
@@ -50,6 +51,20 @@ def test_what_another_code_found_is_found_here(name, setting):
     found = case.ours(setting)
     assert {row["quantity"] for row in rows} == set(found) - {"cpu_s"}
     assert beyond(case, rows, found) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("peer", stage.PEERS, ids=lambda peer: peer.name)
+def test_a_code_that_is_installed_finds_what_was_kept(peer):
+    """The same version, or one that computes the same: six digits of the first setting."""
+    try:
+        peer.version()
+    except PeerMissing as missing:
+        pytest.skip(str(missing))
+    case = peer.cases()[0]
+    found = case.theirs(case.settings[0])
+    for row in kept_rows(case, case.settings[0]):
+        assert found[row["quantity"]] == pytest.approx(row["theirs"], rel=1e-6)
 
 
 @pytest.mark.parametrize("name", CASES)

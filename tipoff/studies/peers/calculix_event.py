@@ -207,6 +207,11 @@ def _flying(box: Body, pad: Body, nodes: int) -> str:
     )
 
 
+def _within(setting: str, quantity: str) -> float:
+    """The rate about z is what is left of two that nearly cancel."""
+    return 2e-2 if quantity == "rate z" else 3e-3
+
+
 def cases() -> tuple[Case, ...]:
     """The event at two time steps."""
     return (
@@ -226,6 +231,6 @@ def cases() -> tuple[Case, ...]:
             units=UNITS,
             ours=lambda name: here(),
             theirs=lambda name: there(SETTINGS[name]),
-            within=lambda setting, quantity: 2e-2,
+            within=_within,
         ),
     )

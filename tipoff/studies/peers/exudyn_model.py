@@ -123,7 +123,7 @@ def run(problem: Problem, law: Law, method: str, setting: float, until: float) -
             system.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[*place, 0.0, 0.0, 0.0]))
         )
         body = system.AddObject(
-            items.ObjectRigidBody(physicsMass=mass, physicsInertia=tensor, nodeNumber=nodes[-1])
+            items.ObjectRigidBody(mass=mass, inertia=tensor, nodeNumber=nodes[-1])
         )
         markers.append(system.AddMarker(items.MarkerBodyRigid(bodyNumber=body)))
     kinds = exudyn.OutputVariableType
@@ -171,8 +171,8 @@ def _settings(exudyn, method: str, setting: float, until: float):
     steps = chosen.timeIntegration
     steps.endTime = until
     steps.verboseMode = 0
-    chosen.solutionSettings.writeSolutionToFile = False
-    chosen.solutionSettings.sensorsWritePeriod = 1e-9  # after every step
+    chosen.solution.file.write = False
+    chosen.solution.sensors.writePeriod = 1e-9  # after every step
     if method == FIXED:
         steps.numberOfSteps = math.ceil(until / setting - 1e-9)
         steps.endTime = steps.numberOfSteps * setting
