@@ -11,7 +11,7 @@ from tipoff.studies.core.study import Study
 
 @pytest.mark.parametrize(
     "stored, given, taken",
-    [(None, None, 4), (128, None, 128), (128, 64, 64), (None, 64, 64)],
+    [(None, None, 5), (128, None, 128), (128, 64, 64), (None, 64, 64)],
 )
 def test_a_report_keeps_the_number_that_a_command_asked_for(
     tmp_path, monkeypatch, stored, given, taken

@@ -23,10 +23,10 @@ def compare(
         typer.Option(
             "--neighbours",
             metavar="N",
-            min=4,
+            min=5,
             max=10_000,
             help="Runs of the reference within 1 µm of each condition that is judged as a "
-            "distribution; default: as many as in the present result, else 32 (scene tiny: 4).",
+            "distribution; default: as many as in the present result, else 32 (scene tiny: 5).",
         ),
     ] = None,
     element_size: ElementSize = None,

@@ -24,7 +24,7 @@ from tipoff.studies.core.study import Study
 FURTHER = 8  # draws of the surrogates beside each of the reference; more would add little
 _CURVE = tuple(round(0.01 * share, 2) for share in range(1, 100))  # of distributions that are drawn
 _STABLE_SHARE = 4  # a reference that 1 um does not move much needs fewer neighbours
-_LEAST = 4
+_LEAST = 5  # fewer do not enclose a median
 _FORETOLD = 20
 
 
@@ -209,7 +209,7 @@ def _why(word: str, found: list[equivalence.Comparison], draws: int) -> str:
     worst = max(found, key=lambda item: item.width)
     needed = equivalence.needed(found, draws)
     # far beyond, the width of so few draws foretells nothing
-    words = f"about {needed}" if needed <= _FORETOLD * draws else f"more than {_FORETOLD * draws}"
+    words = f"up to {needed}" if needed <= _FORETOLD * draws else f"more than {_FORETOLD * draws}"
     return (
         f": {draws} neighbours leave the {_place(worst)} of the reference uncertain by "
         f"{worst.width:.2g} x margin; {words} are needed"

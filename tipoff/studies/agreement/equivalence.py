@@ -125,8 +125,8 @@ def verdict(found: list[Comparison]) -> str:
 
 
 def needed(found: list[Comparison], draws: int) -> int:
-    """About how many draws make every interval of the reference as narrow as ``KNOWN``; their width
-    falls with the root of the number."""
+    """How many draws make every interval of the reference as narrow as ``KNOWN``; their width falls with
+    the root of the number. Up to twice too many where there are few, whose margin is uncertain too."""
     return math.ceil(draws * max(1.0, *(item.width / KNOWN for item in found)) ** 2)
 
 

@@ -77,6 +77,6 @@ def defaults(scene_name: str) -> Settings:
             mesh_ratios=(2.0, 1.0, 0.5),
             highfi_repeats=2,
             lowfi_repeats=5,
-            neighbours=4,
+            neighbours=5,
         )
     return Settings()
