@@ -30,7 +30,7 @@ def main(folder: Path) -> None:
     }
     last = len(found["frames"]) - 1
     moments = {0: "at ignition", found["peak"]["frame"]: "a rear pad strikes", last: "free"}
-    figure, panels = plt.subplots(1, 3, figsize=(12.6, 3.5), layout="constrained")
+    figure, panels = plt.subplots(1, 3, figsize=(12.6, 3.1), layout="constrained")
     for panel, (index, words) in zip(panels, moments.items(), strict=True):
         time = 1e3 * found["frames"][index]["time_s"]
         panel.imshow(_drawn(order, index, np.array(found["bounds_m"])))

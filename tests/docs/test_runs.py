@@ -134,7 +134,7 @@ def test_a_program_runs(page, tmp_path):
 _BEFORE = """
 import tipoff
 scene = tipoff.load("tiny")
-curves = {"phi15": tipoff.run(scene.condition("phi15"))}
+curves = {name: tipoff.run(scene.condition(name)) for name in scene.agreement.fitted}
 """
 
 
