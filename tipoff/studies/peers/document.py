@@ -13,8 +13,8 @@ from tipoff.studies.render.document import Figure, markdown
 DOCS = Path(__file__).resolve().parents[3] / "docs"
 _TITLE = """# Compared with other codes
 
-Written by `python -m tipoff.studies.peers.document` from `tipoff/studies/peers/kept`, which `make peers KEEP=1`
-measured. `make peers` measures again and prints the same tables. Tests compare today's tipoff with the
+Written by `python -m tipoff.studies.peers.document` from `tipoff/studies/peers/kept`; `make peers KEEP=1`
+replaces them. `make peers` measures again and prints the same tables. Tests compare today's tipoff with the
 kept values of the other codes, also where these are not installed."""
 
 
