@@ -77,7 +77,7 @@ def _agreed(rows: list[dict]) -> str:
     touched = [row for row in agree if row["touches"]]
     errors = [row["rate_relative_l2"] for row in touched]
     said = (
-        f"- **Measured**: the reference is converged on {len(judged)} of {len(rows)} conditions. Compliant contact, "
+        f"- **Agreement**: the reference is converged on {len(judged)} of {len(rows)} conditions. Compliant contact, "
         f"with nothing fitted, agrees on {len(agree)} of these {len(judged)}."
     )
     if chaotic := [row for row in rows if row["judged_as"] == verdicts.DISTRIBUTION]:
