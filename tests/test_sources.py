@@ -136,7 +136,7 @@ def page() -> str:
 def test_the_look_of_the_page_makes_only_the_page_again(project):
     before, drawn = digests(*STAGES, *SOLVERS), page()
     edit(
-        project / "tipoff" / "studies" / "render" / "style.py", "font-size: 11pt", "font-size: 12pt"
+        project / "tipoff" / "studies" / "render" / "style.py", "font-size: 30px", "font-size: 31px"
     )
     assert digests(*STAGES, *SOLVERS) == before
     assert page() != drawn

@@ -1,6 +1,7 @@
 """Every key of a scene file with its value, default and meaning, from the tables themselves."""
 
 import json
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -22,7 +23,21 @@ def markdown() -> str:
     sections = {"The scene itself": _section("The scene itself", schema, Scene)}
     for path, name in _tables(schema, schema["$defs"], ""):  # some stand in rails of any kind
         sections[path] = _section(path, schema["$defs"][name], classes[name])
+        if path == "`[[pads]]`":
+            sections["`[pads]`"] = _pattern(sections[path])
     return "\n\n".join(sections.values())
+
+
+def _pattern(of_one: str) -> str:
+    """Section of pads by pattern, whose other keys are those ``of_one`` pad."""
+    rows = [row for row in of_one.splitlines() if re.match(r"\| `(?!position|normals)\w+`", row)]
+    own = [
+        ("`stations`", "list: `m`", "required", "Places along X of the pads."),
+        ("`corner`", "2 × `m`", "required", "Distances of the corners from the axis along Y and Z."),
+    ]
+    words = "In place of `[[pads]]`: a pad at each of four corners of each station.\n\n"
+    head = table(("key", "value", "default", "meaning"), own)
+    return f"## `[pads]`\n\n{words}{head}\n" + "\n".join(rows)
 
 
 def _below(base: type) -> Iterator[Any]:

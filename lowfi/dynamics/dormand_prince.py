@@ -13,8 +13,8 @@ below it.
 import numpy as np
 
 from tipoff.kernels.jit import inlined
-from tipoff.lowfi.contact.compliant.free_vibration import advance
 from tipoff.lowfi.dynamics.equations import derivative
+from tipoff.lowfi.dynamics.vibration import advance_free_modes
 from tipoff.lowfi.state import DYNAMIC_SIZE, STATE_SIZE, copy, modal_size, normalise
 
 STAGES = 7
@@ -60,7 +60,7 @@ def attempt(system, loop, stretch, time, dt, fresh):
         _combine_modes(stage, dt, start, stages, modal_size(system.compliance), end)
         if stage == STAGES - 1:
             normalise(end)
-            advance(system.compliance, loop.touching, dt, start, end, True)
+            advance_free_modes(system.compliance, loop.touching, dt, start, end, True)
         derivative(
             system,
             loop.touching,
@@ -180,7 +180,7 @@ def interpolate(system, loop, dt, theta, size, out):
             + b6 * stages[6, j]
         )
     normalise(out)
-    advance(system.compliance, loop.touching, h, start, out, size == STATE_SIZE)
+    advance_free_modes(system.compliance, loop.touching, h, start, out, size == STATE_SIZE)
 
 
 @inlined

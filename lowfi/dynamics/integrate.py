@@ -4,8 +4,6 @@ import numpy as np
 
 from tipoff.kernels.jit import entry, inlined, kernel
 from tipoff.lowfi import state as slot
-from tipoff.lowfi.contact.compliant.neglected import follow
-from tipoff.lowfi.contact.compliant.neglected import reset as forget
 from tipoff.lowfi.contact.stick_slip import clear
 from tipoff.lowfi.contact.wall_ends import DEPTH
 from tipoff.lowfi.dynamics import audit, ending, stick_slip
@@ -16,6 +14,7 @@ from tipoff.lowfi.dynamics.loop import Loop, allocate
 from tipoff.lowfi.dynamics.sample import observe
 from tipoff.lowfi.dynamics.step import step
 from tipoff.lowfi.dynamics.survey import survey, update_engaged
+from tipoff.lowfi.dynamics.vibration import follow_neglected, reset_neglected
 from tipoff.mechanics import ending as books
 
 # What ``integrate`` returns: all samples taken; exit, settled window and jam are known; or why it
@@ -49,7 +48,7 @@ def _begin(system, first_step, loop):
     _reset_audit(loop.audit)
     slot.copy(loop.start, loop.end, loop.start.size)
     _reset_compliance(system.compliance)
-    forget(system.neglected)
+    reset_neglected(system.neglected)
     loop.engaged[:] = False
     loop.depth_left[:] = 0.0
     loop.touching[:] = False
@@ -199,7 +198,7 @@ def advance(system, plan, tolerance, marks, loop):
     if not _has_finite_energy(loop.end, slot.modal_size(system.compliance)):
         return NOT_FINITE
     clock = loop.clock
-    follow(system.neglected, system, loop)
+    follow_neglected(system.neglected, system, loop)
     ending.follow(system, marks, loop, ending.Step(clock.began, clock.now, clock.dt))
     return SAMPLED
 

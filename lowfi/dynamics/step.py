@@ -5,7 +5,6 @@ import numpy as np
 
 from tipoff.kernels.jit import inlined, kernel
 from tipoff.lowfi import state as slot
-from tipoff.lowfi.contact.compliant.free_vibration import longest_step, shortened
 from tipoff.lowfi.contact.compliant.step_limit import stiffness_and_damping
 from tipoff.lowfi.contact.compliant.survey import energy as energy_in_compliance
 from tipoff.lowfi.contact.compliant.survey import longest_step_at_ends
@@ -16,6 +15,7 @@ from tipoff.lowfi.dynamics.dormand_prince import STABLE_RADIUS, STAGES, attempt,
 from tipoff.lowfi.dynamics.events import first_event
 from tipoff.lowfi.dynamics.local_error import error_ratio
 from tipoff.lowfi.dynamics.survey import keeps_law, survey, update_engaged, update_touching
+from tipoff.lowfi.dynamics.vibration import longest_step, shortened
 
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 5.0
 # Largest error ratio at which interpolation may cut a step; its error is some times larger.

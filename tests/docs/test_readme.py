@@ -6,13 +6,21 @@ import pytest
 
 from tests.docs import pages
 from tipoff.files import write_json
+from tipoff.studies.agreement import verdicts
 from tipoff.studies.report import readme
 
 TEXT = (pages.ROOT / "README.md").read_text(encoding="utf-8")
 
 
-def _row(verdict: str, curve: float = 0.001, settled: float = 0.01) -> dict:
-    return {"verdict": verdict, "rate_relative_l2": curve, "settled_rate_error_deg_s": settled}
+def _row(judgement: str, curve: float = 0.001, settled: float = 0.01, **other) -> dict:
+    return {
+        "judged_as": verdicts.CURVE,
+        "judgement": judgement,
+        "touches": True,
+        "rate_relative_l2": curve,
+        "settled_rate_error_deg_s": settled,
+        **other,
+    }
 
 
 def _written(folder, rows: list[dict]) -> str:
@@ -35,19 +43,22 @@ def test_conditions_are_counted_by_their_verdict(tmp_path):
     said = _written(
         tmp_path,
         [
-            _row("agrees", 0.002, 0.03),
-            _row("agrees", 0.004, 0.01),
-            _row("agrees (no pad touches)", 1e-8, 1e-8),
-            _row("misses: rate L2 2 x limit", 0.1, 0.5),
-            _row("reference not converged", 0.2, 3.0),
+            _row(verdicts.AGREES, 0.002, 0.03),
+            _row(verdicts.AGREES, 0.004, 0.01),
+            _row(verdicts.AGREES, 1e-8, 1e-8, touches=False),
+            _row(verdicts.MISSES, 0.1, 0.5),
+            _row(verdicts.CANNOT, 0.2, 3.0),
+            _row(verdicts.AS_DISTRIBUTION, 0.3, 3.0, judged_as=verdicts.DISTRIBUTION),
+            _row(verdicts.MISSES, 0.4, 3.0, judged_as=verdicts.DISTRIBUTION),
         ],
     )
-    assert "converged on 4 of 5 conditions" in said and "agrees on 3 of these 4" in said
+    assert "converged on 4 of 7 conditions" in said and "agrees on 3 of these 4" in said
+    assert "as distributions: 1 of 2 agree" in said
     assert "Pads touch in 2" in said and "0.2 to 0.4 %" in said and "at most 0.03 deg/s" in said
 
 
 def test_agreement_in_free_flight_alone_has_no_error_of_contact(tmp_path):
-    said = _written(tmp_path, [_row("agrees (no pad touches)", 1e-8, 1e-8)])
+    said = _written(tmp_path, [_row(verdicts.AGREES, 1e-8, 1e-8, touches=False)])
     assert said.endswith("agrees on 1 of these 1.")
 
 

@@ -35,7 +35,7 @@ _SHORT_OF = 0.99  # of the way to a wall within reach, so that a step that begin
 _CRITICAL = 1e-7  # of omega^2: w^2 nearer to zero is rounding
 
 
-class _Faces(NamedTuple):
+class Faces(NamedTuple):
     """The faces in a step."""
 
     rail: np.ndarray  # (f,) number of the rail of each
@@ -49,10 +49,9 @@ class _Faces(NamedTuple):
 def advance(compliance, touching, dt, start, end, with_work):
     """Fill the modes of rails without a ``touching`` (f,) face in ``end``, ``dt`` (s) after ``start``,
     and add what damping takes to its work if there is any."""
-    if compliance is not None:
-        lost = _advance(compliance.modes, compliance.members, touching, dt, start, end)
-        if with_work:
-            end[STRUCTURAL] += lost
+    lost = _advance(compliance.modes, compliance.members, touching, dt, start, end)
+    if with_work:
+        end[STRUCTURAL] += lost
 
 
 @kernel
@@ -145,18 +144,10 @@ def cannot_touch(modes, before, after, dt):
     return away
 
 
-@inlined
-def longest_step(compliance, touching, engaged, before, state):
-    """Longest step (s) from ``state`` at which vibration cannot hide a touch of an ``engaged`` (f,)
-    face, by the survey ``before`` (f, SURVEY_SIZE): without bound where none is near."""
-    longest = np.inf
-    if compliance is not None:
-        longest = _longest_step(compliance.modes, compliance.rail, touching, engaged, before, state)
-    return longest
-
-
 @kernel
-def _longest_step(modes, rail, touching, engaged, before, state):
+def longest_step(modes, rail, touching, engaged, before, state):
+    """Longest step (s) from ``state`` at which vibration cannot hide a touch of an ``engaged`` (f,)
+    face on its ``rail`` (f,), by the survey ``before`` (f, SURVEY_SIZE)."""
     longest = np.inf
     if modes is not None:
         for face in range(engaged.size):
@@ -177,17 +168,9 @@ def _resolved(modes, rail, face, state):
     return (_MISSED * _HERMITE / total) ** 0.25 if total > 0.0 else np.inf
 
 
-@inlined
-def shortened(compliance, touching, engaged, before, after, state, dt):
-    """``dt`` (s), or the shorter step to try where a face comes near a vibrating wall in it."""
-    if compliance is not None:
-        free = _Faces(compliance.rail, touching, engaged, before, after)
-        dt = _shortened(compliance.modes, free, state, dt)
-    return dt
-
-
 @kernel
-def _shortened(modes, faces, state, dt):
+def shortened(modes, faces, state, dt):
+    """``dt`` (s), or the shorter step to try where a face comes near a vibrating wall in it."""
     shortest = dt
     if modes is not None:
         for face in range(faces.engaged.size):

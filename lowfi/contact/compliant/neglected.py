@@ -94,26 +94,24 @@ def build(square: np.ndarray, drag: np.ndarray, cubic: np.ndarray, first: int) -
 @inlined
 def reset(neglected):
     """Bring all rails to rest."""
-    if neglected is not None:
-        for values in (neglected.amplitude, neglected.rate, neglected.force, neglected.before):
-            values[:] = 0.0
-        for numbers in (neglected.time, neglected.impulse, neglected.leaving, neglected.effect):
-            numbers[:] = 0.0
-        neglected.pressed[:] = False
+    for values in (neglected.amplitude, neglected.rate, neglected.force, neglected.before):
+        values[:] = 0.0
+    for numbers in (neglected.time, neglected.impulse, neglected.leaving, neglected.effect):
+        numbers[:] = 0.0
+    neglected.pressed[:] = False
 
 
 @kernel
 def follow(neglected, system, loop):
     """Drive the neglected modes through the step just taken."""
-    if neglected is not None:
-        compliance, clock = system.compliance, loop.clock
-        for rail in range(compliance.members.shape[0]):
-            if is_pressed(compliance.members, rail, loop.touching):
-                if not neglected.pressed[rail]:
-                    _begin(neglected, compliance.members, rail, clock.began)
-                _press(neglected, system, loop, rail)
-            elif neglected.pressed[rail]:
-                _leave(neglected, system, loop.start, rail)
+    compliance, clock = system.compliance, loop.clock
+    for rail in range(compliance.members.shape[0]):
+        if is_pressed(compliance.members, rail, loop.touching):
+            if not neglected.pressed[rail]:
+                _begin(neglected, compliance.members, rail, clock.began)
+            _press(neglected, system, loop, rail)
+        elif neglected.pressed[rail]:
+            _leave(neglected, system, loop.start, rail)
 
 
 @kernel

@@ -24,7 +24,7 @@ def test_bad_rows_are_refused_alone():
     ]
     found = lowfi.run_many(load("reference"), rows, "springs", workers=2)
     assert found.status.values.tolist() == ["exited", "refused", "refused", "diverged", "exited"]
-    assert found.attrs == {"asked": 5, "ok": 2, "refused": 2, "failed": 1}
+    assert found.attrs == {"modes": 0, "asked": 5, "ok": 2, "refused": 2, "failed": 1}
     assert "payload.mass" in found.message.values[1] and "clearence" in found.message.values[2]
     assert np.isfinite(found.rate.values[[0, 4]]).all() and np.isnan(found.rate.values[1:4]).all()
 

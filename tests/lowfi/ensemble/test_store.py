@@ -195,6 +195,7 @@ def test_run_many_with_a_store_is_run_many(tmp_path):
     )
     for found in (kept, again):
         assert found.equals(plain.drop_vars("wall_s")) and found.attrs == plain.attrs == {
+            "modes": 0,
             "asked": 7,
             "ok": 3,
             "refused": 3,
@@ -202,7 +203,7 @@ def test_run_many_with_a_store_is_run_many(tmp_path):
         }
     assert len(list((tmp_path / "store" / "done").iterdir())) == 1
     failures = (
-        Ensemble(load("reference"), Listed(rows), None, lowfi.Numerics())
+        Ensemble(load("reference"), Listed(rows), None, lowfi.Numerics(modes=0))
         .store(tmp_path / "store")
         .failures()
     )

@@ -185,8 +185,9 @@ def test_conditions_are_counted_by_their_word():
     words = [verdicts.AGREES] * 3 + [verdicts.AS_DISTRIBUTION] * 2 + [verdicts.MISSES]
     rows = [{"judgement": word, "touches": number > 0} for number, word in enumerate(words)]
     assert page.summary(rows) == (
-        "3 of 6 conditions agree (1 of them without contact), 2 agree as distributions, 1 miss"
+        "3 of 6 conditions agree (1 of them without contact), 2 agree as distributions, "
+        "0 cannot be judged, 1 misses"
     )
     assert page.summary([{"judgement": verdicts.CANNOT, "touches": True}], "fitted ") == (
-        "0 of 1 fitted conditions agree, 1 cannot be judged"
+        "0 of 1 fitted conditions agree, 1 cannot be judged, 0 miss"
     )

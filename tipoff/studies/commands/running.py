@@ -171,7 +171,7 @@ def files(result: dict, out: Path) -> list[str]:
     more than three of its files is one line."""
     folder = Path(out) / result["scene"]
     listed: dict[str, list[str]] = {}
-    for name in (f"{result['stage']}.json", *result["files"]):
+    for name in (f"{result['stage']}.json", *result.get("files", ())):
         listed.setdefault(name.rpartition("/")[0], []).append(name)
     return [
         f"  {line}"
