@@ -90,7 +90,8 @@ def test_strict_refuses_what_is_implausible(tmp_path, stub):
     assert warned.exit_code == 0 and "implausible" in warned.stderr
 
 
-def test_several_conditions_in_one_command(tmp_path, stub):
+def test_several_conditions_in_one_command(tmp_path, stub, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")  # no cell of a table is wrapped
     stub()
     asked = ["run", "--scene", "tiny", "--model", "finite-elements", "--out", tmp_path]
     asked += ["--condition", "phi15,h1", "--condition", "phi60"]
@@ -100,7 +101,10 @@ def test_several_conditions_in_one_command(tmp_path, stub):
     assert "tiny / h1" in shown and "rate x (deg/s)" in shown
 
 
-def test_a_stage_ends_with_a_table_and_its_files_also_when_nothing_changed(tmp_path, stub):
+def test_a_stage_ends_with_a_table_and_its_files_also_when_nothing_changed(
+    tmp_path, stub, monkeypatch
+):
+    monkeypatch.setenv("COLUMNS", "200")  # no cell of a table is wrapped
     stub()
     asked = ["highfi", "--scene", "tiny", "--condition", "phi15,h1", "--out", tmp_path]
     first, second = call(*asked), call(*asked)
