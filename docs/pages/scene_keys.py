@@ -33,7 +33,12 @@ def _pattern(of_one: str) -> str:
     rows = [row for row in of_one.splitlines() if re.match(r"\| `(?!position|normals)\w+`", row)]
     own = [
         ("`stations`", "list: `m`", "required", "Places along X of the pads."),
-        ("`corner`", "2 × `m`", "required", "Distances of the corners from the axis along Y and Z."),
+        (
+            "`corner`",
+            "2 × `m`",
+            "required",
+            "Distances of the corners from the axis along Y and Z.",
+        ),
     ]
     words = "In place of `[[pads]]`: a pad at each of four corners of each station.\n\n"
     head = table(("key", "value", "default", "meaning"), own)

@@ -3,6 +3,7 @@ second call that does nothing."""
 
 import json
 import os
+import re
 import time
 from pathlib import Path
 
@@ -267,7 +268,8 @@ def test_page_is_whole_and_self_contained(pipeline):
     page = (pipeline[0] / "report.html").read_text()
     assert [name for name in SECTIONS if f'id="{name}"' not in page] == []
     # studies with targets of their own
-    assert page.count("No result yet") == len(QUESTIONS) and "BROKEN" not in page
+    (line,) = re.findall(r"Not made: ([^.]*)\.", page)
+    assert len(line.split(", ")) >= len(QUESTIONS) and "BROKEN" not in page
     assert page.count("/*! For license information") <= 1 and 'src="http' not in page
     figures = {path.name for path in (pipeline[0] / "figures").glob("*.png")}
     assert {

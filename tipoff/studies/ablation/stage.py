@@ -75,7 +75,7 @@ def run(study: Study) -> dict:
 
 def surrogate_runs(study: Study, name: str, lines: dict[str, dict]) -> list[Run]:
     """A run of the surrogate for each line: on the compliance of its rails, unless there is no
-    contact."""
+    contact. No rail has inertia: a number of modes chosen for each line would be one more change."""
     scenes = {line: study.condition(name).replace(changes) for line, changes in lines.items()}
     under: dict[str, RailCompliance | None] = {}
     for scene in scenes.values():
@@ -88,6 +88,7 @@ def surrogate_runs(study: Study, name: str, lines: dict[str, dict]) -> list[Run]
             lines[line],
             _tag(line),
             None if scene.contact is None else under[digest(scene)],
+            modes=0,
         )
         for line, scene in scenes.items()
     ]

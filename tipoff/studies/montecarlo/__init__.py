@@ -17,7 +17,7 @@ def _load() -> Contents:
         return shown.shown(stage.NAME, page.draw, stage.NAME)
 
     def corrected(shown: "Page") -> "list[Part]":
-        return shown.shown(tails.NAME, tails_page.draw, f"{stage.NAME} REFERENCE=60")
+        return shown.shown(tails.NAME, tails_page.draw, f"{stage.NAME} --reference 60")
 
     return Contents(
         (
