@@ -160,4 +160,4 @@ def ensemble(
 
         return page.summary(found) if case is None else page.case(found)
 
-    guarded(work, json_, shown, out)
+    guarded(work, json_, shown, out if case is None else None)
