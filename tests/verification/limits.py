@@ -6,7 +6,7 @@ Written by `python -m tests.verification`. `tests/verification/test_page.py` che
 tests, the recorded comparisons and the measurements.
 
 Verification asks whether the equations are solved correctly. {cases} cases have an answer that does not come from this
-project ([tests/CASES.md](../tests/CASES.md)); {controlled} of them name a control, a weaker method or a slip that the
+project (`tests/CASES.md`); {controlled} of them name a control, a weaker method or a slip that the
 same test must see fail. Validation asks whether the equations describe the world. Five published measurements are
 below. No measured ejection along rails was found.
 

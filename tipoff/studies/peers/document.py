@@ -41,7 +41,8 @@ def text() -> str:
         else part
         for part in page.parts(stage.stored(stage.KEPT))
     ]
-    return f"{_TITLE}\n\n{markdown(parts)}\n"
+    # Sections of this page, which are subsections in a report.
+    return f"{_TITLE}\n\n{markdown(parts)}\n".replace("\n### ", "\n## ")
 
 
 if __name__ == "__main__":
