@@ -8,6 +8,7 @@ import pytest
 from tests.studies.shown import html
 from tests.studies.synthetic import flight
 from tipoff import scenes
+from tipoff.studies.agreement import verdicts
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.report import answer, drawing
 from tipoff.studies.report.page import Page
@@ -30,6 +31,10 @@ def judged(name, uncertainty, converged=True, passes=True):
         "floor_deg_s": 0.043,
         "reference_converged": converged,
         "passes": passes,
+        "judged_as": verdicts.CURVE,
+        "judgement": (
+            verdicts.CANNOT if not converged else verdicts.AGREES if passes else verdicts.MISSES
+        ),
         "verdict": "agrees" if passes else "misses",
     }
 
@@ -78,7 +83,7 @@ def test_agreement_speed_and_trust(page):
     assert "183 ×" in shown and "not at equal accuracy" in shown
     assert "Numerics: " in shown and "not converged on phi15" in shown
     assert "Model: " in shown and "within 0.031 deg/s" in shown
-    assert "validated against a measurement" in shown
+    assert "validated on a measured ejection" in shown
     assert re.search(r"Inputs: \d+ of \d+ values are assumed", shown)
     equal = {"ratio": 12.0, "surer": False, "element_size_m": 4e-3}
     page.documents["convergence"] = {"equal_accuracy": equal}
@@ -88,6 +93,16 @@ def test_agreement_speed_and_trust(page):
 def test_counts():
     rows = [judged("a", 0.0), judged("b", 0.0, passes=False), judged("c", 0.0, converged=False)]
     assert answer.counts(rows) == "1 agree, 1 cannot be judged, 1 misses"
+    alike = rows[0] | {"judged_as": verdicts.DISTRIBUTION, "judgement": verdicts.AS_DISTRIBUTION}
+    assert answer.counts([alike]) == "0 agree, 1 agree as distributions, 0 cannot be judged, 0 miss"
+
+
+def test_conditions_judged_as_distributions_are_said_apart(page):
+    rows = page.documents["agreement"]["compliant"]
+    rows[0] |= {"judged_as": verdicts.DISTRIBUTION, "judgement": verdicts.MISSES}
+    shown = html(answer.draw(page))
+    assert "1 agree, 0 cannot be judged, 1 misses" in shown
+    assert "as distributions 0 of 1 conditions agree" in shown
 
 
 def test_a_condition_is_stated_in_its_row(page):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup
 
 from tipoff.scenes import provenance
+from tipoff.studies.agreement import verdicts
 from tipoff.studies.populations.exceedance import TOTAL, Limit
 from tipoff.studies.render.document import Bullets, Heading, KeyFigures, Part
 from tipoff.studies.render.table import Column, Table, number
@@ -43,12 +44,14 @@ def draw(page: "Page") -> list[Part]:
 
 
 def counts(rows: Sequence[dict]) -> str:
-    """How many conditions agree, cannot be judged, and miss."""
-    judged = [row for row in rows if row["reference_converged"]]
-    agree = sum(bool(row["passes"]) for row in judged)
+    """How many conditions agree, as curves or as distributions, cannot be judged, and miss."""
+    count = {word: sum(row["judgement"] == word for row in rows) for word in verdicts.JUDGEMENTS}
+    alike, missing = count[verdicts.AS_DISTRIBUTION], count[verdicts.MISSES]
     return (
-        f"{agree} agree, {len(rows) - len(judged)} cannot be judged, {len(judged) - agree} "
-        f"{'misses' if len(judged) - agree == 1 else 'miss'}"
+        f"{count[verdicts.AGREES]} agree, "
+        + (f"{alike} agree as distributions, " if alike else "")
+        + f"{count[verdicts.CANNOT]} cannot be judged, "
+        + f"{missing} {'misses' if missing == 1 else 'miss'}"
     )
 
 
@@ -177,7 +180,8 @@ def _words(settled: dict | None, limits: Sequence[Limit]) -> str:
 def _kind(row: dict | None) -> str:
     if row is None:
         return ""
-    return "doubt" if not row["reference_converged"] else "good" if row["passes"] else "bad"
+    kinds = {verdicts.CANNOT: "doubt", verdicts.MISSES: "bad"}
+    return kinds.get(row["judgement"], "good")
 
 
 def stated(page: "Page", name: str) -> str:
@@ -209,15 +213,21 @@ def _model(page: "Page", compared: dict[str, dict]) -> list[str]:
     errors = [
         row["settled_rate_error_deg_s"]
         for row in compared.values()
-        if row["reference_converged"] and row["settled_rate_error_deg_s"] is not None
+        if row["judged_as"] == verdicts.CURVE
+        and row["judgement"] != verdicts.CANNOT
+        and row["settled_rate_error_deg_s"] is not None
     ]
+    chaotic = [row for row in compared.values() if row["judged_as"] == verdicts.DISTRIBUTION]
+    alike = sum(row["judgement"] == verdicts.AS_DISTRIBUTION for row in chaotic)
     found = (
-        f"model: where it can be judged, the surrogate is within {number(max(errors), '.2g')} deg/s of "
-        "the finite elements; "
+        f"model: where one run can be judged, the surrogate is within {number(max(errors), '.2g')} "
+        "deg/s of the finite elements; "
         if errors
-        else "model: the surrogate cannot be judged against the finite elements; "
+        else "model: no single run can be judged against the finite elements; "
     )
-    return [f"{found}neither was validated against a measurement"]
+    if chaotic:
+        found += f"as distributions {alike} of {len(chaotic)} conditions agree; "
+    return [f"{found}neither was validated on a measured ejection"]
 
 
 def _inputs(page: "Page", compared: dict[str, dict]) -> list[str]:
