@@ -14,10 +14,13 @@ from pathlib import Path
 from tipoff import sources
 from tipoff.files import content_hash
 from tipoff.kernels.jit import kernel_digest
+from tipoff.lowfi.numerics import AUTO
+from tipoff.mechanics.models import COMPLIANT
 from tipoff.studies.core.progress import Board, say
 from tipoff.studies.core.store import Run, execute, prepare
 
-_COMPILES = {"highfi": "20 s", "lowfi": "10 s"}
+_COMPILES = {"highfi": "20 s", "lowfi": "20 s"}
+_WITH_MODES = ", and a minute more if modes of the rails turn out to matter"
 
 
 def warm_up(run: Run) -> None:
@@ -31,7 +34,7 @@ def announce(run: Run) -> None:
     if not _mark(run).is_file():
         say(
             f"compiling the kernels of model {run.model} for these effects: about "
-            f"{_COMPILES[run.fidelity]}, once"
+            f"{_COMPILES[run.fidelity]}, once" + (_WITH_MODES if _modes(run) == AUTO else "")
         )
 
 
@@ -76,6 +79,12 @@ def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
 def _mark(run: Run) -> Path:
     """File in the cache of kernels that says that those of ``run`` are there."""
     key = content_hash(
-        kernel_digest(f"tipoff.{run.fidelity}"), run.model, run.scene.absent_effects()
+        kernel_digest(f"tipoff.{run.fidelity}"), run.model, run.scene.absent_effects(), _modes(run)
     )
     return sources.cache_folder() / "kernels" / f"compiled-{key[:16]}"
+
+
+def _modes(run: Run) -> str | bool:
+    """What decides which kernels there are of rails: a number to be chosen, some modes, or none."""
+    modes = getattr(run.numerics, "modes", 0) if run.model == COMPLIANT else 0
+    return AUTO if modes == AUTO else modes > 0
