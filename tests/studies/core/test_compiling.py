@@ -2,6 +2,7 @@
 
 import pytest
 
+from tests.lowfi.compliance import REFERENCE, reference_compliance
 from tipoff import lowfi, scenes
 from tipoff.studies.core import compiling
 from tipoff.studies.core.store import Run
@@ -48,4 +49,20 @@ def test_the_first_compilation_is_announced_once(runs, capfd):
     compiling.announce(same)  # the same effects
     assert capfd.readouterr().err == ""
     compiling.announce(other)
-    assert "once" in capfd.readouterr().err
+    said = capfd.readouterr().err
+    assert "once" in said and "modes" not in said  # nothing presses a rail
+
+
+def test_kernels_with_modes_of_the_rails_are_others(monkeypatch, tmp_path, capfd):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+
+    def announced(modes) -> str:
+        numerics = lowfi.Numerics(modes=modes)
+        run = Run("lowfi", "", REFERENCE, numerics, compliance=reference_compliance())
+        compiling.announce(run)
+        compiling.remember(run)
+        return capfd.readouterr().err
+
+    assert "once, and a minute more if modes" in announced("auto")
+    assert "once\n" in announced(0) and "once\n" in announced(4)
+    assert [announced(modes) for modes in ("auto", 0, 20)] == ["", "", ""]

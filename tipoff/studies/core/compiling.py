@@ -86,5 +86,6 @@ def _mark(run: Run) -> Path:
 
 def _modes(run: Run) -> str | bool:
     """What decides which kernels there are of rails: a number to be chosen, some modes, or none."""
-    modes = getattr(run.numerics, "modes", 0) if run.model == COMPLIANT else 0
+    pressed = run.model == COMPLIANT and run.compliance is not None
+    modes = getattr(run.numerics, "modes", 0) if pressed else 0
     return AUTO if modes == AUTO else modes > 0
