@@ -40,7 +40,8 @@ TAIL = """## What is not validated
   times.
 - Joints that open, slip or stiffen; plastic indentation; wear; adhesion and cold welding; rails that bend so far that
   their tension matters. None is modelled.
-- Conditions on which neighbouring cases part (README): single curves cannot be compared there.
+- Conditions that 1 um of clearance changes much: single curves cannot be compared there, only distributions
+  (`docs/chaotic_conditions.md`).
 
 ## How to make this page
 
