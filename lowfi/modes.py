@@ -47,10 +47,12 @@ def choose(run: "Callable[[int], Run]") -> tuple["Run", Choice]:
         return made[0], Choice(0, "none: the run without modes failed")
     while needed(effects[-1] * enlarged) > made[-1].modes and len(made) < _MOST_RUNS:
         last = len(made) == _MOST_RUNS - 1
-        made.append(run(effects[0].size if last else needed(effects[-1] * enlarged)))
-        effects.append(made[-1].neglected())
-        if made[-1].message:
-            break
+        tried = run(effects[0].size if last else needed(effects[-1] * enlarged))
+        if tried.message:  # the answer is that of the last run that went through
+            why = f"{made[-1].modes or 'none'}: a run with {tried.modes} failed: {tried.message}"
+            return made[-1], Choice(made[-1].modes, why, (*made[:-1], tried))
+        made.append(tried)
+        effects.append(tried.neglected())
         enlarged = max(1.0, _enlarged(made[-2:], effects[-2]))
     return made[-1], Choice(made[-1].modes, _why(made, effects, enlarged), tuple(made[:-1]))
 

@@ -83,5 +83,7 @@ def _solve(
         shapes.reshape(TERMS, -1)[:, clamped.free] = moved
         mass = np.repeat(operator.mass, 3)[clamped.free]
         size = np.linalg.norm(shapes, axis=2).max(axis=1)
-        frequency = np.sqrt((moved * flat).sum(axis=1) / (moved**2 * mass).sum(axis=1))
+        work, inertia = (moved * flat).sum(axis=1), (moved**2 * mass).sum(axis=1)
+        squared = np.divide(work, inertia, out=np.zeros(TERMS), where=inertia > 0.0)
+        frequency = np.sqrt(squared)
     return Deflection(own=own, shapes=shapes, signs=np.ones(3), size=size, frequency=frequency)

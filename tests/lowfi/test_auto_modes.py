@@ -2,6 +2,7 @@
 agrees with the reference on the same mesh, and no mode vibrates where none matters."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from tests.highfi.support import COARSE
 from tests.lowfi.compliance import REFERENCE, reference_compliance
 from tipoff import highfi, lowfi
-from tipoff.lowfi import Numerics
+from tipoff.lowfi import Numerics, modes
 from tipoff.scenes import load
 
 STEEL = {"density": 7850.0, "youngs_modulus": 210e9, "poisson_ratio": 0.3}
@@ -116,6 +117,24 @@ def test_a_compliance_without_modes_says_so():
     )
     found = lowfi.run(REFERENCE.condition("phi15"), compliance=bare)
     assert found.numerics["modes_why"] == "none: this rail compliance holds no modes"
+
+
+def test_where_a_run_with_modes_fails_the_one_before_is_the_result():
+    """Control: modes that matter, in a run that goes through."""
+    for message in ("too many steps", ""):
+        runs = [
+            SimpleNamespace(
+                modes=count,
+                message=message if count else "",
+                neglected=lambda count=count: np.where(np.arange(20) < count, 0.0, 1.0),
+                judged=lambda: ("exited", SimpleNamespace(rate=[0.0, 0.0, 0.0])),
+            )
+            for count in range(21)
+        ]
+        found, choice = modes.choose(runs.__getitem__)
+        assert found.modes == choice.modes == (0 if message else 20)
+        assert (f"failed: {message}" in choice.why) is bool(message)
+        assert len(choice.runs) == 1
 
 
 def test_an_ensemble_has_one_number_of_modes():

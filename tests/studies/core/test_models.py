@@ -55,6 +55,18 @@ def study(tmp_path):
     return Study(scenes.load("tiny"), tmp_path / "tiny", defaults("tiny"))
 
 
+def test_a_model_that_does_not_settle_has_no_error_there(study, monkeypatch):
+    lost = ROW | {"condition": "h1", "settled_rate_error_deg_s": None, "judgement": "misses"}
+    for rows, said in (
+        ([ROW, lost], "at most 0.012 deg/s from the reference on the 1 conditions"),
+        ([lost], "it does not settle on 1 where the reference does"),
+    ):
+        found = TABLE | {"compliant": rows}
+        monkeypatch.setattr("tipoff.studies.agreement.stage.stored", lambda _, found=found: found)
+        words = kept.words(study, COMPLIANT)
+        assert said in words and "does not settle on 1" in words
+
+
 def test_the_command_line_has_the_names_of_the_models():
     assert tuple(item.value for item in options.ModelName) == MODELS
     assert tuple(item.value for item in options.SurrogateName) == SURROGATES

@@ -14,6 +14,7 @@ from tests.studies.shown import html
 from tipoff.lowfi.ensemble.rows import numbers
 from tipoff.scenes import load
 from tipoff.scenes.calibration import Calibration
+from tipoff.studies.agreement import verdicts
 from tipoff.studies.cli import app
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.study import Study
@@ -364,19 +365,22 @@ def test_the_model_error_is_the_largest_of_the_held_out_conditions(tmp_path, mon
     rows = [
         {
             "role": "held_out",
-            "reference_converged": converged,
+            "judged_as": judged_as,
+            "judgement": judgement,
             "settled_rate_error_xyz_deg_s": errors,
         }
-        for converged, errors in (
-            (True, [0.3, -0.4, 0.0]),
-            (True, None),
-            (True, [-0.1, 0.1, 0.2]),
-            (False, [8.0, 8.0, 8.0]),
+        for judged_as, judgement, errors in (
+            (verdicts.CURVE, verdicts.MISSES, [0.3, -0.4, 0.0]),
+            (verdicts.CURVE, verdicts.MISSES, None),
+            (verdicts.CURVE, verdicts.AGREES, [-0.1, 0.1, 0.2]),
+            (verdicts.CURVE, verdicts.CANNOT, [8.0, 8.0, 8.0]),
+            (verdicts.DISTRIBUTION, verdicts.AS_DISTRIBUTION, [7.0, 7.0, 7.0]),
         )
     ]
     fitted = {
         "role": "fitted",
-        "reference_converged": True,
+        "judged_as": verdicts.CURVE,
+        "judgement": verdicts.MISSES,
         "settled_rate_error_xyz_deg_s": [9.0, 9.0, 9.0],
     }
     monkeypatch.setattr(
@@ -384,6 +388,9 @@ def test_the_model_error_is_the_largest_of_the_held_out_conditions(tmp_path, mon
     )
     assert constants.margin(study, "springs").deg_s == pytest.approx(
         {"x": 0.3, "y": 0.4, "z": 0.2, "total": 0.5}
+    )
+    assert constants.margin(study, "springs").source == (
+        "largest of 2 held-out conditions; no single run judges 2 others, 1 did not settle"
     )
     assert constants.margin(study, "compliant").deg_s == pytest.approx(
         {"x": 0.1, "y": 0.1, "z": 0.2, "total": 0.06**0.5}

@@ -59,16 +59,21 @@ def words(
     if own:
         return _one(own[0])
     touched = [row for row in found if row["touches"]]
-    judged = [row for row in touched if _by_curve(row)]
+    judged = [row for row in touched if verdicts.is_judged_as_curve(row)]
     if not judged:
         return "not measured for this scene with this code (tipoff compare measures it)"
     where = "" if condition in (None, NOMINAL) else f"; {condition} is not one of them"
-    others = _others(touched)
-    return (
-        f"at most {max(row['settled_rate_error_deg_s'] for row in judged):.2g} deg/s from the "
-        f"reference on the "
-        f"{len(judged)} conditions where that is converged and pads touch{others}{where}"
-    )
+    errors = [row["settled_rate_error_deg_s"] for row in judged]
+    known = [error for error in errors if error is not None]
+    parts = []
+    if known:
+        parts.append(
+            f"at most {max(known):.2g} deg/s from the reference on the {len(known)} conditions where "
+            "that is converged and pads touch"
+        )
+    if lost := len(errors) - len(known):
+        parts.append(f"it does not settle on {lost} where the reference does")
+    return f"{'; '.join(parts)}{_others(touched)}{where}"
 
 
 def _others(rows: list[dict]) -> str:
@@ -81,10 +86,6 @@ def _others(rows: list[dict]) -> str:
     )
 
 
-def _by_curve(row: dict) -> bool:
-    return row["judged_as"] == verdicts.CURVE and row["reference_converged"]
-
-
 def _one(row: dict) -> str:
     if row["settled_rate_error_deg_s"] is None:
         return "unknown: the reference or this model did not settle"
@@ -93,7 +94,7 @@ def _one(row: dict) -> str:
         f"curves within "
         f"{100.0 * row['rate_relative_l2']:.2g} %"
     )
-    if _by_curve(row):
+    if verdicts.is_judged_as_curve(row):
         return off
     if row["judged_as"] == verdicts.DISTRIBUTION:
         return f"{off}, but 1 µm or the mesh moves the reference as much there; it {row['verdict']}"

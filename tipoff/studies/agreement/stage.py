@@ -19,7 +19,7 @@ from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core.progress import Board
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.store import Run
+from tipoff.studies.core.store import Run, with_modes_of
 from tipoff.studies.core.study import Study, require_success
 from tipoff.studies.cost.timing import speedups
 
@@ -256,16 +256,18 @@ def _twins(
     study: Study, title: str, request: Callable[..., Run], names: Iterable[str]
 ) -> dict[str, list[Trajectory]]:
     """The run of each condition, and its runs with 1 um more and less clearance."""
-    groups = {
-        name: [request(name)]
-        + [
-            request(name, overrides=changed, tag=f"-clearance-{sign}")
-            for sign, changed in clearances(study).items()
-        ]
-        for name in names
-    }
-    runs = iter(study.store.fill(title, [run for group in groups.values() for run in group]))
-    return {name: [next(runs) for _ in group] for name, group in groups.items()}
+    names, changes = list(names), clearances(study)
+    nominal = dict(zip(names, study.store.fill(title, [request(name) for name in names])))
+    changed = study.store.fill(
+        title,
+        [
+            with_modes_of(nominal[name], request(name, overrides=change, tag=f"-clearance-{sign}"))
+            for name in names
+            for sign, change in changes.items()
+        ],
+    )
+    runs = iter(changed)
+    return {name: [nominal[name], *(next(runs) for _ in changes)] for name in names}
 
 
 def clearances(study: Study) -> dict[str, dict[str, float]]:

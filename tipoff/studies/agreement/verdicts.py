@@ -194,6 +194,11 @@ def row(
     }
 
 
+def is_judged_as_curve(row: dict) -> bool:
+    """Whether single runs are compared on the condition of a ``row``, with a verdict."""
+    return row["judged_as"] == CURVE and row["judgement"] != CANNOT
+
+
 def judgement(passes: bool, converged: bool) -> str:
     """The word for a curve that ``passes`` its gates or not."""
     return CANNOT if not converged else AGREES if passes else MISSES

@@ -107,7 +107,8 @@ def seed_of(study: Study, options: Options) -> int:
 
 
 def _inputs(study: Study, options: Options) -> list:
-    return [draw(study, options).scene.conditions, verdicts.gates(study.scene)]
+    conditions = draw(study, options).scene.conditions
+    return [conditions, calibrate.constants(study), verdicts.gates(study.scene)]
 
 
 STAGE = Stage(NAME, __name__, Options, _inputs)

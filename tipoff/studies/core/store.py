@@ -15,7 +15,7 @@ thread, so it is called before.
 import functools
 from collections.abc import Callable, Sequence
 from concurrent.futures import as_completed
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -60,6 +60,14 @@ class Run:
             self.compliance.hash if self.compliance else None,
             sources.digest(f"tipoff.{self.fidelity}"),
         )
+
+
+def with_modes_of(nominal: Trajectory, run: Run) -> Run:
+    """``run`` with the rail modes that the ``nominal`` run chose. Two runs that are compared have the
+    same equations, or a change of modes would show as a change by what differs between them."""
+    if "modes_why" not in nominal.numerics:
+        return run
+    return replace(run, numerics=replace(run.numerics, modes=nominal.numerics["modes"]))
 
 
 def execute(

@@ -8,6 +8,7 @@ from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.agreement import stage as compare
+from tipoff.studies.agreement import verdicts
 from tipoff.studies.core.study import Study, read
 from tipoff.studies.populations.derived import law
 
@@ -52,29 +53,27 @@ class Margin(NamedTuple):
 
 
 def margin(study: Study, model: str) -> Margin:
-    """The largest errors on the held-out conditions of ``make compare`` with a converged reference;
-    without a converged reference the error has an unknown share of the reference's own. Where there
-    is no such condition, the largest residuals of the calibration."""
+    """The largest errors on the held-out conditions of ``make compare`` that single runs judge; on
+    others the error has an unknown share of the reference's own. Where there is no such condition,
+    the largest residuals of the calibration."""
     if study.scene.contact is None:
         return Margin(
             dict.fromkeys(("x", "y", "z", "total"), 0.0), "zero, because the scene has no contact"
         )
     table = (compare.stored(study) or {}).get("compliant" if model == COMPLIANT else "held_out", [])
     rows = [row for row in table if row["role"] == "held_out"]
-    errors = [
-        row["settled_rate_error_xyz_deg_s"]
-        for row in rows
-        if row["reference_converged"] and row["settled_rate_error_xyz_deg_s"] is not None
-    ]
+    judged = [row for row in rows if verdicts.is_judged_as_curve(row)]
+    found = [row["settled_rate_error_xyz_deg_s"] for row in judged]
+    errors = [error for error in found if error is not None]
     if errors:
-        found = {
+        largest = {
             axis: max(abs(error[place]) for error in errors) for place, axis in enumerate("xyz")
         }
-        found["total"] = max(sum(part**2 for part in error) ** 0.5 for error in errors)
+        largest["total"] = max(sum(part**2 for part in error) ** 0.5 for error in errors)
         return Margin(
-            found,
-            f"largest of {len(errors)} held-out conditions; {len(rows) - len(errors)} others have "
-            "no converged reference",
+            largest,
+            f"largest of {len(errors)} held-out conditions; no single run judges "
+            f"{len(rows) - len(judged)} others, {len(judged) - len(errors)} did not settle",
         )
     left = [
         row["settled_rate_error_deg_s"]

@@ -92,13 +92,13 @@ def run(study: Study, options: Options = Options()) -> dict:
     return STAGE.run(study, options, make)
 
 
-def _fitted(study: Study, options: Options) -> str | None:
+def fitted(study: Study, _options: object) -> str | None:
     """Key of the calibration, with which both models are compared; None without one."""
-    fitted = calibrate.stored(study)
-    return fitted["key"] if fitted else None
+    found = calibrate.stored(study)
+    return found["key"] if found else None
 
 
-STAGE = Stage(NAME, __name__, Options, _fitted)
+STAGE = Stage(NAME, __name__, Options, fitted)
 
 
 def _settled(quantity: answers.Quantity, found: Population, first: int | None = None) -> np.ndarray:

@@ -98,7 +98,7 @@ def run(study: Study, options: Options = Options()) -> dict:
     return STAGE.run(study, options, make)
 
 
-STAGE = Stage(NAME, __name__, Options)
+STAGE = Stage(NAME, __name__, Options, montecarlo.fitted)
 
 
 def checked(study: Study, options: Options) -> tuple[list[exceedance.Limit], Derived]:

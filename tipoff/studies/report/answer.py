@@ -213,9 +213,7 @@ def _model(page: "Page", compared: dict[str, dict]) -> list[str]:
     errors = [
         row["settled_rate_error_deg_s"]
         for row in compared.values()
-        if row["judged_as"] == verdicts.CURVE
-        and row["judgement"] != verdicts.CANNOT
-        and row["settled_rate_error_deg_s"] is not None
+        if verdicts.is_judged_as_curve(row) and row["settled_rate_error_deg_s"] is not None
     ]
     chaotic = [row for row in compared.values() if row["judged_as"] == verdicts.DISTRIBUTION]
     alike = sum(row["judgement"] == verdicts.AS_DISTRIBUTION for row in chaotic)

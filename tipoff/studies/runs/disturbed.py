@@ -9,7 +9,7 @@ from dataclasses import replace
 from tipoff.lowfi.ensemble import twins
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.agreement.verdicts import largest, settled_change
-from tipoff.studies.core.store import Run, execute
+from tipoff.studies.core.store import Run, execute, with_modes_of
 
 
 def of(run: Run, nominal: Trajectory, clearance_change: float) -> dict[str, float | None]:
@@ -18,8 +18,7 @@ def of(run: Run, nominal: Trajectory, clearance_change: float) -> dict[str, floa
     settle."""
     if run.calibration is not None:  # its clearance is the one that is changed
         run = replace(run, scene=run.calibration.apply(run.scene), calibration=None)
-    if "modes_why" in nominal.numerics:  # the same equations, or a change of modes would show
-        run = replace(run, numerics=replace(run.numerics, modes=nominal.numerics["modes"]))
+    run = with_modes_of(nominal, run)
     tight = twins.tight(run.numerics)
     found: dict[str, float | None] = {
         "tolerance": tight.relative_tolerance,
