@@ -11,7 +11,7 @@ from tests.studies.synthetic import flight
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.scenes import load
 from tipoff.studies.agreement import distribution_page, distributions, growth, interface, verdicts
-from tipoff.studies.agreement.stage import Candidate
+from tipoff.studies.agreement.candidates import Candidate
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core.settings import defaults
 from tipoff.studies.core.store import Store

@@ -27,6 +27,7 @@ _HEADS: tuple[Column | str, ...] = (
     Column("ISO 18571", form=".3f"),
     _percent("S-G magnitude"),
     _percent("S-G phase"),
+    "judged as",
     "verdict",
 )
 
@@ -64,11 +65,17 @@ def terminal(document: dict) -> list[Part]:
         _percent("rate L2"),
         Column("settled error", "deg/s", ".2g"),
         Column("reference ±", "deg/s", ".2g"),
+        "judged as",
         "verdict",
     )
     keys = ("condition", "rate_relative_l2", "settled_rate_error_deg_s")
     rows = [
-        [*(row[key] for key in keys), row["reference_uncertainty_deg_s"], row["verdict"]]
+        [
+            *(row[key] for key in keys),
+            row["reference_uncertainty_deg_s"],
+            row["judged_as"],
+            row["verdict"],
+        ]
         for row in document["compliant"]
     ]
     title = f"Compliant contact: {summary(document['compliant'])}."
@@ -265,6 +272,7 @@ def _agreement_row(row: dict) -> tuple:
         row["iso18571"],
         row["sprague_geers_magnitude"],
         row["sprague_geers_phase"],
+        row["judged_as"],
         row["verdict"],
     )
 

@@ -20,8 +20,8 @@ from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.ablation import stage as ablation
 from tipoff.studies.agreement import refined, verdicts
+from tipoff.studies.agreement.candidates import Candidate, candidates
 from tipoff.studies.agreement.metrics import compare
-from tipoff.studies.agreement.stage import Candidate, candidates
 from tipoff.studies.agreement.verdicts import Context
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core import machine
