@@ -75,11 +75,10 @@ def judged(study, count=36):
     return found
 
 
-def row(condition, converged=True, judgement=verdicts.AGREES, passes=True):
+def row(condition, converged=True, judgement=verdicts.AGREES):
     return {
         "condition": condition,
         "reference_converged": converged,
-        "passes": passes,
         "touches": True,
         "judged_as": verdicts.CURVE,
         "judgement": judgement,
@@ -175,9 +174,8 @@ def test_a_miss_at_another_stiffness_is_a_miss_of_a_distribution_too():
         item = {
             "condition": "phi15",
             "factor": factor,
-            "reference_converged": True,
-            "passes": False,
-            "chaotic": False,
+            "growth": growth.STABLE,
+            "judgement": verdicts.MISSES,
             "verdict": "misses: rate L2 2 x limit",
         }
         (found,) = interface.combined([agreeing], [item])

@@ -30,7 +30,6 @@ def judged(name, uncertainty, converged=True, passes=True):
         "settled_rate_error_deg_s": 0.0312,
         "floor_deg_s": 0.043,
         "reference_converged": converged,
-        "passes": passes,
         "judged_as": verdicts.CURVE,
         "judgement": (
             verdicts.CANNOT if not converged else verdicts.AGREES if passes else verdicts.MISSES

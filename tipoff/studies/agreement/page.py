@@ -110,12 +110,6 @@ def judged(rows: list[dict], name: str, notes: tuple[str, ...] = ()) -> Table:
     return Table(_HEADS, [_agreement_row(row) for row in rows], notes, "", name, kinds, dense=True)
 
 
-def _kind(row: dict) -> str:
-    if not row["reference_converged"] or row.get("chaotic"):
-        return "doubt"
-    return "good" if row["passes"] else "bad"
-
-
 def _simpler(document: dict) -> Fold:
     """Errors with parts of the rail compliance."""
     found = document["simpler"]
@@ -174,7 +168,7 @@ def interface(found: list[dict]) -> list[Part]:
         )
         for item in found
     ]
-    kinds = [_kind(item) for item in found]
+    kinds = [distribution_page.kind(item["judgement"]) for item in found]
     note = (
         "Both models on the coarse mesh; changes of the largest settled rate from factor 1. The "
         "interface stiffness is a property of the launcher: it moves both models alike. A condition "
@@ -216,13 +210,13 @@ def by_factor(found: list[dict]) -> list[Part]:
 
 def stiffnesses(found: list[dict]) -> str:
     """How many of the judged conditions agree at each factor."""
-    judged_rows = [item for item in found if item["reference_converged"] and not item["chaotic"]]
+    judged_rows = [item for item in found if item["judgement"] != verdicts.CANNOT]
     if not judged_rows:
-        return "the reference is converged on none of these conditions"
+        return "none of these conditions can be judged"
     parts = []
     for factor in dict.fromkeys(item["factor"] for item in found):
         own = [item for item in judged_rows if item["factor"] == factor]
-        agree = sum(item["passes"] for item in own)
+        agree = sum(item["judgement"] == verdicts.AGREES for item in own)
         parts.append(
             f"{agree} of {len(own)} judged conditions agree at {factor:g} times"
             if own
