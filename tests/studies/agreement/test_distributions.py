@@ -192,7 +192,9 @@ def test_the_cost_is_announced_before_it_is_paid(study, monkeypatch, capsys):
     """Control: nothing is said where every run is stored."""
     stub(monkeypatch, 0.0)
     judged(study, 5)
-    assert "5 runs of the reference on the coarse mesh" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "5 of 5 runs of the reference on elements of 16 mm are to be made" in said
+    assert "on one core" in said and "GB for each of" in said
     monkeypatch.setattr(Store, "path", lambda store, run: study.folder)
     monkeypatch.setattr("pathlib.Path.is_file", lambda path: True)
     judged(study, 5)

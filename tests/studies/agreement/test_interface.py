@@ -120,7 +120,7 @@ def test_a_chaotic_reference_is_not_judged(study, monkeypatch):
     found = rows(study)
     assert [row["verdict"] for row in found[:2]] == ["agrees", "agrees"]
     assert found[2]["judgement"] == verdicts.CANNOT and found[2]["growth"] == growth.CHAOTIC
-    assert found[2]["verdict"].startswith("cannot be judged: reference chaotic (settled rate ")
+    assert found[2]["verdict"].startswith("cannot be judged: reference chaotic (rate L2 ")
     assert page.stiffnesses(found).endswith("none is judged at 4 times")
     (whole,) = interface.combined([agreeing()], found)
     assert whole["judgement"] == "agrees"
@@ -135,7 +135,7 @@ def test_a_miss_where_growth_is_not_known_is_neither_agreement_nor_a_miss(study,
     assert [row["growth"] for row in found] == [None, None, growth.UNKNOWN]
     assert found[2]["judgement"] == verdicts.CANNOT
     assert found[2]["verdict"].startswith(
-        "cannot be judged: growth of 1 µm in the reference not known (settled rate "
+        "cannot be judged: growth of 1 µm in the reference not known (rate L2 "
     )
     assert page.stiffnesses(found).endswith("none is judged at 4 times")
     (whole,) = interface.combined([agreeing()], found)

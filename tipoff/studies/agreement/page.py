@@ -232,11 +232,16 @@ def _errors(row: dict) -> str:
 def summary(rows: list[dict], words: str = "") -> str:
     """How many of the ``words`` conditions agree, as curves and as distributions, cannot be judged, and
     miss."""
+    return " ".join(counts(rows, words))
+
+
+def counts(rows: list[dict], words: str = "") -> tuple[str, str]:
+    """The same in two parts: how many of how many, and the rest of the sentence."""
     count = {word: sum(row["judgement"] == word for row in rows) for word in verdicts.JUDGEMENTS}
     free = sum(row["judgement"] == verdicts.AGREES and not row["touches"] for row in rows)
     alike, missing = count[verdicts.AS_DISTRIBUTION], count[verdicts.MISSES]
-    return (
-        f"{count[verdicts.AGREES]} of {len(rows)} {words}conditions agree"
+    return f"{count[verdicts.AGREES]} of {len(rows)}", (
+        f"{words}conditions agree"
         + (f" ({free} of them without contact)" if free else "")
         + (
             f", {alike} {'agrees as a distribution' if alike == 1 else 'agree as distributions'}"
