@@ -160,5 +160,6 @@ def test_the_page_says_how_each_condition_was_judged(stubbed):
     ):
         words = " ".join(text.split())
         assert "judged as" in words and "distribution" in words and "curve" in words
+    assert "Conditions judged as distributions" in document.terminal(page.verdicts(found))
     (figure,) = [part for part in page.draw(found) if isinstance(part, document.Figure)]
     assert figure.chart.name == "blind-distributions"  # the agreement study has the other

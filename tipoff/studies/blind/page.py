@@ -57,7 +57,11 @@ def verdicts(found: dict) -> list[Part]:
         for row in found[model]
     ]
     count = len(found["conditions"])
-    return [Table(heads, rows, title=f"{count} conditions drawn with seed {found['seed']}")]
+    alike = found["distributions"]
+    return [
+        Table(heads, rows, title=f"{count} conditions drawn with seed {found['seed']}"),
+        *([distribution_page.verdicts_of(alike)] if alike else []),
+    ]
 
 
 def _drawn(conditions: dict) -> Table:
