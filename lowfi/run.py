@@ -42,6 +42,7 @@ def run(
     calibration: Calibration | None = None,
     numerics: Numerics | None = None,
     progress: Callable[[float], None] | None = None,
+    vibrates: Callable[[int], None] | None = None,
 ) -> Trajectory:
     """Solve ``scene`` with rigid bodies until the settled window is complete, a jam, or the scene's
     duration.
@@ -50,11 +51,13 @@ def run(
     through the interface stiffness of the reference; or ``springs``: the scene's contact law at
     each pad face, and a rigid ``compliance`` where the rails are warm. A ``calibration`` replaces
     constants that were fitted on the same model. ``progress`` is called with the fraction of the
-    duration done. A run whose ledgers do not close as promised is run again at tighter tolerances,
-    as message and cost report; one that keeps breaking a promise is diverged. Raises SceneError,
-    every fault listed, before the first step; a later failure is the status of the result."""
+    duration done, and ``vibrates`` with each number of modes that ``modes="auto"`` has chosen, before
+    the scene is run with them: their kernels may have to be compiled. A run whose ledgers do not
+    close as promised is run again at tighter tolerances, as message and cost report; one that keeps
+    breaking a promise is diverged. Raises SceneError, every fault listed, before the first step; a
+    later failure is the status of the result."""
     require(scene, model, compliance, calibration, numerics)
-    return solved(scene, calibration, numerics, progress, compliance)
+    return solved(scene, calibration, numerics, progress, compliance, vibrates)
 
 
 def solved(
@@ -63,6 +66,7 @@ def solved(
     numerics: Numerics | None = None,
     progress: Callable[[float], None] | None = None,
     compliance: RailCompliance | None = None,
+    vibrates: Callable[[int], None] | None = None,
 ) -> Trajectory:
     """``run`` without its check of the options: the model follows from ``compliance``."""
     began, cpu = clock.perf_counter(), clock.thread_time()
@@ -74,6 +78,8 @@ def solved(
 
     def made(modes: int | None = None) -> Run:
         chosen = numerics if modes is None else replace(numerics, modes=modes)
+        if modes and vibrates:
+            vibrates(modes)
         return _integrated(
             Run(scene, chosen, compliance, watches=modes is not None), progress, spent
         )

@@ -136,14 +136,6 @@ class Watch:
         observe.restore(loop.now, loop.state, saved)
         return found
 
-    def deflected(self, loop) -> np.ndarray:
-        """Static deflection (n,3) m of all rails under the present acceleration."""
-        found, terms = np.zeros_like(loop.state.displacement), self._terms(loop)
-        for solids in self.rails.deflections:
-            for solid in solids:
-                found[loop.system.number[solid.own]] = solid.under(terms)
-        return found
-
     def regroup(self, loop, rests: np.ndarray) -> None:
         """Let the rails ``rests`` (rails,) rest and step all others, at the present platform motion."""
         if (loop.rests == rests).all():

@@ -13,8 +13,7 @@ from tipoff.highfi.mesh.facets import area
 from tipoff.lowfi.compiled import LAWS as lowfi_laws
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.studies.ablation import stage as ablation
-from tipoff.studies.agreement import interface, refined
-from tipoff.studies.agreement import stage as compare
+from tipoff.studies.agreement import interface, refined, twins
 from tipoff.studies.core import machine
 from tipoff.studies.core.settings import Settings, defaults
 from tipoff.studies.core.study import Study
@@ -166,7 +165,7 @@ def test_matched_meshes():
 
 def test_closed_gap_is_only_opened(tmp_path):
     study = Study(scenes.load("tiny").replace({"contact.clearance": 0.0}), tmp_path, Settings())
-    assert compare.clearances(study) == {"plus": {"contact.clearance": 1e-6}}
+    assert twins.clearances(study) == {"plus": {"contact.clearance": 1e-6}}
 
 
 def test_refinements_change_one_thing_each(tmp_path):

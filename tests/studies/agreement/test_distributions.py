@@ -11,7 +11,7 @@ from tests.studies.synthetic import flight
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.scenes import load
 from tipoff.studies.agreement import distribution_page, distributions, growth, interface, verdicts
-from tipoff.studies.agreement.stage import Candidate
+from tipoff.studies.agreement.candidates import Candidate
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core.settings import defaults
 from tipoff.studies.core.store import Store
@@ -75,11 +75,10 @@ def judged(study, count=36):
     return found
 
 
-def row(condition, converged=True, judgement=verdicts.AGREES, passes=True):
+def row(condition, converged=True, judgement=verdicts.AGREES):
     return {
         "condition": condition,
         "reference_converged": converged,
-        "passes": passes,
         "touches": True,
         "judged_as": verdicts.CURVE,
         "judgement": judgement,
@@ -175,9 +174,8 @@ def test_a_miss_at_another_stiffness_is_a_miss_of_a_distribution_too():
         item = {
             "condition": "phi15",
             "factor": factor,
-            "reference_converged": True,
-            "passes": False,
-            "chaotic": False,
+            "growth": growth.STABLE,
+            "judgement": verdicts.MISSES,
             "verdict": "misses: rate L2 2 x limit",
         }
         (found,) = interface.combined([agreeing], [item])
@@ -194,7 +192,9 @@ def test_the_cost_is_announced_before_it_is_paid(study, monkeypatch, capsys):
     """Control: nothing is said where every run is stored."""
     stub(monkeypatch, 0.0)
     judged(study, 5)
-    assert "5 runs of the reference on the coarse mesh" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "5 of 5 runs of the reference on elements of 16 mm are to be made" in said
+    assert "on one core" in said and "GB for each of" in said
     monkeypatch.setattr(Store, "path", lambda store, run: study.folder)
     monkeypatch.setattr("pathlib.Path.is_file", lambda path: True)
     judged(study, 5)

@@ -8,7 +8,7 @@ import pytest
 
 from tests.studies.synthetic import flight
 from tipoff.scenes import load
-from tipoff.studies.agreement import interface, page, verdicts
+from tipoff.studies.agreement import growth, interface, page, verdicts
 from tipoff.studies.agreement.refinement import Refinement
 from tipoff.studies.agreement.verdicts import Context
 from tipoff.studies.core.settings import defaults
@@ -19,8 +19,11 @@ from tipoff.studies.render import document
 GATES = {"rate_relative_l2": 0.05, "velocity_relative_l2": 1e-3, "settled_rate_error_deg_s": 0.1}
 
 
-def context(uncertainty=0.01):
-    found = Refinement("phi15", "reference", "mesh", [2.0, 1.0], 0.0, 0.0, uncertainty, 1.0, "GCI")
+def context(uncertainty=0.01, known=True):
+    change = 0.0 if known else None
+    found = Refinement(
+        "phi15", "reference", "mesh", [2.0, 1.0], change, 0.0, uncertainty, 1.0, "GCI"
+    )
     return Context([], [found], GATES)
 
 
@@ -29,10 +32,10 @@ def study(tmp_path):
     return Study(load("tiny"), tmp_path, defaults("tiny"))
 
 
-def settle(monkeypatch, apart, grows=0.0):
+def settle(monkeypatch, apart, grows=0.0, lost=False):
     """Runs whose rate about y rises with the stiffness, in the surrogate off by ``apart(factor)``;
-    a changed clearance moves it by ``grows`` (deg/s) after the last of three contacts. Returns the
-    labels of the runs that were asked for."""
+    a changed clearance moves it by ``grows`` (deg/s) after the last of three contacts, or that run
+    is ``lost``. Returns the labels of the runs that were asked for."""
     nominal = load("tiny").contact
     asked = []
 
@@ -49,7 +52,8 @@ def settle(monkeypatch, apart, grows=0.0):
             later = np.select([t > 0.017, t > 0.011, t > 0.005], [1.0, 0.1, 0.01], 0.0)
             return np.outer(np.radians(rate + twin * grows * later), [0.0, 1.0, 0.0])
 
-        return flight(rates, pad_force=force)
+        status = "jammed" if lost and twin else "exited"
+        return flight(rates, pad_force=force, status=status)
 
     def fill(store, title, runs):
         asked.extend(run.label for run in runs)
@@ -59,11 +63,11 @@ def settle(monkeypatch, apart, grows=0.0):
     return asked
 
 
-def rows(study, uncertainty=0.01):
+def rows(study, uncertainty=0.01, known=True):
     def request(study, name, overrides, tag):
         return study.lowfi(name, None, overrides, tag)
 
-    return interface.rows(study, request, context(uncertainty))
+    return interface.rows(study, request, context(uncertainty, known))
 
 
 def test_both_models_move_and_agree_at_every_factor(study, monkeypatch):
@@ -79,13 +83,12 @@ def test_both_models_move_and_agree_at_every_factor(study, monkeypatch):
     assert [row["reference_change_deg_s"] for row in found] == pytest.approx([0.4, 0.0, 0.4])
     assert not any("clearance" in label for label in asked)
     (whole,) = interface.combined([agreeing()], found)
-    assert whole["passes"] and whole["verdict"] == "agrees"
+    assert whole["judgement"] == whole["verdict"] == "agrees"
 
 
 def agreeing():
     return {
         "condition": "phi15",
-        "passes": True,
         "reference_converged": True,
         "judgement": "agrees",
         "verdict": "agrees",
@@ -97,19 +100,17 @@ def test_a_miss_at_one_factor_is_a_miss_of_the_condition(study, monkeypatch):
     """Control: the same row where the reference is not converged is judged at no factor."""
     asked = settle(monkeypatch, lambda factor: 0.3 * (factor == 4.0))
     found = rows(study)
-    assert [row["passes"] for row in found] == [True, True, False]
-    assert "misses: " in found[2]["verdict"] and found[2]["chaotic"] is False
+    assert [row["judgement"] for row in found] == ["agrees", "agrees", "misses"]
+    assert "misses: " in found[2]["verdict"]
+    assert [row["growth"] for row in found] == [None, None, growth.STABLE]
     assert sum("clearance" in label for label in asked) == 2
     (whole,) = interface.combined([agreeing()], found)
-    assert (whole["passes"], whole["verdict"]) == (
-        False,
-        "misses: at 4 times the interface stiffness",
-    )
+    assert whole["verdict"] == "misses: at 4 times the interface stiffness"
     assert whole["judgement"] == verdicts.MISSES
     unknown = rows(study, uncertainty=0.2)
     assert {row["verdict"] for row in unknown} == {verdicts.NOT_CONVERGED}
     (same,) = interface.combined([agreeing()], unknown)
-    assert same["passes"]
+    assert same["judgement"] == "agrees"
 
 
 def test_a_chaotic_reference_is_not_judged(study, monkeypatch):
@@ -118,17 +119,51 @@ def test_a_chaotic_reference_is_not_judged(study, monkeypatch):
     settle(monkeypatch, lambda factor: 0.3 * (factor == 4.0), grows=5.0)
     found = rows(study)
     assert [row["verdict"] for row in found[:2]] == ["agrees", "agrees"]
-    assert found[2]["chaotic"] and found[2]["verdict"].endswith("x limit; reference chaotic")
+    assert found[2]["judgement"] == verdicts.CANNOT and found[2]["growth"] == growth.CHAOTIC
+    assert found[2]["verdict"].startswith("cannot be judged: reference chaotic (rate L2 ")
     assert page.stiffnesses(found).endswith("none is judged at 4 times")
     (whole,) = interface.combined([agreeing()], found)
-    assert whole["passes"] and not whole.get("chaotic")
+    assert whole["judgement"] == "agrees"
+
+
+def test_a_miss_where_growth_is_not_known_is_neither_agreement_nor_a_miss(study, monkeypatch):
+    """A run with another clearance does not settle, so nobody knows whether chaos is the cause.
+    Control: above, where it settles and does not grow, the same difference is a miss. A miss at another
+    factor decides alone."""
+    settle(monkeypatch, lambda factor: 0.3 * (factor == 4.0), lost=True)
+    found = rows(study)
+    assert [row["growth"] for row in found] == [None, None, growth.UNKNOWN]
+    assert found[2]["judgement"] == verdicts.CANNOT
+    assert found[2]["verdict"].startswith(
+        "cannot be judged: growth of 1 µm in the reference not known (rate L2 "
+    )
+    assert page.stiffnesses(found).endswith("none is judged at 4 times")
+    (whole,) = interface.combined([agreeing()], found)
+    assert (whole["judgement"], whole["verdict"]) == (
+        verdicts.CANNOT,
+        "cannot be judged: growth of 1 µm in the reference not known at 4 times the interface "
+        "stiffness",
+    )
+    missed = found[0] | {"judgement": verdicts.MISSES, "growth": growth.STABLE}
+    (whole,) = interface.combined([agreeing()], [missed, *found[1:]])
+    assert whole["verdict"] == "misses: at 0.25 times the interface stiffness"
+
+
+def test_a_reference_whose_convergence_is_not_known_is_judged_at_no_factor(study, monkeypatch):
+    """A mesh could not be refined. Control: above, a known one is judged at each. No twin is run."""
+    asked = settle(monkeypatch, lambda factor: 0.3)
+    found = rows(study, known=False)
+    assert {row["verdict"] for row in found} == {verdicts.NOT_KNOWN}
+    assert {row["judgement"] for row in found} == {verdicts.CANNOT}
+    assert not any("clearance" in label for label in asked)
 
 
 def test_a_condition_that_is_chaotic_at_the_nominal_stiffness_is_named(study, monkeypatch):
-    """It is judged as a distribution. Control: without growth the miss is one of a curve."""
-    for grows, names in ((5.0, ["phi15"]), (0.0, [])):
-        settle(monkeypatch, lambda factor: 0.3, grows=grows)
-        assert interface.chaotic(rows(study)) == names
+    """It is judged as a distribution, and so is one of which that is not known. Control: without growth
+    the miss is one of a curve."""
+    for grows, lost, names in ((5.0, False, ["phi15"]), (0.0, True, ["phi15"]), (0.0, False, [])):
+        settle(monkeypatch, lambda factor: 0.3, grows=grows, lost=lost)
+        assert interface.unsteady(rows(study)) == names
 
 
 def test_verdicts_are_on_the_page_in_markdown_and_in_the_terminal(study, monkeypatch):

@@ -56,7 +56,7 @@ def test_row_holds_every_key_other_tools_read():
 
 def test_agreement_within_all_gates():
     found = row(constant(3.0, 0.05, 4.0))
-    assert found["passes"] and found["verdict"] == found["judgement"] == "agrees"
+    assert found["verdict"] == found["judgement"] == "agrees"
     assert found["judged_as"] == "curve"
     assert found["rate_relative_l2"] == pytest.approx(0.01, rel=1e-9)
     assert found["settled_rate_error_deg_s"] == pytest.approx(0.05, rel=1e-9)
@@ -75,7 +75,6 @@ def test_agreement_in_free_flight_says_that_nothing_was_tested():
 
 def test_missed_gate_says_by_how_much():
     found = row(constant(3.0, 0.0, 4.4))
-    assert not found["passes"]
     assert found["gates"]["settled_rate_error_deg_s"]["times_limit"] == pytest.approx(4.0, rel=1e-9)
     assert found["verdict"] == "misses: rate L2 1.6 x limit, settled rate 4 x limit"
     assert found["judgement"] == "misses"
@@ -124,7 +123,7 @@ def test_run_that_did_not_settle_never_passes():
         flight(status="jammed"),
         Context(FLOORS, CONVERGED, GATES),
     )
-    assert not found["passes"]
+    assert found["judgement"] == verdicts.MISSES
     assert "settled rate unknown" in found["verdict"]
 
 

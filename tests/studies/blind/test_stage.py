@@ -3,17 +3,23 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.studies.synthetic import flight
 from tipoff import scenes
+from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.scenes.faults import SceneError
-from tipoff.studies.agreement import refined
+from tipoff.studies.agreement import distributions, refined, verdicts
 from tipoff.studies.agreement.verdicts import Context
+from tipoff.studies.blind import page
 from tipoff.studies.blind import stage as blind
 from tipoff.studies.blind.stage import Options
-from tipoff.studies.core.settings import Settings
+from tipoff.studies.calibration import stage as calibrate
+from tipoff.studies.core.settings import Settings, defaults
+from tipoff.studies.core.store import Store
 from tipoff.studies.core.study import Study
+from tipoff.studies.render import document
 
 
 def study_of(name: str = "reference") -> Study:
@@ -69,3 +75,91 @@ def test_no_drawn_condition_borrows_its_uncertainty(monkeypatch):
 def test_unknown_distributions_are_refused():
     with pytest.raises(SceneError, match="one of"):
         blind.draw(study_of(), Options(vary="unheard"))
+
+
+class Cases:
+    """Settled rates (rad/s) as the ensemble gives them."""
+
+    def __init__(self, values: np.ndarray):
+        self.values = values
+
+    def __getitem__(self, name):
+        return self
+
+
+def shifted(shift: float) -> list[float]:
+    """Rates (deg/s) that the position (m) at ignition moves by 2 deg/s per um."""
+    return [2e6 * shift, 0.0, 3.0]
+
+
+@pytest.fixture
+def stubbed(monkeypatch, tmp_path):
+    """A study of ``tiny`` whose runs are made up: 1 um moves those of blind1 by 1 deg/s, the mesh those of
+    blind2 by 1 deg/s for each halving, and nothing those of blind3. Both models are the same. Also the
+    labels of the runs that were asked for."""
+    asked = []
+
+    def rate(run) -> list[float]:
+        if "-neighbour-" in run.label:
+            return shifted(run.scene.initial.position.y)
+        twin = run.label.startswith("blind1") and "-clearance-" in run.label
+        halvings = 2 * run.label.endswith("-coarsest") + run.label.endswith("-coarse")
+        return [0.0, 0.0, 3.0 + twin + halvings * run.label.startswith("blind2")]
+
+    def fill(store, title, runs):
+        asked.extend(run.label for run in runs)
+        return [
+            flight(lambda t, run=run: np.tile(np.radians(rate(run)), (t.size, 1))) for run in runs
+        ]
+
+    def run_many(scene, rows, model, **_):
+        return Cases(np.radians([shifted(row["initial.position.y"]) for row in rows]))
+
+    monkeypatch.setattr(Store, "fill", fill)
+    monkeypatch.setattr(distributions.lowfi, "run_many", run_many)
+    monkeypatch.setattr(Study, "rail_compliances", lambda _, names, size=None: dict.fromkeys(names))
+    monkeypatch.setattr(calibrate, "load", lambda study: None)
+    monkeypatch.setattr(calibrate, "constants", lambda study: None)
+    return Study(scenes.load("tiny"), tmp_path, defaults("tiny")), asked
+
+
+def test_conditions_that_no_single_run_can_judge_are_judged_as_distributions(stubbed):
+    """As in the agreement study, and both models agree there. Control: a condition that 1 um and the
+    mesh do not move stays a curve, without neighbours."""
+    study, asked = stubbed
+    found = blind.run(study, Options(cases=3, seed=1, neighbours=32))
+    for model in ("calibrated", "compliant"):
+        assert [(row["condition"], row["judged_as"], row["judgement"]) for row in found[model]] == [
+            ("blind1", "distribution", verdicts.AS_DISTRIBUTION),
+            ("blind2", "distribution", verdicts.AS_DISTRIBUTION),
+            ("blind3", "curve", verdicts.AGREES),
+        ]
+    assert [(item["condition"], item["neighbours"]) for item in found["distributions"]] == [
+        ("blind1", 32),
+        ("blind2", 8),  # 1 um does not move it, so a quarter is enough
+    ]
+    kept = {f"blind1-neighbour-{number}-coarse" for number in range(32)}
+    assert kept <= set(asked) and not any("blind3-neighbour" in label for label in asked)
+    sensitive = {
+        item["condition"]: item["sensitive"]
+        for item in found["growth"]
+        if item["model"] == FINITE_ELEMENTS
+    }
+    assert sensitive == {"blind1": True, "blind2": False, "blind3": False}
+    assert blind.STAGE.stored(study) is not None
+
+
+def test_the_page_says_how_each_condition_was_judged(stubbed):
+    """In the terminal too; the number of neighbours is that of the settings unless one is given."""
+    study, _ = stubbed
+    found = blind.run(study, Options(cases=3, seed=1))
+    assert [item["neighbours"] for item in found["distributions"]] == [5, 5]
+    for text in (
+        document.markdown(page.draw(found)),
+        document.terminal(page.verdicts(found)),
+    ):
+        words = " ".join(text.split())
+        assert "judged as" in words and "distribution" in words and "curve" in words
+    assert "Conditions judged as distributions" in document.terminal(page.verdicts(found))
+    (figure,) = [part for part in page.draw(found) if isinstance(part, document.Figure)]
+    assert figure.chart.name == "blind-distributions"  # the agreement study has the other

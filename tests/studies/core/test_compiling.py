@@ -3,9 +3,10 @@
 import pytest
 
 from tests.lowfi.compliance import REFERENCE, reference_compliance
+from tests.studies.synthetic import flight
 from tipoff import lowfi, scenes
-from tipoff.studies.core import compiling
-from tipoff.studies.core.store import Run
+from tipoff.studies.core import compiled, compiling
+from tipoff.studies.core.store import Run, Store
 
 FLYING = scenes.load("tiny").replace({"contact": None, "friction": None})
 
@@ -21,7 +22,7 @@ def runs(monkeypatch, tmp_path):
     ]
 
 
-def compiled(folder):
+def machine_codes(folder):
     """Number of machine codes of the time loop below ``folder``."""
     return len(list(folder.glob("kernels/*integrate*/**/integrate.integrate-*.nbc")))
 
@@ -29,7 +30,7 @@ def compiled(folder):
 @pytest.mark.slow
 def test_each_kernel_is_compiled_once(runs, tmp_path, capfd):
     compiling.compile_ahead("kernels", runs, workers=2)
-    assert compiled(tmp_path) == 2
+    assert machine_codes(tmp_path) == 2
     assert "kernels 2/2" in capfd.readouterr().err
     compiling.compile_ahead("kernels", runs, workers=2)
     assert capfd.readouterr().err == ""
@@ -38,31 +39,69 @@ def test_each_kernel_is_compiled_once(runs, tmp_path, capfd):
 @pytest.mark.parametrize("count, workers", [(3, 1), (1, 2)])
 def test_a_run_alone_compiles_its_own(runs, tmp_path, count, workers):
     compiling.compile_ahead("kernels", runs[:count], workers)
-    assert compiled(tmp_path) == 0
+    assert machine_codes(tmp_path) == 0
 
 
 def test_the_first_compilation_is_announced_once(runs, capfd):
     first, other, same = runs
-    compiling.announce(first)
+    compiled.announce(first)
     assert "compiling the kernels of model compliant" in capfd.readouterr().err
-    compiling.remember(first)
-    compiling.announce(same)  # the same effects
+    compiled.remember(first)
+    compiled.announce(same)  # the same effects
     assert capfd.readouterr().err == ""
-    compiling.announce(other)
+    compiled.announce(other)
     said = capfd.readouterr().err
     assert "once" in said and "modes" not in said  # nothing presses a rail
+
+
+def pressed(modes) -> Run:
+    """A run whose rails have ``modes``."""
+    numerics = lowfi.Numerics(modes=modes)
+    return Run("lowfi", "a", REFERENCE, numerics, compliance=reference_compliance())
 
 
 def test_kernels_with_modes_of_the_rails_are_others(monkeypatch, tmp_path, capfd):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
 
-    def announced(modes) -> str:
-        numerics = lowfi.Numerics(modes=modes)
-        run = Run("lowfi", "", REFERENCE, numerics, compliance=reference_compliance())
-        compiling.announce(run)
-        compiling.remember(run)
+    def announced(modes, chosen=False) -> str:
+        compiled.announce(pressed(modes), chosen)
+        compiled.remember(pressed(modes), chosen)
         return capfd.readouterr().err
 
     assert "once, and a minute more if modes" in announced("auto")
+    # it began without modes, so those with modes are not there
+    assert "with modes of the rails" in announced("auto", chosen=True)
     assert "once\n" in announced(0) and "once\n" in announced(4)
     assert [announced(modes) for modes in ("auto", 0, 20)] == ["", "", ""]
+    assert announced("auto", chosen=True) == ""
+
+
+def test_modes_that_are_there_are_not_announced_as_missing(monkeypatch, tmp_path, capfd):
+    """Control: above, where they are not there."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    compiled.remember(pressed("auto"), chosen=True)
+    compiled.announce(pressed("auto"))
+    assert "once\n" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("chosen", [(), (2, 20)])
+def test_a_run_that_chooses_modes_announces_their_kernels_before_it_goes_on(
+    monkeypatch, tmp_path, capfd, chosen
+):
+    """And notes them only then. Control: a run that chooses none."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    said = []
+
+    def run(scene, model, *, vibrates, **_):
+        for modes in chosen:
+            vibrates(modes)
+            said.append(capfd.readouterr().err)
+        return flight(model=model)
+
+    monkeypatch.setattr(lowfi, "run", run)
+    store = Store(tmp_path / "out")
+    asked = pressed("auto")
+    store.fill("lowfi", [asked])
+    assert ["with modes of the rails" in text for text in said] == ([True, False] if chosen else [])
+    assert compiled.mark(asked, chosen=True).is_file() == bool(chosen)
+    assert not compiled.mark(asked).is_file()  # who asked for the run notes what it begins with

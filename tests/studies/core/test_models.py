@@ -21,7 +21,6 @@ from tipoff.studies.runs import single
 ROW = {
     "condition": "phi15",
     "reference_converged": True,
-    "passes": True,
     "touches": True,
     "judged_as": "curve",
     "judgement": "agrees",
@@ -32,7 +31,6 @@ ROW = {
 UNKNOWN = ROW | {
     "condition": "h8",
     "reference_converged": False,
-    "passes": False,
     "judgement": "cannot be judged",
     "verdict": "cannot be judged: reference not converged",
 }
@@ -150,7 +148,7 @@ def test_a_run_is_not_answered_by_a_model_that_its_agreement_rejects(study, monk
     """Controls: the same condition by name; one whose reference is not converged."""
     missed = TABLE | {
         "compliant": [
-            ROW | {"passes": False, "judgement": "misses", "verdict": "misses: rate L2 2 x limit"},
+            ROW | {"judgement": "misses", "verdict": "misses: rate L2 2 x limit"},
             TABLE["compliant"][1],
         ]
     }

@@ -45,7 +45,6 @@ def test_a_model_that_the_agreement_table_rejects_must_be_named(tmp_path, monkey
         {
             "condition": "h1",
             "reference_converged": True,
-            "passes": False,
             "judged_as": "curve",
             "judgement": "misses",
             "verdict": "misses: settled rate 3 x limit",
@@ -53,7 +52,6 @@ def test_a_model_that_the_agreement_table_rejects_must_be_named(tmp_path, monkey
         {
             "condition": "h8",
             "reference_converged": False,
-            "passes": False,
             "judged_as": "curve",
             "judgement": "cannot be judged",
             "verdict": "cannot be judged: reference not converged",

@@ -30,7 +30,7 @@ def judged(name, uncertainty, converged=True, passes=True):
         "settled_rate_error_deg_s": 0.0312,
         "floor_deg_s": 0.043,
         "reference_converged": converged,
-        "passes": passes,
+        "touches": True,
         "judged_as": verdicts.CURVE,
         "judgement": (
             verdicts.CANNOT if not converged else verdicts.AGREES if passes else verdicts.MISSES
@@ -79,7 +79,7 @@ def test_limits_that_the_user_gave(page):
 
 def test_agreement_speed_and_trust(page):
     shown = html(answer.draw(page))
-    assert "1 agree, 1 cannot be judged, 0 miss" in shown
+    assert "<b>1 of 2</b><span>conditions agree, 1 cannot be judged, 0 miss: surr" in shown
     assert "183 ×" in shown and "not at equal accuracy" in shown
     assert "Numerics: " in shown and "not converged on phi15" in shown
     assert "Model: " in shown and "within 0.031 deg/s" in shown
@@ -90,18 +90,11 @@ def test_agreement_speed_and_trust(page):
     assert "at least, at equal accuracy (mesh of 4 mm)" in html(answer.draw(page))
 
 
-def test_counts():
-    rows = [judged("a", 0.0), judged("b", 0.0, passes=False), judged("c", 0.0, converged=False)]
-    assert answer.counts(rows) == "1 agree, 1 cannot be judged, 1 misses"
-    alike = rows[0] | {"judged_as": verdicts.DISTRIBUTION, "judgement": verdicts.AS_DISTRIBUTION}
-    assert answer.counts([alike]) == "0 agree, 1 agree as distributions, 0 cannot be judged, 0 miss"
-
-
 def test_conditions_judged_as_distributions_are_said_apart(page):
     rows = page.documents["agreement"]["compliant"]
     rows[0] |= {"judged_as": verdicts.DISTRIBUTION, "judgement": verdicts.MISSES}
     shown = html(answer.draw(page))
-    assert "1 agree, 0 cannot be judged, 1 misses" in shown
+    assert "<b>1 of 2</b><span>conditions agree, 0 cannot be judged, 1 misses: surr" in shown
     assert "as distributions 0 of 1 conditions agree" in shown
 
 

@@ -181,7 +181,6 @@ def judged(condition, l2, settled, touches=True, converged=True, passes=True):
         "settled_rate_error_deg_s": settled,
         "touches": touches,
         "reference_converged": converged,
-        "passes": passes,
         "judged_as": "curve",
         "judgement": verdicts.judgement(passes, converged),
     }

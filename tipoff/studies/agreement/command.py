@@ -1,11 +1,18 @@
 """``tipoff compare``."""
 
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import ElementSize, Json, Out, SceneName, Set, Workers
+from tipoff.studies.commands.options import (
+    ElementSize,
+    Json,
+    Neighbours,
+    Out,
+    SceneName,
+    Set,
+    Workers,
+)
 from tipoff.studies.commands.running import guarded, study_of
 
 
@@ -18,17 +25,7 @@ def compare(
     scene: SceneName = "reference",
     out: Out = Path("out"),
     set_: Set = None,
-    neighbours: Annotated[
-        int | None,
-        typer.Option(
-            "--neighbours",
-            metavar="N",
-            min=5,
-            max=10_000,
-            help="Runs of the reference within 1 µm of each condition that is judged as a "
-            "distribution; default: as many as in the present result, else 32 (scene tiny: 5).",
-        ),
-    ] = None,
+    neighbours: Neighbours = None,
     element_size: ElementSize = None,
     workers: Workers = None,
     json_: Json = False,

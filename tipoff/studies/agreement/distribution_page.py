@@ -14,8 +14,9 @@ _CAPTION = (
 )
 
 
-def parts(document: dict) -> list[Part]:
-    """Figure and tables of agreement.json; nothing where every condition is judged as a curve."""
+def parts(document: dict, name: str = "distributions") -> list[Part]:
+    """Figure, called ``name``, and tables of a result file; nothing where every condition is judged as
+    a curve."""
     found = document["distributions"]
     if not found:
         return []
@@ -23,8 +24,8 @@ def parts(document: dict) -> list[Part]:
     return [
         f"Conditions that no single run can judge, as distributions over neighbours within "
         f"±{1e6 * document['clearance_change_m']:g} µm: {sentence(found)}.",
-        Figure(picture(shown), _CAPTION.format(count=shown["neighbours"], **shown)),
-        summary(found),
+        Figure(picture(shown, name), _CAPTION.format(count=shown["neighbours"], **shown)),
+        summary(found, name),
         Fold("Every quantile of every rate", [quantiles(found)]),
     ]
 
@@ -44,7 +45,7 @@ def sentence(found: list[dict], model: str = "compliant") -> str:
     return "; ".join(f"{item['condition']} {item['models'][model]['verdict']}" for item in found)
 
 
-def picture(item: dict) -> Chart:
+def picture(item: dict, name: str = "distributions") -> Chart:
     """Empirical distributions of the settled rates on one condition, a panel for each axis."""
     panels = []
     for place, axis in enumerate(AXES):
@@ -62,10 +63,10 @@ def picture(item: dict) -> Chart:
         panels.append(
             Panel(f"{item['condition']}, rate {axis}", "settled rate (deg/s)", "share", lines)
         )
-    return Chart("distributions", panels, columns=3, height=280)
+    return Chart(name, panels, columns=3, height=280)
 
 
-def summary(found: list[dict]) -> Table:
+def summary(found: list[dict], name: str = "distributions") -> Table:
     """One row for each condition and model: the comparison that decides."""
     heads = (
         "condition",
@@ -92,7 +93,7 @@ def summary(found: list[dict]) -> Table:
         f"{MARGIN_SHARE:.0%} of the distance between the 10 and 90 % quantiles of the reference. Both "
         "models on the coarse mesh. docs/chaotic_conditions.md."
     )
-    return Table(heads, rows, (note,), "", "distributions", kinds, dense=True)
+    return Table(heads, rows, (note,), "", name, kinds, dense=True)
 
 
 def verdicts_of(found: list[dict]) -> Table:

@@ -17,7 +17,8 @@ from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.agreement import equivalence, neighbours, verdicts
 from tipoff.studies.agreement.growth import Growth
-from tipoff.studies.core.progress import Board, say
+from tipoff.studies.core.announcing import announce
+from tipoff.studies.core.progress import Board
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study
 
@@ -39,15 +40,15 @@ class Surrogate(Protocol):
 
 
 def counts(
-    rows: Iterable[dict], growths: Iterable[Growth], chaotic: Iterable[str], draws: int
+    rows: Iterable[dict], growths: Iterable[Growth], unsteady: Iterable[str], draws: int
 ) -> dict[str, int]:
     """Number of neighbours by condition, for those that are judged as distributions: ``draws``, or a
     quarter where the reference is not converged though 1 um does not move it by more than the limit.
-    ``chaotic`` conditions were found so elsewhere."""
+    ``unsteady`` conditions, which no single run can judge either, were found elsewhere."""
     found = {item.condition: item for item in growths if item.model == FINITE_ELEMENTS}
     # one whose twin did not settle counts as sensitive
     sensitive = {name for name, item in found.items() if item.sensitive is not False}
-    sensitive |= set(chaotic)
+    sensitive |= set(unsteady)
     few = max(_LEAST, draws // _STABLE_SHARE)
     return {
         row["condition"]: draws if row["condition"] in sensitive else few
@@ -97,26 +98,9 @@ def _reference(
         for name, count in wanted.items()
     }
     every = [run for own in runs.values() for run in own]
-    _announce(study, every)
+    announce(study, every)
     made = iter(study.store.fill("neighbours", every))
     return {name: np.array([_rates(next(made)) for _ in own]) for name, own in runs.items()}
-
-
-def _announce(study: Study, runs: Sequence[Run]) -> None:
-    """Says how many runs are missing and how long they take, by the time of a run on this mesh."""
-    missing = [run for run in runs if not study.store.path(run).is_file()]
-    if not missing:
-        return
-    name = missing[0].label.split("-neighbour-")[0]
-    nominal = study.store.load(study.coarse(name))
-    each = nominal and nominal.cost.get("cpu_s")
-    time = (
-        f", {each:.2g} s of processor time each, about "
-        f"{each * len(missing) / study.settings.workers / 60.0:.2g} min in all"
-        if each
-        else ""
-    )
-    say(f"  neighbours: {len(missing)} runs of the reference on the coarse mesh{time}")
 
 
 def _rates(run: Trajectory) -> list[float]:

@@ -14,7 +14,7 @@ it after the same contact. Twins touch at different instants, so s peaks while o
 in contact; a peak that ends with the contact is a shift of time. Curves can be compared up to the
 horizon of the reference. **Sensitive**: 1 um changes a settled rate by more than the gate.
 **Chaotic**: sensitive, and d after the last of n contacts is above n d_1, so that growth from
-contact to contact is the cause.
+contact to contact is the cause. All of it is **not known** where a run did not settle.
 """
 
 import math
@@ -26,6 +26,8 @@ from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.agreement.metrics import common_time
 from tipoff.studies.agreement.verdicts import largest, settled_change
 
+STABLE, SENSITIVE, CHAOTIC = "stable", "sensitive, not chaotic", "chaotic"
+UNKNOWN = "not known: a run did not settle"
 _BOUNCE = 1e-3  # s: contacts closer than this count as one
 _DRAWN = 300  # points of a curve that result files keep
 
@@ -101,6 +103,13 @@ def growth(
         chaotic,
         *_drawn(time, apart),
     )
+
+
+def verdict(sensitive: bool | None, chaotic: bool | None) -> str:
+    """One word for whether 1 um grows: ``STABLE``, ``SENSITIVE``, ``CHAOTIC`` or ``UNKNOWN``."""
+    if sensitive is None:
+        return UNKNOWN
+    return CHAOTIC if chaotic else SENSITIVE if sensitive else STABLE
 
 
 def separation(time: np.ndarray, nominal: Trajectory, twins: list[Trajectory]) -> np.ndarray:

@@ -4,6 +4,7 @@ the time up to which curves can be compared."""
 from typing import TYPE_CHECKING
 
 from tipoff.mechanics.models import FINITE_ELEMENTS
+from tipoff.studies.agreement import growth
 from tipoff.studies.render.chart import NAVY, VERMILION, Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Part
 from tipoff.studies.render.table import Column, Table
@@ -110,7 +111,7 @@ def tables(found: list[dict]) -> list[Part]:
             item["exponent_per_s"],
             item["settled_growth_deg_s_um"],
             _horizon(item),
-            verdict(item),
+            growth.verdict(item["sensitive"], item["chaotic"]),
         )
         for item in found
     ]
@@ -123,20 +124,8 @@ def tables(found: list[dict]) -> list[Part]:
 def sentence(item: dict) -> str:
     """Up to when curves of one condition can be compared."""
     horizon = _horizon(item) if item["horizon_s"] is not None else f"{1e3 * item['end_s']:.1f}"
-    return f"{item['condition']}: {verdict(item)}; curves can be compared up to {horizon} ms"
-
-
-def verdict(item: dict) -> str:
-    """Whether 1 um grows on one condition."""
-    if item["sensitive"] is None:
-        return "a run did not settle"
-    return (
-        "chaotic"
-        if item["chaotic"]
-        else "sensitive, not chaotic"
-        if item["sensitive"]
-        else "stable"
-    )
+    word = growth.verdict(item["sensitive"], item["chaotic"])
+    return f"{item['condition']}: {word}; curves can be compared up to {horizon} ms"
 
 
 def _horizon(item: dict) -> str:

@@ -7,8 +7,9 @@ compliance of that same mesh, so that the mesh is no part of their difference.
 
 A condition is judged at a stiffness where the reference is converged and not chaotic. Chaos is
 looked for where the models miss a limit: there the reference also runs with 1 um more and less
-clearance. A condition that is chaotic at the nominal stiffness is judged as a distribution
-(``agreement.distributions``).
+clearance. Where one of these runs does not settle, nobody knows whether the miss is one of the
+model, and the condition cannot be judged. A condition that is chaotic at the nominal stiffness, or of
+which that is not known, is judged as a distribution (``agreement.distributions``).
 """
 
 from collections.abc import Callable, Sequence
@@ -23,7 +24,10 @@ from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study
 
 FACTORS = (0.25, 1.0, 4.0)
-CHAOTIC = "reference chaotic"
+_NOT_JUDGED = {
+    growth.CHAOTIC: "reference chaotic",
+    growth.UNKNOWN: "growth of 1 µm in the reference not known",
+}
 
 
 class _Pair(NamedTuple):
@@ -56,23 +60,43 @@ def rows(study: Study, request: Callable[..., Run], context: Context) -> list[di
     pairs = _pairs(study, request, names)
     nominal = {pair.condition: pair for pair in pairs if pair.factor == 1.0}
     found = [_row(study, pair, nominal[pair.condition], context) for pair in pairs]
-    missed = [row for row in found if row["reference_converged"] and not row["passes"]]
-    grows = _chaotic(study, [(row["condition"], row["factor"]) for row in missed], context)
-    for row in missed:
-        row["chaotic"] = grows[row["condition"], row["factor"]]
-        if row["chaotic"]:
-            row["verdict"] = f"{row['verdict']}; {CHAOTIC}"
-    return found
+    missed = [(row["condition"], row["factor"]) for row in found if _misses(row)]
+    grown = _growths(study, missed, context)
+    return [_regarding(row, grown.get((row["condition"], row["factor"]))) for row in found]
 
 
-def chaotic(found: Sequence[dict]) -> list[str]:
-    """Conditions whose reference is chaotic at the nominal stiffness."""
-    return [item["condition"] for item in found if item["factor"] == 1.0 and item["chaotic"]]
+def _misses(row: dict) -> bool:
+    return row["judgement"] == verdicts.MISSES
+
+
+def _regarding(row: dict, grown: str | None) -> dict:
+    """A row with the ``growth`` of 1 um in the reference, None where nobody looked for it. A miss can
+    be judged only where 1 um does not grow."""
+    why = None if grown is None else _NOT_JUDGED.get(grown)
+    if why is None:
+        return row | {"growth": grown}
+    missed = row["verdict"].removeprefix(f"{verdicts.MISSES}: ")
+    return row | {
+        "growth": grown,
+        "judgement": verdicts.CANNOT,
+        "verdict": f"{verdicts.CANNOT}: {why} ({missed})",
+    }
+
+
+def unsteady(found: Sequence[dict]) -> list[str]:
+    """Conditions that no single run can judge at the nominal stiffness: their reference is chaotic, or
+    that is not known."""
+    return [
+        item["condition"]
+        for item in found
+        if item["factor"] == 1.0 and item["growth"] in _NOT_JUDGED
+    ]
 
 
 def combined(agreement: Sequence[dict], found: Sequence[dict]) -> list[dict]:
     """Rows of the agreement table with the verdicts at each factor under ``interface``. A condition
-    agrees where it does at every factor at which it is judged."""
+    agrees where it does at every factor at which it is judged, and cannot be judged where it misses
+    at none and the growth of 1 um is not known at one."""
     return [
         _combined(row, [item for item in found if item["condition"] == row["condition"]])
         for row in agreement
@@ -81,24 +105,25 @@ def combined(agreement: Sequence[dict], found: Sequence[dict]) -> list[dict]:
 
 def _combined(row: dict, own: list[dict]) -> dict:
     as_distribution = row["judgement"] == verdicts.AS_DISTRIBUTION
-    misses = [
-        item
-        for item in own
-        if item["reference_converged"]
-        and not item["passes"]
-        and not item["chaotic"]
-        # the distribution has judged this factor
-        and not (as_distribution and item["factor"] == 1.0)
-    ]
-    verdicts_of = [{"factor": item["factor"], "verdict": item["verdict"]} for item in own]
-    if row["judgement"] not in (verdicts.AGREES, verdicts.AS_DISTRIBUTION) or not misses:
-        return row | {"interface": verdicts_of}
-    where = ", ".join(f"{item['factor']:g}" for item in misses)
-    return row | {
-        "interface": verdicts_of,
-        "passes": False,
-        "judgement": verdicts.MISSES,
-        "verdict": f"{verdicts.MISSES}: at {where} times the interface stiffness",
+    # the distribution has judged the nominal stiffness
+    further = [item for item in own if not (as_distribution and item["factor"] == 1.0)]
+    row = row | {
+        "interface": [{"factor": item["factor"], "verdict": item["verdict"]} for item in own]
+    }
+    if row["judgement"] not in (verdicts.AGREES, verdicts.AS_DISTRIBUTION):
+        return row
+    if misses := [item for item in further if _misses(item)]:
+        return row | _said(verdicts.MISSES, "", misses)
+    if unknown := [item for item in further if item["growth"] == growth.UNKNOWN]:
+        return row | _said(verdicts.CANNOT, f"{_NOT_JUDGED[growth.UNKNOWN]} ", unknown)
+    return row
+
+
+def _said(word: str, why: str, items: Sequence[dict]) -> dict[str, str]:
+    where = ", ".join(f"{item['factor']:g}" for item in items)
+    return {
+        "judgement": word,
+        "verdict": f"{word}: {why}at {where} times the interface stiffness",
     }
 
 
@@ -119,11 +144,9 @@ def _pairs(study: Study, request: Callable[..., Run], names: Sequence[str]) -> l
 def _row(study: Study, pair: _Pair, nominal: _Pair, context: Context) -> dict:
     assert study.scene.contact is not None
     difference = compare(pair.reference, pair.surrogate)
-    gates = {
-        name: verdicts.gate(getattr(difference, name), limit)
-        for name, limit in context.limits(context.floor(pair.condition)[0]).items()
-    }
-    converged = context.converged(pair.condition)
+    judged = verdicts.single(
+        pair.condition, difference, context, bool(pair.reference.pad_force.any())
+    )
     return {
         "condition": pair.condition,
         "factor": pair.factor,
@@ -133,18 +156,16 @@ def _row(study: Study, pair: _Pair, nominal: _Pair, context: Context) -> dict:
         "rate_relative_l2": difference.rate_relative_l2,
         "velocity_relative_l2": difference.velocity_relative_l2,
         "settled_rate_error_deg_s": difference.settled_rate_error_deg_s,
-        "reference_converged": converged,
-        "chaotic": None,
-        "passes": all(item["passes"] for item in gates.values()),
-        "verdict": verdicts.verdict(gates, converged, bool(pair.reference.pad_force.any())),
+        "judgement": judged["judgement"],
+        "verdict": judged["verdict"],
     }
 
 
-def _chaotic(
+def _growths(
     study: Study, places: Sequence[tuple[str, float]], context: Context
-) -> dict[tuple[str, float], bool | None]:
+) -> dict[tuple[str, float], str]:
     """Whether 1 um of clearance grows from contact to contact of the reference, by condition and
-    factor; None where a run did not settle."""
+    factor, in the words of ``growth.verdict``."""
     assert study.scene.contact is not None
     change = study.settings.clearance_change
     clearances = study.scene.contact.either_way(change)
@@ -169,5 +190,5 @@ def _chaotic(
     for name, factor in places:
         nominal, *twins = (next(runs) for _ in range(1 + len(clearances)))
         grown = growth.growth(name, FINITE_ELEMENTS, nominal, twins, change, gate)
-        found[name, factor] = grown.chaotic
+        found[name, factor] = growth.verdict(grown.sensitive, grown.chaotic)
     return found

@@ -27,6 +27,7 @@ _HEADS: tuple[Column | str, ...] = (
     Column("ISO 18571", form=".3f"),
     _percent("S-G magnitude"),
     _percent("S-G phase"),
+    "judged as",
     "verdict",
 )
 
@@ -64,11 +65,17 @@ def terminal(document: dict) -> list[Part]:
         _percent("rate L2"),
         Column("settled error", "deg/s", ".2g"),
         Column("reference ±", "deg/s", ".2g"),
+        "judged as",
         "verdict",
     )
     keys = ("condition", "rate_relative_l2", "settled_rate_error_deg_s")
     rows = [
-        [*(row[key] for key in keys), row["reference_uncertainty_deg_s"], row["verdict"]]
+        [
+            *(row[key] for key in keys),
+            row["reference_uncertainty_deg_s"],
+            row["judged_as"],
+            row["verdict"],
+        ]
         for row in document["compliant"]
     ]
     title = f"Compliant contact: {summary(document['compliant'])}."
@@ -101,12 +108,6 @@ def judged(rows: list[dict], name: str, notes: tuple[str, ...] = ()) -> Table:
     """A table of agreement rows: good, bad, or not judged."""
     kinds = [distribution_page.kind(row["judgement"]) for row in rows]
     return Table(_HEADS, [_agreement_row(row) for row in rows], notes, "", name, kinds, dense=True)
-
-
-def _kind(row: dict) -> str:
-    if not row["reference_converged"] or row.get("chaotic"):
-        return "doubt"
-    return "good" if row["passes"] else "bad"
 
 
 def _simpler(document: dict) -> Fold:
@@ -167,7 +168,7 @@ def interface(found: list[dict]) -> list[Part]:
         )
         for item in found
     ]
-    kinds = [_kind(item) for item in found]
+    kinds = [distribution_page.kind(item["judgement"]) for item in found]
     note = (
         "Both models on the coarse mesh; changes of the largest settled rate from factor 1. The "
         "interface stiffness is a property of the launcher: it moves both models alike. A condition "
@@ -209,13 +210,13 @@ def by_factor(found: list[dict]) -> list[Part]:
 
 def stiffnesses(found: list[dict]) -> str:
     """How many of the judged conditions agree at each factor."""
-    judged_rows = [item for item in found if item["reference_converged"] and not item["chaotic"]]
+    judged_rows = [item for item in found if item["judgement"] != verdicts.CANNOT]
     if not judged_rows:
-        return "the reference is converged on none of these conditions"
+        return "none of these conditions can be judged"
     parts = []
     for factor in dict.fromkeys(item["factor"] for item in found):
         own = [item for item in judged_rows if item["factor"] == factor]
-        agree = sum(item["passes"] for item in own)
+        agree = sum(item["judgement"] == verdicts.AGREES for item in own)
         parts.append(
             f"{agree} of {len(own)} judged conditions agree at {factor:g} times"
             if own
@@ -231,11 +232,16 @@ def _errors(row: dict) -> str:
 def summary(rows: list[dict], words: str = "") -> str:
     """How many of the ``words`` conditions agree, as curves and as distributions, cannot be judged, and
     miss."""
+    return " ".join(counts(rows, words))
+
+
+def counts(rows: list[dict], words: str = "") -> tuple[str, str]:
+    """The same in two parts: how many of how many, and the rest of the sentence."""
     count = {word: sum(row["judgement"] == word for row in rows) for word in verdicts.JUDGEMENTS}
     free = sum(row["judgement"] == verdicts.AGREES and not row["touches"] for row in rows)
     alike, missing = count[verdicts.AS_DISTRIBUTION], count[verdicts.MISSES]
-    return (
-        f"{count[verdicts.AGREES]} of {len(rows)} {words}conditions agree"
+    return f"{count[verdicts.AGREES]} of {len(rows)}", (
+        f"{words}conditions agree"
         + (f" ({free} of them without contact)" if free else "")
         + (
             f", {alike} {'agrees as a distribution' if alike == 1 else 'agree as distributions'}"
@@ -265,6 +271,7 @@ def _agreement_row(row: dict) -> tuple:
         row["iso18571"],
         row["sprague_geers_magnitude"],
         row["sprague_geers_phase"],
+        row["judged_as"],
         row["verdict"],
     )
 

@@ -2,25 +2,18 @@
 conditions, as curves or as distributions, with the floor and the uncertainty of the reference; growth
 of a 1 um disturbance; speed-up."""
 
-from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass
-from functools import partial
 from pathlib import Path
-from types import MappingProxyType
-from typing import NamedTuple
 
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
-from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance
+from tipoff.mechanics.rail_compliance import PATTERNS
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.scenes.calibration import Calibration
-from tipoff.studies.agreement import distributions, growth, interface, metrics, refined, verdicts
-from tipoff.studies.agreement.verdicts import Context, Spread, spread
+from tipoff.studies.agreement import interface, judging, metrics, verdicts
+from tipoff.studies.agreement.candidates import Candidate, candidates, on_coarse
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core.progress import Board
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.store import Run, with_modes_of
-from tipoff.studies.core.study import Study, require_success
+from tipoff.studies.core.study import Study
 from tipoff.studies.cost.timing import speedups
 
 _SIMPLER = {
@@ -29,53 +22,6 @@ _SIMPLER = {
     "pressure and its tilt": (3, True),
     "all, each face by itself": (PATTERNS, False),
 }
-
-
-class Candidate(NamedTuple):
-    """A surrogate to compare with the reference: ``name`` in result files, ``title`` in the report,
-    ``calibration`` of its springs, rail ``compliance`` by condition, ``modes`` of each rail."""
-
-    name: str
-    title: str
-    calibration: Calibration | None = None
-    compliance: Mapping[str, RailCompliance | None] = MappingProxyType({})
-    modes: int = 0
-
-    def request(
-        self, study: Study, condition: str, overrides: dict | None = None, tag: str = "", **numerics
-    ) -> Run:
-        """The run of a condition with ``overrides`` of the scene; ``tag`` is part of its name."""
-        modes = {"modes": self.modes} if self.modes else {}
-        return study.lowfi(
-            condition,
-            self.calibration,
-            overrides,
-            tag + "-modal" * bool(self.modes),
-            self.compliance.get(condition),
-            **modes,
-            **numerics,
-        )
-
-
-def candidates(study: Study, conditions: Iterable[str] | None = None) -> list[Candidate]:
-    """The surrogates of a scene for ``conditions`` (default: all): springs with the constants of the
-    scene, springs with calibrated constants, compliant contact, and compliant contact with the
-    lowest modes of the rails."""
-    static, modes = (
-        compliant(study, study.conditions if conditions is None else conditions),
-        study.settings.rail_modes,
-    )
-    return [
-        Candidate("uncalibrated", f"{SPRINGS}, uncalibrated"),
-        Candidate("calibrated", f"{SPRINGS}, calibrated", calibrate.load(study)),
-        static,
-        static._replace(name="modal", title=f"{COMPLIANT}, {modes} modes", modes=modes),
-    ]
-
-
-def compliant(study: Study, conditions: Iterable[str]) -> Candidate:
-    """The surrogate on compliant contact, for ``conditions``."""
-    return Candidate("compliant", COMPLIANT, compliance=study.rail_compliances(conditions))
 
 
 @dataclass(frozen=True)
@@ -94,38 +40,16 @@ def run(study: Study, options: Options | None = None) -> dict:
     study.fitted()
     chosen = options or _last(study)
     _, calibrated, static, modal = compared = candidates(study)
-    gates = verdicts.gates(study.scene)
 
     def make() -> tuple[dict, list[Path]]:
-        wanted = {name: study.highfi(name) for name in study.conditions}
-        highfi = dict(zip(wanted, study.store.fill("highfi", list(wanted.values()))))
-        require_success(highfi, "compare")
-        changes, floor = refined.refinements(study), floors(study, "reference", study.coarse)
-        own = {
-            candidate.name: floors(study, candidate.title, partial(candidate.request, study))
-            for candidate in compared
-        }
-        table = {
-            candidate.name: rows(
-                study, candidate, highfi, Context([*floor, *own[candidate.name]], changes, gates)
-            )
-            for candidate in compared
-        }
-        on_coarse = _on_coarse(study, compared)
-        own_context = Context([*floor, *own[static.name]], changes, gates)
-        stiffnesses = interface.rows(study, on_coarse[static.name].request, own_context)
-        grown = _growths(study, static, table["compliant"])
-        wanted_alike = distributions.counts(
-            table["compliant"], grown, interface.chaotic(stiffnesses), chosen.neighbours
+        curves = judging.as_curves(study, compared, "compare")
+        stiffnesses = interface.rows(
+            study, on_coarse(study, compared)[static.name].request, curves.contexts[static.name]
         )
-        alike = distributions.judge(
-            study, wanted_alike, list(on_coarse.values()), gates["settled_rate_error_deg_s"]
+        found = judging.judge(
+            study, compared, curves, chosen.neighbours, interface.unsteady(stiffnesses)
         )
-        table = {
-            name: distributions.combined(found, alike, wanted_alike, name)
-            for name, found in table.items()
-        }
-        table["compliant"] = interface.combined(table["compliant"], stiffnesses)
+        table = found.rows | {static.name: interface.combined(found.rows[static.name], stiffnesses)}
         groups = {
             role: [row for row in table["calibrated"] if row["role"] == role]
             for role in ("fitted", "held_out")
@@ -137,15 +61,15 @@ def run(study: Study, options: Options | None = None) -> dict:
             "compliant": table["compliant"],
             "modal": table["modal"],
             "rail_modes": modal.modes,
-            "gates": gates,
+            "gates": verdicts.gates(study.scene),
             "element_size_m": study.settings.element_size,
             "converged_deg_s": verdicts.CONVERGED_DEG_S,
             "clearance_change_m": study.settings.clearance_change,
-            "floor": [asdict(item) for item in sum(own.values(), floor)],
-            "refinement": [asdict(item) for item in changes],
-            "growth": [asdict(item) for item in grown],
-            "distributions": alike,
-            "simpler": _simpler(study, static, highfi),
+            "floor": [asdict(item) for item in curves.floors],
+            "refinement": [asdict(item) for item in curves.refinements],
+            "growth": [asdict(item) for item in found.growths],
+            "distributions": found.distributions,
+            "simpler": _simpler(study, static, curves.reference),
             "interface": stiffnesses,
             **dict(zip(("speedup", "speedup_compliant"), _speedups(study, [calibrated, static]))),
         }, []
@@ -158,34 +82,12 @@ def _last(study: Study) -> Options:
     return Options(**found["asked"]) if found is not None else Options(study.settings.neighbours)
 
 
-def _on_coarse(study: Study, compared: Iterable[Candidate]) -> dict[str, Candidate]:
-    """The same surrogates by name, on the rail compliance of the coarse mesh."""
-    coarse = study.rail_compliances(study.conditions, study.settings.coarse_size)
-    return {
-        candidate.name: candidate._replace(compliance=coarse) if candidate.compliance else candidate
-        for candidate in compared
-    }
-
-
 def _inputs(study: Study, _: Options) -> list:
     return [calibrate.constants(study), verdicts.gates(study.scene)]
 
 
 STAGE = Stage("agreement", __name__, Options, inputs=_inputs)
 stored = STAGE.stored
-
-
-def rows(
-    study: Study, candidate: Candidate, highfi: dict[str, Trajectory], context: Context
-) -> list[dict]:
-    """Agreement of one surrogate on every condition."""
-    wanted = {name: candidate.request(study, name) for name in study.conditions}
-    found = dict(zip(wanted, study.store.fill(candidate.title, list(wanted.values()))))
-    return [
-        verdicts.row(name, role, highfi[name], found[name], context)
-        for role in ("fitted", "held_out")
-        for name in getattr(study.scene.agreement, role)
-    ]
 
 
 def _simpler(study: Study, compliant: Candidate, highfi: dict[str, Trajectory]) -> list[dict]:
@@ -215,65 +117,6 @@ def _simpler(study: Study, compliant: Candidate, highfi: dict[str, Trajectory]) 
                 }
             )
     return found
-
-
-def floors(study: Study, model: str, request: Callable[..., Run]) -> list[Spread]:
-    """Spread of one model under +-1 um of clearance, on the scene's conditions of the floor;
-    ``request`` makes its runs."""
-    if study.scene.contact is None:
-        return []
-    return [
-        spread(name, model, "clearance", nominal, changed)
-        for name, (nominal, *changed) in _twins(
-            study, f"floor, {model}", request, study.scene.agreement.floor
-        ).items()
-    ]
-
-
-def _growths(study: Study, compliant: Candidate, rows: list[dict]) -> list[growth.Growth]:
-    """Growth of 1 um of clearance in both models, on the conditions of the floor and on those whose
-    reference is not converged, because chaos can be the reason."""
-    if study.scene.contact is None:
-        return []
-    names = dict.fromkeys(
-        [
-            *study.scene.agreement.floor,
-            *(row["condition"] for row in rows if not row["reference_converged"]),
-        ]
-    )
-    gate = verdicts.gates(study.scene)["settled_rate_error_deg_s"]
-    return [
-        growth.growth(name, model, nominal, changed, study.settings.clearance_change, gate)
-        for model, request in (
-            (FINITE_ELEMENTS, study.coarse),
-            (compliant.title, partial(compliant.request, study)),
-        )
-        for name, (nominal, *changed) in _twins(study, f"growth, {model}", request, names).items()
-    ]
-
-
-def _twins(
-    study: Study, title: str, request: Callable[..., Run], names: Iterable[str]
-) -> dict[str, list[Trajectory]]:
-    """The run of each condition, and its runs with 1 um more and less clearance."""
-    names, changes = list(names), clearances(study)
-    nominal = dict(zip(names, study.store.fill(title, [request(name) for name in names])))
-    changed = study.store.fill(
-        title,
-        [
-            with_modes_of(nominal[name], request(name, overrides=change, tag=f"-clearance-{sign}"))
-            for name in names
-            for sign, change in changes.items()
-        ],
-    )
-    runs = iter(changed)
-    return {name: [nominal[name], *(next(runs) for _ in changes)] for name in names}
-
-
-def clearances(study: Study) -> dict[str, dict[str, float]]:
-    """Overrides of a scene with contact that perturb its clearance."""
-    assert study.scene.contact is not None
-    return study.scene.contact.either_way(study.settings.clearance_change)
 
 
 def _speedups(study: Study, compared: list[Candidate]) -> list[dict]:

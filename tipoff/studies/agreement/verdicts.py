@@ -23,7 +23,7 @@ from typing import TypeVar
 
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
-from tipoff.studies.agreement.metrics import compare, settled_rate_errors
+from tipoff.studies.agreement.metrics import Difference, compare, settled_rate_errors
 from tipoff.studies.agreement.refinement import Refinement
 
 VELOCITY_LIMIT = 0.001
@@ -164,12 +164,7 @@ def row(
     difference = compare(reference, surrogate)
     floor_deg_s, floor_l2, floor_measured = context.floor(condition)
     uncertainty, causes, uncertainty_measured = context.uncertainty(condition)
-    gates = {
-        name: gate(getattr(difference, name), limit)
-        for name, limit in context.limits(floor_deg_s).items()
-    }
-    converged, known = context.converged(condition), context.known(condition)
-    passes = all(item["passes"] for item in gates.values())
+    touches = bool(reference.pad_force.any())
     return {
         "condition": condition,
         "role": role,
@@ -182,15 +177,26 @@ def row(
         "reference_uncertainty_deg_s": uncertainty,
         "reference_uncertainty_by_cause_deg_s": causes,
         "reference_uncertainty_measured_here": uncertainty_measured,
-        "reference_converged": converged,
-        "gates": gates,
-        "passes": passes,
-        "touches": bool(reference.pad_force.any()),
+        "reference_converged": context.converged(condition),
+        "touches": touches,
         "judged_as": CURVE,
+        **single(condition, difference, context, touches),
+    }
+
+
+def single(condition: str, difference: Difference, context: Context, touches: bool) -> dict:
+    """``gates``, ``judgement`` and ``verdict`` on the ``difference`` of two single runs, in the
+    reference of which a pad ``touches`` a rail or none."""
+    gates = {
+        name: gate(getattr(difference, name), limit)
+        for name, limit in context.limits(context.floor(condition)[0]).items()
+    }
+    converged, known = context.converged(condition), context.known(condition)
+    passes = all(item["passes"] for item in gates.values())
+    return {
+        "gates": gates,
         "judgement": judgement(passes, converged and known),
-        "verdict": verdict(gates, converged, bool(reference.pad_force.any()))
-        if known
-        else NOT_KNOWN,
+        "verdict": verdict(gates, converged, touches) if known else NOT_KNOWN,
     }
 
 

@@ -5,7 +5,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tipoff.studies.commands.options import ElementSize, Json, Out, SceneName, Set, Workers
+from tipoff.studies.commands.options import (
+    ElementSize,
+    Json,
+    Neighbours,
+    Out,
+    SceneName,
+    Set,
+    Workers,
+)
 from tipoff.studies.commands.running import guarded, study_of
 
 if TYPE_CHECKING:
@@ -27,7 +35,8 @@ def blind(
             "--cases",
             metavar="N",
             min=1,
-            help="Number of conditions; each takes several runs of the reference.",
+            help="Number of conditions; each takes several runs of the reference, and those of "
+            "its neighbours where it is judged as a distribution.",
         ),
     ] = 8,
     vary: Annotated[
@@ -47,6 +56,7 @@ def blind(
             help="Seed of the draws; default: a digest of the sources and the scene.",
         ),
     ] = None,
+    neighbours: Neighbours = None,
     element_size: ElementSize = None,
     workers: Workers = None,
     json_: Json = False,
@@ -59,7 +69,7 @@ def blind(
 
         return stage.run(
             study_of(scene, out, set_, element_size=element_size, workers=workers),
-            stage.Options(cases, vary, seed),
+            stage.Options(cases, vary, seed, neighbours),
         )
 
     def shown(found: dict) -> list["Part"]:

@@ -2,6 +2,7 @@
 
 import math
 
+from tipoff.studies.agreement import distribution_page
 from tipoff.studies.agreement.page import judged, summary
 from tipoff.studies.render.document import Fold, Part
 from tipoff.studies.render.table import Column, Table
@@ -18,13 +19,15 @@ def draw(found: dict) -> list[Part]:
     note = (
         f"Drawn from the distributions “{options['vary']}” with seed {found['seed']}{origin}. Every "
         "condition has its own floor and its own uncertainty of the reference by mesh, step and "
-        "contact cells."
+        "contact cells. Where the reference is not converged, or 1 µm moves it by more than the gate, "
+        "a condition is judged as a distribution."
     )
     return [
         f"Compliant contact, nothing fitted: {summary(compliant)}.",
         judged(compliant, "blind-compliant", (note,)),
         f"Calibrated springs: {summary(calibrated)}.",
         judged(calibrated, "blind-calibrated"),
+        *distribution_page.parts(found, "blind-distributions"),
         Fold("Drawn conditions", [_drawn(found["conditions"])]),
     ]
 
@@ -37,6 +40,7 @@ def verdicts(found: dict) -> list[Part]:
         Column("rate L2", "%", scale=100.0),
         Column("settled error", "deg/s"),
         Column("reference ±", "deg/s"),
+        "judged as",
         "verdict",
     )
     rows = [
@@ -46,13 +50,18 @@ def verdicts(found: dict) -> list[Part]:
             row["rate_relative_l2"],
             row["settled_rate_error_deg_s"],
             row["reference_uncertainty_deg_s"],
+            row["judged_as"],
             row["verdict"],
         )
         for model in ("calibrated", "compliant")
         for row in found[model]
     ]
     count = len(found["conditions"])
-    return [Table(heads, rows, title=f"{count} conditions drawn with seed {found['seed']}")]
+    alike = found["distributions"]
+    return [
+        Table(heads, rows, title=f"{count} conditions drawn with seed {found['seed']}"),
+        *([distribution_page.verdicts_of(alike)] if alike else []),
+    ]
 
 
 def _drawn(conditions: dict) -> Table:

@@ -2,23 +2,21 @@
 
 Authors of a surrogate can see held-out conditions. These are drawn from distributions of errors;
 the default seed is a digest of the sources and the scene, so any change of the code draws others.
+They are judged as the chosen ones are: as curves, or as distributions where no single run can judge.
 """
 
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from tipoff import sources
 from tipoff.files import content_hash
 from tipoff.lowfi.ensemble.rows import Drawn
-from tipoff.mechanics.models import SPRINGS
 from tipoff.scenes import uncertainty
-from tipoff.studies.agreement import refined, verdicts
-from tipoff.studies.agreement import stage as compare
-from tipoff.studies.agreement.verdicts import Context
+from tipoff.studies.agreement import judging, verdicts
+from tipoff.studies.agreement.candidates import calibrated, compliant
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.study import Study, require_success
+from tipoff.studies.core.study import Study
 
 NAME = "blind"
 _CODE = ("tipoff.highfi", "tipoff.lowfi", "tipoff.calibration")
@@ -27,45 +25,35 @@ _CODE = ("tipoff.highfi", "tipoff.lowfi", "tipoff.calibration")
 @dataclass(frozen=True)
 class Options:
     """``cases`` conditions from the distributions ``vary``; ``seed`` None: the digest of the code
-    and the scene."""
+    and the scene; ``neighbours`` of each condition that is judged as a distribution, None: those of
+    the settings."""
 
     cases: int = 8
     vary: str = uncertainty.DEFAULT
     seed: int | None = None
+    neighbours: int | None = None
 
 
 def run(study: Study, options: Options = Options()) -> dict:
-    """Rows of ``calibrated`` springs and of ``compliant`` contact, as in the agreement study, and the
-    drawn conditions."""
+    """Rows of ``calibrated`` springs and of ``compliant`` contact, ``growth`` of a 1 um disturbance
+    and ``distributions``, as in the agreement study, and the drawn conditions."""
     drawn = draw(study, options)
-    compared = [
-        compare.Candidate("calibrated", f"{SPRINGS}, calibrated", calibrate.load(study)),
-        compare.compliant(drawn, drawn.conditions),
-    ]
+    compared = [calibrated(study), compliant(drawn, drawn.conditions)]
 
     def make() -> tuple[dict, list[Path]]:
-        wanted = {name: drawn.highfi(name) for name in drawn.conditions}
-        highfi = dict(zip(wanted, drawn.store.fill("highfi", list(wanted.values()))))
-        require_success(highfi, "judge blind conditions")
-        changes, floor, gates = (
-            refined.refinements(drawn),
-            compare.floors(drawn, "reference", drawn.coarse),
-            verdicts.gates(study.scene),
-        )
-        rows = {}
-        for candidate in compared:
-            own = compare.floors(drawn, candidate.title, partial(candidate.request, drawn))
-            rows[candidate.name] = compare.rows(
-                drawn, candidate, highfi, Context([*floor, *own], changes, gates)
-            )
+        curves = judging.as_curves(drawn, compared, "judge blind conditions")
+        draws = options.neighbours or study.settings.neighbours
+        found = judging.judge(drawn, compared, curves, draws)
         return {
             "asked": STAGE.plain(options),
             "seed": seed_of(study, options),
-            "gates": gates,
+            "gates": verdicts.gates(study.scene),
             "converged_deg_s": verdicts.CONVERGED_DEG_S,
             "clearance_change_m": study.settings.clearance_change,
             "conditions": drawn.scene.conditions,
-            **rows,
+            **found.rows,
+            "growth": [asdict(item) for item in found.growths],
+            "distributions": found.distributions,
         }, []
 
     return STAGE.run(study, options, make)

@@ -160,6 +160,17 @@ Workers = Annotated[
     int | None,
     typer.Option("--workers", metavar="N", min=1, help="Parallel runs; default: all cores."),
 ]
+Neighbours = Annotated[
+    int | None,
+    typer.Option(
+        "--neighbours",
+        metavar="N",
+        min=5,
+        max=10_000,
+        help="Runs of the reference within 1 µm of each condition that is judged as a "
+        "distribution; default: 32 (scene tiny: 5), for compare as many as in the present result.",
+    ),
+]
 CheckpointEvery = Annotated[
     str | None,
     typer.Option(

@@ -18,7 +18,7 @@ from tipoff.highfi.numerics import Numerics
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import interface, refined, verdicts
-from tipoff.studies.agreement.stage import compliant
+from tipoff.studies.agreement.candidates import compliant
 from tipoff.studies.convergence import contact_loads, equal_accuracy, ripple, statics, stresses
 from tipoff.studies.convergence.quantities import RATE, quantities, settled_rate
 from tipoff.studies.core.extrapolation import Estimate, estimate

@@ -11,38 +11,16 @@ from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
 
-from tipoff import sources
-from tipoff.files import content_hash
-from tipoff.kernels.jit import kernel_digest
-from tipoff.lowfi.numerics import AUTO
-from tipoff.mechanics.models import COMPLIANT
+from tipoff.studies.core import compiled
 from tipoff.studies.core.progress import Board, say
 from tipoff.studies.core.store import Run, execute, prepare
 
-_COMPILES = {"highfi": "20 s", "lowfi": "20 s"}
-_WITH_MODES = ", and a minute more if modes of the rails turn out to matter"
-
 
 def warm_up(run: Run) -> None:
-    """Compile or load the kernels of ``run`` by its first milliseconds."""
+    """Compile or load the kernels of ``run`` by its first milliseconds. A run that chooses its modes of
+    the rails begins without any; kernels with modes are compiled when it needs them."""
     prepare(run)
     execute(replace(run, scene=run.scene.replace({"duration": min(run.scene.duration, 1e-3)})))
-
-
-def announce(run: Run) -> None:
-    """Print that the kernels of ``run`` have to be compiled, where no run has compiled them."""
-    if not _mark(run).is_file():
-        say(
-            f"compiling the kernels of model {run.model} for these effects: about "
-            f"{_COMPILES[run.fidelity]}, once" + (_WITH_MODES if _modes(run) == AUTO else "")
-        )
-
-
-def remember(run: Run) -> None:
-    """Note in the cache that the kernels of ``run``, which has been made, are there."""
-    mark = _mark(run)
-    mark.parent.mkdir(parents=True, exist_ok=True)
-    mark.touch()
 
 
 def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
@@ -54,7 +32,7 @@ def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
     """
     missing: dict[Path, Run] = {}
     for run in runs:
-        if not (mark := _mark(run)).is_file():
+        if not (mark := compiled.mark(run)).is_file():
             missing.setdefault(mark, run)
     if min(workers, len(missing)) < 2:
         return
@@ -68,24 +46,9 @@ def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
             for future in as_completed(pending):
                 run = pending[future]
                 future.result()
-                remember(run)
+                compiled.remember(run)
                 board.finished(run.label, "compiled")
     except BrokenProcessPool:
         say("  a process that compiled kernels was ended; the runs compile their own")
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
-
-
-def _mark(run: Run) -> Path:
-    """File in the cache of kernels that says that those of ``run`` are there."""
-    key = content_hash(
-        kernel_digest(f"tipoff.{run.fidelity}"), run.model, run.scene.absent_effects(), _modes(run)
-    )
-    return sources.cache_folder() / "kernels" / f"compiled-{key[:16]}"
-
-
-def _modes(run: Run) -> str | bool:
-    """What decides which kernels there are of rails: a number to be chosen, some modes, or none."""
-    pressed = run.model == COMPLIANT and run.compliance is not None
-    modes = getattr(run.numerics, "modes", 0) if pressed else 0
-    return AUTO if modes == AUTO else modes > 0

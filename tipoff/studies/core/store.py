@@ -26,6 +26,7 @@ from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
+from tipoff.studies.core import compiled
 from tipoff.studies.core.progress import Board, say, team
 
 
@@ -74,15 +75,16 @@ def execute(
     run: Run,
     progress: Callable[[float], None] | None = None,
     threads: int | None = None,
-    **kept: Any,
+    **further: Any,
 ) -> Trajectory:
-    """Make a run without a store. For the reference, ``threads`` is their number, None for the
-    default, and ``kept`` are the arguments of ``highfi.run`` for checkpoints."""
+    """Make a run without a store. ``further`` are arguments of ``highfi.run`` for checkpoints, or
+    ``vibrates`` of ``lowfi.run``. For the reference, ``threads`` is their number, None for the
+    default."""
     if run.fidelity == "highfi":
         from tipoff import highfi
 
         return highfi.run(
-            run.scene, numerics=run.numerics, progress=progress, threads=threads, **kept
+            run.scene, numerics=run.numerics, progress=progress, threads=threads, **further
         )
     from tipoff import lowfi
 
@@ -93,6 +95,7 @@ def execute(
         calibration=run.calibration,
         numerics=run.numerics,
         progress=progress,
+        **further,
     )
 
 
@@ -109,6 +112,23 @@ def prepare(run: Run) -> None:
 
 
 _SAID: set[str] = set()  # warnings about meshes that this process has printed
+
+
+def _surrogate(
+    run: Run, progress: Callable[[float], None], threads: int | None = None
+) -> Trajectory:
+    """Run the surrogate. Kernels with modes of the rails are announced once it has chosen some."""
+    chosen: list[int] = []
+
+    def vibrates(modes: int) -> None:
+        if not chosen:
+            compiled.announce(run, chosen=True)
+        chosen.append(modes)
+
+    found = execute(run, progress, threads, vibrates=vibrates)
+    if chosen:
+        compiled.remember(run, chosen=True)
+    return found
 
 
 class Store:
@@ -175,7 +195,7 @@ class Store:
     def _one(self, run: Run, board: Board, threads: int | None) -> Trajectory:
         progress = board.callback(run.label)
         progress(0.0)
-        make = self._kept if run.fidelity == "highfi" else execute
+        make = self._kept if run.fidelity == "highfi" else _surrogate
         trajectory = make(run, progress, threads)
         trajectory.save(self.path(run))
         discard(self.checkpoint(run))

@@ -230,7 +230,7 @@ def _cost_line(
 ) -> Line:
     """One model. Tolerances are labelled for compliant contact in the panel of the time
     integration only, numbers of modes wherever they are varied."""
-    varied = any(point["modes"] for point in points)
+    varied = any(point["modes"] is not None for point in points)
     labels = [
         str(point["modes"])
         if varied

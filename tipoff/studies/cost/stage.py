@@ -4,7 +4,7 @@ growth of time with elements, pads and effects (``studies.cost.scaling``).
 Errors are against the finest finite-element mesh. Its uncertainty is the band below which an error
 cannot be distinguished from zero; a smaller error counts as the band in the Pareto front. Every run
 is timed alone on the machine. The time-integration error of a surrogate is against its tightest
-tolerance; the rest of its error is the error of the model.
+tolerance, with the same modes of the rails; the rest of its error is the error of the model.
 
 ``cost.json`` is the list of points for other tools, ``cost_study.json`` the whole result.
 """
@@ -20,21 +20,21 @@ from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.ablation import stage as ablation
 from tipoff.studies.agreement import refined, verdicts
+from tipoff.studies.agreement.candidates import Candidate, candidates
 from tipoff.studies.agreement.metrics import compare
-from tipoff.studies.agreement.stage import Candidate, candidates
 from tipoff.studies.agreement.verdicts import Context
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core import machine
 from tipoff.studies.core.compiling import warm_up
 from tipoff.studies.core.progress import Board
 from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.store import Run
+from tipoff.studies.core.store import Run, execute, with_modes_of
 from tipoff.studies.core.study import Study
 from tipoff.studies.cost import choice, scaling
 from tipoff.studies.cost.timing import timed
 
 BY_MODES = f"{COMPLIANT}, modes varied"
-MODES = (1, 2, 8)  # of each rail, beside those of the agreement study
+MODES = (0, 1, 2, 8)  # of each rail, beside those of the agreement study
 STIFFNESS_ALONG = f"{COMPLIANT}, mean pressure of each face by itself"
 NAME, POINTS = "cost_study", "cost.json"
 
@@ -50,8 +50,8 @@ def run(study: Study) -> dict:
     def make() -> tuple[dict, list[Path]]:
         finest, band, points = _reference_points(study, name)
         for candidate in compared:
-            points += _surrogate_points(study, name, candidate, finest, study.settings.tolerances)
-        points += _points_by_modes(study, name, compared[-1], finest)
+            points += surrogate_points(study, name, candidate, finest, study.settings.tolerances)
+        points += points_by_modes(study, name, compared[-1], finest)
         growing = {
             "elements": scaling.elements(study, name),
             "pads": scaling.pads(study, name),
@@ -148,23 +148,26 @@ def _errors(finest: Trajectory, found: Trajectory) -> dict[str, float | None]:
     }
 
 
-def _points_by_modes(
+def points_by_modes(
     study: Study, name: str, candidate: Candidate, finest: Trajectory
 ) -> list[dict]:
-    """Points with other numbers of modes, at the tolerance of all other studies."""
+    """Points with other numbers of modes than the ``candidate`` has, at the tolerance of all other
+    studies; errors against the ``finest`` mesh."""
     return [
-        point | {"model": BY_MODES, "numerics": f"{count} mode{'s' * (count > 1)}", "modes": count}
+        point | {"model": BY_MODES, "numerics": f"{count} mode{'s' * (count != 1)}", "modes": count}
         for count in MODES
         if count != candidate.modes
-        for point in _surrogate_points(
+        for point in surrogate_points(
             study, name, candidate._replace(modes=count), finest, [Numerics().relative_tolerance]
         )
     ]
 
 
-def _surrogate_points(
+def surrogate_points(
     study: Study, name: str, candidate: Candidate, finest: Trajectory, tolerances: Iterable[float]
 ) -> list[dict]:
+    """Points of one surrogate, the loosest of the ``tolerances`` first; errors against the ``finest``
+    mesh."""
     tolerances = sorted(tolerances)
     wanted = [
         candidate.request(study, name, relative_tolerance=tolerance) for tolerance in tolerances
@@ -172,7 +175,7 @@ def _surrogate_points(
     warm_up(wanted[0])
     measured = [[timed(run) for _ in range(study.settings.lowfi_repeats)] for run in wanted]
     runs = [repeats[0][0] for repeats in measured]
-    return [
+    points = [
         {
             "model": candidate.title,
             "rung": candidate.name,
@@ -180,13 +183,28 @@ def _surrogate_points(
             "modes": None,
             "numerics": f"tolerance {tolerance:g}",
             **_errors(finest, found),
-            "integration_error_deg_s": verdicts.settled_change(runs[0], found)
-            if found is not runs[0]
-            else None,
+            "integration_error_deg_s": error,
             "wall_s": statistics.median(wall for _, wall, _ in repeats),
             "status": found.status,
         }
-        for tolerance, found, repeats in reversed(list(zip(tolerances, runs, measured)))
+        for tolerance, found, error, repeats in zip(
+            tolerances, runs, _integration_errors(wanted[0], runs), measured
+        )
+    ]
+    return points[::-1]
+
+
+def _integration_errors(tightest: Run, runs: list[Trajectory]) -> list[float | None]:
+    """Largest error (deg/s) of a settled rate by the tolerance of each of the ``runs``, the first of
+    which is the ``tightest`` one and has None. A run that chose other modes of the rails than that one
+    is compared with a tight run with its own modes: modes are part of the model."""
+    tight = {runs[0].numerics.get("modes"): runs[0]}
+    for found in runs[1:]:
+        if (modes := found.numerics.get("modes")) not in tight:
+            tight[modes] = execute(with_modes_of(found, tightest))
+    return [
+        None,
+        *(verdicts.settled_change(tight[run.numerics.get("modes")], run) for run in runs[1:]),
     ]
 
 

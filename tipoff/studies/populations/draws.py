@@ -14,8 +14,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tipoff.highfi.rail import memory_estimate, step_cost
-from tipoff.highfi.statics import assembly
 from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.batch import Case, Family
 from tipoff.lowfi.ensemble.columns import Columns
@@ -25,7 +23,7 @@ from tipoff.mechanics.models import COMPLIANT
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import NOMINAL, Scene
 from tipoff.studies.agreement import growth
-from tipoff.studies.core.progress import say
+from tipoff.studies.core.announcing import announce
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study
 from tipoff.studies.populations.population import TOLERANCE, Surrogate
@@ -109,30 +107,6 @@ def requests(
 def reference(study: Study, label: str, scene: Scene, element_size: float) -> Run:
     """A run of the reference of a changed ``scene`` on elements of ``element_size`` (m)."""
     return replace(study.highfi(NOMINAL, element_size=element_size), label=label, scene=scene)
-
-
-def announce(study: Study, runs: Sequence[Run]) -> None:
-    """Print how many of the ``runs`` of the reference are missing, and the time and memory that they
-    take."""
-    from tipoff import highfi
-
-    for size in dict.fromkeys(run.numerics.element_size for run in runs):
-        wanted = [run for run in runs if run.numerics.element_size == size]
-        missing = [run for run in wanted if not study.store.path(run).is_file()]
-        if not missing:
-            continue
-        mesh = highfi.prepare(missing[0].scene, missing[0].numerics)
-        elements, nodes = mesh.cells.shape
-        shapes = len(assembly.shape_classes(mesh)[1])
-        memory = memory_estimate.of_mesh(elements, nodes, shapes)
-        _, seconds = step_cost.run_time(mesh, missing[0].scene)
-        say(
-            f"  {len(missing)} of {len(wanted)} runs of the reference on elements of "
-            f"{1e3 * size:g} mm are to be made: {elements:,} elements, about "
-            f"{step_cost.in_words(len(missing) * seconds)} on one core, "
-            f"{memory_estimate.in_words(memory)} for each of {study.settings.workers} at once; an "
-            "interrupted study goes on from the finished runs"
-        )
 
 
 def seconds_per_case(model: Surrogate, rows: Rows) -> float:

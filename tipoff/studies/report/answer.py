@@ -9,6 +9,7 @@ from markupsafe import Markup
 
 from tipoff.scenes import provenance
 from tipoff.studies.agreement import verdicts
+from tipoff.studies.agreement.page import counts
 from tipoff.studies.populations.exceedance import TOTAL, Limit
 from tipoff.studies.render.document import Bullets, Heading, KeyFigures, Part
 from tipoff.studies.render.table import Column, Table, number
@@ -41,18 +42,6 @@ def draw(page: "Page") -> list[Part]:
         Heading("How far it can be trusted"),
         Bullets([*_numerics(compared), *_model(page, compared), *_inputs(page, compared)]),
     ]
-
-
-def counts(rows: Sequence[dict]) -> str:
-    """How many conditions agree, as curves or as distributions, cannot be judged, and miss."""
-    count = {word: sum(row["judgement"] == word for row in rows) for word in verdicts.JUDGEMENTS}
-    alike, missing = count[verdicts.AS_DISTRIBUTION], count[verdicts.MISSES]
-    return (
-        f"{count[verdicts.AGREES]} agree, "
-        + (f"{alike} agree as distributions, " if alike else "")
-        + f"{count[verdicts.CANNOT]} cannot be judged, "
-        + f"{missing} {'misses' if missing == 1 else 'miss'}"
-    )
 
 
 def transverse(settled: dict) -> float:
@@ -111,7 +100,8 @@ def _models(page: "Page") -> list[tuple[str, str]]:
     agreement = page.documents.get("agreement") or {}
     if not (speed := agreement.get("speedup_compliant")):
         return []
-    found = [(counts(agreement["compliant"]), "surrogate against finite elements, conditions")]
+    agree, words = counts(agreement["compliant"])
+    found = [(agree, f"{words}: surrogate against finite elements")]
     if equal := (page.documents.get("convergence") or {}).get("equal_accuracy"):
         bound = "" if equal["surer"] else "at least, "
         words = f"faster, {bound}at equal accuracy (mesh of {1e3 * equal['element_size_m']:g} mm)"

@@ -8,7 +8,7 @@ from tipoff.mechanics import hand_calculation, unfinished
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.convergence import stresses
-from tipoff.studies.core import compiling
+from tipoff.studies.core import compiled
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import FAILED, Study
 
@@ -28,9 +28,12 @@ def run(study: Study, fidelity: str) -> dict:
 
     def make() -> tuple[dict, list[Path]]:
         asked = list(requested.values())
-        compiling.announce(asked[0])
+        missing = [run for run in asked if not study.store.path(run).is_file()]
+        for run in missing:
+            compiled.announce(run)
         runs = dict(zip(requested, study.store.fill(fidelity, asked)))
-        compiling.remember(asked[0])
+        for run in missing:
+            compiled.remember(run)
         rows = [
             row(name, runs[name], study.relative(study.store.path(run))) | beside(run, runs[name])
             for name, run in requested.items()

@@ -1,0 +1,99 @@
+"""Judgement of surrogates on the conditions of a study. Studies of chosen conditions and of drawn ones
+share it.
+
+Single runs are compared first. Conditions that no single run can judge, because their reference is not
+converged or 1 um moves it by more than the limit, are then judged as distributions.
+"""
+
+from collections.abc import Iterable, Sequence
+from functools import partial
+from typing import NamedTuple
+
+from tipoff.mechanics.models import COMPLIANT
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.studies.agreement import distributions, refined, twins, verdicts
+from tipoff.studies.agreement.candidates import Candidate, on_coarse
+from tipoff.studies.agreement.growth import Growth
+from tipoff.studies.agreement.refinement import Refinement
+from tipoff.studies.agreement.verdicts import Context, Spread
+from tipoff.studies.core.study import Study, require_success
+
+
+class Curves(NamedTuple):
+    """Runs of the ``reference`` by condition; ``rows`` of the agreement table by candidate, all of them
+    judged as curves, and the ``contexts`` of these verdicts; measured ``floors``, first those of the
+    reference, and ``refinements`` of the reference."""
+
+    reference: dict[str, Trajectory]
+    rows: dict[str, list[dict]]
+    contexts: dict[str, Context]
+    floors: list[Spread]
+    refinements: list[Refinement]
+
+
+class Judged(NamedTuple):
+    """``rows`` of the agreement table by candidate, each judged as a curve or as a distribution;
+    ``growths`` of 1 um; ``distributions`` as result files hold them."""
+
+    rows: dict[str, list[dict]]
+    growths: list[Growth]
+    distributions: list[dict]
+
+
+def as_curves(study: Study, compared: Sequence[Candidate], purpose: str) -> Curves:
+    """The candidates against single runs of the reference. Raises StudyError where one of these fails,
+    with the ``purpose`` in the message."""
+    wanted = {name: study.highfi(name) for name in study.conditions}
+    reference = dict(zip(wanted, study.store.fill("highfi", list(wanted.values()))))
+    require_success(reference, purpose)
+    refinements = refined.refinements(study)
+    floor = twins.floors(study, "reference", study.coarse)
+    own = {
+        candidate.name: twins.floors(study, candidate.title, partial(candidate.request, study))
+        for candidate in compared
+    }
+    gates = verdicts.gates(study.scene)
+    contexts = {name: Context([*floor, *found], refinements, gates) for name, found in own.items()}
+    rows = {
+        candidate.name: _rows(study, candidate, reference, contexts[candidate.name])
+        for candidate in compared
+    }
+    return Curves(reference, rows, contexts, sum(own.values(), floor), refinements)
+
+
+def _rows(
+    study: Study, candidate: Candidate, reference: dict[str, Trajectory], context: Context
+) -> list[dict]:
+    """Agreement of one surrogate on every condition."""
+    wanted = {name: candidate.request(study, name) for name in study.conditions}
+    found = dict(zip(wanted, study.store.fill(candidate.title, list(wanted.values()))))
+    return [
+        verdicts.row(name, role, reference[name], found[name], context)
+        for role in ("fitted", "held_out")
+        for name in getattr(study.scene.agreement, role)
+    ]
+
+
+def judge(
+    study: Study,
+    compared: Sequence[Candidate],
+    curves: Curves,
+    draws: int,
+    unsteady: Iterable[str] = (),
+) -> Judged:
+    """The verdicts on the candidates, one of which is compliant contact: those of the ``curves``, and
+    on conditions that no single run can judge those of distributions over ``draws`` neighbours.
+    ``unsteady`` conditions are such ones for a reason that was found elsewhere. The runs are kept in
+    the store, so that an interrupted study goes on."""
+    static = next(candidate for candidate in compared if candidate.name == COMPLIANT)
+    own = curves.rows[static.name]
+    growths = twins.growths(study, static, own)
+    wanted = distributions.counts(own, growths, unsteady, draws)
+    limit = verdicts.gates(study.scene)["settled_rate_error_deg_s"]
+    coarse = list(on_coarse(study, compared).values()) if wanted else []
+    found = distributions.judge(study, wanted, coarse, limit)
+    rows = {
+        name: distributions.combined(single, found, wanted, name)
+        for name, single in curves.rows.items()
+    }
+    return Judged(rows, growths, found)

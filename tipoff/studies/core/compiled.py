@@ -1,0 +1,68 @@
+"""Which kernels runs have compiled: a mark in the cache for each, so that a user is told before the first
+run that has to wait for them.
+
+A surrogate run that chooses its modes of the rails begins with kernels without modes. Those with modes
+are others; they are compiled only where the run turns out to need them, and have a mark of their own.
+"""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tipoff import sources
+from tipoff.files import content_hash
+from tipoff.kernels.jit import kernel_digest
+from tipoff.lowfi.numerics import AUTO
+from tipoff.mechanics.models import COMPLIANT
+from tipoff.studies.core.progress import say
+
+if TYPE_CHECKING:
+    from tipoff.studies.core.store import Run
+
+_TIMES = {False: "20 s", True: "a minute"}  # without and with modes
+_WITH_MODES = ", and a minute more if modes of the rails turn out to matter"
+_SAID: set[Path] = set()  # marks of kernels that this process has announced
+
+
+def announce(run: "Run", chosen: bool = False) -> None:
+    """Print, once in a process, that the kernels of ``run`` have to be compiled, where no run has
+    compiled them: those that it begins with, or where modes were ``chosen`` in it those with modes."""
+    path = mark(run, chosen)
+    if path.is_file() or path in _SAID:
+        return
+    _SAID.add(path)
+    modes = _modes(run)
+    vibrates = chosen or modes is True
+    may_vibrate = modes == AUTO and not chosen and not mark(run, chosen=True).is_file()
+    say(
+        f"compiling the kernels of model {run.model}"
+        + (" with modes of the rails" if vibrates else "")
+        + f" for these effects: about {_TIMES[vibrates]}, once"
+        + (_WITH_MODES if may_vibrate else "")
+    )
+
+
+def remember(run: "Run", chosen: bool = False) -> None:
+    """Note in the cache that ``run`` has compiled its kernels, or where modes were ``chosen`` those with
+    modes."""
+    path = mark(run, chosen)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.touch()
+
+
+def mark(run: "Run", chosen: bool = False) -> Path:
+    """File in the cache of kernels that says that those of ``run`` are there."""
+    key = content_hash(
+        kernel_digest(f"tipoff.{run.fidelity}"),
+        run.model,
+        run.scene.absent_effects(),
+        _modes(run),
+        chosen,
+    )
+    return sources.cache_folder() / "kernels" / f"compiled-{key[:16]}"
+
+
+def _modes(run: "Run") -> str | bool:
+    """What decides which kernels there are of rails: a number to be chosen, some modes, or none."""
+    pressed = run.model == COMPLIANT and run.compliance is not None
+    modes = getattr(run.numerics, "modes", 0) if pressed else 0
+    return AUTO if modes == AUTO else modes > 0
