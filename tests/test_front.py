@@ -31,7 +31,7 @@ def found(monkeypatch, tmp_path):
         done.append(element_size)
         return SimpleNamespace(save=lambda path: (path.parent.mkdir(parents=True), path.touch()))
 
-    def choose(scene, own):
+    def choose(scene, own, say):
         done.append("a mesh is chosen")
         return 2.0 * own
 
