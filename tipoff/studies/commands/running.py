@@ -74,9 +74,30 @@ def study_of(
         )
     for warning in doubtful:
         say(f"implausible: {warning}")
-    for warning in reading.replaced_by_conditions(scene):
+    replaced = _replaced(changes, study)
+    for warning in [*reading.replaced_by_conditions(scene), *replaced]:
         say(f"warning: {warning}")
     return study
+
+
+def _replaced(changes: dict[str, str], study) -> list[str]:
+    """Warnings: ``changes`` by --set that the conditions of the study replace by their own values."""
+    found = []
+    for key in changes:
+        names = [
+            name
+            for name in study.conditions
+            if any(
+                f"{key}.".startswith(f"{own}.") or f"{own}.".startswith(f"{key}.")
+                for own in study.scene.conditions.get(name, ())
+            )
+        ]
+        if names:
+            found.append(
+                f"--set: {key}: the conditions {', '.join(names)} replace this value by their own; to "
+                f"change a condition, --set conditions.{names[0]}.{key}=VALUE"
+            )
+    return found
 
 
 def _of_option(named: dict[str, str], work: Callable[[], _T]) -> _T:
@@ -147,7 +168,9 @@ def guarded(
     except MemoryError as fault:
         stop(f"memory does not suffice ({fault})" if str(fault) else "memory does not suffice", 1)
     if as_json:
-        print(json.dumps(result, indent=1))
+        from tipoff.studies.core import words
+
+        print(json.dumps({"quantities": words.QUANTITIES, **result}, indent=1))
     else:
         _print(result, shown, out)
     if failed := result.get("failed"):

@@ -20,6 +20,7 @@ from tipoff.studies.commands.options import (
     Set,
     StepEverything,
     Workers,
+    condition_names,
 )
 from tipoff.studies.commands.running import guarded, quantity, study_of
 
@@ -106,6 +107,7 @@ def run(
         typer.Option(
             "--condition",
             metavar="NAME",
+            autocompletion=condition_names,
             help="Named condition, repeatable, or several with commas; default: the scene itself.",
         ),
     ] = None,
