@@ -1,12 +1,15 @@
 """``tipoff compare``."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from tipoff.studies.commands.options import ElementSize, Json, Out, SceneName, Set, Workers
 from tipoff.studies.commands.running import guarded, study_of
+
+if TYPE_CHECKING:
+    from tipoff.studies.render.document import Part
 
 
 def add(app: typer.Typer) -> None:
@@ -44,9 +47,9 @@ def compare(
             None if neighbours is None else stage.Options(neighbours),
         )
 
-    found = guarded(work, json_)
-    if not json_:
+    def shown(found: dict) -> list["Part"]:
         from tipoff.studies.agreement import page
-        from tipoff.studies.render import document
 
-        print(document.terminal(page.terminal(found)))
+        return page.terminal(found)
+
+    guarded(work, json_, shown, out)
