@@ -81,9 +81,10 @@ class _Waiting:
         left = taken * (1.0 - fraction) / fraction
         if fraction < self._next or fraction >= 1.0 or taken + left < self.LONG:
             return
+        advice = "; coarser elements take less" if self._next == 0.0 else ""
         self._next = 0.25 * (int(4.0 * fraction) + 1)
         shown = f"{left:.0f} s" if left < 90.0 else f"{left / 60.0:.0f} min"
-        self._say(f"  {100.0 * fraction:.0f} %, about {shown} left")
+        self._say(f"  {100.0 * fraction:.0f} %, about {shown} left{advice}")
 
 
 def kept_file(scene: Scene, folder: Path, element_size: float) -> Path:
