@@ -10,11 +10,13 @@ from tipoff.calibration import rail_compliance
 
 SCENE = tipoff.load("tiny")
 CALIBRATION = SimpleNamespace(is_of_springs=True)
+STORED = SimpleNamespace(flexibility=1.0)
 
 
 @pytest.fixture
-def solvers(monkeypatch):
+def solvers(monkeypatch, tmp_path):
     """What the solvers were asked for, in place of their runs."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))  # nothing is compiled
     asked = []
     monkeypatch.setattr(highfi, "run", lambda *given: asked.append(("highfi", *given)))
     monkeypatch.setattr(lowfi, "run", lambda *given, **more: asked.append((*given, more)))
@@ -45,7 +47,7 @@ def found(monkeypatch, tmp_path):
 def _stored(path):
     if not path.is_file():
         raise FileNotFoundError(path)
-    return "stored"
+    return STORED
 
 
 def test_every_name_is_there():
@@ -67,13 +69,26 @@ def test_compliant_contact_finds_its_compliance_once(solvers, found, capsys):
     assert capsys.readouterr().err.count("rail compliance, once") == 1
     (_, model, first), (_, _, again) = solvers
     assert model == "compliant" and first["numerics"] == lowfi.Numerics(modes=2)
-    assert again["compliance"] == "stored"
+    assert again["compliance"] is STORED
 
 
 def test_springs_need_no_compliance_but_on_warm_rails(solvers, found):
     tipoff.run(SCENE, "springs", calibration=CALIBRATION)
     assert solvers[0][2]["compliance"] is None and solvers[0][2]["calibration"] is CALIBRATION
     assert found == []
+
+
+def test_a_first_use_is_announced_once(solvers, capsys):
+    """Kernels of single runs and of ensembles apart."""
+    words = "compiling the kernels of model springs"
+    for run in (
+        lambda: tipoff.run(SCENE, "springs"),
+        lambda: tipoff.ensemble(SCENE, [{}], "springs"),
+    ):
+        for times in (1, 0):
+            run()
+            assert capsys.readouterr().err.count(words) == times
+    assert len(solvers) == 4
 
 
 def test_an_ensemble_draws_as_many_cases_as_asked_for(solvers):

@@ -56,19 +56,30 @@ def run(
         >>> [round(math.degrees(rate), 1) for rate in run.outcome.rate]  # deg/s
         [5.1, 2.0, 9.0]
     """
+    from tipoff.studies.core import compiling
+    from tipoff.studies.core.store import Run
+
     _require(scene, model, MODELS)
     if model == FINITE_ELEMENTS:
         from tipoff import highfi
 
         _require_none(scene, model, compliance=compliance, calibration=calibration)
-        return highfi.run(scene, highfi.Numerics(**numerics), progress)
+        sizes = highfi.Numerics(**numerics)
+        with compiling.first_use(Run("highfi", scene.name, scene, sizes)):
+            return highfi.run(scene, sizes, progress)
     from tipoff import lowfi
 
     chosen = lowfi.Numerics(**numerics)
     found = _pressed(scene, model, compliance, calibration)
-    return lowfi.run(
-        scene, model, compliance=found, calibration=calibration, numerics=chosen, progress=progress
-    )
+    with compiling.first_use(Run("lowfi", scene.name, scene, chosen, calibration, found)):
+        return lowfi.run(
+            scene,
+            model,
+            compliance=found,
+            calibration=calibration,
+            numerics=chosen,
+            progress=progress,
+        )
 
 
 def ensemble(
@@ -117,6 +128,8 @@ def ensemble(
         2
     """
     from tipoff import lowfi
+    from tipoff.studies.core import compiling
+    from tipoff.studies.core.store import Run
 
     _require(scene, model, SURROGATES)
     drawn = {"cases": options.pop("count", None), "seed": options.pop("seed", None)}
@@ -127,17 +140,19 @@ def ensemble(
         raise SceneError([Fault(scene.name, "count, seed", "given", "none with a list of cases")])
     chosen = lowfi.Numerics(**options)
     found = _pressed(scene, model, compliance, calibration)
-    return lowfi.run_many(
-        scene,
-        cases,
-        model,
-        compliance=found,
-        calibration=calibration,
-        numerics=chosen,
-        workers=workers,
-        store=store,
-        sensitivity=sensitivity,
-    )
+    like = Run("lowfi", scene.name, scene, chosen, calibration, found)
+    with compiling.first_use(like, many=True):
+        return lowfi.run_many(
+            scene,
+            cases,
+            model,
+            compliance=found,
+            calibration=calibration,
+            numerics=chosen,
+            workers=workers,
+            store=store,
+            sensitivity=sensitivity,
+        )
 
 
 def compliance(scene: Scene, element_size: float | None = None) -> RailCompliance:

@@ -133,6 +133,9 @@ def test_a_value_that_a_condition_replaces_is_warned_about(tmp_path, stub):
         (["new", "mine", "--mass", "12 m"], ["2 faults in the options", "FILE", "--mass"]),
         (["new", "my launcher.toml"], ["FILE: name", "at most 64 letters"]),
         (["view", "--element-size", "4 kg"], ['for example "4 mm"']),
+        (["flight", "--altitude", "9 s"], ["--altitude", 'for example "500 km"']),
+        (["run", "--budget", "2 kg", "--accuracy", "1"], ["2 faults", '"2 s"', '"0.1 deg/s"']),
+        (["new", "mine.toml", "--clearance", "2 s"], ["--clearance", 'for example "0.25 mm"']),
     ],
 )
 def test_faults_name_the_option(arguments, words, tmp_path, monkeypatch):

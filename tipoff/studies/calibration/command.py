@@ -107,7 +107,7 @@ def calibrate(
         from tipoff.mechanics.models import COMPLIANT, SPRINGS
         from tipoff.studies.calibration import stage
 
-        start = quantity("--settled-from", settled_from, "s")
+        start = quantity("--settled-from", settled_from, "s", "44 ms")
         files = stage.named(reference or [], condition, start)
         study = study_of(scene, out, set_, element_size=element_size, workers=workers)
         chosen = None if fit is None else [name.strip() for one in fit for name in one.split(",")]

@@ -4,9 +4,10 @@ Numba compiles one kernel at a time in a process, so that threads which make run
 effects would wait for each other.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
@@ -29,18 +30,28 @@ def warm_up(run: Run) -> None:
     execute(replace(run, scene=run.scene.replace({"duration": min(run.scene.duration, 1e-3)})))
 
 
-def announce(run: Run) -> None:
-    """Print that the kernels of ``run`` have to be compiled, where no run has compiled them."""
-    if not _mark(run).is_file():
+@contextmanager
+def first_use(run: Run, many: bool = False) -> Iterator[None]:
+    """Announce the kernels of ``run``, or of ``many`` cases like it, and note that they are there
+    once the block has used them."""
+    announce(run, many)
+    yield
+    remember(run, many)
+
+
+def announce(run: Run, many: bool = False) -> None:
+    """Print that the kernels of ``run``, or of ``many`` cases like it, have to be compiled, where
+    nothing has compiled them."""
+    if not _mark(run, many).is_file():
         say(
             f"compiling the kernels of model {run.model} for these effects: about "
             f"{_COMPILES[run.fidelity]}, once" + (_WITH_MODES if _modes(run) == AUTO else "")
         )
 
 
-def remember(run: Run) -> None:
-    """Note in the cache that the kernels of ``run``, which has been made, are there."""
-    mark = _mark(run)
+def remember(run: Run, many: bool = False) -> None:
+    """Note in the cache that the kernels of ``run``, or of ``many`` cases like it, are there."""
+    mark = _mark(run, many)
     mark.parent.mkdir(parents=True, exist_ok=True)
     mark.touch()
 
@@ -76,10 +87,14 @@ def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
         pool.shutdown(wait=False, cancel_futures=True)
 
 
-def _mark(run: Run) -> Path:
+def _mark(run: Run, many: bool = False) -> Path:
     """File in the cache of kernels that says that those of ``run`` are there."""
     key = content_hash(
-        kernel_digest(f"tipoff.{run.fidelity}"), run.model, run.scene.absent_effects(), _modes(run)
+        kernel_digest(f"tipoff.{run.fidelity}"),
+        run.model,
+        run.scene.absent_effects(),
+        _modes(run),
+        *(["ensemble"] if many else []),
     )
     return sources.cache_folder() / "kernels" / f"compiled-{key[:16]}"
 

@@ -84,8 +84,12 @@ def flight(
         from tipoff.studies.flight import stage
 
         given = {"range": range_, "altitude": altitude, "duration": duration}
-        units = {"range": "m", "altitude": "m", "duration": "s"}
-        together(*(partial(_require, name, given[name], unit) for name, unit in units.items()))
+        kinds = {
+            "range": ("m", "500 m"),
+            "altitude": ("m", "500 km"),
+            "duration": ("s", "2 hour"),
+        }
+        together(*(partial(_require, name, given[name], *kind) for name, kind in kinds.items()))
         table = [f"flight.{key}={value}" for key, value in given.items() if value is not None]
         study = study_of(scene, out, [*(set_ or []), *table], condition, element_size, workers)
         return stage.run(study, stage.Options(vary, cases, seed, model and model.value))
@@ -98,8 +102,8 @@ def flight(
     guarded(work, json_, shown, out)
 
 
-def _require(name: str, text: str | None, unit: str) -> None:
+def _require(name: str, text: str | None, unit: str, example: str) -> None:
     """Raise SceneError where the option ``name`` has no quantity in ``unit``; "absent" drops the
     key."""
     if text != "absent":
-        quantity(f"--{name}", text, unit)
+        quantity(f"--{name}", text, unit, example)

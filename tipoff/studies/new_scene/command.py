@@ -120,8 +120,9 @@ def _numbers(given: dict):
         unit, _, default = _ASKED[name]
         text, option = given[name] or default, f"--{name.replace('_', '-')}"
         if name != "size":
-            return quantity(option, text, unit)
-        sides = [quantity(option, part.strip(), unit) for part in text.split(",")]
+            return quantity(option, text, unit, default)
+        example = default.split(",")[0]
+        sides = [quantity(option, part.strip(), unit, example) for part in text.split(",")]
         if len(sides) != 3:
             expected = 'three lengths, for example "350 mm, 200 mm, 200 mm"'
             raise SceneError([Fault(option, "value", text, expected)])

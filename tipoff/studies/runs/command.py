@@ -152,6 +152,7 @@ def run(
     def work() -> dict:
         from tipoff.scenes.faults import Fault, SceneError
         from tipoff.studies.core import models
+        from tipoff.studies.core.checked import together
         from tipoff.studies.runs import single
 
         options = models.Options(model and model.value, calibration, modes)
@@ -176,7 +177,10 @@ def run(
                     for name in wrong
                 ]
             )
-        limits = quantity("--accuracy", accuracy, "deg/s"), quantity("--budget", budget, "s")
+        limits = together(
+            lambda: quantity("--accuracy", accuracy, "deg/s", "0.1 deg/s"),
+            lambda: quantity("--budget", budget, "s", "2 s"),
+        )
         return single.several(names, lambda name: single.chosen(study, name, *limits, json_))
 
     def shown(found: dict) -> list["Part"]:
