@@ -32,7 +32,7 @@ def terminal(document: dict, folder: Path) -> list[Part]:
         ]
         return both
     wide = document["with_model_error"]
-    heads = ["constant", Column("value", form=".5g"), "unit", "95 % interval"]
+    heads: list[Column | str] = ["constant", Column("value", form=".5g"), "unit", "95 % interval"]
     keys = ("parameters", "values", "units", "intervals")
     rows = [list(row) for row in zip(*(document[key] for key in keys))]
     for row in rows:

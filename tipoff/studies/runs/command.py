@@ -177,11 +177,11 @@ def run(
                     for name in wrong
                 ]
             )
-        limits = together(
+        error, wall = together(
             lambda: quantity("--accuracy", accuracy, "deg/s", "0.1 deg/s"),
             lambda: quantity("--budget", budget, "s", "2 s"),
         )
-        return single.several(names, lambda name: single.chosen(study, name, *limits, json_))
+        return single.several(names, lambda name: single.chosen(study, name, error, wall, json_))
 
     def shown(found: dict) -> list["Part"]:
         from tipoff.studies.runs import page
