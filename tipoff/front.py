@@ -50,11 +50,11 @@ def run(
 
     Example:
         >>> import math
-        >>> run = tipoff.run(tipoff.load("tiny").condition("phi15"))
+        >>> run = tipoff.run(tipoff.load("tiny").condition("phi15"), modes=0)
         >>> run.status
         'exited'
-        >>> [round(math.degrees(rate), 1) for rate in run.outcome.rate]  # deg/s
-        [5.1, 2.0, 9.0]
+        >>> [round(math.degrees(rate)) for rate in run.outcome.rate]  # deg/s
+        [5, 2, 9]
     """
     from tipoff.studies.core import compiling
     from tipoff.studies.core.store import Run
@@ -179,11 +179,12 @@ def compliance(scene: Scene, element_size: float | None = None) -> RailComplianc
     """
     from tipoff.calibration import rail_compliance
     from tipoff.studies.core.progress import say
+    from tipoff.studies.core.settings import defaults
 
     folder = sources.cache_folder() / "compliance"
     if element_size is not None:
         return rail_compliance.kept(scene, folder / "of-a-size", element_size, say)
-    own = rail_compliance.REFERENCE_SIZE
+    own = defaults(scene.name).element_size
     for size in (own, 2.0 * own):
         if rail_compliance.kept_file(scene, folder, size).is_file():
             return rail_compliance.kept(scene, folder, size, say)
@@ -223,10 +224,11 @@ def calibrate(
 
     Example:
         >>> scene = tipoff.load("tiny")
-        >>> curves = {"phi15": tipoff.run(scene.condition("phi15"), "springs")}
-        >>> found = tipoff.calibrate(scene, curves)
-        >>> found.conditions
-        ['phi15']
+        >>> names = scene.agreement.fitted
+        >>> curves = {name: tipoff.run(scene.condition(name), modes=0) for name in names}
+        >>> found = tipoff.calibrate(scene, curves, fit=["friction.dynamic"])
+        >>> round(found.constants["friction.dynamic"], 2)  # that of the curves
+        0.2
     """
     from tipoff import calibration
     from tipoff.lowfi import models
@@ -258,7 +260,7 @@ def compare(reference: Trajectory, surrogate: Trajectory) -> "Difference":
 
     Example:
         >>> scene = tipoff.load("tiny")
-        >>> ours, other = tipoff.run(scene), tipoff.run(scene, "springs")
+        >>> ours, other = tipoff.run(scene, modes=0), tipoff.run(scene, "springs")
         >>> tipoff.compare(ours, ours).settled_rate_error_deg_s
         0.0
         >>> tipoff.compare(ours, other).settled_rate_error_deg_s > 0.1

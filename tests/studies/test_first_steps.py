@@ -139,6 +139,7 @@ def test_a_value_that_a_condition_replaces_is_warned_about(tmp_path, stub):
     ],
 )
 def test_faults_name_the_option(arguments, words, tmp_path, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")  # no message is wrapped
     monkeypatch.chdir(tmp_path)
     scene = [] if arguments[0] == "new" else ["--scene", "tiny"]
     found = call(*arguments, *scene)

@@ -70,7 +70,7 @@ class RailCompliance(Shown):
 
     Example:
         >>> rail = tipoff.compliance(tipoff.load("tiny"), 8e-3)
-        >>> run = tipoff.run(tipoff.load("tiny"), compliance=rail)
+        >>> run = tipoff.run(tipoff.load("tiny"), compliance=rail, modes=0)
     """
 
     travel: np.ndarray

@@ -33,7 +33,7 @@ class Difference(Carded):
 
     Example:
         >>> scene = tipoff.load("tiny")
-        >>> found = tipoff.compare(tipoff.run(scene), tipoff.run(scene, "springs"))
+        >>> found = tipoff.compare(tipoff.run(scene, modes=0), tipoff.run(scene, "springs"))
         >>> sorted(found.iso18571_channels)
         ['rate_x', 'rate_y', 'rate_z', 'velocity_x']
     """
