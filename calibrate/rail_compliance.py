@@ -68,17 +68,23 @@ def kept(
 
 class _Waiting:
     """Progress of what takes more than ``LONG`` seconds by the ``clock``: the time that is left
-    is said first, and again at each quarter."""
+    is said first, and again at each quarter. The speed is that since the first report, before which
+    a mesh is made."""
 
     LONG = 30.0
 
     def __init__(self, say: Callable[[str], None], clock: Callable[[], float]):
         self._say, self._clock = say, clock
-        self._began, self._next = clock(), 0.0
+        self._first: tuple[float, float] | None = None  # time (s) and fraction
+        self._next = 0.0
 
     def __call__(self, fraction: float) -> None:
-        taken = self._clock() - self._began
-        left = taken * (1.0 - fraction) / fraction
+        if self._first is None or fraction <= self._first[1]:
+            self._first = self._clock(), fraction
+            return
+        began, before = self._first
+        taken = self._clock() - began
+        left = taken * (1.0 - fraction) / (fraction - before)
         if fraction < self._next or fraction >= 1.0 or taken + left < self.LONG:
             return
         advice = "; coarser elements take less" if self._next == 0.0 else ""

@@ -68,8 +68,7 @@ def test_a_long_wait_says_how_long_it_takes(monkeypatch, tmp_path):
     first, *left, last = _said(monkeypatch, tmp_path, 60.0)
     assert "rail compliance, once" in first and "found in 240 s" in last
     assert left == [
-        "  25 %, about 3 min left; coarser elements take less",
-        "  50 %, about 2 min left",
+        "  50 %, about 2 min left; coarser elements take less",
         "  75 %, about 60 s left",
     ]
     assert len(_said(monkeypatch, tmp_path, 1.0)) == 2
