@@ -18,6 +18,7 @@ from tipoff.calibration import alignment, compliant
 from tipoff.calibration.faults import CalibrationError
 from tipoff.calibration.information import WEAK_EIGENVALUE, information, jacobian
 from tipoff.calibration.parameters import Parameter, siblings
+from tipoff.scenes.faults import close
 from tipoff.scenes.scene import Scene
 
 ALL = "all"
@@ -77,7 +78,8 @@ def named(scene: Scene, conditions: Iterable[str], names: Sequence[str]) -> list
         if name == ALL:
             faults.append(f"fit: {ALL} stands alone, without names")
         elif name not in every_name():
-            faults.append(f"fit: {name!r} is none of {', '.join(every_name())}")
+            meant = close(name, every_name())
+            faults.append(f"fit: {name!r} is none of {', '.join(every_name())}{meant}")
         elif name not in known:
             faults.append(f"fit: {name} needs {compliant.needs(name)}, which the scene lacks")
         else:

@@ -55,14 +55,42 @@ def kept(
     except ValueError as fault:
         say(f"  {fault}, so it is found again")
     say(
-        f"rail compliance, once per rail and pads: {1e3 * element_size:g} mm elements, "
-        "up to a minute"
+        f"rail compliance, once per rail and pads: {1e3 * element_size:g} mm elements, seconds to "
+        f"minutes"
     )
     began = time.perf_counter()
-    found = compliance(scene, element_size)
+    with statics.progress_to(_Waiting(say, time.perf_counter)):
+        found = compliance(scene, element_size)
     found.save(path)
     say(f"  found in {time.perf_counter() - began:.3g} s, kept in {path}")
     return found
+
+
+class _Waiting:
+    """Progress of what takes more than ``LONG`` seconds by the ``clock``: the time that is left
+    is said first, and again at each quarter. The speed is that since the first report, before which
+    a mesh is made."""
+
+    LONG = 30.0
+
+    def __init__(self, say: Callable[[str], None], clock: Callable[[], float]):
+        self._say, self._clock = say, clock
+        self._first: tuple[float, float] | None = None  # time (s) and fraction
+        self._next = 0.0
+
+    def __call__(self, fraction: float) -> None:
+        if self._first is None or fraction <= self._first[1]:
+            self._first = self._clock(), fraction
+            return
+        began, before = self._first
+        taken = self._clock() - began
+        left = taken * (1.0 - fraction) / (fraction - before)
+        if fraction < self._next or fraction >= 1.0 or taken + left < self.LONG:
+            return
+        advice = "; coarser elements take less" if self._next == 0.0 else ""
+        self._next = 0.25 * (int(4.0 * fraction) + 1)
+        shown = f"{left:.0f} s" if left < 90.0 else f"{left / 60.0:.0f} min"
+        self._say(f"  {100.0 * fraction:.0f} %, about {shown} left{advice}")
 
 
 def kept_file(scene: Scene, folder: Path, element_size: float) -> Path:
@@ -71,10 +99,19 @@ def kept_file(scene: Scene, folder: Path, element_size: float) -> Path:
     return folder / f"compliance-{key[:8]}.npz"
 
 
-def fine_enough(scene: Scene, reference_size: float = REFERENCE_SIZE) -> float:
+def fine_enough(
+    scene: Scene,
+    reference_size: float = REFERENCE_SIZE,
+    say: Callable[[str], None] | None = None,
+) -> float:
     """Element size (m) of the coarsest mesh whose compliance is within ``ACCURACY`` of that of
-    ``reference_size`` (m)."""
+    ``reference_size`` (m). ``say`` gets a message before it begins."""
     coarse = 2.0 * reference_size
+    if say is not None:
+        say(
+            f"elements of the rail compliance: are {1e3 * coarse:g} mm fine enough? Takes seconds; a "
+            f"minute for a rail of metres"
+        )
     coarser, finer = (direct(scene, size) for size in (2.0 * coarse, coarse))
     change = float((np.abs(coarser - finer) / finer).max())
     return coarse if change * (coarse - reference_size) / coarse <= ACCURACY else reference_size

@@ -13,7 +13,13 @@ project = "tipoff"
 author = "tipoff contributors"
 version = release = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "docs.pages.formulas", "sphinx_copybutton"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "docs.pages.formulas",
+    "sphinx_copybutton",
+]
 exclude_patterns = ["_build"]
 smartquotes = False  # they make dashes of the two hyphens before an option
 html_theme = "furo"
@@ -27,6 +33,7 @@ myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 3
 copybutton_prompt_text = "$ "
 
+napoleon_numpy_docstring = False
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_class_signature = "separated"

@@ -17,7 +17,9 @@ patterns, so that a full set of them gives C::
     V_iam = 1/A_i integral over face i of phi_a n_i . psi_m,   W = G^-1 V,   C = sum_m V_m V_m' / omega_m^2
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import NamedTuple
 
 import numpy as np
@@ -39,11 +41,32 @@ from tipoff.scenes.effects.thermal import FIELDS
 from tipoff.scenes.rail import MaterialTable
 from tipoff.scenes.scene import Scene
 
-_BATCH = 64  # loads solved for at once; bounds the memory
+BATCH = 64  # loads solved for at once; bounds the memory
 _DIGITS = 9  # of a place in m: faces whose places agree in them share one solution
 _SPACING = 4e-3  # m between stations; what mounts and ends change takes a leg or so
 # of the largest eigenvalue of G: patterns that hardly differ on what wall there is
 _SINGULAR = 1e-6
+
+
+# Called with the fraction of the loads solved for. It is no argument, as every function below would
+# have one more.
+_PROGRESS: ContextVar[Callable[[float], None] | None] = ContextVar("progress", default=None)
+
+
+@contextmanager
+def progress_to(report: Callable[[float], None]) -> Iterator[None]:
+    """Context in which this thread's calls ``report`` the fraction of the loads solved for, 0 to
+    1 for each rail that differs from the others."""
+    before = _PROGRESS.set(report)
+    try:
+        yield
+    finally:
+        _PROGRESS.reset(before)
+
+
+def reported() -> Callable[[float], None]:
+    """What ``progress_to`` was given in this thread; it does nothing without."""
+    return _PROGRESS.get() or (lambda _: None)
 
 
 class Compliance(NamedTuple):
@@ -265,10 +288,10 @@ class _Patches:
         load, held = thermal.of_each_field(self._rail, operator, material, middle)
         warm = loads.T @ clamped.displaced(load, held)
         loads = loads[clamped.free]
-        answer = [
-            loads.T @ clamped.solve(loads[:, start : start + _BATCH].toarray())
-            for start in range(0, loads.shape[1], _BATCH)
-        ]
+        answer, report = [], reported()
+        for start in range(0, loads.shape[1], BATCH):
+            answer.append(loads.T @ clamped.solve(loads[:, start : start + BATCH].toarray()))
+            report(min(start + BATCH, loads.shape[1]) / loads.shape[1])
         frequency, shape = vibration.modes(
             clamped.stiffness, np.repeat(operator.mass, 3)[clamped.free], clamped.solve, modes
         )

@@ -10,11 +10,13 @@ from tipoff.calibration import rail_compliance
 
 SCENE = tipoff.load("tiny")
 CALIBRATION = SimpleNamespace(is_of_springs=True)
+STORED = SimpleNamespace(flexibility=1.0)
 
 
 @pytest.fixture
-def solvers(monkeypatch):
+def solvers(monkeypatch, tmp_path):
     """What the solvers were asked for, in place of their runs."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))  # nothing is compiled
     asked = []
     monkeypatch.setattr(highfi, "run", lambda *given: asked.append(("highfi", *given)))
     monkeypatch.setattr(lowfi, "run", lambda *given, **more: asked.append((*given, more)))
@@ -29,9 +31,11 @@ def found(monkeypatch, tmp_path):
 
     def compute(scene, element_size):
         done.append(element_size)
-        return SimpleNamespace(save=lambda path: (path.parent.mkdir(parents=True), path.touch()))
+        return SimpleNamespace(
+            flexibility=1.0, save=lambda path: (path.parent.mkdir(parents=True), path.touch())
+        )
 
-    def choose(scene, own):
+    def choose(scene, own, say):
         done.append("a mesh is chosen")
         return 2.0 * own
 
@@ -45,7 +49,7 @@ def found(monkeypatch, tmp_path):
 def _stored(path):
     if not path.is_file():
         raise FileNotFoundError(path)
-    return "stored"
+    return STORED
 
 
 def test_every_name_is_there():
@@ -63,17 +67,30 @@ def test_finite_elements_take_their_own_numerics(solvers):
 def test_compliant_contact_finds_its_compliance_once(solvers, found, capsys):
     for _ in range(2):
         tipoff.run(SCENE, modes=2)
-    assert found == ["a mesh is chosen", 4e-3]
+    assert found == ["a mesh is chosen", 16e-3]  # tiny has 8 mm, as in the command
     assert capsys.readouterr().err.count("rail compliance, once") == 1
     (_, model, first), (_, _, again) = solvers
     assert model == "compliant" and first["numerics"] == lowfi.Numerics(modes=2)
-    assert again["compliance"] == "stored"
+    assert again["compliance"] is STORED
 
 
 def test_springs_need_no_compliance_but_on_warm_rails(solvers, found):
     tipoff.run(SCENE, "springs", calibration=CALIBRATION)
     assert solvers[0][2]["compliance"] is None and solvers[0][2]["calibration"] is CALIBRATION
     assert found == []
+
+
+def test_a_first_use_is_announced_once(solvers, capsys):
+    """Kernels of single runs and of ensembles apart."""
+    words = "compiling the kernels of model springs"
+    for run in (
+        lambda: tipoff.run(SCENE, "springs"),
+        lambda: tipoff.ensemble(SCENE, [{}], "springs"),
+    ):
+        for times in (1, 0):
+            run()
+            assert capsys.readouterr().err.count(words) == times
+    assert len(solvers) == 4
 
 
 def test_an_ensemble_draws_as_many_cases_as_asked_for(solvers):

@@ -1,8 +1,10 @@
 """Predicts the velocity and the angular rates of a payload when it leaves its rail.
 
 >>> import tipoff
->>> scene = tipoff.load("reference")
->>> tipoff.run(scene.condition("phi35")).outcome.rate  # rad/s
+>>> scene = tipoff.load("tiny")  # a small one; "reference" is the one of the documentation
+>>> run = tipoff.run(scene.condition("phi15"), "springs")
+>>> len(run.outcome.rate)  # settled body rates, rad/s
+3
 
 The names in ``__all__`` are imported at their first use. The packages behind them are
 ``tipoff.scenes``, ``tipoff.highfi``, ``tipoff.lowfi`` and others.

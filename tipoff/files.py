@@ -123,6 +123,13 @@ def write_text(path: str | Path, text: str) -> None:
         temporary.write_text(text, encoding="utf-8")
 
 
+def write_csv(path: str | Path, columns: Mapping[str, Any]) -> None:
+    """Write ``columns`` of numbers (n,), by titles with units, in UTF-8 atomically."""
+    rows = zip(*(values.tolist() for values in columns.values()))
+    lines = [",".join(columns), *(",".join(map(repr, row)) for row in rows)]
+    write_text(path, "\n".join(lines) + "\n")
+
+
 @contextmanager
 def sealed(path: str | Path) -> Iterator[Path]:
     """As ``replacing``; the digest is appended as the last line."""

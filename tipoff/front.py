@@ -30,27 +30,56 @@ def run(
     progress: Callable[[float], None] | None = None,
     **numerics: Any,
 ) -> Trajectory:
-    """Solve ``scene`` in a ``model``: ``compliant``, ``springs`` or ``finite-elements``.
+    """Solve a scene in a model.
 
-    ``compliance`` is that of the rail, for the model ``compliant``; computed where it is not given.
-    ``calibration`` contains constants that were fitted on the same model. ``numerics`` are fields of
-    ``lowfi.Numerics`` or ``highfi.Numerics``, such as ``element_size=2e-3`` (m) or ``modes=4``. ``progress`` is called
-    with the fraction of the duration done. Raises SceneError, every fault listed, and ValueError
-    for numerics that are out of range; a failure of the run is the ``status`` of the result.
+    Args:
+        scene: the scene, or one of its conditions (``Scene.condition``).
+        model: ``compliant``, ``springs`` or ``finite-elements``.
+        compliance: rail compliance, for the model ``compliant``; computed where it is not given.
+        calibration: constants that were fitted on the same model.
+        progress: called with the fraction of the duration done, 0 to 1.
+        numerics: fields of ``lowfi.Numerics`` or ``highfi.Numerics``, such as ``element_size=2e-3``
+            (m) or ``modes=4``.
+
+    Returns:
+        Trajectory: motion over time. A failure of the run is its ``status``.
+
+    Raises:
+        SceneError: every fault of scene and options listed.
+        ValueError: numerics that are out of range.
+
+    Example:
+        >>> import math
+        >>> run = tipoff.run(tipoff.load("tiny").condition("phi15"), modes=0)
+        >>> run.status
+        'exited'
+        >>> [round(math.degrees(rate)) for rate in run.outcome.rate]  # deg/s
+        [5, 2, 9]
     """
+    from tipoff.studies.core import compiled
+    from tipoff.studies.core.store import Run
+
     _require(scene, model, MODELS)
     if model == FINITE_ELEMENTS:
         from tipoff import highfi
 
         _require_none(scene, model, compliance=compliance, calibration=calibration)
-        return highfi.run(scene, highfi.Numerics(**numerics), progress)
+        sizes = highfi.Numerics(**numerics)
+        with compiled.first_use(Run("highfi", scene.name, scene, sizes)):
+            return highfi.run(scene, sizes, progress)
     from tipoff import lowfi
 
     chosen = lowfi.Numerics(**numerics)
     found = _pressed(scene, model, compliance, calibration)
-    return lowfi.run(
-        scene, model, compliance=found, calibration=calibration, numerics=chosen, progress=progress
-    )
+    with compiled.first_use(Run("lowfi", scene.name, scene, chosen, calibration, found)):
+        return lowfi.run(
+            scene,
+            model,
+            compliance=found,
+            calibration=calibration,
+            numerics=chosen,
+            progress=progress,
+        )
 
 
 def ensemble(
@@ -65,16 +94,42 @@ def ensemble(
     sensitivity: bool = False,
     **options: Any,
 ) -> "xarray.Dataset":
-    """Run ``scene`` once for each of ``cases`` in a surrogate ``model``.
+    """Run a scene once for each of many cases in a surrogate model.
 
-    ``cases`` are rows of dotted overrides as in ``Scene.replace``; or distributions, by the name or
-    path of their file. ``options`` are ``count`` and ``seed``, which replace those of this file,
-    and the numerics of ``run``. ``workers`` is the number of threads. ``store`` is a folder for
-    results, so that an interrupted ensemble continues. ``sensitivity`` adds how far 1 um more of
-    every clearance and a tolerance of 1e-10 move the settled rates of each case. The rest is as in
-    ``run``. Raises SceneError, StoreError or ValueError.
+    Args:
+        scene: the scene, or one of its conditions.
+        cases: rows of dotted overrides as in ``Scene.replace``; or distributions, by the name or
+            path of their file.
+        model: ``compliant`` or ``springs``.
+        compliance: as in ``run``.
+        calibration: as in ``run``.
+        workers: number of threads; all cores without it.
+        store: folder for results, so that an interrupted ensemble continues.
+        sensitivity: add how far 1 um more of every clearance and a tolerance of 1e-10 move the
+            settled rates of each case (rad/s).
+        options: ``count`` and ``seed``, which replace those of the file of distributions, and the
+            numerics of ``run``.
+
+    Returns:
+        xarray.Dataset: inputs and results with the dimension ``case``; each variable has its unit
+        in ``attrs["units"]``.
+
+    Raises:
+        SceneError: every fault of scene, distributions and options listed.
+        StoreError: a ``store`` of another ensemble.
+        ValueError: numerics that are out of range.
+
+    Example:
+        >>> cases = tipoff.ensemble(tipoff.load("tiny"), "paper", "springs", count=8)
+        >>> cases.rate.dims, cases.rate.attrs["units"]
+        (('case', 'axis'), 'rad/s')
+        >>> heavier = [{"payload.mass": "10 kg"}, {"payload.mass": "11 kg"}]
+        >>> tipoff.ensemble(tipoff.load("tiny"), heavier, "springs").sizes["case"]
+        2
     """
     from tipoff import lowfi
+    from tipoff.studies.core import compiled
+    from tipoff.studies.core.store import Run
 
     _require(scene, model, SURROGATES)
     drawn = {"cases": options.pop("count", None), "seed": options.pop("seed", None)}
@@ -85,37 +140,55 @@ def ensemble(
         raise SceneError([Fault(scene.name, "count, seed", "given", "none with a list of cases")])
     chosen = lowfi.Numerics(**options)
     found = _pressed(scene, model, compliance, calibration)
-    return lowfi.run_many(
-        scene,
-        cases,
-        model,
-        compliance=found,
-        calibration=calibration,
-        numerics=chosen,
-        workers=workers,
-        store=store,
-        sensitivity=sensitivity,
-    )
+    like = Run("lowfi", scene.name, scene, chosen, calibration, found)
+    with compiled.first_use(like, many=True):
+        return lowfi.run_many(
+            scene,
+            cases,
+            model,
+            compliance=found,
+            calibration=calibration,
+            numerics=chosen,
+            workers=workers,
+            store=store,
+            sensitivity=sensitivity,
+        )
 
 
 def compliance(scene: Scene, element_size: float | None = None) -> RailCompliance:
-    """Rail compliance under the pads of ``scene`` from the statics of its finite elements, of
-    ``element_size`` (m), else on the coarsest mesh that is within 1 % of the reference's own.
+    """Rail compliance under the pads of a scene, from the statics of its finite elements.
 
-    Takes seconds to a minute, once for a rail and its pads: it is stored in the cache folder of the
-    user, beside the compiled kernels, and announced on standard error. Raises SceneError or MeshError.
+    Takes seconds to minutes, once for a rail and its pads: it is stored in the cache folder of the
+    user, beside the compiled kernels, and announced on standard error.
+
+    Args:
+        scene: the scene; its rail and pads count.
+        element_size: size of the elements (m); without it the coarsest mesh that is within 1 % of
+            the reference's own.
+
+    Returns:
+        RailCompliance: flexibility and lowest modes at stations along the rail.
+
+    Raises:
+        SceneError: every fault listed.
+        MeshError: a rail that cannot be meshed, or that nothing holds.
+
+    Example:
+        >>> tipoff.compliance(tipoff.load("tiny"), element_size=8e-3).travel.size
+        53
     """
     from tipoff.calibration import rail_compliance
     from tipoff.studies.core.progress import say
+    from tipoff.studies.core.settings import defaults
 
     folder = sources.cache_folder() / "compliance"
     if element_size is not None:
         return rail_compliance.kept(scene, folder / "of-a-size", element_size, say)
-    own = rail_compliance.REFERENCE_SIZE
+    own = defaults(scene.name).element_size
     for size in (own, 2.0 * own):
         if rail_compliance.kept_file(scene, folder, size).is_file():
             return rail_compliance.kept(scene, folder, size, say)
-    return rail_compliance.kept(scene, folder, rail_compliance.fine_enough(scene, own), say)
+    return rail_compliance.kept(scene, folder, rail_compliance.fine_enough(scene, own, say), say)
 
 
 def calibrate(
@@ -127,12 +200,36 @@ def calibrate(
     compliance: RailCompliance | None = None,
     fit: Sequence[str] | None = None,
 ) -> Calibration:
-    """Parameters of a surrogate ``model``, fitted to runs of the reference or to other curves, by
-    the name of their condition. The default model is ``springs``, and ``compliant`` where parameters
-    are chosen, as in the command. On compliant contact these are the parameters ``fit``
-    (``calibration.choice.every_name``), those of ``["all"]`` that the curves determine, or by
-    default those of interface and mount stiffness, clearance and friction that they determine; the
-    rail ``compliance`` is computed if it is not given. Raises CalibrationError or SceneError."""
+    """Fit parameters of a surrogate model to runs of the reference or to other curves.
+
+    On compliant contact the parameters are those of ``fit`` (``calibration.choice.every_name``),
+    those of ``["all"]`` that the curves determine, or by default those of interface and mount
+    stiffness, clearance and friction that they determine.
+
+    Args:
+        scene: the scene whose conditions the curves belong to.
+        references: runs of the reference, or ``calibration.Curves``, by the name of their condition.
+        progress: called with the fraction done, 0 to 1.
+        seed: of the search.
+        model: ``springs`` (default), or ``compliant`` (default where ``fit`` is given).
+        compliance: as in ``run``.
+        fit: names of parameters of compliant contact.
+
+    Returns:
+        Calibration: values with their intervals; ``run`` and ``ensemble`` take it.
+
+    Raises:
+        CalibrationError: curves that determine nothing.
+        SceneError: every fault listed.
+
+    Example:
+        >>> scene = tipoff.load("tiny")
+        >>> names = scene.agreement.fitted
+        >>> curves = {name: tipoff.run(scene.condition(name), modes=0) for name in names}
+        >>> found = tipoff.calibrate(scene, curves, fit=["friction.dynamic"])
+        >>> round(found.constants["friction.dynamic"], 2)  # that of the curves
+        0.2
+    """
     from tipoff import calibration
     from tipoff.lowfi import models
 
@@ -152,8 +249,23 @@ def calibrate(
 
 
 def compare(reference: Trajectory, surrogate: Trajectory) -> "Difference":
-    """Differences of ``surrogate`` from ``reference``, two runs of one condition, in all metrics of
-    the agreement table."""
+    """Differences of a surrogate from the reference in all metrics of the agreement table.
+
+    Args:
+        reference: a run.
+        surrogate: another run of the same condition.
+
+    Returns:
+        Difference: relative L2 differences, settled differences (deg/s, m/s, deg), ratings.
+
+    Example:
+        >>> scene = tipoff.load("tiny")
+        >>> ours, other = tipoff.run(scene, modes=0), tipoff.run(scene, "springs")
+        >>> tipoff.compare(ours, ours).settled_rate_error_deg_s
+        0.0
+        >>> tipoff.compare(ours, other).settled_rate_error_deg_s > 0.1
+        True
+    """
     from tipoff.studies.agreement import metrics
 
     return metrics.compare(reference, surrogate)

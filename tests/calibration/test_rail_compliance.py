@@ -1,10 +1,13 @@
 """Choice of the mesh from which the compliance of the rail is condensed."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from tipoff import calibration
 from tipoff.calibration import rail_compliance
+from tipoff.highfi import compliance as statics
 from tipoff.scenes import load
 
 REFERENCE = 2e-3
@@ -39,3 +42,44 @@ def test_a_given_size_is_used(monkeypatch):
     monkeypatch.setattr(rail_compliance, "fine_enough", lambda *_: pytest.fail("chose a mesh"))
     monkeypatch.setattr(rail_compliance.statics, "condense", lambda scene, size: size)
     assert calibration.compliance(load("tiny"), 8e-3) == 8e-3
+
+
+def _said(monkeypatch, tmp_path, seconds: float) -> list[str]:
+    """What is said while four equal parts of the loads take ``seconds`` each."""
+    now = 0.0
+
+    def condense(scene, size):
+        nonlocal now
+        report = statics.reported()
+        for part in range(4):
+            now += seconds
+            report(0.25 * (part + 1))
+        return SimpleNamespace(save=lambda path: None)
+
+    monkeypatch.setattr(rail_compliance.time, "perf_counter", lambda: now)
+    monkeypatch.setattr(rail_compliance.statics, "condense", condense)
+    lines = []
+    rail_compliance.kept(load("tiny"), tmp_path, 8e-3, lines.append)
+    return lines
+
+
+def test_a_long_wait_says_how_long_it_takes(monkeypatch, tmp_path):
+    """Four minutes; control: four seconds say nothing."""
+    first, *left, last = _said(monkeypatch, tmp_path, 60.0)
+    assert "rail compliance, once" in first and "found in 240 s" in last
+    assert left == [
+        "  50 %, about 2 min left; coarser elements take less",
+        "  75 %, about 60 s left",
+    ]
+    assert len(_said(monkeypatch, tmp_path, 1.0)) == 2
+
+
+def test_the_loads_solved_for_are_reported(monkeypatch):
+    """Every batch of a rail, up to all of it."""
+    monkeypatch.setattr(statics, "BATCH", 7)
+    seen = []
+    with statics.progress_to(seen.append):
+        rail_compliance.direct(load("tiny"), 16e-3)
+    assert seen == sorted(seen) and seen[-1] == 1.0 and len(seen) > 3
+    rail_compliance.direct(load("tiny"), 16e-3)
+    assert seen[-1] == 1.0 and seen.count(1.0) == 1

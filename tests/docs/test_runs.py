@@ -37,6 +37,7 @@ LEFT_OUT = {
     ("convergence",): "minutes: tests/studies/convergence",
     ("stability",): "minutes: tests/studies/stability",
     ("compare",): "tests/studies/agreement",
+    ("--install-completion",): "it changes the shell of the user",
 }
 SCHEDULER, ACCURACY, FITTED = "--scheduler", "--accuracy", "--calibration"
 FEWEST = "400"
@@ -96,7 +97,7 @@ def _small(words: tuple[str, ...]) -> list[str]:
     if "--settled-from" in found:
         at = found.index("--settled-from")
         del found[at : at + 2]  # the curves here end with the settled window
-    if "--scene" not in found and words[0] not in ("scenes", "doctor", "bench"):
+    if "--scene" not in found and words[0] not in ("scenes", "schema", "doctor", "bench"):
         found += ["--scene", "tiny"]
     return found
 

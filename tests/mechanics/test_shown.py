@@ -1,16 +1,20 @@
 """Objects as people see them: one line each, a summary, a card, a plot, a table."""
 
 import math
+import re
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
 from tests.studies.synthetic import flight
 from tipoff import lowfi
+from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.scenes import load
+from tipoff.scenes import Calibration, load
+from tipoff.studies.agreement import metrics
 
-NOTEBOOK = "_repr_html_"  # the method that notebooks call
+NOTEBOOK, PICTURE = "_repr_html_", "_repr_png_"  # the methods that notebooks call
 
 
 @pytest.fixture(scope="module")
@@ -51,15 +55,105 @@ def test_a_card_is_escaped(run):
     assert "<td" in shown and "deg/s" in shown
 
 
-def test_a_plot_has_degrees_per_second(run):
+def _walls() -> RailCompliance:
+    """Four faces at three stations, each as stiff as its number says."""
+    faces = 4
+    own = np.zeros((3, faces, PATTERNS, faces, PATTERNS))
+    for face in range(faces):
+        own[:, face, 0, face, 0] = 1e-9 * (1 + face) * np.array([1.0, 2.0, 3.0])
+    return RailCompliance(
+        travel=np.array([0.0, 0.01, 0.02]),
+        flexibility=own,
+        rail=np.arange(faces),
+        half=np.full((faces, 2), 8e-3),
+        frequency=np.full((faces, 1), 2.0e3 * np.pi),
+        shape=np.zeros((3, faces, PATTERNS, 1)),
+        made_for="",
+    )
+
+
+def _shown_objects(run) -> list:
+    unknown = np.zeros((0, 0))
+    fitted = Calibration(
+        *({}, ["<mu>"], [0.2], ["1"], [0.0], [1.0], [""], unknown, ["<i>"], {}, ["phi15"], 0.0),
+        intervals=[[0.1, 0.3]],
+    )
+    return [run, load("tiny"), _walls(), _walls().rigid(), fitted, metrics.compare(run, run)]
+
+
+COLOUR = re.compile(r"#[0-9a-f]{3,8}\b|\b(rgb|hsl)a?\(|\b(black|white|grey|gray)\b", re.IGNORECASE)
+
+
+def test_every_object_is_one_line_a_summary_and_a_card(run):
+    for item in _shown_objects(run):
+        assert "\n" not in repr(item) and len(repr(item)) < 200
+        card, lines = getattr(item, NOTEBOOK)(), item.summary().splitlines()
+        assert card.count("<tr") == len(lines) > 2
+        assert "<mu>" not in card and "<i>" not in card
+        tree = ElementTree.fromstring(card)  # well-formed
+        assert tree.find("caption/b").text == type(item).__name__
+        words = [cell.text for cell in tree.iter("td")]
+        assert all(line.endswith(found) for line, found in zip(lines, words, strict=True))
+
+
+def test_a_card_has_the_colours_of_the_page_around_it(run):
+    """So it is legible on a light page and on a dark one."""
+    for item in _shown_objects(run):
+        card = getattr(item, NOTEBOOK)()
+        assert not COLOUR.search(card)
+        for cell in ElementTree.fromstring(card).iter():
+            if cell.tag in ("table", "th", "td", "caption"):
+                assert "color:inherit;background:transparent" in cell.attrib["style"]
+    assert COLOUR.search("color:#222") and COLOUR.search("background:white")  # the control
+
+
+def test_plots_have_units_and_leave_no_global_state(run):
+    from matplotlib import _pylab_helpers
     from matplotlib.figure import Figure
 
-    axes = Figure().add_subplot()
-    lines = run.plot(ax=axes)
-    assert len(lines) == 3
+    before = len(_pylab_helpers.Gcf.figs)
+    figure = run.plot()
+    axes = figure.axes[0]
+    lines = axes.get_lines()[:3]
     assert lines[2].get_ydata() == pytest.approx(np.degrees(run.rate[:, 2]))
     assert lines[2].get_xdata() == pytest.approx(1e3 * run.time)
-    assert "deg/s" in axes.get_ylabel() and "ms" in axes.get_xlabel()
+    assert axes.get_ylabel() == "rate (deg/s)" and "(ms)" in axes.get_xlabel()
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["x", "y", "z"]
+    velocity = run.plot("velocity").axes[0]
+    assert velocity.get_lines()[0].get_ydata() == pytest.approx(run.velocity[:, 0])
+    assert velocity.get_ylabel() == "velocity (m/s)"
+    own = Figure().add_subplot()
+    assert run.plot(axes=own) is own.figure
+    assert len(_pylab_helpers.Gcf.figs) == before
+    assert getattr(figure, PICTURE)().startswith(b"\x89PNG")
+    with pytest.raises(ValueError, match="'speed', expected rate or velocity or position"):
+        run.plot("speed")
+
+
+def test_the_plot_of_a_scene_is_its_thrust():
+    scene = load("tiny")
+    line = scene.plot().axes[0].get_lines()[0]
+    force, time = line.get_ydata(), line.get_xdata()
+    peak, width, centre = scene.thrust.peak, scene.thrust.width, scene.thrust.centre
+    expected = peak * np.exp(-0.5 * ((1e-3 * time - centre) / width) ** 2)
+    assert force == pytest.approx(expected, rel=1e-9, abs=1e-6 * peak)
+
+
+def test_walls_are_drawn_and_written_with_units(tmp_path):
+    walls = _walls()
+    line = walls.plot().axes[0].get_lines()[3]
+    assert line.get_ydata() == pytest.approx([4.0, 8.0, 12.0])  # nm/N
+    assert line.get_xdata() == pytest.approx([0.0, 10.0, 20.0])  # mm
+    walls.to_csv(tmp_path / "walls.csv")
+    head, *rows = (tmp_path / "walls.csv").read_text().splitlines()
+    assert head.split(",")[:2] == ["travel [m]", "compliance_0 [m/N]"]
+    assert [float(cell) for cell in rows[2].split(",")] == pytest.approx(
+        [0.02, 3e-9, 6e-9, 9e-9, 12e-9]
+    )
+    for draw in (walls.rigid().plot, lambda: walls.rigid().to_csv(tmp_path / "no.csv")):
+        with pytest.raises(ValueError, match="rigid walls have none"):
+            draw()
+    assert not (tmp_path / "no.csv").exists()
 
 
 def test_a_table_is_one_that_calibration_reads(run, tmp_path):

@@ -50,6 +50,21 @@ def test_completion_of_scenes_and_files(tmp_path, monkeypatch):
     assert options.scene_names(f"{tmp_path}/") == [f"{tmp_path}/mine.toml"]
 
 
+@pytest.mark.parametrize(
+    "scene, incomplete, names",
+    [
+        ("tiny", "phi3", ["phi35"]),
+        ("tiny", "phi15,phi3", ["phi15,phi35"]),
+        ("nowhere", "phi", []),
+        (None, "h9", ["h9"]),
+    ],
+)
+def test_completion_of_conditions(scene, incomplete, names):
+    given = typer.Context(typer.main.get_command(app))
+    given.params = {"scene": scene}
+    assert options.condition_names(given, incomplete) == names
+
+
 @pytest.mark.parametrize("text, value", [("4 mm", 4.0), ("0.4 cm", 4.0), ("4", 4.0)])
 def test_an_element_size_has_a_unit(text, value):
     assert options.in_millimetres(text) == pytest.approx(value, rel=1e-15)
@@ -67,6 +82,7 @@ def test_a_bad_element_size(text):
         (["--scene", "tny"], ["in the options", "--scene: name: given 'tny'", "mean tiny?"]),
         (["--condition", "phi3"], ["in the options", "--condition", "phi35 or phi0?"]),
         (["--set", "payload.mas=9 kg"], ["in the options", "--set: payload.mas", "payload.mass"]),
+        (["--condition", "phi15,phi3"], ["in the options", "'phi3'", "phi35 or phi0?"]),
         (["--set", "mass=9 kg"], ["did you mean payload.mass or platform.mass?"]),
         (["--set", "contact.clearance=9 kg"], ['for example "0.25 mm"']),
         (["--set", "thrust_offset.misalignment.axial=9 kg"], ['for example "0.1 deg"']),
@@ -88,6 +104,57 @@ def test_strict_refuses_what_is_implausible(tmp_path, stub):
     assert not (tmp_path / "out").exists()
     warned = call(*doubtful)
     assert warned.exit_code == 0 and "implausible" in warned.stderr
+
+
+def test_a_value_that_a_condition_replaces_is_warned_about(tmp_path, stub):
+    stub()
+    asked = ["run", "--scene", "tiny", "--model", "finite-elements", "--out", tmp_path]
+    asked += ["--set", "thrust_offset.misalignment.radial=10 deg"]
+    warned = call(*asked, "--condition", "phi15")
+    words = "--set: thrust_offset.misalignment.radial: the conditions phi15 replace this value"
+    assert warned.exit_code == 0 and words in " ".join(warned.stderr.split())
+    assert "--set conditions.phi15.thrust_offset.misalignment.radial=VALUE" in warned.stderr
+    other = call(*asked, "--set", "payload.mass=9 kg")  # the scene itself
+    assert other.exit_code == 0 and "replace" not in other.stderr
+    own = ["--set", "conditions.phi15.thrust_offset.misalignment.radial=10 deg"]
+    changed = call(*asked[:7], *own, "--condition", "phi15")
+    assert changed.exit_code == 0 and "replace" not in changed.stderr
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (
+            ["flight", "--range", "5 kg", "--duration", "1 m"],
+            ["2 faults in the options", "--range"],
+        ),
+        (["calibrate", "--fit", "contact.clearanse"], ["did you mean contact.clearance"]),
+        (["ensemble", "--vary", "papr"], ["1 fault in the files", "did you mean paper?"]),
+        (["new", "mine", "--mass", "12 m"], ["2 faults in the options", "FILE", "--mass"]),
+        (["new", "my launcher.toml"], ["FILE: name", "at most 64 letters"]),
+        (["view", "--element-size", "4 kg"], ['for example "4 mm"']),
+        (["flight", "--altitude", "9 s"], ["--altitude", 'for example "500 km"']),
+        (["run", "--budget", "2 kg", "--accuracy", "1"], ["2 faults", '"2 s"', '"0.1 deg/s"']),
+        (["new", "mine.toml", "--clearance", "2 s"], ["--clearance", 'for example "0.25 mm"']),
+    ],
+)
+def test_faults_name_the_option(arguments, words, tmp_path, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")  # no message is wrapped
+    monkeypatch.chdir(tmp_path)
+    scene = [] if arguments[0] == "new" else ["--scene", "tiny"]
+    found = call(*arguments, *scene)
+    assert found.exit_code == 2 and not list(tmp_path.iterdir())
+    assert all(word in found.stderr for word in words), found.stderr
+
+
+def test_every_result_says_which_units_it_has(tmp_path, stub):
+    stub()
+    asked = ["--scene", "tiny", "--condition", "phi15", "--out", tmp_path, "--json"]
+    for command in (["highfi"], ["run", "--model", "finite-elements"]):
+        found = json.loads(call(*command, *asked).stdout)
+        assert "rate_deg_s" in found["quantities"] and "SI" in found["quantities"]
+    stored = json.loads((tmp_path / "tiny" / "highfi.json").read_text())
+    assert stored["quantities"] == found["quantities"]
 
 
 def test_several_conditions_in_one_command(tmp_path, stub, monkeypatch):

@@ -35,6 +35,7 @@ import numpy as np
 
 from tipoff.files import DamageError, content_hash, require_whole, sealed
 from tipoff.mechanics import joint_terms
+from tipoff.mechanics.compliance_shown import Shown
 from tipoff.mechanics.joint_terms import LEAST, MOST, JointTerms
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.scenes.effects.thermal import FIELDS
@@ -57,15 +58,20 @@ _TOGETHER = POWERS[:, None] + POWERS
 GRAM = np.where((_TOGETHER % 2 == 0).all(axis=2), 1.0 / (_TOGETHER + 1.0).prod(axis=2), 0.0)
 
 
-@dataclass(frozen=True, eq=False)
-class RailCompliance:
+@dataclass(frozen=True, eq=False, repr=False)
+class RailCompliance(Shown):
     """travel (s,) m of the payload along X since ignition, evenly spaced; flexibility (s,f,p,f,p)
     m/N; rail (f,) number of the rail each face is on; half (f,2) m, half the size of each face
     along xi and eta, negative where eta runs against the axis; frequency (r,n) rad/s of the lowest
     modes of each rail, ascending, and their shape W (s,f,p,n) 1/kg^0.5; made_for, digest of the
     rail and pads; warm (t,s,f,p) m away from the payload under one of each field of temperature,
     or None; joints, what a factor on the stiffness of the mounts changes, or None. Rigid walls have
-    no flexibility (None)."""
+    no flexibility (None).
+
+    Example:
+        >>> rail = tipoff.compliance(tipoff.load("tiny"), 8e-3)
+        >>> run = tipoff.run(tipoff.load("tiny"), compliance=rail, modes=0)
+    """
 
     travel: np.ndarray
     flexibility: np.ndarray | None
@@ -76,17 +82,6 @@ class RailCompliance:
     made_for: str
     warm: np.ndarray | None = None
     joints: JointTerms | None = None
-
-    def __repr__(self) -> str:
-        walls = (
-            "rigid"
-            if self.flexibility is None
-            else f"up to {1e9 * self.compliance().max():.3g} nm/N"
-        )
-        return (
-            f"RailCompliance({walls}, {self.travel.size} stations over {1e3 * np.ptp(self.travel):.4g} "
-            f"mm, {self.rail.size} faces, {self.frequency.shape[-1]} modes)"
-        )
 
     def of(self, scene: Scene) -> "RailCompliance":
         """This compliance at the factor that ``scene`` has on the stiffness of its mounts. Raises
@@ -270,7 +265,17 @@ class RailCompliance:
             raise SceneError([Fault(scene.name, key, f"{factor:g}", expected)])
 
     def save(self, path: str | Path) -> None:
-        """Write atomically, as arrays with their digest."""
+        """Write atomically, as arrays with their digest.
+
+        Args:
+            path: file to write, ``.npz``.
+
+        Raises:
+            OSError: a file that cannot be written.
+
+        Example:
+            >>> tipoff.compliance(tipoff.load("tiny"), 8e-3).save("rail.npz")
+        """
         with sealed(path) as temporary, open(temporary, "wb") as stream:
             np.savez_compressed(
                 stream,
@@ -286,8 +291,23 @@ class RailCompliance:
 
     @classmethod
     def load(cls, path: str | Path) -> "RailCompliance":
-        """Read what ``save`` wrote. Raises FileNotFoundError, or ValueError for a foreign or damaged
-        file."""
+        """Read what ``save`` wrote.
+
+        Args:
+            path: file to read.
+
+        Returns:
+            RailCompliance: the compliance.
+
+        Raises:
+            FileNotFoundError: no such file.
+            ValueError: a foreign or damaged file.
+
+        Example:
+            >>> tipoff.compliance(tipoff.load("tiny"), 8e-3).save("rail.npz")
+            >>> tipoff.RailCompliance.load("rail.npz").travel.size
+            53
+        """
         try:
             require_whole(path)
             with np.load(path, allow_pickle=False) as found:

@@ -1,10 +1,8 @@
-"""A trajectory as text: one line, a summary, a card for notebooks."""
+"""A trajectory as text: one line, and the facts of its summary and of its card."""
 
 import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
-
-from markupsafe import escape
 
 from tipoff.mechanics import hand_calculation, unfinished
 from tipoff.scenes.faults import SceneError
@@ -74,13 +72,3 @@ def _checks(checks: Mapping[str, float]) -> dict[str, str]:
 
 def _rates(rate: list[float]) -> str:
     return ", ".join(f"{round(math.degrees(value), 3) + 0.0:.3f}" for value in rate)
-
-
-def card(title: str, rows: Mapping[str, str]) -> str:
-    """A small table for notebooks; all text is escaped."""
-    body = "".join(
-        f'<tr><th style="text-align:left">{escape(key)}</th>'
-        f'<td style="text-align:left">{escape(value)}</td></tr>'
-        for key, value in rows.items()
-    )
-    return f"<table><caption>{escape(title)}</caption>{body}</table>"

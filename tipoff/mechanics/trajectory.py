@@ -17,12 +17,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tipoff.files import DamageError, require_whole, write_netcdf, write_text
+from tipoff.cards import Carded
+from tipoff.files import DamageError, require_whole, write_csv, write_netcdf
 from tipoff.mechanics import ledger, outcome, shown
 from tipoff.mechanics.models import MODELS
 
 if TYPE_CHECKING:
     import xarray
+    from matplotlib.figure import Figure
 
 STATUSES = ("exited", "time_limit", "jammed", "diverged", "refused")
 _VECTOR = ("x", "y", "z")
@@ -43,6 +45,7 @@ _DIMENSIONS = {
 _PLAIN = ("checks", "cost", "scene", "numerics", "versions", "stress")
 _CHECKED = ("checks", "cost", "numerics", "stress")  # not the scene, which is finite
 _STRESS = ("xx", "yy", "zz", "xy", "yz", "zx")
+_PLOTTED = {"rate": ("deg/s", 180.0 / math.pi), "velocity": ("m/s", 1.0), "position": ("mm", 1e3)}
 _UNITS = {
     "position": "m",
     "velocity": "m/s",
@@ -77,7 +80,7 @@ def versions() -> dict[str, str]:
 
 
 @dataclass(frozen=True, eq=False)
-class Trajectory:
+class Trajectory(Carded):
     """Sampled motion of payload and platform, pad forces on the payload (scene axes) and both
     energy ledgers.
 
@@ -93,8 +96,16 @@ class Trajectory:
     platform axes is ``wall_stress`` (n,w,6) Pa. A rigid rail and a run that diverged have None and no
     patches.
 
-    ``model`` is one of ``mechanics.models.MODELS``. Raises ValueError for another one, for an
-    unknown status, arrays that do not fit each other, and any NaN or inf, naming where it is.
+    ``model`` is one of ``mechanics.models.MODELS``.
+
+    Raises:
+        ValueError: another model or status, arrays that do not fit each other, and any NaN or inf,
+            naming where it is.
+
+    Example:
+        >>> run = tipoff.run(tipoff.load("tiny"), "springs")
+        >>> run.rate.shape == (run.time.size, 3)
+        True
     """
 
     model: str
@@ -158,26 +169,54 @@ class Trajectory:
     def __repr__(self) -> str:
         return shown.line(self)
 
-    def summary(self) -> str:
-        """What a user asks first, a line each: status, exit, settled velocity and rates (deg/s),
-        balances."""
-        return "\n".join(f"{title:10} {words}" for title, words in shown.facts(self).items())
+    def _facts(self) -> dict[str, str]:
+        return shown.facts(self)
 
-    def _repr_html_(self) -> str:
-        return shown.card("Trajectory", shown.facts(self))
+    def plot(self, quantity: str = "rate", axes: Any = None) -> "Figure":
+        """Draw the three components of a ``quantity`` over the time after ignition (ms).
 
-    def plot(self, **options: Any) -> list:
-        """Draw the rates (deg/s) over time (ms) with matplotlib; returns the lines. ``options`` are
-        those of ``xarray.plot.line``, such as ``ax``."""
-        data = self.to_xarray().rate
-        rates = data.assign_coords(time=1e3 * data.time) * (180.0 / math.pi)
-        rates.attrs |= {"long_name": "rate", "units": "deg/s"}
-        rates.time.attrs |= {"long_name": "time after ignition", "units": "ms"}
-        return rates.plot.line(x="time", hue="axis", **options)
+        Args:
+            quantity: ``rate`` (deg/s, inertial, in body axes), ``velocity`` (m/s) or ``position``
+                (mm), both inertial in scene axes.
+            axes: matplotlib axes to draw in; a new figure without them.
+
+        Returns:
+            Figure: the figure. pyplot does not know a new one; a notebook shows it.
+
+        Raises:
+            ValueError: for another quantity.
+
+        Example:
+            >>> run = tipoff.run(tipoff.load("tiny"), "springs")
+            >>> run.plot().axes[0].get_ylabel()
+            'rate (deg/s)'
+        """
+        from tipoff import plots  # slow to load
+
+        if quantity not in _PLOTTED:
+            raise ValueError(f"quantity: given {quantity!r}, expected {' or '.join(_PLOTTED)}")
+        unit, factor = _PLOTTED[quantity]
+        values = factor * getattr(self, quantity)
+        return plots.lines(
+            ("time after ignition (ms)", 1e3 * self.time),
+            f"{quantity} ({unit})",
+            list(zip(_VECTOR, values.T)),
+            f"{self.scene.get('name', '')}, model {self.model}",
+            axes,
+        )
 
     def to_csv(self, path: str | Path) -> None:
         """Write time, position, velocity and rates of the payload, units in the header, atomically:
-        a file that ``tipoff calibrate --reference`` reads."""
+        a file that ``tipoff calibrate --reference`` reads.
+
+        Args:
+            path: file to write.
+
+        Example:
+            >>> tipoff.run(tipoff.load("tiny"), "springs").to_csv("run.csv")
+            >>> open("run.csv").readline()[:36]
+            'time [s],position_x [m],position_y ['
+        """
         columns = {"time [s]": self.time}
         for name, unit, factor in (
             ("position", "m", 1.0),
@@ -186,12 +225,19 @@ class Trajectory:
         ):
             values = factor * getattr(self, name)
             columns |= {f"{name}_{axis} [{unit}]": values[:, i] for i, axis in enumerate(_VECTOR)}
-        rows = zip(*(values.tolist() for values in columns.values()))
-        lines = [",".join(columns), *(",".join(map(repr, row)) for row in rows)]
-        write_text(Path(path), "\n".join(lines) + "\n")
+        write_csv(path, columns)
 
     def to_xarray(self) -> "xarray.Dataset":
-        """Labelled copy with units as attributes; motion relative to the platform is added."""
+        """Labelled copy; motion relative to the platform is added.
+
+        Returns:
+            xarray.Dataset: variables over ``time`` (s) with their unit in ``attrs["units"]``.
+
+        Example:
+            >>> data = tipoff.run(tipoff.load("tiny"), "springs").to_xarray()
+            >>> data.rate.dims, data.rate.attrs["units"]
+            (('time', 'axis'), 'rad/s')
+        """
         import xarray  # slow to load, and a run that writes no file does without
 
         variables = {
@@ -232,13 +278,38 @@ class Trajectory:
 
     def save(self, path: str | Path) -> None:
         """Write netCDF with its digest, atomically: an interrupted call leaves the file that was
-        there, or none."""
+        there, or none.
+
+        Args:
+            path: file to write.
+
+        Raises:
+            OSError: a file that cannot be written.
+
+        Example:
+            >>> tipoff.run(tipoff.load("tiny"), "springs").save("run.nc")
+        """
         write_netcdf(path, self.to_xarray())
 
     @classmethod
     def load(cls, path: str | Path) -> "Trajectory":
-        """Read what ``save`` wrote. Raises FileNotFoundError, or OSError for a foreign file or one
-        that does not fit its digest."""
+        """Read what ``save`` wrote.
+
+        Args:
+            path: file to read.
+
+        Returns:
+            Trajectory: the run.
+
+        Raises:
+            FileNotFoundError: no such file.
+            OSError: a foreign file, or one that does not fit its digest.
+
+        Example:
+            >>> tipoff.run(tipoff.load("tiny"), "springs").save("run.nc")
+            >>> tipoff.Trajectory.load("run.nc").status
+            'exited'
+        """
         import xarray
 
         if not Path(path).is_file():

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from tipoff import toml
+from tipoff.cards import Carded
 from tipoff.files import DamageError, is_sealed, read_input, require_whole, sealed
 from tipoff.scenes import changes as added
 from tipoff.scenes.scene import Scene
@@ -30,7 +31,7 @@ def _has(scene: Scene, key: str) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class Calibration:
+class Calibration(Carded):
     """Constants found for a scene.
 
     ``constants`` are dotted overrides in SI, and ``changes`` amounts that are added to what a scene
@@ -41,6 +42,10 @@ class Calibration:
     of the scaled parameters; ``weak_directions`` describe what the curves do not determine;
     ``residuals`` are per condition. ``verdict`` says whether the curves ask for other values than
     the scene's, empty where that is not judged.
+
+    Example:
+        >>> found = tipoff.Calibration.load("calibration.toml")  # written by tipoff calibrate
+        >>> run = tipoff.run(tipoff.load("tiny"), "springs", calibration=found)
     """
 
     constants: dict[str, float]
@@ -68,9 +73,36 @@ class Calibration:
         )
         return f"Calibration({fitted}; fitted to {', '.join(self.conditions)})"
 
+    def _facts(self) -> dict[str, str]:
+        found = {}
+        ends: list[list[float] | None] = [*self.intervals]
+        ends += [None] * (len(self.parameters) - len(ends))
+        for name, value, unit, interval in zip(self.parameters, self.values, self.units, ends):
+            between = "" if interval is None else f" ({interval[0]:.4g} to {interval[1]:.4g})"
+            found[name] = f"{value:.4g}{between}{'' if unit == '1' else f' {unit}'}"
+        found["fitted to"] = ", ".join(self.conditions)
+        if self.weak_directions:
+            found["weak"] = "; ".join(self.weak_directions)
+        return found | ({"verdict": self.verdict} if self.verdict else {})
+
     def apply(self, scene: Scene) -> Scene:
-        """``scene``, of a condition where there is one, with the calibrated constants and changes;
-        constants of an effect the scene lacks are left out."""
+        """A scene with the calibrated constants and changes.
+
+        Args:
+            scene: of a condition where there is one. Constants of an effect it lacks are left out.
+
+        Returns:
+            Scene: the new scene.
+
+        Raises:
+            SceneError: a scene that cannot have these values.
+
+        Example:
+            >>> scene = tipoff.load("tiny")
+            >>> found = tipoff.Calibration.load("calibration.toml")
+            >>> found.apply(scene).contact.stiffness == found.constants["contact.stiffness"]
+            True
+        """
         fitted = {key: value for key, value in self.constants.items() if _has(scene, key)}
         return scene.replace(fitted | added.overrides(scene, self.changes))
 
@@ -97,16 +129,39 @@ class Calibration:
         return not _OF_COMPLIANT_CONTACT.isdisjoint(self.constants)
 
     def save(self, path: str | Path) -> None:
-        """Write TOML with its digest, atomically. Raises ValueError for a NaN (an interval without
-        an end is inf)."""
+        """Write TOML with its digest, atomically.
+
+        Args:
+            path: file to write.
+
+        Raises:
+            ValueError: a NaN (an interval without an end is inf).
+
+        Example:
+            >>> tipoff.Calibration.load("calibration.toml").save("again.toml")
+        """
         tables = asdict(self) | {"information": np.asarray(self.information).tolist()}
         with sealed(path) as temporary:
             temporary.write_text(toml.dumps(tables), encoding="utf-8", newline="\n")
 
     @classmethod
     def load(cls, path: str | Path) -> "Calibration":
-        """Read what ``save`` or a user wrote; the file of a user needs no digest. Raises
-        FileNotFoundError, or ValueError for a foreign or damaged file."""
+        """Read what ``save`` or a user wrote; the file of a user needs no digest.
+
+        Args:
+            path: file to read, such as ``calibration.toml`` of ``tipoff calibrate``.
+
+        Returns:
+            Calibration: the constants.
+
+        Raises:
+            FileNotFoundError: no such file.
+            ValueError: a foreign or damaged file.
+
+        Example:
+            >>> tipoff.Calibration.load("calibration.toml").conditions
+            ['phi15']
+        """
         try:
             if is_sealed(path):
                 require_whole(path)

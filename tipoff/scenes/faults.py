@@ -10,12 +10,27 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 
 
 class Fault(NamedTuple):
-    """One wrong field."""
+    """One wrong field: file or option, dotted key, what was given, what was expected.
+
+    Example:
+        >>> try:
+        ...     tipoff.load("tiny").replace({"payload.mass": "9 m"})
+        ... except tipoff.SceneError as error:
+        ...     print(error.faults[0].key, error.faults[0].given)
+        payload.mass '9 m'
+    """
 
     source: str
     key: str
     given: str
     expected: str
+
+    @property
+    def place(self) -> str:
+        """Where it is: "options" and arguments of a command, "files", or the "scene"."""
+        if self.source.startswith("--") or self.source.isupper():
+            return "options"
+        return "files" if self.key in ("file", "vary") else "scene"
 
     def __str__(self) -> str:
         if self.expected.startswith(NO_SUCH_KEY):
@@ -39,14 +54,21 @@ class InputError(ValueError):
 
 
 class SceneError(InputError):
-    """A scene that cannot be used; ``faults`` lists everything wrong with it."""
+    """A scene that cannot be used; ``faults`` lists everything wrong with it.
+
+    Example:
+        >>> tipoff.load("tinny")
+        Traceback (most recent call last):
+        ...
+        tipoff.scenes.faults.SceneError: 1 fault in the scene
+        ...
+    """
 
     def __init__(self, faults: list[Fault]):
         self.faults = faults
         count = "1 fault" if len(faults) == 1 else f"{len(faults)} faults"
-        of_options = all(fault.source.startswith("--") for fault in faults)
-        of_files = all(fault.key in ("file", "vary") for fault in faults)
-        place = "options" if of_options else "files" if of_files else "scene"
+        places = {fault.place for fault in faults}
+        place = places.pop() if len(places) == 1 else "input"
         super().__init__(
             "\n".join([f"{count} in the {place}"] + [f"  {fault}" for fault in faults])
         )

@@ -9,8 +9,9 @@ from collections.abc import Mapping
 from functools import cached_property
 from operator import attrgetter
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
+import numpy as np
 from pydantic import (
     AfterValidator,
     Field,
@@ -20,8 +21,9 @@ from pydantic import (
     field_validator,
 )
 
+from tipoff.cards import Carded
 from tipoff.files import content_hash
-from tipoff.scenes import names, pads, plausibility, provenance, reading, roles, suggestions
+from tipoff.scenes import names, pads, plausibility, provenance, reading, roles, shown, suggestions
 from tipoff.scenes import overrides as keys
 from tipoff.scenes.effects.contact import ContactTable
 from tipoff.scenes.effects.flight import FlightTable
@@ -40,16 +42,26 @@ from tipoff.scenes.table import MOST, Table, at_least_one, is_absent, limited
 from tipoff.scenes.tables import MOST_SAMPLES, AgreementTable, OutputTable, PadTable, PayloadTable
 from tipoff.scenes.units import Duration
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 CATALOG = reading.CATALOG
 NOMINAL = "nominal"  # the scene itself, named like a condition
+_PLOTTED = 1001  # points of a curve
 _BESIDE = ("conditions", "agreement", "provenance")
 # the flight after the exit does not change the ejection
 _NOT_PHYSICS = {"name", "description", "flight", *_BESIDE}
 
 
-class Scene(Table):
+class Scene(Carded, Table):
     """Everything a run needs. Fields are SI; an absent effect is None. Use ``replace`` for
-    variations."""
+    variations.
+
+    Example:
+        >>> scene = tipoff.load("tiny")
+        >>> scene.duration  # s
+        0.025
+    """
 
     #: Name of the scene and of its folder of results: letters, digits, -, _ and .
     name: Annotated[str, AfterValidator(names.of_scene)]
@@ -130,12 +142,51 @@ class Scene(Table):
 
     __str__ = __repr__
 
-    def replace(self, overrides: Mapping[str, Any]) -> "Scene":
-        """A new scene with dotted keys set. Text carries units, a bare number is SI, None or
-        "absent" drops a table. What is set has the provenance "user", unless ``overrides`` give
-        another under ``provenance.<key>``.
+    def _facts(self) -> dict[str, str]:
+        return shown.facts(self)
 
-        Raises SceneError listing every fault.
+    def plot(self, axes: Any = None) -> "Figure":
+        """Draw the thrust (N) over the time after ignition (ms).
+
+        Args:
+            axes: matplotlib axes to draw in; a new figure without them.
+
+        Returns:
+            Figure: the figure. pyplot does not know a new one; a notebook shows it.
+
+        Example:
+            >>> figure = tipoff.load("tiny").plot()
+            >>> figure.axes[0].get_ylabel()
+            'thrust (N)'
+        """
+        from tipoff import plots  # slow to load
+        from tipoff.scenes.effects import thrust_law
+
+        time = np.linspace(0.0, self.duration, _PLOTTED)
+        force = thrust_law.sample(self.thrust.record(), time)
+        across = ("time after ignition (ms)", 1e3 * time)
+        return plots.lines(across, "thrust (N)", [("thrust", force)], self.name, axes)
+
+    def replace(self, overrides: Mapping[str, Any]) -> "Scene":
+        """A new scene with dotted keys set.
+
+        What is set has the provenance "user", unless ``overrides`` give another under
+        ``provenance.<key>``.
+
+        Args:
+            overrides: values by dotted key. Text carries units, a bare number is SI, None or
+                "absent" drops a table.
+
+        Returns:
+            Scene: the new scene; this one stays as it is.
+
+        Raises:
+            SceneError: every fault listed.
+
+        Example:
+            >>> scene = tipoff.load("tiny").replace({"payload.mass": "12 kg", "friction": None})
+            >>> scene.payload.mass, scene.friction is None
+            (12.0, True)
         """
         keys.require_shallow(overrides, f"override of {self._source}")
         raw = keys.plain(self._raw)
@@ -151,8 +202,21 @@ class Scene(Table):
         return scene
 
     def condition(self, name: str) -> "Scene":
-        """The scene of one named condition, or itself as ``NOMINAL``. Raises SceneError for a name
-        the scene does not have."""
+        """The scene of one named condition, or itself as "nominal".
+
+        Args:
+            name: one of ``conditions``.
+
+        Returns:
+            Scene: the scene with the values of the condition.
+
+        Raises:
+            SceneError: a name that the scene does not have.
+
+        Example:
+            >>> tipoff.load("tiny").condition("phi15").thrust_offset is None
+            False
+        """
         if name == NOMINAL and name not in self.conditions:
             return self
         if name not in self.conditions:
@@ -179,8 +243,16 @@ class Scene(Table):
         return found
 
     def resolved(self) -> dict:
-        """Every input in SI, as written into result files; ``parse(..., bare_numbers_are_si=True)``
-        reads it back."""
+        """Every input in SI, as written into result files.
+
+        Returns:
+            dict: tables by name; ``parse(..., bare_numbers_are_si=True)`` reads it back.
+
+        Example:
+            >>> scene = tipoff.load("tiny")
+            >>> tipoff.parse(scene.resolved(), bare_numbers_are_si=True).hash == scene.hash
+            True
+        """
         return self.model_dump(mode="json", exclude_none=True)
 
     @property
@@ -214,7 +286,15 @@ class Scene(Table):
         ) and self.output.fits(self.duration)
 
     def absent_effects(self) -> list[str]:
-        """Dotted keys of the effect tables this scene does not have."""
+        """Dotted keys of the effect tables that this scene does not have.
+
+        Returns:
+            list: keys such as ``gravity``.
+
+        Example:
+            >>> "gravity" in tipoff.load("tiny").absent_effects()
+            True
+        """
         return [effect.key for effect in EFFECTS if attrgetter(effect.key)(self) is None]
 
 
@@ -223,7 +303,23 @@ def parse(
 ) -> Scene:
     """Validate a nested mapping, all its conditions included.
 
-    Raises SceneError listing every fault with file, key, given and expected.
+    Args:
+        raw: tables by name, as TOML has them.
+        source: name of the mapping in messages.
+        bare_numbers_are_si: whether numbers without a unit are taken as SI.
+
+    Returns:
+        Scene: the scene.
+
+    Raises:
+        SceneError: every fault with source, key, given and expected.
+
+    Example:
+        >>> tipoff.parse({"name": "mine"})
+        Traceback (most recent call last):
+        ...
+        tipoff.scenes.faults.SceneError: 5 faults in the scene
+        ...
     """
     keys.require_shallow(raw, source)
     tables = keys.plain(raw)
@@ -239,12 +335,35 @@ def parse(
 
 
 def load(name_or_path: str | Path) -> Scene:
-    """Read a catalogue scene by name (``reference``) or a TOML file by path. Raises SceneError."""
+    """Read a scene.
+
+    Args:
+        name_or_path: name in the catalogue, or path of a TOML file.
+
+    Returns:
+        Scene: the scene.
+
+    Raises:
+        SceneError: every fault with file, key, given and expected.
+
+    Example:
+        >>> scene = tipoff.load("tiny")
+        >>> scene.payload.mass  # kg
+        9.9
+    """
     return parse(*reading.read(name_or_path))
 
 
 def catalog() -> list[str]:
-    """Names of the scenes that come with the package."""
+    """Names of the scenes that come with the package.
+
+    Returns:
+        list: names, sorted.
+
+    Example:
+        >>> "reference" in tipoff.catalog()
+        True
+    """
     return reading.names()
 
 

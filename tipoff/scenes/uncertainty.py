@@ -24,7 +24,7 @@ from pydantic import AfterValidator, Field, ValidationError
 from tipoff.scenes import overrides as keys
 from tipoff.scenes import reading
 from tipoff.scenes.distributions import BY_NAME, Distribution
-from tipoff.scenes.faults import Fault, SceneError, faults_of, renamed
+from tipoff.scenes.faults import Fault, SceneError, close, faults_of, renamed
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.table import Table, at_least_one
 
@@ -69,14 +69,15 @@ def load(name_or_path: str | Path, scene: Scene, **changed: Any) -> Uncertainty:
     if path.suffix != ".toml":
         path = CATALOG / f"{name_or_path}.toml"
         if not path.is_file():
-            names = ", ".join(sorted(item.stem for item in CATALOG.glob("*.toml")))
+            names = sorted(item.stem for item in CATALOG.glob("*.toml"))
+            known = f"{', '.join(names)}{close(str(name_or_path), names)}"
             raise SceneError(
                 [
                     Fault(
                         str(name_or_path),
                         "vary",
                         "an unknown name",
-                        f"a path to a .toml file or one of {names}",
+                        f"a path to a .toml file or one of {known}",
                     )
                 ]
             )

@@ -21,12 +21,12 @@ from tipoff.studies.report import command as report
 SUMMARY = "Predict the velocity and the angular rates of a payload when it leaves its rail."
 EXAMPLES = """Examples:
 
-  tipoff new my_launcher.toml                # a scene of your own from a few numbers
-  tipoff run --scene my_launcher.toml        # one run of the surrogate: milliseconds
-  tipoff run --condition phi15,phi35         # conditions of the reference scene
-  tipoff report                              # the whole page, reference scene
-  tipoff run --model finite-elements --element-size 8 --set thrust.peak="7 kN"
-  tipoff compare --scene tiny --json         # the agreement table as JSON
+  tipoff new my_launcher.toml            # a scene of your own
+  tipoff run --scene my_launcher.toml    # velocity and rates
+  tipoff run --condition phi15,phi35     # conditions of a scene
+  tipoff run --set thrust.peak="7 kN"    # another value
+  tipoff report                          # all of it on one page
+  tipoff compare --scene tiny --json     # results as JSON
 """
 
 

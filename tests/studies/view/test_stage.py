@@ -179,7 +179,8 @@ def test_command_writes_prints_and_refuses(viewed, monkeypatch):
     told = CliRunner().invoke(app, [*arguments, "--json"], catch_exceptions=False)
     assert told.exit_code == 0 and json.loads(told.stdout) == found
     said = CliRunner().invoke(app, arguments, catch_exceptions=False)
-    assert said.stdout.split() == [str(study.path(found["collection"]))]
+    assert said.stdout.splitlines()[-1] == f"  {study.path(found['collection'])}"
+    assert f"{1e-6 * found['peak']['stress_pa']:.4g}" in said.stdout and "(MPa)" in said.stdout
     assert CliRunner().invoke(app, [*arguments, "--frames", "1"]).exit_code == 2
     refused = CliRunner().invoke(
         app, ["view", "--scene", "tiny", "--condition", "phi99", "--out", str(study.folder.parent)]

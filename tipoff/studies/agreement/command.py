@@ -1,6 +1,7 @@
 """``tipoff compare``."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -14,6 +15,9 @@ from tipoff.studies.commands.options import (
     Workers,
 )
 from tipoff.studies.commands.running import guarded, study_of
+
+if TYPE_CHECKING:
+    from tipoff.studies.render.document import Part
 
 
 def add(app: typer.Typer) -> None:
@@ -41,9 +45,9 @@ def compare(
             None if neighbours is None else stage.Options(neighbours),
         )
 
-    found = guarded(work, json_)
-    if not json_:
+    def shown(found: dict) -> list["Part"]:
         from tipoff.studies.agreement import page
-        from tipoff.studies.render import document
 
-        print(document.terminal(page.terminal(found)))
+        return page.terminal(found)
+
+    guarded(work, json_, shown, out)

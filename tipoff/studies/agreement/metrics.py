@@ -13,6 +13,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
+from tipoff.cards import Carded
 from tipoff.mechanics.outcome import SETTLE_WINDOW
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.agreement import iso18571
@@ -22,13 +23,19 @@ CHANNELS = ("velocity_x", "rate_x", "rate_y", "rate_z")
 
 
 @dataclass(frozen=True)
-class Difference:
+class Difference(Carded):
     """Every metric between two runs of one condition; None where a run has no settled values or the
     reference is zero.
 
     ``iso18571`` is the mean rating of the three rates, ``iso18571_channels`` and
     ``sprague_geers_channels`` (M, P) list v_x and each rate; rates in deg/s, velocities in m/s,
     angles in deg. Differences are surrogate minus reference.
+
+    Example:
+        >>> scene = tipoff.load("tiny")
+        >>> found = tipoff.compare(tipoff.run(scene, modes=0), tipoff.run(scene, "springs"))
+        >>> sorted(found.iso18571_channels)
+        ['rate_x', 'rate_y', 'rate_z', 'velocity_x']
     """
 
     velocity_relative_l2: float | None
@@ -43,8 +50,36 @@ class Difference:
     lateral_velocity_difference_m_s: float | None
     direction_error_difference_deg: float | None
 
+    def __repr__(self) -> str:
+        return (
+            f"Difference({', '.join(f'{name} {words}' for name, words in self._facts().items())})"
+        )
+
+    def _facts(self) -> dict[str, str]:
+        shown = {
+            "rates L2": (self.rate_relative_l2, 100.0, "%"),
+            "v_x L2": (self.velocity_relative_l2, 100.0, "%"),
+            "settled": (self.settled_rate_error_deg_s, 1.0, "deg/s"),
+            "across": (self.lateral_velocity_difference_m_s, 1e3, "mm/s"),
+            "direction": (self.direction_error_difference_deg, 1.0, "deg"),
+            "ISO 18571": (self.iso18571, 1.0, "(1 is equal)"),
+        }
+        return {
+            name: "none" if value is None else f"{factor * value:.3g} {unit}"
+            for name, (value, factor, unit) in shown.items()
+        }
+
     def as_dict(self) -> dict:
-        """Plain values for a result file."""
+        """Plain values for a result file.
+
+        Returns:
+            dict: the metrics by name, the end of which is their unit.
+
+        Example:
+            >>> run = tipoff.run(tipoff.load("tiny"), "springs")
+            >>> tipoff.compare(run, run).as_dict()["settled_rate_error_deg_s"]
+            0.0
+        """
         return asdict(self)
 
 

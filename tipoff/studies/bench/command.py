@@ -1,7 +1,7 @@
 """``tipoff bench``."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,6 +11,9 @@ from tipoff.studies.commands.options import (
     in_millimetres,
 )
 from tipoff.studies.commands.running import guarded
+
+if TYPE_CHECKING:
+    from tipoff.studies.render.document import Part
 
 
 def add(app: typer.Typer) -> None:
@@ -58,7 +61,10 @@ def bench(
             "surrogate": surrogate.run(out, cases=cases, repeats=repeats),
         }
 
-    def shown(found: dict) -> list[str]:
-        return [f"  {Path(out) / 'bench' / name}" for name in ("highfi.json", "lowfi.json")]
+    def shown(found: dict) -> list["Part"]:
+        from tipoff.studies.bench import page
+
+        files = [f"  {Path(out) / 'bench' / name}" for name in ("highfi.json", "lowfi.json")]
+        return [*page.terminal(found), "\n".join(files)]
 
     guarded(work, json_, shown)

@@ -35,6 +35,11 @@ def draw(page: "Page") -> list[Part]:
     return [*parts, _surrogate(found["lowfi"])] if found.get("lowfi") else parts
 
 
+def terminal(found: dict) -> list[Part]:
+    """What the terminal shows of the result of the command."""
+    return [_reference(found["rows"]), _surrogate(found["surrogate"])]
+
+
 def _reference(rows: list[dict]) -> Table:
     """Time of the reference by mesh."""
     first = rows[0]

@@ -1,7 +1,7 @@
 """``tipoff calibrate``."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -13,8 +13,12 @@ from tipoff.studies.commands.options import (
     Set,
     SurrogateName,
     Workers,
+    condition_names,
 )
 from tipoff.studies.commands.running import guarded, quantity, study_of
+
+if TYPE_CHECKING:
+    from tipoff.studies.render.document import Part
 
 
 def add(app: typer.Typer) -> None:
@@ -39,6 +43,7 @@ def calibrate(
         typer.Option(
             "--condition",
             metavar="NAME",
+            autocompletion=condition_names,
             help="Condition of a file without NAME; default: the scene itself.",
         ),
     ] = None,
@@ -102,7 +107,7 @@ def calibrate(
         from tipoff.mechanics.models import COMPLIANT, SPRINGS
         from tipoff.studies.calibration import stage
 
-        start = quantity("--settled-from", settled_from, "s")
+        start = quantity("--settled-from", settled_from, "s", "44 ms")
         files = stage.named(reference or [], condition, start)
         study = study_of(scene, out, set_, element_size=element_size, workers=workers)
         chosen = None if fit is None else [name.strip() for one in fit for name in one.split(",")]
@@ -113,9 +118,9 @@ def calibrate(
             return stage.on_reference(study, model.value if model else default, chosen)
         return stage.of_models(study, model and model.value)
 
-    def shown(found: dict) -> list[str]:
-        from tipoff.studies.calibration import stage
+    def shown(found: dict) -> list["Part"]:
+        from tipoff.studies.calibration import page
 
-        return stage.lines(found, Path(out) / found["scene"])
+        return page.terminal(found, Path(out) / found["scene"])
 
     guarded(work, json_, shown)

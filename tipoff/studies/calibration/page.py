@@ -1,5 +1,6 @@
 """A calibration on the page."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tipoff.studies.calibration.stage import interval
@@ -21,6 +22,61 @@ def draw(page: "Page") -> list[Part]:
     return page.shown("calibration", calibration, "calibrate")
 
 
+def terminal(document: dict, folder: Path) -> list[Part]:
+    """What the terminal shows: the compliance, the constants with intervals, weak directions, files in
+    ``folder``."""
+    if "parameters" not in document:
+        both = [
+            *(_compliance(document["compliance"], folder) if "compliance" in document else []),
+            *(terminal(document["springs"], folder) if "springs" in document else []),
+        ]
+        return both
+    wide = document["with_model_error"]
+    heads: list[Column | str] = ["constant", Column("value", form=".5g"), "unit", "95 % interval"]
+    keys = ("parameters", "values", "units", "intervals")
+    rows = [list(row) for row in zip(*(document[key] for key in keys))]
+    for row in rows:
+        row[3] = interval(row[3])
+    if wide:
+        heads.append("with model error")
+        rows = [[*row, interval(ends)] for row, ends in zip(rows, wide)]
+    fitted = (
+        f"Fitted to {', '.join(document['conditions'])}: objective {document['objective']:.4g}."
+    )
+    notes = [f"Weak: {words}" for words in document["weak_directions"]]
+    notes += [f"Verdict: {words}" for words in [document["verdict"]] if words]
+    return [
+        Table(heads, rows, tuple(notes), fitted),
+        _residuals(document),
+        f"  {folder / document['calibration']}",
+    ]
+
+
+def _compliance(document: dict, folder: Path) -> list[Part]:
+    if document["file"] is None:
+        return ["no contact: no compliance"]
+    largest = max(max(values) for values in document["under_a_pad"]["direct_m_per_n"].values())
+    columns = (
+        "stations",
+        Column("elements", "mm", "g", 1e3),
+        Column("compliance under a pad, largest", "nm/N", ".3g", 1e9),
+    )
+    row = (document["stations"], document["element_size_m"], largest)
+    return [
+        Table(columns, [row], title="Rail compliance."),
+        f"  {folder / document['file']}",
+    ]
+
+
+def _residuals(document: dict) -> Table:
+    residuals = document["residuals"]
+    names = list(dict.fromkeys(name for found in residuals.values() for name in found))
+    return Table(
+        ("condition", *(name.replace("_", " ") for name in names)),
+        [(name, *map(found.get, names)) for name, found in residuals.items()],
+    )
+
+
 def calibration(document: dict) -> list[Part]:
     """Fitted constants with bounds and reasons, weak directions, residuals."""
     columns = (
@@ -37,8 +93,6 @@ def calibration(document: dict) -> list[Part]:
         (name, value, interval(ends), *rest)
         for name, value, ends, *rest in zip(*(document[key] for key in keys))
     ]
-    residuals = document["residuals"]
-    names = list(dict.fromkeys(name for found in residuals.values() for name in found))
     return [
         f"Fitted to {', '.join(document['conditions'])} together; objective "
         f"{document['objective']:.4g}.",
@@ -57,15 +111,7 @@ def calibration(document: dict) -> list[Part]:
             ],
         ),
         Fold("Provenance", [Table(("", ""), list(document["provenance"].items()))]),
-        Fold(
-            "Residuals of each condition",
-            [
-                Table(
-                    ("condition", *(name.replace("_", " ") for name in names)),
-                    [(name, *map(found.get, names)) for name, found in residuals.items()],
-                )
-            ],
-        ),
+        Fold("Residuals of each condition", [_residuals(document)]),
         Fold(
             "Information matrix of the scaled constants",
             [

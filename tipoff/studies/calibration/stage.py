@@ -212,45 +212,6 @@ def load(study: Study) -> Calibration:
     return Calibration.load(study.path(FILE))
 
 
-def lines(document: dict, folder: Path) -> list[str]:
-    """Lines of text: the compliance, the constants with intervals, weak directions, file paths."""
-    if "parameters" not in document:
-        compliance = _compliance(document["compliance"], folder) if "compliance" in document else []
-        return compliance + (lines(document["springs"], folder) if "springs" in document else [])
-    wide = document["with_model_error"] or [None] * len(document["values"])
-    found = zip(
-        document["parameters"], document["values"], document["units"], document["intervals"], wide
-    )
-    text = [
-        f"  {name:30}{value:.{digits(ends) + 1}g}{'' if unit == '1' else f' {unit}'}, {interval(ends)}"
-        + (f"; with model error {interval(wider)}" if wider and None not in ends else "")
-        for name, value, unit, ends, wider in found
-    ]
-    text += [f"  weak          {words}" for words in document["weak_directions"]]
-    text += [
-        f"  residuals     {name}: "
-        + ", ".join(f"{key.replace('_', ' ')} {value:.3g}" for key, value in found.items())
-        for name, found in document["residuals"].items()
-    ]
-    text += [f"  verdict       {words}" for words in [document["verdict"]] if words]
-    return [
-        f"fitted to {', '.join(document['conditions'])}: objective {document['objective']:.4g}",
-        *text,
-        f"  calibration   {folder / document['calibration']}",
-    ]
-
-
-def _compliance(document: dict, folder: Path) -> list[str]:
-    if document["file"] is None:
-        return ["no contact: no compliance"]
-    largest = max(max(values) for values in document["under_a_pad"]["direct_m_per_n"].values())
-    return [
-        f"rail compliance at {document['stations']} stations, elements of "
-        f"{1e3 * document['element_size_m']:g} mm: up to {1e9 * largest:.3g} nm/N under a pad",
-        f"  compliance    {folder / document['file']}",
-    ]
-
-
 def interval(ends: list[float | None]) -> str:
     """The 95 % interval of a constant as text."""
     low, high = ends

@@ -38,6 +38,19 @@ def scene_names(incomplete: str) -> list[str]:
     return [name for name in names if name.startswith(incomplete)] + files
 
 
+def condition_names(context: typer.Context, incomplete: str) -> list[str]:
+    """Conditions of the scene on the command line that begin with the last name of ``incomplete``,
+    for the shell; none where the scene cannot be read."""
+    from tipoff import scenes
+
+    try:
+        scene = scenes.load(context.params.get("scene") or "reference")
+    except scenes.SceneError:
+        return []
+    before, comma, last = incomplete.rpartition(",")
+    return [f"{before}{comma}{name}" for name in scene.conditions if name.startswith(last)]
+
+
 def _beginning_with(incomplete: str) -> list[Path]:
     folder = Path(incomplete or ".")
     folder = folder if incomplete.endswith("/") else folder.parent
@@ -97,13 +110,17 @@ Conditions = Annotated[
     typer.Option(
         "--condition",
         metavar="NAME",
+        autocompletion=condition_names,
         help="Named condition of the scene, repeatable, or several with commas; default: all.",
     ),
 ]
 RefinedCondition = Annotated[
     str | None,
     typer.Option(
-        "--condition", metavar="NAME", help="Named condition; default: the first refined one."
+        "--condition",
+        metavar="NAME",
+        autocompletion=condition_names,
+        help="Named condition; default: the first refined one.",
     ),
 ]
 _COMPLIANT = (

@@ -56,7 +56,7 @@ def study_of(
         chosen = replace(chosen, element_size=1e-3 * element_size)
     if workers is not None:
         chosen = replace(chosen, workers=workers)
-    every = quantity("--checkpoint-every", checkpoint_every, "s")
+    every = quantity("--checkpoint-every", checkpoint_every, "s", "5 min")
     if every is not None:
         chosen = replace(chosen, checkpoint_every=every)
     names = [name.strip() for item in conditions or () for name in item.split(",")]
@@ -74,9 +74,30 @@ def study_of(
         )
     for warning in doubtful:
         say(f"implausible: {warning}")
-    for warning in reading.replaced_by_conditions(scene):
+    replaced = _replaced(changes, study)
+    for warning in [*reading.replaced_by_conditions(scene), *replaced]:
         say(f"warning: {warning}")
     return study
+
+
+def _replaced(changes: dict[str, str], study) -> list[str]:
+    """Warnings: ``changes`` by --set that the conditions of the study replace by their own values."""
+    found = []
+    for key in changes:
+        names = [
+            name
+            for name in study.conditions
+            if any(
+                f"{key}.".startswith(f"{own}.") or f"{own}.".startswith(f"{key}.")
+                for own in study.scene.conditions.get(name, ())
+            )
+        ]
+        if names:
+            found.append(
+                f"--set: {key}: the conditions {', '.join(names)} replace this value by their own; to "
+                f"change a condition, --set conditions.{names[0]}.{key}=VALUE"
+            )
+    return found
 
 
 def _of_option(named: dict[str, str], work: Callable[[], _T]) -> _T:
@@ -89,9 +110,9 @@ def _of_option(named: dict[str, str], work: Callable[[], _T]) -> _T:
         raise SceneError([fault._replace(**named) for fault in error.faults]) from None
 
 
-def quantity(option: str, text: str | None, unit: str) -> float | None:
-    """The value of a ``text`` with unit, in ``unit``; None without a text. Raises SceneError for a
-    text that is no quantity of this kind and for a negative value."""
+def quantity(option: str, text: str | None, unit: str, example: str) -> float | None:
+    """The value of a ``text`` with unit, in ``unit``; None without a text. Raises SceneError, with an
+    ``example``, for a text that is no quantity of this kind and for a negative value."""
     from tipoff.scenes.faults import Fault, SceneError
     from tipoff.scenes.units import to_si
 
@@ -100,7 +121,8 @@ def quantity(option: str, text: str | None, unit: str) -> float | None:
     try:
         value = to_si(text, unit)
     except ValueError as fault:
-        raise SceneError([Fault(option, "value", text, str(fault))]) from None
+        expected = str(fault).replace(f'"1 {unit}"', f'"{example}"')
+        raise SceneError([Fault(option, "value", text, expected)]) from None
     if value < 0.0:
         raise SceneError([Fault(option, "value", text, "zero or more")])
     return value
@@ -147,7 +169,9 @@ def guarded(
     except MemoryError as fault:
         stop(f"memory does not suffice ({fault})" if str(fault) else "memory does not suffice", 1)
     if as_json:
-        print(json.dumps(result, indent=1))
+        from tipoff.studies.core import words
+
+        print(json.dumps({"quantities": words.QUANTITIES, **result}, indent=1))
     else:
         _print(result, shown, out)
     if failed := result.get("failed"):

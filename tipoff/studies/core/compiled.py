@@ -5,6 +5,8 @@ A surrogate run that chooses its modes of the rails begins with kernels without 
 are others; they are compiled only where the run turns out to need them, and have a mark of their own.
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,16 +25,26 @@ _WITH_MODES = ", and a minute more if modes of the rails turn out to matter"
 _SAID: set[Path] = set()  # marks of kernels that this process has announced
 
 
-def announce(run: "Run", chosen: bool = False) -> None:
-    """Print, once in a process, that the kernels of ``run`` have to be compiled, where no run has
-    compiled them: those that it begins with, or where modes were ``chosen`` in it those with modes."""
-    path = mark(run, chosen)
+@contextmanager
+def first_use(run: "Run", many: bool = False) -> Iterator[None]:
+    """Announce the kernels of ``run``, or of ``many`` cases like it, and note that they are there
+    once the block has used them."""
+    announce(run, many=many)
+    yield
+    remember(run, many=many)
+
+
+def announce(run: "Run", chosen: bool = False, many: bool = False) -> None:
+    """Print, once in a process, that the kernels of ``run``, or of ``many`` cases like it, have to be
+    compiled, where no run has compiled them: those that it begins with, or where modes were ``chosen``
+    in it those with modes."""
+    path = mark(run, chosen, many)
     if path.is_file() or path in _SAID:
         return
     _SAID.add(path)
     modes = _modes(run)
     vibrates = chosen or modes is True
-    may_vibrate = modes == AUTO and not chosen and not mark(run, chosen=True).is_file()
+    may_vibrate = modes == AUTO and not chosen and not mark(run, True, many).is_file()
     say(
         f"compiling the kernels of model {run.model}"
         + (" with modes of the rails" if vibrates else "")
@@ -41,22 +53,24 @@ def announce(run: "Run", chosen: bool = False) -> None:
     )
 
 
-def remember(run: "Run", chosen: bool = False) -> None:
-    """Note in the cache that ``run`` has compiled its kernels, or where modes were ``chosen`` those with
-    modes."""
-    path = mark(run, chosen)
+def remember(run: "Run", chosen: bool = False, many: bool = False) -> None:
+    """Note in the cache that ``run``, or ``many`` cases like it, compiled its kernels, or where modes
+    were ``chosen`` those with modes."""
+    path = mark(run, chosen, many)
     path.parent.mkdir(parents=True, exist_ok=True)
     path.touch()
 
 
-def mark(run: "Run", chosen: bool = False) -> Path:
-    """File in the cache of kernels that says that those of ``run`` are there."""
+def mark(run: "Run", chosen: bool = False, many: bool = False) -> Path:
+    """File in the cache of kernels that says that those of ``run``, or of ``many`` cases like it, are
+    there."""
     key = content_hash(
         kernel_digest(f"tipoff.{run.fidelity}"),
         run.model,
         run.scene.absent_effects(),
         _modes(run),
         chosen,
+        many,
     )
     return sources.cache_folder() / "kernels" / f"compiled-{key[:16]}"
 

@@ -21,6 +21,7 @@ from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import NOMINAL, Scene
+from tipoff.studies.core import words
 from tipoff.studies.core.progress import say
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.store import Run, Store
@@ -150,7 +151,7 @@ class Study:
 
         size = element_size or self.settings.element_size
         if not judged and not rail_compliance.kept_file(scene, self.folder, size).is_file():
-            size = rail_compliance.fine_enough(scene, size)
+            size = rail_compliance.fine_enough(scene, size, say)
         return rail_compliance.kept(scene, self.folder, size, say)
 
     def rail_compliances(
@@ -216,6 +217,7 @@ class Study:
                 "stage": name,
                 "scene": self.scene.name,
                 "key": key,
+                "quantities": words.QUANTITIES,
                 **result,
                 "files": {self.relative(file): _digest(file) for file in files},
             },
@@ -276,7 +278,9 @@ def _numerics(kind: type, **values: Any) -> Any:
     try:
         return kind(**values)
     except ValueError as fault:
-        raise SceneError([Fault("numerics", ", ".join(values), str(values), str(fault))]) from None
+        options = ", ".join(f"--{name.replace('_', '-')}" for name in values)
+        given = ", ".join(map(str, values.values()))
+        raise SceneError([Fault(options, "value", given, str(fault))]) from None
 
 
 def _digest(path: Path) -> str:

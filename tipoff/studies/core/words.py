@@ -1,8 +1,14 @@
-"""The name of a model in the output of all commands."""
+"""Words that all commands share: the name of a model, and the units of results."""
 
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.scene import Scene
+
+# Stands under the key "quantities" of every result.
+QUANTITIES = (
+    "The end of a key names its unit, such as rate_deg_s, exit_time_s, area_m2. Other quantities are "
+    "in SI with angles in radians, and numbers without a unit are ratios."
+)
 
 
 def model(scene: Scene, calibrated: bool, compliance: RailCompliance | None) -> str:

@@ -5,7 +5,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tipoff.studies.commands.options import Json, Out, SceneName, Set, Surrogate, Workers
+from tipoff.studies.commands.options import (
+    Json,
+    Out,
+    SceneName,
+    Set,
+    Surrogate,
+    Workers,
+    condition_names,
+)
 from tipoff.studies.commands.running import guarded, study_of
 
 if TYPE_CHECKING:
@@ -33,6 +41,7 @@ def droptest(
         typer.Option(
             "--condition",
             metavar="NAME",
+            autocompletion=condition_names,
             help="Named condition of the drop test; default: the scene.",
         ),
     ] = None,

@@ -22,8 +22,9 @@ from tipoff.scenes import uncertainty
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
-from tipoff.studies.core import machine, models
+from tipoff.studies.core import compiled, machine, models, words
 from tipoff.studies.core.progress import Board, say
+from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.ensemble import sensitivity, summary
 
@@ -81,7 +82,9 @@ def request(study: Study, options: Options) -> Ensemble:
     scene = study.scene
     if fitted is not None and not springs:  # before a case, which may vary a constant
         scene, fitted = fitted.split(scene)
-    ensemble, why = pilot.settled(Ensemble(scene, source, fitted, numerics, found))
+    like = Run("lowfi", "ensemble", scene, numerics, fitted, found)
+    with compiled.first_use(like, many=True):
+        ensemble, why = pilot.settled(Ensemble(scene, source, fitted, numerics, found))
     if why:
         say(f"modes of the rails: {why}")
     return ensemble
@@ -105,6 +108,7 @@ def run(study: Study, options: Options) -> dict:
     found = {
         "stage": "ensemble",
         "scene": study.scene.name,
+        "quantities": words.QUANTITIES,
         "store": str(path),
         **statistics,
         **told,

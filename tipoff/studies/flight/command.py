@@ -1,5 +1,6 @@
 """``tipoff flight``: the payload after its exit."""
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,7 +16,7 @@ from tipoff.studies.commands.options import (
     Surrogate,
     Workers,
 )
-from tipoff.studies.commands.running import guarded, study_of
+from tipoff.studies.commands.running import guarded, quantity, study_of
 
 if TYPE_CHECKING:
     from tipoff.studies.render.document import Part
@@ -79,9 +80,16 @@ def flight(
     """
 
     def work() -> dict:
+        from tipoff.studies.core.checked import together
         from tipoff.studies.flight import stage
 
         given = {"range": range_, "altitude": altitude, "duration": duration}
+        kinds = {
+            "range": ("m", "500 m"),
+            "altitude": ("m", "500 km"),
+            "duration": ("s", "2 hour"),
+        }
+        together(*(partial(_require, name, given[name], *kind) for name, kind in kinds.items()))
         table = [f"flight.{key}={value}" for key, value in given.items() if value is not None]
         study = study_of(scene, out, [*(set_ or []), *table], condition, element_size, workers)
         return stage.run(study, stage.Options(vary, cases, seed, model and model.value))
@@ -92,3 +100,10 @@ def flight(
         return page.terminal(found)
 
     guarded(work, json_, shown, out)
+
+
+def _require(name: str, text: str | None, unit: str, example: str) -> None:
+    """Raise SceneError where the option ``name`` has no quantity in ``unit``; "absent" drops the
+    key."""
+    if text != "absent":
+        quantity(f"--{name}", text, unit, example)

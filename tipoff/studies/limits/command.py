@@ -6,7 +6,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tipoff.studies.commands.options import Json, Out, SceneName, Set, Surrogate, Workers
+from tipoff.studies.commands.options import (
+    Json,
+    Out,
+    SceneName,
+    Set,
+    Surrogate,
+    Workers,
+    condition_names,
+)
 from tipoff.studies.commands.running import guarded, study_of
 
 if TYPE_CHECKING:
@@ -74,7 +82,12 @@ Draws = Annotated[
 ]
 Condition = Annotated[
     str | None,
-    typer.Option("--condition", metavar="NAME", help="Named condition; default: the scene."),
+    typer.Option(
+        "--condition",
+        metavar="NAME",
+        autocompletion=condition_names,
+        help="Named condition; default: the scene.",
+    ),
 ]
 Certify = Annotated[
     int | None,

@@ -68,22 +68,36 @@ def new(
     def work() -> dict:
         from tipoff.files import write_text
         from tipoff.scenes import parse, reading
-        from tipoff.scenes.faults import Fault, SceneError
+        from tipoff.studies.core.checked import together
         from tipoff.studies.new_scene import template
 
-        faults = []
-        if file.suffix != ".toml":
-            faults.append(Fault("FILE", "name", str(file), "a name that ends in .toml"))
-        if file.exists():
-            faults.append(Fault("FILE", "name", str(file), "a file that is not there yet"))
-        if faults:
-            raise SceneError(faults)
-        text = template.text(file.stem, _numbers(given))
+        _, text = together(
+            lambda: _require_new(file),
+            lambda: template.text(file.stem, _numbers(given)),
+        )
         write_text(file, text)
         parse(*reading.read(file))
         return {"scene": file.stem, "file": str(file), "text": text}
 
     guarded(work, json_, _next)
+
+
+def _require_new(file: Path) -> None:
+    """Raise SceneError for a file that is no new scene file."""
+    from tipoff.scenes import names
+    from tipoff.scenes.faults import Fault, SceneError
+
+    faults = []
+    if file.suffix != ".toml":
+        faults.append(Fault("FILE", "name", str(file), "a name that ends in .toml"))
+    if file.exists():
+        faults.append(Fault("FILE", "name", str(file), "a file that is not there yet"))
+    try:
+        names.of_scene(file.stem)
+    except ValueError as fault:
+        faults.append(Fault("FILE", "name", file.stem, str(fault)))
+    if faults:
+        raise SceneError(faults)
 
 
 def _next(found: dict) -> list[str]:
@@ -106,8 +120,9 @@ def _numbers(given: dict):
         unit, _, default = _ASKED[name]
         text, option = given[name] or default, f"--{name.replace('_', '-')}"
         if name != "size":
-            return quantity(option, text, unit)
-        sides = [quantity(option, part.strip(), unit) for part in text.split(",")]
+            return quantity(option, text, unit, default)
+        example = default.split(",")[0]
+        sides = [quantity(option, part.strip(), unit, example) for part in text.split(",")]
         if len(sides) != 3:
             expected = 'three lengths, for example "350 mm, 200 mm, 200 mm"'
             raise SceneError([Fault(option, "value", text, expected)])

@@ -1,12 +1,15 @@
 """``tipoff peers``."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from tipoff.studies.commands.options import Json, Out
 from tipoff.studies.commands.running import guarded
+
+if TYPE_CHECKING:
+    from tipoff.studies.render.document import Part
 
 
 def add(app: typer.Typer) -> None:
@@ -44,9 +47,11 @@ def peers(
             document.keep(out)
         return found
 
-    found = guarded(work, json_)
-    if not json_:
+    def shown(found: dict) -> list["Part"]:
         from tipoff.studies.peers import page
-        from tipoff.studies.render import document as render
 
-        print(render.terminal(page.parts(found["peers"])))
+        folder = Path(out) / "peers"
+        written = [f"  {folder}/"] if folder.is_dir() else []
+        return [*page.parts(found["peers"]), *written]
+
+    guarded(work, json_, shown)

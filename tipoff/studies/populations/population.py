@@ -22,9 +22,10 @@ from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import kept
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.core import words
+from tipoff.studies.core import compiled, words
 from tipoff.studies.core.models import require_accepted
 from tipoff.studies.core.progress import Board
+from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study, StudyError
 
 TOLERANCE = 1e-2  # relative error of a step: 95 % of reference cases within 0.2 % of their rate
@@ -103,11 +104,10 @@ def run(
 ) -> Population:
     """Results of every case of ``source`` (``lowfi.ensemble.rows``), in a store named after
     ``name``. Raises StudyError when the store fails."""
-    ensemble, _ = pilot.settled(
-        Ensemble(
-            model.scene, source, None, Numerics(relative_tolerance=tolerance), model.compliance
-        )
-    )
+    numerics = Numerics(relative_tolerance=tolerance)
+    like = Run("lowfi", name, model.scene, numerics, None, model.compliance)
+    with compiled.first_use(like, many=True):
+        ensemble, _ = pilot.settled(Ensemble(model.scene, source, None, numerics, model.compliance))
     path = study.path(f"{name}-{ensemble.key[:8]}")
     try:
         store = ensemble.store(path)

@@ -20,6 +20,7 @@ from tipoff.studies.commands.options import (
     Set,
     StepEverything,
     Workers,
+    condition_names,
 )
 from tipoff.studies.commands.running import guarded, quantity, study_of
 
@@ -106,6 +107,7 @@ def run(
         typer.Option(
             "--condition",
             metavar="NAME",
+            autocompletion=condition_names,
             help="Named condition, repeatable, or several with commas; default: the scene itself.",
         ),
     ] = None,
@@ -150,6 +152,7 @@ def run(
     def work() -> dict:
         from tipoff.scenes.faults import Fault, SceneError
         from tipoff.studies.core import models
+        from tipoff.studies.core.checked import together
         from tipoff.studies.runs import single
 
         options = models.Options(model and model.value, calibration, modes)
@@ -174,8 +177,11 @@ def run(
                     for name in wrong
                 ]
             )
-        limits = quantity("--accuracy", accuracy, "deg/s"), quantity("--budget", budget, "s")
-        return single.several(names, lambda name: single.chosen(study, name, *limits, json_))
+        error, wall = together(
+            lambda: quantity("--accuracy", accuracy, "deg/s", "0.1 deg/s"),
+            lambda: quantity("--budget", budget, "s", "2 s"),
+        )
+        return single.several(names, lambda name: single.chosen(study, name, error, wall, json_))
 
     def shown(found: dict) -> list["Part"]:
         from tipoff.studies.runs import page

@@ -2,6 +2,7 @@
 changed one at a time, as in Table 2 of the paper; Sobol' indices cover all inputs of a file of
 tolerances."""
 
+import importlib.util
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -41,11 +42,13 @@ def run(study: Study, options: Options = Options()) -> dict:
     quantity.
 
     Raises SceneError for bad input, before anything runs, and StudyError where too few cases
-    settle.
+    settle or SALib is not installed.
     """
     _require(study, options)
 
     def make() -> tuple[dict, list[Path]]:
+        if importlib.util.find_spec("SALib") is None:
+            raise StudyError("Sobol' indices need SALib: pip install 'tipoff[studies]'")
         model = population.surrogate(study, options.model)
         found = {
             "asked": STAGE.plain(options),

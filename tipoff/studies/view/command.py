@@ -1,7 +1,7 @@
 """``tipoff view``."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,6 +14,9 @@ from tipoff.studies.commands.options import (
     Set,
 )
 from tipoff.studies.commands.running import guarded, study_of
+
+if TYPE_CHECKING:
+    from tipoff.studies.render.document import Part
 
 
 def add(app: typer.Typer) -> None:
@@ -65,8 +68,11 @@ def view(
             study_of(scene, out, set_, element_size=element_size), condition, frames, exaggeration
         )
 
-    def shown(found: dict) -> list[str]:
+    def shown(found: dict) -> list["Part"]:
+        from tipoff.studies.view import page
+
         folder = Path(out) / found["scene"]
-        return [f"{folder / path}" for path in (found["collection"], *found["pictures"].values())]
+        files = [found["collection"], *found["pictures"].values()]
+        return [page.peak(found), "\n".join(f"  {folder / path}" for path in files)]
 
     guarded(work, json_, shown)

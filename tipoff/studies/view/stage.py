@@ -40,7 +40,7 @@ def run(
     fails.
     """
     if frames < 2:
-        raise SceneError([Fault("view", "frames", str(frames), "2 or more")])
+        raise SceneError([Fault("--frames", "value", str(frames), "2 or more")])
     name = condition or (study.scene.agreement.refined or tuple(study.conditions))[0]
     request = study.highfi(name)
 

@@ -1,0 +1,62 @@
+"""What the terminal shows of a calibration: tables with units, and the files."""
+
+import numpy as np
+
+from tipoff.scenes import Calibration
+from tipoff.studies.calibration import page, stage
+from tipoff.studies.render import document
+
+FOUND = Calibration(
+    constants={"contact.stiffness": 7e7, "friction.static": 0.25},
+    parameters=["force at 0.02 mm", "mu"],
+    values=[6.26, 0.25],
+    units=["N", "1"],
+    lower=[1.0, 0.0],
+    upper=[9.0, 1.0],
+    justification=["", ""],
+    information=np.eye(2),
+    weak_directions=["mu with the force"],
+    residuals={"phi15": {"rate_relative_l2": 0.0123}, "phi60": {}},
+    conditions=["phi15", "phi60"],
+    objective=0.5,
+    intervals=[[6.0, 6.5], [float("-inf"), float("inf")]],
+)
+COMPLIANCE = {
+    "file": "compliance-1.npz",
+    "stations": 53,
+    "element_size_m": 8e-3,
+    "under_a_pad": {"direct_m_per_n": {"-y": [1e-9, 4.5e-8]}},
+}
+
+
+def shown(found, tmp_path):
+    return document.terminal(page.terminal(found, tmp_path))
+
+
+def test_constants_and_residuals_are_tables(tmp_path):
+    fitted = stage.as_dict(FOUND) | {"calibration": "calibration.toml"}
+    lines = shown(fitted, tmp_path).splitlines()
+    force = next(line for line in lines if line.strip().startswith("force at"))
+    assert force.split()[-5:] == ["6.26", "N", "6", "to", "6.5"]
+    assert any(
+        line.split()[:3] == ["mu", "0.25", "1"] and "not determined" in line for line in lines
+    )
+    assert any(line.split() == ["phi15", "0.0123"] for line in lines)
+    assert "Weak: mu with the force" in lines
+    assert lines[-1] == f"  {tmp_path / 'calibration.toml'}"
+
+
+def test_model_error_is_a_column_where_there_is_one(tmp_path):
+    fitted = stage.as_dict(FOUND) | {"calibration": "calibration.toml"}
+    assert "with model error" not in shown(fitted, tmp_path)
+    wider = fitted | {"with_model_error": [[5.0, 7.0], [0.1, 0.4]]}
+    assert "with model error" in shown(wider, tmp_path) and "5 to 7" in shown(wider, tmp_path)
+
+
+def test_the_compliance_stands_before_the_springs(tmp_path):
+    fitted = stage.as_dict(FOUND) | {"calibration": "calibration.toml"}
+    text = shown({"compliance": COMPLIANCE, "springs": fitted}, tmp_path)
+    assert text.index("(nm/N)") < text.index("force at")
+    assert f"  {tmp_path / 'compliance-1.npz'}" in text.splitlines() and " 45" in text
+    without = shown({"compliance": COMPLIANCE | {"file": None}}, tmp_path)
+    assert without == "no contact: no compliance"

@@ -1,0 +1,45 @@
+"""Line plots for people: a figure of its own, which no global state of pyplot knows."""
+
+import io
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+
+class Plot(Figure):
+    """A figure that a notebook shows without pyplot; ``savefig`` writes it to a file."""
+
+    def _repr_png_(self) -> bytes:
+        """The picture that a notebook shows."""
+        stream = io.BytesIO()
+        self.savefig(stream, format="png", dpi=110)
+        return stream.getvalue()
+
+
+def lines(
+    across: tuple[str, np.ndarray],
+    up: str,
+    curves: Sequence[tuple[str, np.ndarray]],
+    title: str = "",
+    axes: Axes | None = None,
+    **style: Any,
+) -> Figure:
+    """``curves`` by name over one variable ``across``; both axes have a title with a unit.
+
+    ``axes`` are those of a figure that there is; without them a new figure is made. ``style`` is
+    that of ``Axes.plot``. Returns the figure.
+    """
+    axes = axes or Plot(figsize=(7.0, 4.0), layout="constrained").add_subplot()
+    words, values = across
+    for name, curve in curves:
+        axes.plot(values, curve, **{"label": name, **style})
+    axes.set(xlabel=words, ylabel=up, title=title)
+    axes.grid(alpha=0.3)
+    if len(curves) > 1:
+        axes.legend()
+    found = axes.get_figure(root=True)
+    assert found is not None  # of axes that are drawn in
+    return found
