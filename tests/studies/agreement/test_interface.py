@@ -163,7 +163,7 @@ def test_a_condition_that_is_chaotic_at_the_nominal_stiffness_is_named(study, mo
     the miss is one of a curve."""
     for grows, lost, names in ((5.0, False, ["phi15"]), (0.0, True, ["phi15"]), (0.0, False, [])):
         settle(monkeypatch, lambda factor: 0.3, grows=grows, lost=lost)
-        assert interface.unsteady(rows(study)) == names
+        assert interface.undecided(rows(study)) == names
 
 
 def test_verdicts_are_on_the_page_in_markdown_and_in_the_terminal(study, monkeypatch):

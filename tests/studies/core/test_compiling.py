@@ -5,7 +5,7 @@ import pytest
 from tests.lowfi.compliance import REFERENCE, reference_compliance
 from tests.studies.synthetic import flight
 from tipoff import lowfi, scenes
-from tipoff.studies.core import compiled, compiling
+from tipoff.studies.core import compiling, kernel_marks
 from tipoff.studies.core.store import Run, Store
 
 FLYING = scenes.load("tiny").replace({"contact": None, "friction": None})
@@ -44,12 +44,12 @@ def test_a_run_alone_compiles_its_own(runs, tmp_path, count, workers):
 
 def test_the_first_compilation_is_announced_once(runs, capfd):
     first, other, same = runs
-    compiled.announce(first)
+    kernel_marks.announce(first)
     assert "compiling the kernels of model compliant" in capfd.readouterr().err
-    compiled.remember(first)
-    compiled.announce(same)  # the same effects
+    kernel_marks.remember(first)
+    kernel_marks.announce(same)  # the same effects
     assert capfd.readouterr().err == ""
-    compiled.announce(other)
+    kernel_marks.announce(other)
     said = capfd.readouterr().err
     assert "once" in said and "modes" not in said  # nothing presses a rail
 
@@ -64,8 +64,8 @@ def test_kernels_with_modes_of_the_rails_are_others(monkeypatch, tmp_path, capfd
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
 
     def announced(modes, chosen=False) -> str:
-        compiled.announce(pressed(modes), chosen)
-        compiled.remember(pressed(modes), chosen)
+        kernel_marks.announce(pressed(modes), chosen)
+        kernel_marks.remember(pressed(modes), chosen)
         return capfd.readouterr().err
 
     assert "once, and a minute more if modes" in announced("auto")
@@ -79,8 +79,8 @@ def test_kernels_with_modes_of_the_rails_are_others(monkeypatch, tmp_path, capfd
 def test_modes_that_are_there_are_not_announced_as_missing(monkeypatch, tmp_path, capfd):
     """Control: above, where they are not there."""
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    compiled.remember(pressed("auto"), chosen=True)
-    compiled.announce(pressed("auto"))
+    kernel_marks.remember(pressed("auto"), chosen=True)
+    kernel_marks.announce(pressed("auto"))
     assert "once\n" in capfd.readouterr().err
 
 
@@ -103,5 +103,5 @@ def test_a_run_that_chooses_modes_announces_their_kernels_before_it_goes_on(
     asked = pressed("auto")
     store.fill("lowfi", [asked])
     assert ["with modes of the rails" in text for text in said] == ([True, False] if chosen else [])
-    assert compiled.mark(asked, chosen=True).is_file() == bool(chosen)
-    assert not compiled.mark(asked).is_file()  # who asked for the run notes what it begins with
+    assert kernel_marks.mark(asked, chosen=True).is_file() == bool(chosen)
+    assert not kernel_marks.mark(asked).is_file()  # who asked for the run notes what it begins with

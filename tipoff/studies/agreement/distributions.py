@@ -40,15 +40,15 @@ class Surrogate(Protocol):
 
 
 def counts(
-    rows: Iterable[dict], growths: Iterable[Growth], unsteady: Iterable[str], draws: int
+    rows: Iterable[dict], growths: Iterable[Growth], undecided: Iterable[str], draws: int
 ) -> dict[str, int]:
     """Number of neighbours by condition, for those that are judged as distributions: ``draws``, or a
     quarter where the reference is not converged though 1 um does not move it by more than the limit.
-    ``unsteady`` conditions, which no single run can judge either, were found elsewhere."""
+    ``undecided`` conditions, which no single run can judge either, were found elsewhere."""
     found = {item.condition: item for item in growths if item.model == FINITE_ELEMENTS}
     # one whose twin did not settle counts as sensitive
     sensitive = {name for name, item in found.items() if item.sensitive is not False}
-    sensitive |= set(unsteady)
+    sensitive |= set(undecided)
     few = max(_LEAST, draws // _STABLE_SHARE)
     return {
         row["condition"]: draws if row["condition"] in sensitive else few

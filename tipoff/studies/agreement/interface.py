@@ -83,7 +83,7 @@ def _regarding(row: dict, grown: str | None) -> dict:
     }
 
 
-def unsteady(found: Sequence[dict]) -> list[str]:
+def undecided(found: Sequence[dict]) -> list[str]:
     """Conditions that no single run can judge at the nominal stiffness: their reference is chaotic, or
     that is not known."""
     return [

@@ -79,16 +79,16 @@ def judge(
     compared: Sequence[Candidate],
     curves: Curves,
     draws: int,
-    unsteady: Iterable[str] = (),
+    undecided: Iterable[str] = (),
 ) -> Judged:
     """The verdicts on the candidates, one of which is compliant contact: those of the ``curves``, and
     on conditions that no single run can judge those of distributions over ``draws`` neighbours.
-    ``unsteady`` conditions are such ones for a reason that was found elsewhere. The runs are kept in
+    ``undecided`` conditions are such ones for a reason that was found elsewhere. The runs are kept in
     the store, so that an interrupted study goes on."""
     static = next(candidate for candidate in compared if candidate.name == COMPLIANT)
     own = curves.rows[static.name]
     growths = twins.growths(study, static, own)
-    wanted = distributions.counts(own, growths, unsteady, draws)
+    wanted = distributions.counts(own, growths, undecided, draws)
     limit = verdicts.gates(study.scene)["settled_rate_error_deg_s"]
     coarse = list(on_coarse(study, compared).values()) if wanted else []
     found = distributions.judge(study, wanted, coarse, limit)

@@ -47,7 +47,7 @@ def run(study: Study, options: Options | None = None) -> dict:
             study, on_coarse(study, compared)[static.name].request, curves.contexts[static.name]
         )
         found = judging.judge(
-            study, compared, curves, chosen.neighbours, interface.unsteady(stiffnesses)
+            study, compared, curves, chosen.neighbours, interface.undecided(stiffnesses)
         )
         table = found.rows | {static.name: interface.combined(found.rows[static.name], stiffnesses)}
         groups = {

@@ -11,7 +11,7 @@ from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
 
-from tipoff.studies.core import compiled
+from tipoff.studies.core import kernel_marks
 from tipoff.studies.core.progress import Board, say
 from tipoff.studies.core.store import Run, execute, prepare
 
@@ -32,7 +32,7 @@ def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
     """
     missing: dict[Path, Run] = {}
     for run in runs:
-        if not (mark := compiled.mark(run)).is_file():
+        if not (mark := kernel_marks.mark(run)).is_file():
             missing.setdefault(mark, run)
     if min(workers, len(missing)) < 2:
         return
@@ -46,7 +46,7 @@ def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
             for future in as_completed(pending):
                 run = pending[future]
                 future.result()
-                compiled.remember(run)
+                kernel_marks.remember(run)
                 board.finished(run.label, "compiled")
     except BrokenProcessPool:
         say("  a process that compiled kernels was ended; the runs compile their own")

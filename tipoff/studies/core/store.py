@@ -26,7 +26,7 @@ from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
-from tipoff.studies.core import compiled
+from tipoff.studies.core import kernel_marks
 from tipoff.studies.core.progress import Board, say, team
 
 
@@ -122,12 +122,12 @@ def _surrogate(
 
     def vibrates(modes: int) -> None:
         if not chosen:
-            compiled.announce(run, chosen=True)
+            kernel_marks.announce(run, chosen=True)
         chosen.append(modes)
 
     found = execute(run, progress, threads, vibrates=vibrates)
     if chosen:
-        compiled.remember(run, chosen=True)
+        kernel_marks.remember(run, chosen=True)
     return found
 
 

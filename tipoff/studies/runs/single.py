@@ -7,7 +7,7 @@ from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.calibration.files import constants
-from tipoff.studies.core import compiled, models, words
+from tipoff.studies.core import kernel_marks, models, words
 from tipoff.studies.core.progress import say
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study, StudyError
@@ -81,9 +81,9 @@ def chosen(
 def result_of(study: Study, condition: str, request: Run, quiet: bool) -> dict:
     found = study.store.load(request)
     if found is None:
-        compiled.announce(request)
+        kernel_marks.announce(request)
         found = study.store.get(request)
-        compiled.remember(request)
+        kernel_marks.remember(request)
     calibrated, modes = request.calibration is not None, getattr(request.numerics, "modes", AUTO)
     result = row(condition, found, study.relative(study.store.path(request)))
     result |= beside(request, found)

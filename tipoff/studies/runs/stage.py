@@ -8,7 +8,7 @@ from tipoff.mechanics import hand_calculation, unfinished
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.convergence import stresses
-from tipoff.studies.core import compiled
+from tipoff.studies.core import kernel_marks
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import FAILED, Study
 
@@ -30,10 +30,10 @@ def run(study: Study, fidelity: str) -> dict:
         asked = list(requested.values())
         missing = [run for run in asked if not study.store.path(run).is_file()]
         for run in missing:
-            compiled.announce(run)
+            kernel_marks.announce(run)
         runs = dict(zip(requested, study.store.fill(fidelity, asked)))
         for run in missing:
-            compiled.remember(run)
+            kernel_marks.remember(run)
         rows = [
             row(name, runs[name], study.relative(study.store.path(run))) | beside(run, runs[name])
             for name, run in requested.items()
