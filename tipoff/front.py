@@ -56,7 +56,7 @@ def run(
         >>> [round(math.degrees(rate)) for rate in run.outcome.rate]  # deg/s
         [5, 2, 9]
     """
-    from tipoff.studies.core import compiled
+    from tipoff.studies.core import kernel_marks
     from tipoff.studies.core.store import Run
 
     _require(scene, model, MODELS)
@@ -65,13 +65,13 @@ def run(
 
         _require_none(scene, model, compliance=compliance, calibration=calibration)
         sizes = highfi.Numerics(**numerics)
-        with compiled.first_use(Run("highfi", scene.name, scene, sizes)):
+        with kernel_marks.first_use(Run("highfi", scene.name, scene, sizes)):
             return highfi.run(scene, sizes, progress)
     from tipoff import lowfi
 
     chosen = lowfi.Numerics(**numerics)
     found = _pressed(scene, model, compliance, calibration)
-    with compiled.first_use(Run("lowfi", scene.name, scene, chosen, calibration, found)):
+    with kernel_marks.first_use(Run("lowfi", scene.name, scene, chosen, calibration, found)):
         return lowfi.run(
             scene,
             model,
@@ -128,7 +128,7 @@ def ensemble(
         2
     """
     from tipoff import lowfi
-    from tipoff.studies.core import compiled
+    from tipoff.studies.core import kernel_marks
     from tipoff.studies.core.store import Run
 
     _require(scene, model, SURROGATES)
@@ -141,7 +141,7 @@ def ensemble(
     chosen = lowfi.Numerics(**options)
     found = _pressed(scene, model, compliance, calibration)
     like = Run("lowfi", scene.name, scene, chosen, calibration, found)
-    with compiled.first_use(like, many=True):
+    with kernel_marks.first_use(like, many=True):
         return lowfi.run_many(
             scene,
             cases,

@@ -22,7 +22,7 @@ from tipoff.scenes import uncertainty
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
-from tipoff.studies.core import compiled, machine, models, words
+from tipoff.studies.core import kernel_marks, machine, models, words
 from tipoff.studies.core.progress import Board, say
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study, StudyError
@@ -83,7 +83,7 @@ def request(study: Study, options: Options) -> Ensemble:
     if fitted is not None and not springs:  # before a case, which may vary a constant
         scene, fitted = fitted.split(scene)
     like = Run("lowfi", "ensemble", scene, numerics, fitted, found)
-    with compiled.first_use(like, many=True):
+    with kernel_marks.first_use(like, many=True):
         ensemble, why = pilot.settled(Ensemble(scene, source, fitted, numerics, found))
     if why:
         say(f"modes of the rails: {why}")

@@ -22,7 +22,7 @@ from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import kept
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.core import compiled, words
+from tipoff.studies.core import kernel_marks, words
 from tipoff.studies.core.models import require_accepted
 from tipoff.studies.core.progress import Board
 from tipoff.studies.core.store import Run
@@ -106,7 +106,7 @@ def run(
     ``name``. Raises StudyError when the store fails."""
     numerics = Numerics(relative_tolerance=tolerance)
     like = Run("lowfi", name, model.scene, numerics, None, model.compliance)
-    with compiled.first_use(like, many=True):
+    with kernel_marks.first_use(like, many=True):
         ensemble, _ = pilot.settled(Ensemble(model.scene, source, None, numerics, model.compliance))
     path = study.path(f"{name}-{ensemble.key[:8]}")
     try:
