@@ -227,7 +227,7 @@ def calibrate(
         >>> names = scene.agreement.fitted
         >>> curves = {name: tipoff.run(scene.condition(name), modes=0) for name in names}
         >>> found = tipoff.calibrate(scene, curves, fit=["friction.dynamic"])
-        >>> round(found.constants["friction.dynamic"], 2)  # that of the curves
+        >>> round(found.values[0], 2)  # that of the curves
         0.2
     """
     from tipoff import calibration

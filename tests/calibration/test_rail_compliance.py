@@ -76,7 +76,7 @@ def test_a_long_wait_says_how_long_it_takes(monkeypatch, tmp_path):
 
 def test_the_loads_solved_for_are_reported(monkeypatch):
     """Every batch of a rail, up to all of it."""
-    monkeypatch.setattr(statics, "BATCH", 7)
+    monkeypatch.setattr(statics, "BATCH", 2)
     seen = []
     with statics.progress_to(seen.append):
         rail_compliance.direct(load("tiny"), 16e-3)

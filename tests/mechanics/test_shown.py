@@ -108,10 +108,10 @@ def test_a_card_has_the_colours_of_the_page_around_it(run):
 
 
 def test_plots_have_units_and_leave_no_global_state(run):
-    from matplotlib import _pylab_helpers
+    from matplotlib import pyplot
     from matplotlib.figure import Figure
 
-    before = len(_pylab_helpers.Gcf.figs)
+    before = pyplot.get_fignums()
     figure = run.plot()
     axes = figure.axes[0]
     lines = axes.get_lines()[:3]
@@ -124,7 +124,7 @@ def test_plots_have_units_and_leave_no_global_state(run):
     assert velocity.get_ylabel() == "velocity (m/s)"
     own = Figure().add_subplot()
     assert run.plot(axes=own) is own.figure
-    assert len(_pylab_helpers.Gcf.figs) == before
+    assert pyplot.get_fignums() == before
     assert getattr(figure, PICTURE)().startswith(b"\x89PNG")
     with pytest.raises(ValueError, match="'speed', expected rate or velocity or position"):
         run.plot("speed")

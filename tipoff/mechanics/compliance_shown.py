@@ -9,7 +9,7 @@ from tipoff.cards import Carded
 from tipoff.files import write_csv
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from tipoff.plots import Figure
 
 
 class Shown(Carded):

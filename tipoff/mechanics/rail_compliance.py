@@ -270,9 +270,6 @@ class RailCompliance(Shown):
         Args:
             path: file to write, ``.npz``.
 
-        Raises:
-            OSError: a file that cannot be written.
-
         Example:
             >>> tipoff.compliance(tipoff.load("tiny"), 8e-3).save("rail.npz")
         """
@@ -305,8 +302,7 @@ class RailCompliance(Shown):
 
         Example:
             >>> tipoff.compliance(tipoff.load("tiny"), 8e-3).save("rail.npz")
-            >>> tipoff.RailCompliance.load("rail.npz").travel.size
-            53
+            >>> rail = tipoff.RailCompliance.load("rail.npz")
         """
         try:
             require_whole(path)

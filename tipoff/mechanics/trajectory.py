@@ -24,7 +24,8 @@ from tipoff.mechanics.models import MODELS
 
 if TYPE_CHECKING:
     import xarray
-    from matplotlib.figure import Figure
+
+    from tipoff.plots import Figure
 
 STATUSES = ("exited", "time_limit", "jammed", "diverged", "refused")
 _VECTOR = ("x", "y", "z")

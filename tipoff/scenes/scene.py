@@ -9,9 +9,8 @@ from collections.abc import Mapping
 from functools import cached_property
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
-import numpy as np
 from pydantic import (
     AfterValidator,
     Field,
@@ -21,7 +20,6 @@ from pydantic import (
     field_validator,
 )
 
-from tipoff.cards import Carded
 from tipoff.files import content_hash
 from tipoff.scenes import names, pads, plausibility, provenance, reading, roles, shown, suggestions
 from tipoff.scenes import overrides as keys
@@ -42,18 +40,14 @@ from tipoff.scenes.table import MOST, Table, at_least_one, is_absent, limited
 from tipoff.scenes.tables import MOST_SAMPLES, AgreementTable, OutputTable, PadTable, PayloadTable
 from tipoff.scenes.units import Duration
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 CATALOG = reading.CATALOG
 NOMINAL = "nominal"  # the scene itself, named like a condition
-_PLOTTED = 1001  # points of a curve
 _BESIDE = ("conditions", "agreement", "provenance")
 # the flight after the exit does not change the ejection
 _NOT_PHYSICS = {"name", "description", "flight", *_BESIDE}
 
 
-class Scene(Carded, Table):
+class Scene(shown.Shown, Table):
     """Everything a run needs. Fields are SI; an absent effect is None. Use ``replace`` for
     variations.
 
@@ -133,39 +127,6 @@ class Scene(Carded, Table):
                 f"the duration of {duration:g} s",
             )
         return output
-
-    def __repr__(self) -> str:
-        return (
-            f"Scene({self.name!r}, {self.payload.mass:g} kg, {len(self.pads)} pads, "
-            f"{len(self.conditions)} conditions, hash {self.hash[:8]})"
-        )
-
-    __str__ = __repr__
-
-    def _facts(self) -> dict[str, str]:
-        return shown.facts(self)
-
-    def plot(self, axes: Any = None) -> "Figure":
-        """Draw the thrust (N) over the time after ignition (ms).
-
-        Args:
-            axes: matplotlib axes to draw in; a new figure without them.
-
-        Returns:
-            Figure: the figure. pyplot does not know a new one; a notebook shows it.
-
-        Example:
-            >>> figure = tipoff.load("tiny").plot()
-            >>> figure.axes[0].get_ylabel()
-            'thrust (N)'
-        """
-        from tipoff import plots  # slow to load
-        from tipoff.scenes.effects import thrust_law
-
-        time = np.linspace(0.0, self.duration, _PLOTTED)
-        force = thrust_law.sample(self.thrust.record(), time)
-        across = ("time after ignition (ms)", 1e3 * time)
-        return plots.lines(across, "thrust (N)", [("thrust", force)], self.name, axes)
 
     def replace(self, overrides: Mapping[str, Any]) -> "Scene":
         """A new scene with dotted keys set.

@@ -1,13 +1,54 @@
-"""What a scene says of itself: the facts of its summary and of its card."""
+"""What people see of a scene: one line, a summary, a card, a plot."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from tipoff.cards import Carded
 from tipoff.scenes.effects import thrust_law
 
 if TYPE_CHECKING:
+    from tipoff.plots import Figure
     from tipoff.scenes.scene import Scene
 
 _MOST_NAMES = 12  # of conditions in one line
+_PLOTTED = 1001  # points of a curve
+
+
+class Shown(Carded):
+    """Base of ``scenes.scene.Scene``, which it shows."""
+
+    def __repr__(self: Any) -> str:
+        return (
+            f"Scene({self.name!r}, {self.payload.mass:g} kg, {len(self.pads)} pads, "
+            f"{len(self.conditions)} conditions, hash {self.hash[:8]})"
+        )
+
+    __str__ = __repr__
+
+    def _facts(self: Any) -> dict[str, str]:
+        return facts(self)
+
+    def plot(self: Any, axes: Any = None) -> "Figure":
+        """Draw the thrust (N) over the time after ignition (ms).
+
+        Args:
+            axes: matplotlib axes to draw in; a new figure without them.
+
+        Returns:
+            Figure: the figure. pyplot does not know a new one; a notebook shows it.
+
+        Example:
+            >>> figure = tipoff.load("tiny").plot()
+            >>> figure.axes[0].get_ylabel()
+            'thrust (N)'
+        """
+        from tipoff import plots  # slow to load
+
+        time = np.linspace(0.0, self.duration, _PLOTTED)
+        force = thrust_law.sample(self.thrust.record(), time)
+        across = ("time after ignition (ms)", 1e3 * time)
+        return plots.lines(across, "thrust (N)", [("thrust", force)], self.name, axes)
 
 
 def facts(scene: "Scene") -> dict[str, str]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tipoff.studies.commands.options import (
+    ElementSize,
     Json,
     Out,
     SceneName,
@@ -58,6 +59,7 @@ def droptest(
         ),
     ] = None,
     model: Surrogate = None,
+    element_size: ElementSize = None,
     workers: Workers = None,
     json_: Json = False,
 ) -> None:
@@ -82,7 +84,7 @@ def droptest(
         from tipoff.studies.droptest import stage
 
         return stage.run(
-            study_of(scene, out, set_, workers=workers),
+            study_of(scene, out, set_, element_size=element_size, workers=workers),
             stage.Options(
                 tuple(logs) if logs else None, vary, cases, seed, condition, model and model.value
             ),

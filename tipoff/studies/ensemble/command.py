@@ -7,6 +7,7 @@ import typer
 
 from tipoff.studies.commands.options import (
     CalibrationFile,
+    ElementSize,
     Json,
     Modes,
     Out,
@@ -102,6 +103,7 @@ def ensemble(
             help="Dask scheduler whose workers run the cases, such as tcp://node1:8786.",
         ),
     ] = None,
+    element_size: ElementSize = None,
     workers: Workers = None,
     json_: Json = False,
 ) -> None:
@@ -152,7 +154,7 @@ def ensemble(
             chosen,
             sensitivity,
         )
-        study = study_of(scene, out, set_)
+        study = study_of(scene, out, set_, element_size=element_size)
         return stage.run(study, options) if case is None else stage.case(study, options, case)
 
     def shown(found: dict) -> list["Part"]:

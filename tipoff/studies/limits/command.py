@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tipoff.studies.commands.options import (
+    ElementSize,
     Json,
     Out,
     SceneName,
@@ -120,6 +121,7 @@ def add(app: typer.Typer) -> None:
         certify: Certify = None,
         seed: Seed = 1,
         model: Surrogate = None,
+        element_size: ElementSize = None,
         workers: Workers = None,
         json_: Json = False,
     ) -> None:
@@ -151,7 +153,8 @@ def add(app: typer.Typer) -> None:
                 condition,
                 certify,
             )
-            return stage.run(study_of(scene, out, set_, workers=workers), options)
+            study = study_of(scene, out, set_, element_size=element_size, workers=workers)
+            return stage.run(study, options)
 
         def shown(found: dict) -> list["Part"]:
             from tipoff.studies.limits import page

@@ -6,7 +6,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tipoff.studies.commands.options import Json, Out, SceneName, Set, Surrogate, Workers
+from tipoff.studies.commands.options import (
+    ElementSize,
+    Json,
+    Out,
+    SceneName,
+    Set,
+    Surrogate,
+    Workers,
+)
 from tipoff.studies.commands.running import guarded, study_of
 
 if TYPE_CHECKING:
@@ -108,6 +116,7 @@ def add(app: typer.Typer) -> None:
         reference: Reference = None,
         finer: Finer = None,
         model: Surrogate = None,
+        element_size: ElementSize = None,
         workers: Workers = None,
         json_: Json = False,
     ) -> None:
@@ -131,7 +140,7 @@ def add(app: typer.Typer) -> None:
             options = stage.Options(
                 cases, seed, how, tuple(limit or stage.Options.limits), model and model.value
             )
-            study = study_of(scene, out, set_, workers=workers)
+            study = study_of(scene, out, set_, element_size=element_size, workers=workers)
             if reference is None:
                 return stage.run(study, options)
             draws = tails.Options(reference, finer, options)

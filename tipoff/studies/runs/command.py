@@ -76,12 +76,17 @@ def lowfi(
     out: Out = Path("out"),
     set_: Set = None,
     condition: Conditions = None,
+    element_size: ElementSize = None,
     workers: Workers = None,
     json_: Json = False,
 ) -> None:
     """Run the surrogate, model compliant, on every condition; writes lowfi.json and a netCDF file
     each."""
-    _run("lowfi", lambda: study_of(scene, out, set_, condition, workers=workers), json_, out)
+
+    def study() -> "Study":
+        return study_of(scene, out, set_, condition, element_size, workers)
+
+    _run("lowfi", study, json_, out)
 
 
 def _run(fidelity: str, study: Callable[[], "Study"], as_json: bool, out: Path) -> None:
