@@ -1,4 +1,4 @@
-"""The name of a model in the output of all commands."""
+"""Words that the output of all commands shares: the name of a model, and counts of things."""
 
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
@@ -13,3 +13,8 @@ def model(scene: Scene, calibrated: bool, compliance: RailCompliance | None) -> 
     if compliance is not None and compliance.flexibility is not None:
         return f"{COMPLIANT}, calibrated" if calibrated else COMPLIANT
     return f"{SPRINGS}, calibrated" if calibrated else f"{SPRINGS}, with the scene's constants"
+
+
+def counted(number: int, noun: str, plural: str | None = None) -> str:
+    """``number`` with ``noun``, in the ``plural`` (None: with an s) unless it is one."""
+    return f"{number:,} {noun if number == 1 else plural or noun + 's'}"

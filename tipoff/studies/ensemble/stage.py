@@ -25,6 +25,7 @@ from tipoff.studies.calibration.files import constants
 from tipoff.studies.core import machine, models
 from tipoff.studies.core.progress import Board, say
 from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.core.words import counted
 from tipoff.studies.ensemble import sensitivity, summary
 
 
@@ -96,7 +97,7 @@ def run(study: Study, options: Options) -> dict:
         store = ensemble.store(path := _path(study, options, ensemble))
         ensemble.case(0)  # compiles, or loads the kernels from disk, before any clock runs
         with Board("ensemble", 3 if options.sensitivity else 1) as board:
-            cost = _filled(ensemble, store, f"{store.asked:,} cases", options, board)
+            cost = _filled(ensemble, store, counted(store.asked, "case"), options, board)
             told = _sensitivity(study, ensemble, store, options, board)
     except StoreError as fault:
         raise StudyError(str(fault)) from fault
@@ -146,7 +147,7 @@ def _sensitivity(
     disturbed, costs = {}, {}
     for cause, twin in twins.of(ensemble).items():
         disturbed[cause] = twins.opened(twin, cause, store)
-        label = f"{store.asked:,} cases, {sensitivity.CAUSES[cause]}"
+        label = f"{counted(store.asked, 'case')}, {sensitivity.CAUSES[cause]}"
         costs[cause] = _filled(twin, disturbed[cause], label, options, board)
         twins.add(store, cause, twin, disturbed[cause])
     found = sensitivity.of(store, disturbed, _limit(study))

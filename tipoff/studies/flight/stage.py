@@ -18,6 +18,7 @@ from tipoff.scenes.variation import Variations
 from tipoff.studies.core.progress import Board
 from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.core.words import counted
 from tipoff.studies.flight import bodies, curves, flown, summary
 from tipoff.studies.populations import population
 
@@ -177,7 +178,7 @@ def _cases(study: Study, options: Options, drawn: Drawn) -> tuple[dict, flown.Fl
     variations, rows = Variations(model.scene), drawn.rows(0, drawn.asked)
     parted = bodies.bodies(variations.of(rows[number]) for number in which)
     with Board(NAME, 1) as board:
-        label = f"{len(which):,} flights"
+        label = counted(len(which), "flight")
         left = Columns(*(part[which] for part in cases.results))
         many = flown.fly(
             _flight(study.scene).record(), parted, bodies.start(left), board.callback(label)
