@@ -46,10 +46,11 @@ class Options:
     sensitivity: bool = False
 
 
-def request(study: Study, options: Options) -> Ensemble:
-    """The ensemble of the ``options``. Raises SceneError for bad input, before any rail compliance
-    is computed, and StudyError where no model is named and the agreement table rejects the
-    default."""
+def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
+    """The ensemble of the ``options``, and the folder of its store: the given one, or by default a
+    separate one for every ensemble. The number of modes is that of the store, or pilot cases choose
+    it. Raises SceneError for bad input, before any rail compliance is computed, and StudyError where
+    no model is named and the agreement table rejects the default."""
     fitted = constants(options.model.calibration, options.model.model, study.scene.name)
     changed = {
         name: value
@@ -82,19 +83,21 @@ def request(study: Study, options: Options) -> Ensemble:
     scene = study.scene
     if fitted is not None and not springs:  # before a case, which may vary a constant
         scene, fitted = fitted.split(scene)
-    ensemble, why = pilot.settled(Ensemble(scene, source, fitted, numerics, found))
-    if why:
-        say(f"modes of the rails: {why}")
-    return ensemble
+    asked = Ensemble(scene, source, fitted, numerics, found)
+    path = options.store or study.path(f"ensemble-{asked.key[:8]}")
+    ensemble = pilot.settled(asked, path)
+    if ensemble.modes_why:
+        say(f"modes of each rail {ensemble.modes_why}")
+    return ensemble, path
 
 
 def run(study: Study, options: Options) -> dict:
     """Run the cases that the store lacks, then their twins where the sensitivity is asked for.
     Returns the statistics, also written as ``ensemble.json``. Raises StudyError when the store
     fails."""
-    ensemble = request(study, options)
+    ensemble, path = request(study, options)
     try:
-        store = ensemble.store(path := _path(study, options, ensemble))
+        store = ensemble.store(path)
         ensemble.case(0)  # compiles, or loads the kernels from disk, before any clock runs
         with Board("ensemble", 3 if options.sensitivity else 1) as board:
             cost = _filled(ensemble, store, counted(store.asked, "case"), options, board)
@@ -169,15 +172,10 @@ def _agreement(study: Study, options: Options) -> str:
     )
 
 
-def _path(study: Study, options: Options, ensemble: Ensemble) -> Path:
-    """The given store, or by default a separate one for every ensemble."""
-    return options.store or study.path(f"ensemble-{ensemble.key[:8]}")
-
-
 def case(study: Study, options: Options, number: int) -> dict:
     """One case run alone, and whether its store has the same bits (None: no stored result). Raises
     SceneError for a case that does not exist, and StudyError when the store fails."""
-    ensemble = request(study, options)
+    ensemble, path = request(study, options)
     if not 0 <= number < ensemble.source.asked:
         raise SceneError(
             [Fault("--case", "number", str(number), f"0 to {ensemble.source.asked - 1}")]
@@ -197,7 +195,6 @@ def case(study: Study, options: Options, number: int) -> dict:
             "limit_deg_s": _limit(study),
             "by": sensitivity.of_case(ensemble, number, found),
         }
-    path = _path(study, options, ensemble)
     if path.exists():
         try:
             store = ensemble.store(path)
