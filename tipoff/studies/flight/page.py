@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from tipoff.studies.core.words import counted
 from tipoff.studies.flight.summary import WORDS
-from tipoff.studies.populations import answers
+from tipoff.studies.populations import answers, population
 from tipoff.studies.render.chart import (
     AMBER,
     GREY,
@@ -281,7 +281,7 @@ def _setup(found: dict) -> str:
     limit = flight["pointing_limit_deg"]
     return (
         f"Target {flight['range_m']:g} m along the launch axis, at rest relative to a circular "
-        f"orbit of {flight['period_s'] / 60.0:.4g} min; model {found['model']}. Gravity alone acts "
+        f"orbit of {flight['period_s'] / 60.0:.4g} min; model {population.model_words(found)}. Gravity alone acts "
         f"after the exit.{'' if limit is None else f' The pointing limit is {limit:g} deg.'}"
     )
 

@@ -67,8 +67,10 @@ def run(study: Study, options: Options = Options()) -> dict:
         from tipoff.studies.montecarlo import tails_page as pictures
         from tipoff.studies.render.chart import to_files
 
-        model = population.surrogate(study, asked.model)
-        whole = population.run(study, montecarlo.NAME, model, source)
+        whole = population.run(
+            study, montecarlo.NAME, population.surrogate(study, asked.model), source
+        )
+        model = whole.model
         rows = source.rows(0, options.draws)
         drawn = paired.run(study, model, rows, options.on_finer_mesh)
         both = both_settled(drawn, whole)
