@@ -56,7 +56,8 @@ class Margin(NamedTuple):
 def margin(study: Study, model: str) -> Margin:
     """The largest errors on the held-out conditions of ``make compare`` that single runs judge; on
     others the error has an unknown share of the reference's own. Where there is no such condition,
-    the largest residuals of the calibration."""
+    the largest residuals of the calibration. Runs of compliant contact have the modes that each
+    condition chose."""
     if study.scene.contact is None:
         return Margin(
             dict.fromkeys(("x", "y", "z", "total"), 0.0), "zero, because the scene has no contact"
