@@ -26,6 +26,7 @@ from tipoff.studies.montecarlo import stage as montecarlo
 from tipoff.studies.populations import draws, population
 from tipoff.studies.populations.draws import Kept
 from tipoff.studies.populations.population import Surrogate
+from tipoff.studies.render import chart
 from tipoff.studies.render.document import terminal
 
 pytest.importorskip("zarr")
@@ -97,6 +98,7 @@ class Runs:
 def study(tmp_path, monkeypatch):
     monkeypatch.setattr(Study, "rail_compliance", lambda *_, **__: WALLS)
     monkeypatch.setattr(draws, "announce", lambda *_: None)
+    monkeypatch.setattr(chart, "to_files", lambda *_: [])  # drawing takes longer than the tests
     return Study(REFERENCE, tmp_path, Settings(workers=1))
 
 
