@@ -18,7 +18,7 @@ from tipoff.lowfi.numerics import AUTO, Numerics, promises_of
 from tipoff.mechanics import comoving, ending, outcome, promises
 from tipoff.mechanics import model as models
 from tipoff.mechanics.models import COMPLIANT
-from tipoff.mechanics.rail_compliance import RailCompliance, model_of
+from tipoff.mechanics.rail_compliance import RailCompliance, may_vibrate, model_of
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
@@ -84,7 +84,7 @@ def solved(
             Run(scene, chosen, compliance, watches=modes is not None), progress, spent
         )
 
-    if numerics.modes == AUTO and model_of(scene, compliance) == COMPLIANT and scene.contact:
+    if numerics.modes == AUTO and may_vibrate(scene, compliance):
         run_, choice = modes.choose(made)
         result = run_.trajectory()
         result.numerics["modes_why"] = choice.why

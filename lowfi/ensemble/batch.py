@@ -13,12 +13,12 @@ from tipoff.lowfi.contact.compliant import record as compliance_record
 from tipoff.lowfi.dynamics import cases, integrate, local_error, plan
 from tipoff.lowfi.dynamics.loop import Plan, Sampling
 from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
-from tipoff.lowfi.numerics import Numerics, promises_of
+from tipoff.lowfi.numerics import AUTO, Numerics, promises_of
 from tipoff.lowfi.run import solved
 from tipoff.mechanics import comoving, ending, outcome
 from tipoff.mechanics import model as models
 from tipoff.mechanics.model import Built
-from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.mechanics.rail_compliance import RailCompliance, may_vibrate
 from tipoff.scenes import changes
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import SceneError
@@ -48,7 +48,8 @@ class _Group(NamedTuple):
 
 class Family:
     """The cases of one scene, with every clearance larger by ``widening`` (m). The kernel of its
-    group runs a case; ``lowfi.run`` runs those that the kernel leaves open."""
+    group runs a case; ``lowfi.run`` runs those that the kernel leaves open. All have the modes of the
+    ``numerics``: raises ValueError where the rails may vibrate and no number is chosen."""
 
     def __init__(
         self,
@@ -58,6 +59,8 @@ class Family:
         compliance: RailCompliance | None = None,
         widening: float = 0.0,
     ):
+        if numerics.modes == AUTO and may_vibrate(scene, compliance):
+            raise ValueError("modes: cases of an ensemble need a number, which its pilot chooses")
         self.scene, self.calibration, self.widening = scene, calibration, widening
         self.numerics, self.compliance = numerics, compliance
         calibrated = calibration.apply(scene) if calibration else scene

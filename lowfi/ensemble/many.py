@@ -75,9 +75,10 @@ def run_many(
         Drawn(table) if isinstance(table, Uncertainty) else Listed(table),
         numerics or Numerics(),
     )
-    ensemble, why = settled(Ensemble(scene, source, calibration, numerics, compliance))
-    found = _found(ensemble, chosen)
-    return found.assign_attrs(modes=ensemble.numerics.modes, **({"modes_why": why} if why else {}))
+    asked = Ensemble(scene, source, calibration, numerics, compliance)
+    ensemble = settled(asked, chosen.store)
+    why = {"modes_why": ensemble.modes_why} if ensemble.modes_why else {}
+    return _found(ensemble, chosen).assign_attrs(modes=ensemble.numerics.modes, **why)
 
 
 def _found(ensemble: Ensemble, chosen: Execution) -> "xarray.Dataset":

@@ -3,41 +3,59 @@
 ``PILOT`` cases, evenly spaced, are run as single runs that choose their own number
 (``lowfi.modes``). The ensemble takes the fewest modes that are enough for all but ``_LEFT_OUT`` of
 them, so a few chaotic cases do not make all cases expensive. All cases then run the same equations,
-and each can be run again by itself with this number.
+and each can be run again by itself with this number. A store keeps the number with its reason, so that
+an ensemble with a store has one pilot.
 """
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
 from tipoff.lowfi import modes
+from tipoff.lowfi.ensemble import store as stores
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.numerics import AUTO
 from tipoff.lowfi.run import solved
-from tipoff.mechanics.models import COMPLIANT
-from tipoff.mechanics.rail_compliance import model_of
+from tipoff.mechanics.rail_compliance import may_vibrate
 from tipoff.scenes.faults import SceneError
 
 PILOT = 16  # cases
 _LEFT_OUT = 0.125  # of the pilot cases: the largest numbers
 
 
-def settled(ensemble: Ensemble) -> tuple[Ensemble, str]:
-    """``ensemble`` with a number of modes, and one line on why; the line is empty where the number
-    was given or the model has no modes."""
-    numerics = ensemble.numerics
-    if numerics.modes != AUTO:
-        return ensemble, ""
-    if ensemble.scene.contact is None or model_of(ensemble.scene, ensemble.compliance) != COMPLIANT:
-        return ensemble._replace(numerics=replace(numerics, modes=0)), ""
+def settled(ensemble: Ensemble, store: str | Path | None = None) -> Ensemble:
+    """``ensemble`` with a number of modes, and the reason as its ``modes_why``; that is empty where the
+    number was given or the model has no modes. No case is run where the ``store`` at this path is of
+    the same ensemble and keeps the number."""
+    if ensemble.numerics.modes != AUTO:
+        return ensemble
+    if not may_vibrate(ensemble.scene, ensemble.compliance):
+        return _with(ensemble, 0, "")
+    if store is not None and (found := _kept(ensemble, Path(store))) is not None:
+        return found
     chosen = sorted(_chosen(ensemble))
     count = chosen[int((1.0 - _LEFT_OUT) * (len(chosen) - 1))] if chosen else 0
     above = sum(number > count for number in chosen)
     why = (
-        f"{count or 'none'}: enough for {len(chosen) - above} of {len(chosen)} cases that chose for "
-        f"themselves, whose rates change by less than {np.degrees(modes.THRESHOLD):g} deg/s"
+        f"{count or 'none'}: enough for {len(chosen) - above} of {len(chosen)} pilot cases; more would "
+        f"move their settled rates by less than {np.degrees(modes.THRESHOLD):g} deg/s"
     )
-    return ensemble._replace(numerics=replace(numerics, modes=count)), why
+    return _with(ensemble, count, why)
+
+
+def _with(ensemble: Ensemble, count: int, why: str) -> Ensemble:
+    return ensemble._replace(numerics=replace(ensemble.numerics, modes=count), modes_why=why)
+
+
+def _kept(ensemble: Ensemble, path: Path) -> Ensemble | None:
+    """The ensemble with the number that an earlier pilot chose for the store at ``path``; None without
+    such a store."""
+    there = stores.described(path)
+    if there is None or not there.get("modes_why"):
+        return None
+    found = _with(ensemble, there["identity"]["numerics"]["modes"], there["modes_why"])
+    return found if stores.plain(found.identity()) == there["identity"] else None
 
 
 def _chosen(ensemble: Ensemble) -> list[int]:

@@ -29,6 +29,7 @@ class Ensemble(NamedTuple):
     numerics: Numerics
     compliance: RailCompliance | None = None  # None for contact springs on rigid walls
     widening: float = 0.0  # m, by which every clearance of a case is larger
+    modes_why: str = ""  # reason for the number of modes, where a pilot chose it
 
     def family(self) -> Family:
         """The Family that runs its cases."""
@@ -62,7 +63,8 @@ class Ensemble(NamedTuple):
             self.source.asked,
             self.source.keys,
             self.identity(),
-            {"scene": self.scene.resolved(), "rerun": rerun},
+            {"scene": self.scene.resolved(), "rerun": rerun}
+            | ({"modes_why": self.modes_why} if self.modes_why else {}),
         )
 
     def case(self, number: int) -> tuple[Mapping[str, Any], Case]:

@@ -75,7 +75,7 @@ class Store:
         self, path: str | Path, asked: int, names: Sequence[str], identity: dict, attributes: dict
     ):
         self.path, self.asked, self.names = Path(path), asked, list(names)
-        self.ensemble = content_hash(json.loads(json.dumps(identity)))
+        self.ensemble = content_hash(plain(identity))
         attributes = with_digest({"identity": identity, **attributes})
         is_new = not self.path.exists() or (self.path.is_dir() and not any(self.path.iterdir()))
         with self._explained():
@@ -121,17 +121,15 @@ class Store:
     def _require(self, identity: dict) -> None:
         """Raises StoreError unless this is a store of the ensemble of this ``identity``. Where its
         description is damaged, its chunks identify it."""
-        described, expected = _attributes(self.path), json.loads(json.dumps(identity))
-        if described is None:
+        there, expected = described(self.path), plain(identity)
+        if there is None:
             if not any(self._belongs(mark) for mark in (self.path / "done").glob("*.json")):
                 raise StoreError(
                     f"{self.path} is no store of an ensemble, or its cases.zarr/zarr.json is "
                     f"damaged; "
                     "give another --store, or remove it"
                 )
-        elif other := [
-            name for name in expected if described["identity"].get(name) != expected[name]
-        ]:
+        elif other := [name for name in expected if there["identity"].get(name) != expected[name]]:
             raise StoreError(
                 f"{self.path} holds another ensemble: {', '.join(other)} differ; "
                 "give another --store, or remove it"
@@ -334,7 +332,7 @@ class Store:
         return Columns(*map(self.column, Columns._fields)), messages
 
 
-def _attributes(path: Path) -> dict | None:
+def described(path: Path) -> dict | None:
     """Attributes of the store at ``path``; None where there are none, or they do not fit their
     digest."""
     try:
@@ -342,6 +340,11 @@ def _attributes(path: Path) -> dict | None:
         return found if fits_digest(found) else None
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
+
+
+def plain(identity: dict) -> dict:
+    """An identity as a file has it: tuples are lists."""
+    return json.loads(json.dumps(identity))
 
 
 def _alike(there: bytes, new: bytes) -> bool:

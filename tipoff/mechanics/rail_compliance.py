@@ -359,6 +359,11 @@ def model_of(scene: Scene, compliance: RailCompliance | None) -> str:
     return COMPLIANT if flexible or scene.contact is None else SPRINGS
 
 
+def may_vibrate(scene: Scene, compliance: RailCompliance | None) -> bool:
+    """Whether the rails of ``scene`` may have modes: on compliant contact alone."""
+    return scene.contact is not None and model_of(scene, compliance) == COMPLIANT
+
+
 def require_modes(source: str, compliance: RailCompliance | None, modes: int) -> None:
     """Raises SceneError, naming ``source``, where ``compliance`` has fewer ``modes``."""
     if compliance is not None and modes > (most := compliance.frequency.shape[1]):

@@ -20,7 +20,7 @@ from tipoff.studies.montecarlo import page as pictures
 from tipoff.studies.montecarlo import stage as montecarlo
 from tipoff.studies.montecarlo.stage import Options
 from tipoff.studies.populations import answers, population, spread
-from tipoff.studies.populations.population import Population
+from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render import table as tables
 from tipoff.studies.render.document import terminal
 
@@ -91,7 +91,9 @@ def counted(cases, lost):
             for name in columns.Columns._fields
         ]
     )
-    return Population({}, each, "store", {"refused": 0})
+    return Population(
+        {}, each, "store", {"refused": 0}, Surrogate(free_flight.scene(), None, None, 0)
+    )
 
 
 def test_a_part_of_the_cases_is_their_first_whether_they_settled_or_not():
@@ -140,14 +142,9 @@ def test_cases_that_do_not_settle_elsewhere_are_reported_and_stop_nothing(study,
     monkeypatch.setattr(population, "surrogate", lambda *_: None)
     touching = Study(load("reference"), study.folder, study.settings)
     # no springs calibrated
-    assert (
-        montecarlo.compared(touching, Options(cases=120), "compliant", counted(120, slice(0, 9)))
-        is None
-    )
+    assert montecarlo.compared(touching, Options(cases=120), counted(120, slice(0, 9))) is None
     monkeypatch.setattr(montecarlo.calibrate, "stored", lambda _: {"key": "k"})
-    models = montecarlo.compared(
-        touching, Options(cases=120), "compliant", counted(120, slice(0, 9))
-    )
+    models = montecarlo.compared(touching, Options(cases=120), counted(120, slice(0, 9)))
     assert models["both_settled"] == 0 and models["quantities"] == []
     both = found | {"models": models}
     assert "No case of 120 settled in both models" in html(pictures.draw(both))

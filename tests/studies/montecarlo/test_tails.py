@@ -108,12 +108,12 @@ def test_runs_and_time_are_announced_before(study, found, capsys):
     draws.announce(study, [*wanted, *finer])
     said = " ".join(capsys.readouterr().err.split())
     assert "2 of 2 runs of the reference on elements of 16 mm are to be made" in said
-    assert "1 of 1 runs of the reference on elements of 8 mm" in said
+    assert "1 of 1 run of the reference on elements of 8 mm is to be made" in said
     assert "on one core" in said and "GB for each of 1 at once" in said
 
 
 def nominal(study) -> Surrogate:
-    return Surrogate(study.scene, None, None)
+    return Surrogate(study.scene, None, None, 0)
 
 
 @pytest.mark.parametrize("reading", [Reading(), Reading(initial=True, interface=True)])
@@ -181,7 +181,9 @@ def test_a_biased_surrogate_is_corrected_and_a_case_that_does_not_settle_is_abov
     reference = truth[:50] + random.normal(0.0, 0.02, (50, 3))
     reference[7] = np.nan
     both = drawn(reference, surrogate[:50], np.ones(50))
-    whole = Population({}, results(surrogate), "store", {})
+    whole = Population(
+        {}, results(surrogate), "store", {}, Surrogate(free_flight.scene(), None, None, 0)
+    )
     rows = {row["statistic"]: row for row in paired_statistics.of(answers.RATES[1], both, whole)}
     assert rows["mean"]["value"] == pytest.approx(truth[:, 1].mean(), abs=0.02)
     assert rows["mean"]["surrogate"] == pytest.approx(truth[:, 1].mean() * 1.2 + 0.5)

@@ -145,7 +145,7 @@ def test_tables_of_warm_rails_have_the_walls_of_the_model(tmp_path, monkeypatch)
         found = columns.Columns(
             *[rates if name in columns.VECTORS else rates[:, 0] for name in columns.Columns._fields]
         )
-        return Population({}, found, "store", {})
+        return Population({}, found, "store", {}, model)
 
     monkeypatch.setattr(population, "run", run)
     study = Study(

@@ -110,12 +110,19 @@ class Surrogate:
 
     def piece(self, tolerance: float) -> Callable:
         """A call that integrates and evaluates every case; set-up is done before."""
-        from tipoff.lowfi.ensemble import batch
+        from tipoff.lowfi.ensemble import pilot
+        from tipoff.lowfi.ensemble.request import Ensemble
+        from tipoff.lowfi.ensemble.rows import Listed
 
         population = self.population
-        (job,) = batch.Family(
-            population.base, None, self._numerics(tolerance), population.compliance
-        ).kernels(population.rows)
+        asked = Ensemble(
+            population.base,
+            Listed(population.rows),
+            None,
+            self._numerics(tolerance),
+            population.compliance,
+        )
+        (job,) = pilot.settled(asked).family().kernels(population.rows)
         return job
 
     def whole(self, tolerance: float) -> Callable:

@@ -28,6 +28,7 @@ from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study
+from tipoff.studies.core.words import counted
 
 PATIENCE = 1.0  # s
 # Numba names its settings while it loads, where no type checker sees them.
@@ -96,7 +97,7 @@ def words(missing: int, together: int, reference: tuple[float, str] | None, afte
     source, and the work ``after`` them."""
     if not missing:
         return f"no reference run to make; {after}"
-    head = f"{missing} reference run{'s' if missing > 1 else ''} to make" + (
+    head = f"{counted(missing, 'reference run')} to make" + (
         f", {together} at a time" if together > 1 else ""
     )
     if reference is None:

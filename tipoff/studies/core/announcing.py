@@ -7,6 +7,7 @@ from tipoff.highfi.statics import assembly
 from tipoff.studies.core.progress import say
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study
+from tipoff.studies.core.words import counted
 
 
 def announce(study: Study, runs: Sequence[Run]) -> None:
@@ -24,9 +25,10 @@ def announce(study: Study, runs: Sequence[Run]) -> None:
         shapes = len(assembly.shape_classes(mesh)[1])
         memory = memory_estimate.of_mesh(elements, nodes, shapes)
         _, seconds = step_cost.run_time(mesh, missing[0].scene)
+        verb = "is" if len(missing) == 1 else "are"
         say(
-            f"  {len(missing)} of {len(wanted)} runs of the reference on elements of "
-            f"{1e3 * size:g} mm are to be made: {elements:,} elements, about "
+            f"  {len(missing)} of {counted(len(wanted), 'run')} of the reference on elements of "
+            f"{1e3 * size:g} mm {verb} to be made: {elements:,} elements, about "
             f"{step_cost.in_words(len(missing) * seconds)} on one core, "
             f"{memory_estimate.in_words(memory)} for each of {study.settings.workers} at once; an "
             "interrupted study goes on from the finished runs"

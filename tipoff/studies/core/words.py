@@ -1,4 +1,4 @@
-"""Words that all commands share: the name of a model, and the units of results."""
+"""Words that all commands share: the name of a model, counts of things, and the units of results."""
 
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
@@ -19,3 +19,8 @@ def model(scene: Scene, calibrated: bool, compliance: RailCompliance | None) -> 
     if compliance is not None and compliance.flexibility is not None:
         return f"{COMPLIANT}, calibrated" if calibrated else COMPLIANT
     return f"{SPRINGS}, calibrated" if calibrated else f"{SPRINGS}, with the scene's constants"
+
+
+def counted(number: int, noun: str, plural: str | None = None) -> str:
+    """``number`` with ``noun``, in the ``plural`` (None: with an s) unless it is one."""
+    return f"{number:,} {noun if number == 1 else plural or noun + 's'}"

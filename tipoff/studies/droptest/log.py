@@ -16,6 +16,7 @@ import numpy as np
 from tipoff.scenes.csv_file import listed, numbers, places
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.units import to_si
+from tipoff.studies.core.words import counted
 from tipoff.studies.droptest import sheet as sheets
 from tipoff.studies.droptest.channel_class import SAMPLES_PER_CLASS
 from tipoff.studies.droptest.sheet import Sheet
@@ -80,7 +81,7 @@ def _table(path: Path, wanted: list[str]) -> dict[str, np.ndarray]:
     if faults:
         raise SceneError(faults)
     if len(rows) - 1 < _FEWEST:
-        given = f"{len(rows) - 1} samples"
+        given = counted(len(rows) - 1, "sample")
         raise SceneError([Fault(str(path), "file", given, f"at least {_FEWEST}")])
     return found
 
@@ -93,14 +94,14 @@ def _even(sheet: Sheet, source: str, values: dict[str, np.ndarray]) -> Log:
                 Fault(
                     source,
                     "time",
-                    f"{(~np.isfinite(time)).sum()} samples without a time",
+                    f"{counted((~np.isfinite(time)).sum(), 'sample')} without a time",
                     "a time for every sample",
                 )
             ]
         )
     steps = np.diff(time)
     if (steps <= 0.0).any():
-        given = f"{(steps <= 0.0).sum()} samples not later than the one before"
+        given = f"{counted((steps <= 0.0).sum(), 'sample')} not later than the one before"
         raise SceneError([Fault(source, "time", given, "times in increasing order")])
     interval = float(np.median(steps))
     if not (time[-1] - time[0]) <= _MOST_MISSING * time.size * interval:
@@ -159,7 +160,7 @@ def _bridged(
     long = [gap for gap in gaps if gap[1] - gap[0] > _BRIDGED]
     if short:
         notes.append(
-            f"{name}: {len(short)} gaps of one or two samples bridged by a straight line, the "
+            f"{name}: {counted(len(short), 'gap')} of one or two samples bridged by a straight line, the "
             f"first at "
             f"{grid[short[0][0]]:.6g} s"
         )
@@ -167,7 +168,7 @@ def _bridged(
     for begin, end in long:
         gone[begin:end] = True
         notes.append(
-            f"{name}: {end - begin} samples missing from {grid[begin]:.6g} s on: left out of every "
+            f"{name}: {counted(end - begin, 'sample')} missing from {grid[begin]:.6g} s on: left out of every "
             f"window"
         )
     if not good.any():
@@ -209,7 +210,7 @@ def _marked(sheet: Sheet, filled: dict, doubtful: np.ndarray, notes: list[str]) 
     clipped = np.zeros(doubtful.size, dtype=bool)
     if at_end.any():
         notes.append(
-            f"rate: {at_end.sum()} samples clipped at the range of "
+            f"rate: {counted(at_end.sum(), 'sample')} clipped at the range of "
             f"{np.degrees(sheet.gyro.range):.4g} deg/s: left out of "
             "every window"
         )
@@ -219,7 +220,7 @@ def _marked(sheet: Sheet, filled: dict, doubtful: np.ndarray, notes: list[str]) 
         clipped = (np.abs(force) >= largest * (1.0 - 1e-9)).any(axis=1)
         if clipped.any():
             notes.append(
-                f"acceleration: {clipped.sum()} samples clipped at the range of {largest:.4g} m/s2"
+                f"acceleration: {counted(clipped.sum(), 'sample')} clipped at the range of {largest:.4g} m/s2"
             )
     return Log(filled["time"], rate, force, temperature, doubtful | at_end, clipped, notes)
 

@@ -67,7 +67,7 @@ def run(study: Study, options: Options = Options()) -> dict:
         found = result(study, drops, cases, drawn.uncertainty.sampling == "random")
         found |= {
             "request": STAGE.plain(options),
-            **population.answering(study, model, options.condition),
+            **population.answering(study, cases.model, options.condition),
             "varied": drawn.uncertainty.resolved(),
         }
         data = study.path(f"{NAME}.nc")

@@ -1,5 +1,6 @@
 """An ensemble for the terminal: quantiles with bounds, and the distributions of the inputs."""
 
+from tipoff.studies.core.words import counted
 from tipoff.studies.ensemble.sensitivity import CAUSES
 from tipoff.studies.render.document import Bullets, Part
 from tipoff.studies.render.table import Table, estimate, percent
@@ -24,7 +25,7 @@ def summary(found: dict) -> list[Part]:
         for item in found["failures"]
     ]
     run = [
-        f"{found['scene']}, model {found['model']}: {counts['asked']:,} cases = {counts['ok']:,} "
+        f"{found['scene']}, model {found['model']}: {counted(counts['asked'], 'case')} = {counts['ok']:,} "
         f"ok + {counts['refused']:,} refused + {counts['failed']:,} failed; {found['settled']:,} "
         "left the rail and settled",
         f"agreement: {found['agreement']}",
@@ -48,7 +49,7 @@ def _time(cost: dict) -> str:
         if "cpu_ms_per_case" in cost
         else ""
     )
-    return f"{cost['wall_s']:.3g} s for {cost['cases']:,} cases{processor}"
+    return f"{cost['wall_s']:.3g} s for {counted(cost['cases'], 'case')}{processor}"
 
 
 def _sensitivity(found: dict) -> list[Part]:
@@ -69,7 +70,7 @@ def _sensitivity(found: dict) -> list[Part]:
     heads = ["change by", "median (deg/s)", "95 % below", "largest", f"above {limit}", "unsettled"]
     took = [f"{CAUSES[cause]}: {_time(cost)}" for cause, cost in found["run"].items()]
     return [
-        f"sensitive: {found['sensitive']:,} cases. A settled rate moves by more than {limit}, or the "
+        f"sensitive: {counted(found['sensitive'], 'case')}. A settled rate moves by more than {limit}, or the "
         "disturbed run does not settle.",
         Table(heads, rows),
         f"run time of the sensitivity, beside the above: {'; '.join(took)}",

@@ -26,6 +26,7 @@ from tipoff.studies.core import kernel_marks, machine, models, words
 from tipoff.studies.core.progress import Board, say
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.core.words import counted
 from tipoff.studies.ensemble import sensitivity, summary
 
 
@@ -46,10 +47,11 @@ class Options:
     sensitivity: bool = False
 
 
-def request(study: Study, options: Options) -> Ensemble:
-    """The ensemble of the ``options``. Raises SceneError for bad input, before any rail compliance
-    is computed, and StudyError where no model is named and the agreement table rejects the
-    default."""
+def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
+    """The ensemble of the ``options``, and the folder of its store: the given one, or by default a
+    separate one for every ensemble. The number of modes is that of the store, or pilot cases choose
+    it. Raises SceneError for bad input, before any rail compliance is computed, and StudyError where
+    no model is named and the agreement table rejects the default."""
     fitted = constants(options.model.calibration, options.model.model, study.scene.name)
     changed = {
         name: value
@@ -82,24 +84,26 @@ def request(study: Study, options: Options) -> Ensemble:
     scene = study.scene
     if fitted is not None and not springs:  # before a case, which may vary a constant
         scene, fitted = fitted.split(scene)
+    asked = Ensemble(scene, source, fitted, numerics, found)
+    path = options.store or study.path(f"ensemble-{asked.key[:8]}")
     like = Run("lowfi", "ensemble", scene, numerics, fitted, found)
     with kernel_marks.first_use(like, many=True):
-        ensemble, why = pilot.settled(Ensemble(scene, source, fitted, numerics, found))
-    if why:
-        say(f"modes of the rails: {why}")
-    return ensemble
+        ensemble = pilot.settled(asked, path)
+    if ensemble.modes_why:
+        say(f"modes of each rail {ensemble.modes_why}")
+    return ensemble, path
 
 
 def run(study: Study, options: Options) -> dict:
     """Run the cases that the store lacks, then their twins where the sensitivity is asked for.
     Returns the statistics, also written as ``ensemble.json``. Raises StudyError when the store
     fails."""
-    ensemble = request(study, options)
+    ensemble, path = request(study, options)
     try:
-        store = ensemble.store(path := _path(study, options, ensemble))
+        store = ensemble.store(path)
         ensemble.case(0)  # compiles, or loads the kernels from disk, before any clock runs
         with Board("ensemble", 3 if options.sensitivity else 1) as board:
-            cost = _filled(ensemble, store, f"{store.asked:,} cases", options, board)
+            cost = _filled(ensemble, store, counted(store.asked, "case"), options, board)
             told = _sensitivity(study, ensemble, store, options, board)
     except StoreError as fault:
         raise StudyError(str(fault)) from fault
@@ -150,7 +154,7 @@ def _sensitivity(
     disturbed, costs = {}, {}
     for cause, twin in twins.of(ensemble).items():
         disturbed[cause] = twins.opened(twin, cause, store)
-        label = f"{store.asked:,} cases, {sensitivity.CAUSES[cause]}"
+        label = f"{counted(store.asked, 'case')}, {sensitivity.CAUSES[cause]}"
         costs[cause] = _filled(twin, disturbed[cause], label, options, board)
         twins.add(store, cause, twin, disturbed[cause])
     found = sensitivity.of(store, disturbed, _limit(study))
@@ -172,15 +176,10 @@ def _agreement(study: Study, options: Options) -> str:
     )
 
 
-def _path(study: Study, options: Options, ensemble: Ensemble) -> Path:
-    """The given store, or by default a separate one for every ensemble."""
-    return options.store or study.path(f"ensemble-{ensemble.key[:8]}")
-
-
 def case(study: Study, options: Options, number: int) -> dict:
     """One case run alone, and whether its store has the same bits (None: no stored result). Raises
     SceneError for a case that does not exist, and StudyError when the store fails."""
-    ensemble = request(study, options)
+    ensemble, path = request(study, options)
     if not 0 <= number < ensemble.source.asked:
         raise SceneError(
             [Fault("--case", "number", str(number), f"0 to {ensemble.source.asked - 1}")]
@@ -200,7 +199,6 @@ def case(study: Study, options: Options, number: int) -> dict:
             "limit_deg_s": _limit(study),
             "by": sensitivity.of_case(ensemble, number, found),
         }
-    path = _path(study, options, ensemble)
     if path.exists():
         try:
             store = ensemble.store(path)

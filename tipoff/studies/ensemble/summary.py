@@ -49,6 +49,7 @@ def of(ensemble: Ensemble, store: Store, calibrated: bool) -> dict:
         "cases": ensemble.source.identity,
         "provenance": _provenance(ensemble.source),
         "numerics": ensemble.numerics.as_dict(),
+        "modes_why": ensemble.modes_why,
         "failures": failures[:_SHOWN],
         "digest": store.digest(),
         "failed": []

@@ -4,8 +4,9 @@ tables of conditions and cases."""
 import math
 from collections.abc import Callable, Sequence
 
+from tipoff.studies.core.words import counted
 from tipoff.studies.flight.summary import WORDS
-from tipoff.studies.populations import answers
+from tipoff.studies.populations import answers, population
 from tipoff.studies.render.chart import (
     AMBER,
     GREY,
@@ -115,7 +116,7 @@ def _cases(many: dict) -> Table:
     shares = [row["share"] for row in next(iter(judged.values()), [])]
     counts = many["counts"]
     notes = (
-        f"{counts['asked']:,} cases: {counts['ok']:,} ok, {counts['refused']:,} refused, "
+        f"{counted(counts['asked'], 'case')}: {counts['ok']:,} ok, {counts['refused']:,} refused, "
         f"{counts['failed']:,} failed; {many['settled']:,} flown.{_touching(many)}",
         "Values below which that share of the cases lies, in brackets the bounds at "
         f"{many['confidence']:.0%} confidence ({many['bounds']}).",
@@ -280,7 +281,7 @@ def _setup(found: dict) -> str:
     limit = flight["pointing_limit_deg"]
     return (
         f"Target {flight['range_m']:g} m along the launch axis, at rest relative to a circular "
-        f"orbit of {flight['period_s'] / 60.0:.4g} min; model {found['model']}. Gravity alone acts "
+        f"orbit of {flight['period_s'] / 60.0:.4g} min; model {population.model_words(found)}. Gravity alone acts "
         f"after the exit.{'' if limit is None else f' The pointing limit is {limit:g} deg.'}"
     )
 
@@ -292,8 +293,8 @@ def remarks(found: dict) -> list[str]:
         f"No clearance is computed: {flight['no_clearance']}.": flight["no_clearance"],
         "The rails come from a file: the clearance includes only those that `flight.envelope` "
         "lists.": flight["rails_listed"],
-        f"{left:,} cases do not show whether they reach the pointing limit; they are not "
-        "counted.": left,
+        f"The flights of {counted(left, 'case')} end before it is known whether they reach the "
+        "pointing limit; they are not counted.": left,
     }
     return [line for line, holds in lines.items() if holds]
 

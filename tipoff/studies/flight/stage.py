@@ -18,8 +18,10 @@ from tipoff.scenes.variation import Variations
 from tipoff.studies.core.progress import Board
 from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.core.words import counted
 from tipoff.studies.flight import bodies, curves, flown, summary
 from tipoff.studies.populations import population
+from tipoff.studies.populations.population import Population
 
 NAME = "flight"
 
@@ -56,10 +58,11 @@ def run(study: Study, options: Options = Options()) -> dict:
         from tipoff.studies.render import chart
 
         rows, shapes, single, exits = _conditions(study, options)
-        cases, many, left = _cases(study, options, drawn)
+        whole = population.run(study, NAME, population.surrogate(study, options.model), drawn)
+        cases, many, left = _cases(study, whole, drawn)
         found = {
             "asked": STAGE.plain(options),
-            **population.answering(study, population.surrogate(study, options.model)),
+            **population.answering(study, whole.model),
             "flight": summary.orbit(study.scene),
             "conditions": rows,
             "curves": shapes,
@@ -164,20 +167,18 @@ def _conditions(
     )
 
 
-def _cases(study: Study, options: Options, drawn: Drawn) -> tuple[dict, flown.Flown, Columns]:
-    """Distributions over the cases of ``drawn``, flights of those that settled, and their exit
+def _cases(study: Study, cases: Population, drawn: Drawn) -> tuple[dict, flown.Flown, Columns]:
+    """Distributions over the ``cases`` of ``drawn``, flights of those that settled, and their exit
     states."""
-    model = population.surrogate(study, options.model)
-    cases = population.run(study, NAME, model, drawn)
     which = np.flatnonzero(cases.settled)
     if not len(which):
         raise StudyError(
             f"none of {drawn.asked:,} cases left the rail and settled; store {cases.store}"
         )
-    variations, rows = Variations(model.scene), drawn.rows(0, drawn.asked)
+    variations, rows = Variations(cases.model.scene), drawn.rows(0, drawn.asked)
     parted = bodies.bodies(variations.of(rows[number]) for number in which)
     with Board(NAME, 1) as board:
-        label = f"{len(which):,} flights"
+        label = counted(len(which), "flight")
         left = Columns(*(part[which] for part in cases.results))
         many = flown.fly(
             _flight(study.scene).record(), parted, bodies.start(left), board.callback(label)

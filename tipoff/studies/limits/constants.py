@@ -10,6 +10,7 @@ from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.core.study import Study, read
+from tipoff.studies.core.words import counted
 from tipoff.studies.populations.derived import law
 
 _TWO_SIDED_95 = 1.959963984540054  # standard deviations
@@ -55,7 +56,8 @@ class Margin(NamedTuple):
 def margin(study: Study, model: str) -> Margin:
     """The largest errors on the held-out conditions of ``make compare`` that single runs judge; on
     others the error has an unknown share of the reference's own. Where there is no such condition,
-    the largest residuals of the calibration."""
+    the largest residuals of the calibration. Runs of compliant contact have the modes that each
+    condition chose."""
     if study.scene.contact is None:
         return Margin(
             dict.fromkeys(("x", "y", "z", "total"), 0.0), "zero, because the scene has no contact"
@@ -72,8 +74,8 @@ def margin(study: Study, model: str) -> Margin:
         largest["total"] = max(sum(part**2 for part in error) ** 0.5 for error in errors)
         return Margin(
             largest,
-            f"largest of {len(errors)} held-out conditions; no single run judges "
-            f"{len(rows) - len(judged)} others, {len(judged) - len(errors)} did not settle",
+            f"largest of {counted(len(errors), 'held-out condition')}; no single run judges "
+            f"{counted(len(rows) - len(judged), 'other')}, {len(judged) - len(errors)} did not settle",
         )
     left = [
         row["settled_rate_error_deg_s"]
@@ -84,6 +86,6 @@ def margin(study: Study, model: str) -> Margin:
     worst = max(left)
     return Margin(
         {"x": worst, "y": worst, "z": worst, "total": 3**0.5 * worst},
-        f"largest of the {len(left)} fitted conditions; no held-out condition is measured (make "
+        f"largest of {counted(len(left), 'fitted condition')}; no held-out condition is measured (make "
         "compare)",
     )

@@ -4,6 +4,7 @@ share of cases above a limit by tolerance, and a map of two tolerances."""
 from collections.abc import Callable
 from typing import Any
 
+from tipoff.studies.core.words import counted
 from tipoff.studies.limits import certificate_page
 from tipoff.studies.limits.search import ALL, FOUND, LOST, NONE, SMALL
 from tipoff.studies.limits.within import TOGETHER
@@ -109,7 +110,7 @@ def _uncertain(found: dict) -> str:
     """The source of both uncertainties."""
     constants, margin = found["constants"], found["margin"]
     drawn = (
-        f"the search is repeated for {constants['draws']} draws of {', '.join(constants['drawn'])} "
+        f"the search is repeated for {counted(constants['draws'], 'draw')} of {', '.join(constants['drawn'])} "
         "from their 95 % intervals"
         if constants["draws"]
         else "not drawn, since none is fitted or has an interval"

@@ -7,6 +7,9 @@ for each factor alone, with the others nominal; for a multiple of a whole set; a
 misalignment and mass eccentricity. Two uncertainties are separate: for the constants of the
 surrogate, the search is repeated for draws from their intervals; for the surrogate itself, its
 measured error reduces every limit.
+
+All searches, and the check by the reference, are of one model with one number of rail modes: that
+which pilot cases within the certified multiple of the whole set choose.
 """
 
 import math
@@ -91,7 +94,7 @@ class Search:
         allowed = exceedance.allowed(cases, options.probability, options.confidence)
         assert allowed is not None  # ``checked`` has refused fewer cases
         self.allowed = allowed
-        overrides, self.drawn = (
+        self.overrides, self.drawn = (
             ([], [])
             if model.calibration is None
             else constants.draws(
@@ -101,11 +104,11 @@ class Search:
                 options.seed,
             )
         )
-        self.others = [self.model.at(item) for item in overrides]
+        self.others: list[Surrogate] = []
         self.report, self.evaluations = report, 0
         # Halvings and refinements of each full search, and about five evaluations of each search
         # that starts near its result.
-        self.expected = (len(self.factors) + 1) * (14 + 5 * (len(self.others) + 2)) + 9 * RAYS
+        self.expected = (len(self.factors) + 1) * (14 + 5 * (len(self.overrides) + 2)) + 9 * RAYS
 
     def all(self) -> dict:
         """The whole result."""
@@ -113,7 +116,12 @@ class Search:
         full[TOGETHER] = {
             name: _REACH * size for name, size in SETS[self.options.tolerances].items()
         }
-        searched = {name: self._search(tolerances) for name, tolerances in full.items()}
+        together = self._choose_modes(full[TOGETHER])
+        self.others = [self.model.at(item) for item in self.overrides]
+        searched = {
+            name: together if name == TOGETHER else self._search(tolerances)
+            for name, tolerances in full.items()
+        }
         rows = [self._row(name, tolerances, searched[name]) for name, tolerances in full.items()]
         shown = {
             "probability": self.options.probability,
@@ -133,6 +141,25 @@ class Search:
             "certificate": self.certified(full[TOGETHER], searched[TOGETHER]),
             "evaluations": self.evaluations,
         }
+
+    def _choose_modes(self, tolerances: dict[str, float]) -> Found:
+        """Give the model its number of rail modes, and return the search of the whole set with it. The
+        number is what pilot cases within the result of that search choose, and the result depends on
+        the number: the search begins without modes, and is made again with more while the pilot needs
+        more."""
+        choosing, self.model = self.model, self.model._replace(modes=0)
+        while True:
+            found = self._search(tolerances)
+            scale = found.fails if found.scale is None else found.scale
+            assert scale is not None  # a search fails somewhere or certifies a scale
+            sizes = {name: scale * size for name, size in tolerances.items()}
+            chosen = within.with_modes(choosing, sizes, self.cases, self.options.seed)
+            if chosen.mode_count > self.model.mode_count:
+                self.model = chosen
+                continue
+            if chosen.mode_count == self.model.mode_count:
+                self.model = chosen  # with the reason from its own result
+            return found
 
     def certified(self, tolerances: dict[str, float], found: Found) -> dict | None:
         """The set of ``tolerances`` at the ``found`` scale, checked by the reference; None where that was

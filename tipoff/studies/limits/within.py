@@ -10,15 +10,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.lowfi.ensemble import columns
-from tipoff.lowfi.ensemble.request import Ensemble
+from tipoff.lowfi.ensemble import columns, pilot
 from tipoff.lowfi.ensemble.threads import PIECE, completed
-from tipoff.lowfi.numerics import Numerics
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.core.study import Study
 from tipoff.studies.limits import results
-from tipoff.studies.populations import answers, population
+from tipoff.studies.populations import answers
 from tipoff.studies.populations.derived import Derived, Numbers, around_zero, friction, law
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.populations.random_factors import ERRORS, pointing
@@ -98,9 +96,16 @@ def _overrides(scene: Scene, tolerances: dict[str, float], drawn: Numbers) -> Nu
     return found
 
 
+def with_modes(model: Surrogate, tolerances: dict[str, float], cases: int, seed: int) -> Surrogate:
+    """``model`` with the number of rail modes that pilot cases within ``tolerances`` (SI) choose."""
+    drawn = source(model.scene, tolerances, cases, seed)
+    return model.with_modes_of(pilot.settled(model.ensemble(drawn)))
+
+
 class Cases:
     """Results of ``model`` within ``tolerances`` (SI) times a scale; each scale is run once and
-    kept in a file."""
+    kept in a file. The model has a number of modes (``with_modes``): one for all scales, or the search
+    would meet jumps."""
 
     def __init__(
         self,
@@ -132,14 +137,7 @@ class Cases:
 
     def _run(self, scale: float) -> np.ndarray:
         drawn = self.source(scale)
-        # one number of modes at every scale, or the search would meet jumps
-        ensemble = Ensemble(
-            self._model.scene,
-            drawn,
-            None,
-            Numerics(relative_tolerance=population.TOLERANCE, modes=0),
-            self._model.compliance,
-        )
+        ensemble = self._model.ensemble(drawn)
         path = self._study.path(f"{self._folder}/{ensemble.key[:16]}.nc")
         if (stored := results.load(path)) is not None:
             return stored

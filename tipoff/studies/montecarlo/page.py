@@ -115,7 +115,8 @@ def _model_error(models: dict | None) -> list[str]:
     """The difference between springs and compliant contact in the rates."""
     if not models:
         return []
-    what = f"springs against compliant contact, the same {models['cases']:,} cases"
+    compliant = population.model_words(models | {"model": "compliant contact"})
+    what = f"springs against {compliant}, the same {models['cases']:,} cases"
     if not models["quantities"]:
         return [f"{what}: no case settled in both models"]
     rates = ", ".join(

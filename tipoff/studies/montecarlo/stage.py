@@ -18,7 +18,7 @@ from tipoff.studies.core.checked import together
 from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.populations import answers, exceedance, population, random_factors, spread
-from tipoff.studies.populations.population import Population, Surrogate
+from tipoff.studies.populations.population import Population
 from tipoff.studies.populations.random_factors import READINGS, Reading
 
 NAME = "montecarlo"
@@ -57,8 +57,7 @@ def run(study: Study, options: Options = Options()) -> dict:
         from tipoff.studies.montecarlo import page as pictures
         from tipoff.studies.render.chart import to_files
 
-        model = population.surrogate(study, options.model)
-        found = population.run(study, NAME, model, source)
+        found = population.run(study, NAME, population.surrogate(study, options.model), source)
         if (settled := int(found.settled.sum())) < _FEWEST:
             raise StudyError(
                 f"{settled or 'no'} case settled; {found.counts['refused']:,} were refused, for "
@@ -68,7 +67,7 @@ def run(study: Study, options: Options = Options()) -> dict:
             "asked": STAGE.plain(options),
             "reading": options.reading.words,
             "store": found.store,
-            **population.answering(study, model),
+            **population.answering(study, found.model),
             "counts": found.counts,
             "settled": settled,
             "confidence": spread.CONFIDENCE,
@@ -80,8 +79,8 @@ def run(study: Study, options: Options = Options()) -> dict:
                 for item in _RATES
                 for row in spread.convergence(item.of(found.results), _CONVERGING)
             ],
-            "readings": _readings(study, options, model, found),
-            "models": compared(study, options, model.name, found),
+            "readings": _readings(study, options, found),
+            "models": compared(study, options, found),
         }
         return made, [
             path
@@ -137,16 +136,17 @@ def _tail(limit: exceedance.Limit, rates: np.ndarray) -> dict:
     }
 
 
-def _readings(study: Study, options: Options, model: Surrogate, found: Population) -> list[dict]:
-    """Each reading with its own seed, compared with the cases of the study; the row of the same
-    reading is the control. Without enough settled cases, ``rates`` and ``distance`` are None."""
+def _readings(study: Study, options: Options, found: Population) -> list[dict]:
+    """Each reading with its own seed and the modes of the study, compared with the cases of the study;
+    the row of the same reading is the control. Without enough settled cases, ``rates`` and ``distance``
+    are None."""
     rows, cases = [], min(_COMPARED, options.cases)
     here = [_settled(item, found, cases) for item in _RATES]
     for place, reading in enumerate(READINGS):
         if reading.needs_contact and study.scene.contact is None:
             continue
         drawn = random_factors.source(study.scene, reading, cases, options.seed + 1 + place)
-        other = population.run(study, f"{NAME}-reading", model, drawn)
+        other = population.run(study, f"{NAME}-reading", found.model, drawn)
         values = [_settled(item, other) for item in _RATES]
         rows.append(
             {
@@ -177,22 +177,17 @@ def _apart(here: list[np.ndarray], values: list[np.ndarray]) -> dict:
     }
 
 
-def compared(study: Study, options: Options, model: str, found: Population) -> dict | None:
+def compared(study: Study, options: Options, found: Population) -> dict | None:
     """The first 1,000 cases with springs and with compliant contact. None without contact, where
     both are the same model, and without a calibration for the scene. ``quantities`` is empty where
-    no case settled in both models."""
+    no case settled in both models. ``modes`` and ``modes_why``: those of the other model."""
     if study.scene.contact is None or calibrate.stored(study) is None:
         return None
     cases = min(PAPER, options.cases)
     drawn = random_factors.source(study.scene, options.reading, cases, options.seed)
-    other = population.run(
-        study,
-        f"{NAME}-other",
-        population.surrogate(study, SPRINGS if model == COMPLIANT else COMPLIANT),
-        drawn,
-    )
+    names = (SPRINGS, COMPLIANT) if found.model.name == SPRINGS else (COMPLIANT, SPRINGS)
+    other = population.run(study, f"{NAME}-other", population.surrogate(study, names[1]), drawn)
     both = found.settled[:cases] & other.settled
-    names = (SPRINGS, COMPLIANT) if model == SPRINGS else (COMPLIANT, SPRINGS)
     rows = []
     for item in answers.ALL if both.any() else ():
         one, two = item.of(found.results)[:cases][both], item.of(other.results)[both]
@@ -218,4 +213,11 @@ def compared(study: Study, options: Options, model: str, found: Population) -> d
         }
         for item in _RATES
     }
-    return {"cases": cases, "both_settled": int(both.sum()), "quantities": rows, "pairs": pairs}
+    return {
+        "cases": cases,
+        "both_settled": int(both.sum()),
+        "modes": other.model.modes,
+        "modes_why": other.model.modes_why,
+        "quantities": rows,
+        "pairs": pairs,
+    }

@@ -14,6 +14,7 @@ from tipoff.studies.agreement import verdicts
 from tipoff.studies.core.checked import together
 from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.core.words import counted
 from tipoff.studies.montecarlo import paired_statistics
 from tipoff.studies.montecarlo import stage as montecarlo
 from tipoff.studies.montecarlo.paired_statistics import RATES, both_settled
@@ -66,14 +67,17 @@ def run(study: Study, options: Options = Options()) -> dict:
         from tipoff.studies.montecarlo import tails_page as pictures
         from tipoff.studies.render.chart import to_files
 
-        model = population.surrogate(study, asked.model)
-        whole = population.run(study, montecarlo.NAME, model, source)
+        whole = population.run(
+            study, montecarlo.NAME, population.surrogate(study, asked.model), source
+        )
+        model = whole.model
         rows = source.rows(0, options.draws)
         drawn = paired.run(study, model, rows, options.on_finer_mesh)
         both = both_settled(drawn, whole)
         if both.sum() < control_variate.FEWEST:
+            settled = counted(int(both.sum()), "draw") if both.any() else "no draw"
             raise StudyError(
-                f"{int(both.sum()) or 'no'} draw of {options.draws} settled in both models; "
+                f"{settled} of {options.draws} settled in both models; "
                 f"{control_variate.FEWEST} are the fewest"
             )
         made = {

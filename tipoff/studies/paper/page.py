@@ -4,6 +4,7 @@ inferred inputs."""
 import numpy as np
 
 from tipoff.studies import published
+from tipoff.studies.core.words import counted
 from tipoff.studies.paper import summary
 from tipoff.studies.populations import answers
 from tipoff.studies.render.chart import (
@@ -291,16 +292,17 @@ def _verdict(found: dict) -> str:
     quiet = [item for item in ends if item["largest_negligible_deg_s"] <= found["negligible_deg_s"]]
     if quiet:
         return (
-            f"{len(quiet)} searches fit the printed rates, their deviations and the negligible "
-            f"rates within {limit:g} deg/s."
+            f"Sets of {counted(len(quiet), 'search', 'searches')} fit the printed rates, their "
+            f"deviations and the negligible rates within {limit:g} deg/s."
         )
     least = min((size for error, size in found["front"] if error <= limit), default=None)
     if least is None:
         return f"No search fits all nine rates within {limit:g} deg/s."
     return (
-        f"{len(ends)} searches fit the nine rates and 54 deviations within {limit:g} deg/s, none "
-        "of them with negligible rates on conditions 1 and 5. Where the nine rates alone are "
-        f"within the limit, the largest rate on conditions 1 and 5 is at least {least:.2g} deg/s."
+        f"Sets of {counted(len(ends), 'search', 'searches')} fit the nine rates and 54 deviations "
+        f"within {limit:g} deg/s, none of them with negligible rates on conditions 1 and 5. Where "
+        f"the nine rates alone are within the limit, the largest rate on conditions 1 and 5 is at "
+        f"least {least:.2g} deg/s."
     )
 
 

@@ -22,6 +22,7 @@ from tipoff.studies.agreement import stage as compare
 from tipoff.studies.core.progress import Board, team
 from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study, StudyError, read
+from tipoff.studies.core.words import counted
 from tipoff.studies.paper import (
     catalogued,
     exits,
@@ -143,7 +144,7 @@ def require(scene: Scene) -> None:
             (
                 len(scene.pads) == len(corners) == 8,
                 "pads",
-                f"{len(scene.pads)} pads",
+                counted(len(scene.pads), "pad"),
                 "eight, one at each corner of the body",
             ),
             (

@@ -3,7 +3,7 @@
 A case has the same overrides of the scene in both models. The reference has the element size of the
 settings where many runs are needed (``Settings.coarse_size``), and half of it for some cases, so that
 the error of the mesh is beside that of the model. The surrogate has the rail compliance of the same
-mesh, and the step of single runs.
+mesh, the rail modes of the population, and the step of single runs.
 """
 
 import statistics
@@ -77,7 +77,8 @@ def run(study: Study, model: Surrogate, rows: Rows, fine: int) -> Draws:
 def requests(
     study: Study, model: Surrogate, rows: Rows, fine: int
 ) -> tuple[list[Run], list[Run], list[Run]]:
-    """The runs of the reference, those on the finer mesh, and those of the surrogate."""
+    """The runs of the reference, those on the finer mesh, and those of the surrogate ``model``, whose
+    modes the population has chosen (ValueError before)."""
     coarse_size, fine_size = study.settings.coarse_size, study.settings.element_size
     labels = [f"{NOMINAL}-draw{number}" for number in range(len(rows))]
     coarse, finer = (
@@ -95,7 +96,7 @@ def requests(
             "lowfi",
             f"{label}-{model.name}",
             model.at(dict(row)).scene,
-            Numerics(),
+            model.numerics(Numerics().relative_tolerance),
             None,
             under,
         )
@@ -110,9 +111,9 @@ def reference(study: Study, label: str, scene: Scene, element_size: float) -> Ru
 
 
 def seconds_per_case(model: Surrogate, rows: Rows) -> float:
-    """Processor seconds that the population takes for a case of the ``rows``, without
-    compilation."""
-    family = Family(model.scene, None, Numerics(relative_tolerance=TOLERANCE), model.compliance)
+    """Processor seconds that a population of the ``model``, modes included, takes for a case of the
+    ``rows``, without compilation."""
+    family = Family(model.scene, None, model.numerics(TOLERANCE), model.compliance)
 
     def once(part: Rows) -> float:
         began = time.process_time()

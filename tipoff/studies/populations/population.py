@@ -4,6 +4,10 @@ results.
 The surrogate is compliant unless springs are named. Springs have the calibrated constants as
 overrides of the scene, so that a case may vary them like any other input. An incomplete store is
 completed, and a complete one is only read.
+
+All cases have one number of rail modes. The pilot cases of the first population of a study choose it
+(``lowfi.ensemble.pilot``), and its store keeps it. The study passes the model of that population on to
+all that it runs beside it, so that two results never differ by modes.
 """
 
 from typing import Any, NamedTuple
@@ -15,7 +19,7 @@ from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.lowfi.ensemble.fill import fill
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.store import StoreError
-from tipoff.lowfi.numerics import Numerics
+from tipoff.lowfi.numerics import AUTO, Numerics
 from tipoff.mechanics.models import SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.scenes.calibration import Calibration
@@ -27,6 +31,7 @@ from tipoff.studies.core.models import require_accepted
 from tipoff.studies.core.progress import Board
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.core.words import counted
 
 TOLERANCE = 1e-2  # relative error of a step: 95 % of reference cases within 0.2 % of their rate
 
@@ -34,11 +39,14 @@ TOLERANCE = 1e-2  # relative error of a step: 95 % of reference cases within 0.2
 class Surrogate(NamedTuple):
     """A scene and its contact: the ``compliance`` of its rails, or the ``calibration`` of its
     springs, with the ``compliance`` of displaced rigid walls where the rails are warm. Both are
-    None without contact."""
+    None without contact. ``modes`` of each rail that vibrate, with the reason ``modes_why``;
+    ``"auto"`` until the pilot cases of a population have chosen."""
 
     scene: Scene
     calibration: Calibration | None
     compliance: RailCompliance | None
+    modes: int | str = AUTO
+    modes_why: str = ""
 
     @property
     def words(self) -> str:
@@ -54,15 +62,39 @@ class Surrogate(NamedTuple):
         """The same on a changed scene."""
         return self._replace(scene=self.scene.replace(overrides))
 
+    def with_modes_of(self, ensemble: Ensemble) -> "Surrogate":
+        """The same with the modes of an ``ensemble``, and their reason."""
+        return self._replace(modes=ensemble.numerics.modes, modes_why=ensemble.modes_why)
+
+    def ensemble(self, source, tolerance: float = TOLERANCE) -> Ensemble:
+        """The cases of ``source`` (``lowfi.ensemble.rows``) on this model."""
+        numerics = Numerics(relative_tolerance=tolerance, modes=self.modes)
+        return Ensemble(
+            self.scene, source, None, numerics, self.compliance, modes_why=self.modes_why
+        )
+
+    @property
+    def mode_count(self) -> int:
+        """The number of modes. Raises ValueError before pilot cases have chosen it."""
+        if not isinstance(self.modes, int):
+            raise ValueError("modes: the population of the study chooses them first")
+        return self.modes
+
+    def numerics(self, tolerance: float) -> Numerics:
+        """Numerics of a run that stands beside a population; ValueError as for ``mode_count``."""
+        return Numerics(relative_tolerance=tolerance, modes=self.mode_count)
+
 
 class Population(NamedTuple):
     """``inputs`` (n,) by dotted key, SI; ``results`` as columns, NaN in cases that did not settle;
-    the folder ``store``; ``counts`` from ``lowfi.ensemble.columns.counts``."""
+    the folder ``store``; ``counts`` from ``lowfi.ensemble.columns.counts``; the ``model`` with the
+    modes of its cases."""
 
     inputs: dict[str, np.ndarray]
     results: Columns
     store: str
     counts: dict[str, int]
+    model: Surrogate
 
     @property
     def settled(self) -> np.ndarray:
@@ -86,29 +118,42 @@ def surrogate(study: Study, model: str | None = None, condition: str | None = No
     return Surrogate(scene, None, study.rail_compliance(scene, judged=False))
 
 
-def answering(study: Study, model: Surrogate, condition: str | None = None) -> dict[str, str]:
-    """The ``model`` and its ``agreement`` with the reference, as text for a result file."""
+def answering(study: Study, model: Surrogate, condition: str | None = None) -> dict[str, Any]:
+    """The ``model``, the number of its ``modes`` and why (empty where it can have none), and its
+    ``agreement`` with the reference as text, for a result file."""
     return {
         "model": model.words,
+        "modes": model.modes,
+        "modes_why": model.modes_why,
         "agreement": kept.words(study, model.name, condition, model.calibration is not None),
     }
 
 
+def model_words(found: dict) -> str:
+    """The model of a result that has the items of ``answering``, with its modes and why."""
+    if not found["modes_why"]:
+        return found["model"]
+    number = counted(found["modes"], "mode") if found["modes"] else "no modes"
+    _, _, reason = found["modes_why"].partition(": ")
+    return f"{found['model']} with {number} of each rail ({reason})"
+
+
 def model_line(found: dict) -> str:
     """One line about the model of a result that has the items of ``answering``."""
-    return f"model {found['model']}; agreement: {found['agreement']}"
+    return f"model {model_words(found)}; agreement: {found['agreement']}"
 
 
 def run(
     study: Study, name: str, model: Surrogate, source, tolerance: float = TOLERANCE
 ) -> Population:
     """Results of every case of ``source`` (``lowfi.ensemble.rows``), in a store named after
-    ``name``. Raises StudyError when the store fails."""
-    numerics = Numerics(relative_tolerance=tolerance)
-    like = Run("lowfi", name, model.scene, numerics, None, model.compliance)
+    ``name``. Where ``model`` has no number of modes yet, pilot cases choose it unless the store has
+    it. Raises StudyError when the store fails."""
+    asked = model.ensemble(source, tolerance)
+    path = study.path(f"{name}-{asked.key[:8]}")
+    like = Run("lowfi", name, model.scene, asked.numerics, None, model.compliance)
     with kernel_marks.first_use(like, many=True):
-        ensemble, _ = pilot.settled(Ensemble(model.scene, source, None, numerics, model.compliance))
-    path = study.path(f"{name}-{ensemble.key[:8]}")
+        ensemble = pilot.settled(asked, path)
     try:
         store = ensemble.store(path)
         label = f"{name}, {store.asked:,} cases"
@@ -124,4 +169,10 @@ def run(
         by_key = dict(zip(store.names, inputs.T))
     except StoreError as fault:
         raise StudyError(str(fault)) from fault
-    return Population(by_key, results, study.relative(path), columns.counts(results.status))
+    return Population(
+        by_key,
+        results,
+        study.relative(path),
+        columns.counts(results.status),
+        model.with_modes_of(ensemble),
+    )

@@ -15,6 +15,7 @@ import numpy as np
 from tipoff.studies.core.progress import Board
 from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study, StudyError, require_success
+from tipoff.studies.core.words import counted
 
 if TYPE_CHECKING:
     from tipoff.calibration.recovery import Draw
@@ -67,7 +68,7 @@ def _drawn(study: Study, options: Options) -> dict:
     compliance, condition = study.rail_compliance(scene), scene.condition(other)
     generator, draws, errors = np.random.default_rng(options.seed), [], []
     with Board("recovery", 1) as board:
-        report = board.callback(f"{options.draws} draws")
+        report = board.callback(label := counted(options.draws, "draw"))
         for number in range(options.draws):
             one = recovery.draw(scene, names, compliance, options.noise, generator)
             draws.append(one)
@@ -80,7 +81,7 @@ def _drawn(study: Study, options: Options) -> dict:
             rates = np.degrees([np.array(run.outcome.rate, dtype=float) for run in runs.values()])
             errors.append(np.abs(rates[1:] - rates[0]).max(axis=1))
             report((number + 1) / options.draws)
-        board.finished(f"{options.draws} draws", "fitted")
+        board.finished(label, "fitted")
     fitted, own = np.max(errors, axis=0).tolist()
     held_out = {"condition": other, "fitted_deg_s": fitted, "scene_deg_s": own}
     return {"conditions": names, "rows": rows(draws), "held_out": held_out}

@@ -14,6 +14,7 @@ from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.effects.thrust import GaussiansTable, GaussianTable
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.units import registry
+from tipoff.studies.core.words import counted
 from tipoff.studies.render.document import Fold, Part
 from tipoff.studies.render.table import Table, number
 
@@ -116,13 +117,13 @@ def scene_tables(scene: Scene) -> list[Part]:
     parts: list[Part] = [
         Table(("key", "value", "provenance"), rows),
         Fold(
-            f"{len(pads)} pads ({provenance(scene, 'pads', True)})",
+            f"{counted(len(pads), 'pad')} ({provenance(scene, 'pads', True)})",
             [Table(("pad", "corner x, y, z", "faces", "size", "inset", "relief"), pads)],
         ),
     ]
     if conditions:
         table = Table(("condition", "role", "differences from the scene"), conditions)
-        parts.append(Fold(f"{len(conditions)} conditions", [table]))
+        parts.append(Fold(counted(len(conditions), "condition"), [table]))
     absent = ", ".join(scene.absent_effects()) or "none"
     return [*parts, f"Effects that this scene lacks; no compiled code contains them: {absent}."]
 

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from tipoff.mechanics.promises import FINITE_ELEMENTS, RIGID
+from tipoff.studies.core.words import counted
 from tipoff.studies.render.table import Table
 
 
@@ -133,8 +134,8 @@ def _finite(rows: dict[str, list[dict]]) -> Promise:
     bad = [row["condition"] for row in every if row["status"] in ("diverged", "refused")]
     return Promise(
         "no NaN leaves the program; every run asked for is accounted for",
-        f"{len(every) - len(bad)} runs ended well, {len(bad)} diverged or were refused, of "
-        f"{len(every)}",
+        f"{len(every) - len(bad)} of {counted(len(every), 'run')} ended well, {len(bad)} diverged or "
+        "refused",
         "all",
         True,
     )
@@ -164,8 +165,8 @@ def _calibration(calibration: dict | None, agreement: dict | None) -> Promise | 
     return Promise(
         "calibration reports its information matrix and weak directions; agreement is given on "
         "held-out conditions",
-        f"{len(calibration['weak_directions'])} weak directions named, "
-        f"{len(agreement['held_out']) if agreement else 0} held-out conditions",
+        f"{counted(len(calibration['weak_directions']), 'weak direction')} named, "
+        f"{counted(len(agreement['held_out']) if agreement else 0, 'held-out condition')}",
         "",
         reported,
     )

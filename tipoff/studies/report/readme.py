@@ -32,7 +32,8 @@ fitted; `h1` to `h10` were not. No pad touches a rail in `h5` and `h6`: their ag
 _TAILS = """# Random errors checked by the reference
 
 Scene {scene}. Written by `python -m tipoff.studies.report.readme` from the file of
-`tipoff montecarlo --cases {cases} --reference {draws} --finer {fine}`."""
+`tipoff montecarlo --cases {cases} --reference {draws} --finer {fine}`. All runs of the surrogate have the
+[number of rail modes](rail_modes.md#one-number-in-a-study) that pilot cases of the population chose."""
 _BEGIN, _END = "<!-- results: python -m tipoff.studies.report.readme -->", "<!-- end of results -->"
 
 

@@ -101,7 +101,11 @@ def model(request: Run) -> str:
         return f"{FINITE_ELEMENTS}, {1e3 * request.numerics.element_size:g} mm"
     found = words.model(request.scene, request.calibration is not None, request.compliance)
     modes = request.numerics.count
-    return found + (f", {modes} modes of each rail" if modes and request.model == COMPLIANT else "")
+    return found + (
+        f", {words.counted(modes, 'mode')} of each rail"
+        if modes and request.model == COMPLIANT
+        else ""
+    )
 
 
 def lines(result: dict, made_with: str, study: Study) -> list[str]:

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tipoff.studies.core.words import counted
 from tipoff.studies.render.document import Caption, Image, Notice, Part
 from tipoff.studies.render.table import Column, Table
 
@@ -72,7 +73,7 @@ def _pictures(view: dict, folder: Path) -> Iterator[Part]:
     """The pictures of one condition, or how to make them."""
     name = view["condition"]
     yield (
-        f"Condition {name}: {len(view['frames'])} frames for ParaView in `{view['collection']}`. "
+        f"Condition {name}: {counted(len(view['frames']), 'frame')} for ParaView in `{view['collection']}`. "
         f"{view['without_pictures']}"
     )
     if not view["pictures"]:

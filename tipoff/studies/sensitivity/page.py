@@ -6,6 +6,7 @@ from itertools import chain
 
 import numpy as np
 
+from tipoff.studies.core.words import counted
 from tipoff.studies.populations import answers, population
 from tipoff.studies.render.chart import (
     AMBER,
@@ -153,7 +154,7 @@ def _change(value: float | None) -> float | str | None:
 def _used(sobol: dict) -> str:
     """How many cases the indices are from."""
     return (
-        f"{sobol['cases']['asked']:,} cases of {len(sobol['inputs'])} inputs, "
+        f"{sobol['cases']['asked']:,} cases of {counted(len(sobol['inputs']), 'input')}, "
         f"{sobol['not_settled']:,} did not settle; {sobol['used']:,} of {sobol['base_points']:,} "
         "base points used. A base point is left out if one of its cases did not settle."
     )

@@ -49,14 +49,14 @@ def run(study: Study, options: Options = Options()) -> dict:
     def make() -> tuple[dict, list[Path]]:
         if importlib.util.find_spec("SALib") is None:
             raise StudyError("Sobol' indices need SALib: pip install 'tipoff[studies]'")
-        model = population.surrogate(study, options.model)
+        sobol, model = _sobol(study, population.surrogate(study, options.model), options)
         found = {
             "asked": STAGE.plain(options),
             **population.answering(study, model),
             "citation": published.CITATION,
             "tables": tables(study, model, options),
             "paper": _paper(),
-            "sobol": _sobol(study, model, options),
+            "sobol": sobol,
         }
         files = [
             path
@@ -140,7 +140,8 @@ def _paper() -> dict:
     return {"rows": table, "largest": contact_table.largest(table)}
 
 
-def _sobol(study: Study, model: Surrogate, options: Options) -> dict:
+def _sobol(study: Study, model: Surrogate, options: Options) -> tuple[dict, Surrogate]:
+    """The indices, and the surrogate with the modes of their cases."""
     spread = tolerances.load(options.vary or tolerances.DEFAULT, model.scene, model.name)
     inputs = len(spread.inputs)
     found = population.run(
@@ -155,7 +156,7 @@ def _sobol(study: Study, model: Surrogate, options: Options) -> dict:
             f"only {whole.sum()} of {options.points} base points settled in all of their "
             f"{inputs + 2} cases: too few for indices; the store has the status of each case"
         )
-    return {
+    made = {
         "inputs": [_described(item) for item in spread.inputs],
         "left_out": spread.left_out,
         "base_points": options.points,
@@ -165,6 +166,7 @@ def _sobol(study: Study, model: Surrogate, options: Options) -> dict:
         "store": found.store,
         "quantities": [_quantity(item, found, inputs, options) for item in answers.ALL],
     }
+    return made, found.model
 
 
 def _described(item: tolerances.Input) -> dict:

@@ -49,15 +49,16 @@ def run(study: Study, options: Options = Options()) -> dict:
     def make() -> tuple[dict, list[Path]]:
         model = population.surrogate(study, options.model)
         alone = model._replace(scene=factors.alone(model.scene))
-        launches = [_launch(study, alone, options, 1.0, burnout.exit_of(alone))]
+        launch, alone = _launch(study, alone, options, 1.0, burnout.exit_of(alone))
+        launches = [launch]
         launches[0]["faces"], touched = _sides(study, alone, options)
         for factor, each in zip(launches[0]["factors"], touched):
             factor["sides"] = each
         if other := burnout.other_way(alone):
-            launches.append(_launch(study, other[1], options, other[0], other[2]))
+            launches.append(_launch(study, other[1], options, other[0], other[2])[0])
         found = {
             "asked": STAGE.plain(options),
-            **population.answering(study, model),
+            **population.answering(study, alone),
             "citation": published.CITATION,
             "launches": launches,
         }
@@ -76,12 +77,13 @@ STAGE = Stage(NAME, __name__, Options)
 
 def _launch(
     study: Study, model: Surrogate, options: Options, stretch: float, leaves: burnout.Exit | None
-) -> dict:
-    """All cases of one surrogate in one ensemble, and the results of each factor."""
+) -> tuple[dict, Surrogate]:
+    """All cases of one surrogate in one ensemble, and the results of each factor; the surrogate with
+    the modes of its cases."""
     directions = factors.angles(options.angles)
     found = population.run(study, NAME, model, factors.cases(directions), _TOLERANCE)
     count = len(SIZES) * options.angles
-    return {
+    made = {
         "stretch": stretch,
         "exit_s": leaves and leaves.time,
         "share_after_exit": leaves and leaves.share_after,
@@ -93,6 +95,7 @@ def _launch(
             for place, factor in enumerate(FACTORS)
         ],
     }
+    return made, found.model
 
 
 def _factor(

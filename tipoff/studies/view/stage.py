@@ -21,6 +21,7 @@ from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.core.progress import Board, say
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study, read, require_success
+from tipoff.studies.core.words import counted
 
 if TYPE_CHECKING:
     from tipoff.studies.view.frames import Camera
@@ -167,7 +168,8 @@ def _take(study: Study, request: Run, original: Trajectory, folder: Path, frames
             observer=observer,
         )
         board.finished(
-            request.label, f"{len(observer.frames)} frames in {again.cost['wall_s']:.3g} s"
+            request.label,
+            f"{counted(len(observer.frames), 'frame')} in {again.cost['wall_s']:.3g} s",
         )
     if not (np.array_equal(again.rate, original.rate) and again.stress == original.stress):
         say(
