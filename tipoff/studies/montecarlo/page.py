@@ -4,17 +4,9 @@ convergence, the readings of the paper's Table 3, and both surrogates."""
 import numpy as np
 
 from tipoff.studies.populations import population
-from tipoff.studies.render.chart import (
-    AMBER,
-    GREY,
-    NAVY,
-    TEAL,
-    VERMILION,
-    Chart,
-    Line,
-    Panel,
-)
+from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
+from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table, estimate, number, percent, span
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")

@@ -1,12 +1,14 @@
 """The look of the page: one column, system fonts, no colour that carries meaning alone."""
 
-CSS = """
+from tipoff.studies.render import palette
+
+_PAGE = """
 :root { color-scheme: light dark; --ink: #24292f; --soft: #59636e; --rule: #d9dee3; --tint: #f5f7f9; \
 --accent: #1d3461; --paper: #fff; --warn: #fdf6ee; --good: #1a7f37; --bad: #b42318; }
-@media (prefers-color-scheme: dark) {
+@media screen and (prefers-color-scheme: dark) {
   :root { --ink: #e6e8eb; --soft: #a3adb8; --rule: #39424c; --tint: #1d242c; --accent: #9db8ea; \
 --paper: #13181e; --warn: #2b2115; --good: #4ac26b; --bad: #ff8a80; }
-  .js-plotly-plot, .plotly-graph-div, main img { background: #fff; border-radius: 6px; }
+  main img { background: #fff; border-radius: 6px; }
 }
 html { scroll-padding-top: 84px; }
 * { box-sizing: border-box; }
@@ -54,7 +56,7 @@ tr.doubt td:last-child { font-style: italic; }
 .figures span { color: var(--soft); font-size: 13px; }
 .notice { border-left: 4px solid #b4540a; background: var(--warn); padding: 8px 14px; margin: 12px 0; max-width: 92ch; }
 .absent { border-left: 4px solid var(--rule); padding: 6px 14px; color: var(--soft); }
-img { max-width: 100%; height: auto; }
+img, svg.picture { max-width: 100%; height: auto; } svg.picture { fill: currentColor; }
 details { margin: 10px 0; } summary { cursor: pointer; color: var(--accent); }
 footer { max-width: 1240px; margin: 60px auto 40px; padding: 0 28px; color: var(--soft); font-size: 13px; }
 .drawing { display: flex; flex-wrap: wrap; gap: 14px; }
@@ -83,3 +85,4 @@ footer { max-width: 1240px; margin: 60px auto 40px; padding: 0 28px; color: var(
   .plotly-graph-div { zoom: 0.78; }
 }
 """
+CSS = palette.css() + _PAGE

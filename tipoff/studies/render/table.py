@@ -52,7 +52,7 @@ class Column:
             return NOTHING
         value = self.scale * cell.value
         error = None if cell.uncertainty is None else abs(self.scale) * cell.uncertainty
-        least = self.least or LEAST * (error or 0.0)
+        least = self.least or STEPS.get(cell.unit) or LEAST * (error or 0.0)
         if not least:
             return self.text(cell.value)
         if cell.apart:

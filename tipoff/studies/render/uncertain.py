@@ -29,6 +29,7 @@ class Measured:
     value: Any
     uncertainty: float | None
     apart: bool = False
+    unit: str = ""  # where its column has none
 
 
 def number(value: float | None, form: str = ".3g", least: float = 0.0) -> str:
@@ -36,6 +37,8 @@ def number(value: float | None, form: str = ".3g", least: float = 0.0) -> str:
     below ``least``; "<0.001" for a smaller one. None is a dash."""
     if value is None:
         return NOTHING
+    if value == 0.0:
+        return format(0.0, form.removeprefix("+"))
     if not math.isfinite(value):
         return format(value, form)
     if least and 0.0 < value < 0.5 * least and not form.startswith("+"):
@@ -57,7 +60,7 @@ def uncertain(value: float | None, uncertainty: float | None = None, least: floa
     shown = rounded(value, uncertainty, least)
     if uncertainty is None:
         return shown
-    if uncertainty < 0.5 * least:
+    if uncertainty == 0.0:
         return f"{shown} ± <{least:g}"
     return f"{shown} ± {rounded(uncertainty, uncertainty, least)}"
 
@@ -65,11 +68,13 @@ def uncertain(value: float | None, uncertainty: float | None = None, least: floa
 def rounded(
     value: float | None, uncertainty: float | None, least: float = LEAST, sign: str = ""
 ) -> str:
-    """``value`` alone, with the digits that ``uncertain`` gives it; ``sign`` "+" signs a positive
-    one too. None is a dash."""
+    """``value`` alone, with the digits that ``uncertain`` gives it; "<0.001" for a smaller one.
+    ``sign`` "+" signs a positive one too. None is a dash."""
     if value is None:
         return NOTHING
     if uncertainty is None or uncertainty < 0.5 * least:
+        if 0.0 < value < 0.5 * least and not sign:
+            return f"<{least:g}"
         return _fixed(value, _decimals(least), sign)
     return _fixed(value, min(_decimals(uncertainty), _decimals(least)), sign)
 

@@ -15,8 +15,9 @@ from tipoff.studies.core import machine
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.registry import sections
 from tipoff.studies.render import document
-from tipoff.studies.render.chart import Chart, Picture, to_files, to_html
+from tipoff.studies.render.chart import Chart, Picture, to_files
 from tipoff.studies.render.document import Caption, Missing, Notice, Part
+from tipoff.studies.render.interactive import to_html
 from tipoff.studies.render.table import Table
 from tipoff.studies.report import answer, drawing, inputs, template
 from tipoff.studies.report.promises import promises, table

@@ -11,17 +11,8 @@ from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.scene import Scene
 from tipoff.studies.convergence.contact_loads import by_pad
-from tipoff.studies.render.chart import (
-    AMBER,
-    AXIS_COLOURS,
-    GREY,
-    NAVY,
-    TEAL,
-    VERMILION,
-    Chart,
-    Line,
-    Panel,
-)
+from tipoff.studies.render.chart import Chart, Line, Panel
+from tipoff.studies.render.palette import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL, VERMILION
 
 _MILLISECONDS = "time after ignition (ms)"
 

@@ -7,18 +7,9 @@ from itertools import chain
 import numpy as np
 
 from tipoff.studies.populations import answers, population
-from tipoff.studies.render.chart import (
-    AMBER,
-    GREY,
-    NAVY,
-    TEAL,
-    VERMILION,
-    Chart,
-    Line,
-    Panel,
-    Picture,
-)
+from tipoff.studies.render.chart import Chart, Line, Panel, Picture
 from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
+from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table, span
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s", "rate_deg_s")
