@@ -169,7 +169,7 @@ def test_figures_of_one_condition():
         "pad 2 (rear, -y +z)"
     ]
     panels = figures.figure6(runs, ["phi15"]).panels
-    assert [len(panel.lines) for panel in panels] == [2, 1, 6, 3]
+    assert [len(panel.lines) for panel in panels] == [2 + 5, 1, 6, 3]
     assert not any(
         line.y.any() for panel in panels[1::2] for line in panel.lines
     )  # the same flight

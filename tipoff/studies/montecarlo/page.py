@@ -7,7 +7,8 @@ from tipoff.studies.populations import population
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
-from tipoff.studies.render.table import Column, Table, estimate, number, percent, span
+from tipoff.studies.render.table import Column, Table, estimate, percent, span
+from tipoff.studies.render.uncertain import uncertain
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
 _LOOKS = {0.5: (NAVY, "-", "o"), 0.95: (VERMILION, "--", "s"), 0.99: (TEAL, "-.", "^")}
@@ -245,8 +246,7 @@ def table_of_quantities(found: dict) -> Table:
 
 
 def _name_and_sd(item: dict) -> tuple[str, str]:
-    sd = f"{number(item['sd'], '.4g')} ± {number(item['sd_error'], '.1g')}"
-    return f"{item['label']} ({item['unit']})", sd
+    return f"{item['label']} ({item['unit']})", uncertain(item["sd"], item["sd_error"])
 
 
 def _quantiles(found: dict) -> Table:

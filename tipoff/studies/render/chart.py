@@ -21,6 +21,7 @@ from tipoff.studies.render.palette import (
     RULE,
 )
 
+_OFFSETS = {"top center": (4, 6), "top right": (7, 3), "bottom right": (7, -9)}  # points
 _VECTORS = 5000  # points of a line in an SVG, beyond which it holds a picture of them
 
 
@@ -40,6 +41,7 @@ class Line:
     marker: str = ""
     legend: bool = True
     labels: tuple[str, ...] = ()
+    beside: str = "top center"  # where a label stands: "top right", "bottom right"
     size: float = 9.0
     kept: int = 500
 
@@ -129,7 +131,7 @@ def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
                     label,
                     (x, y),
                     textcoords="offset points",
-                    xytext=(4, 6),
+                    xytext=_OFFSETS[line.beside],
                     fontsize=7.5,
                     color=INK,
                 )

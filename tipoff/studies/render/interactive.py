@@ -54,7 +54,7 @@ def to_html(chart: Chart | Picture) -> str:
                     text=list(line.labels) or None,
                     showlegend=line.legend and line.name not in shown,
                     mode=_mode(line),
-                    textposition="top center",
+                    textposition=line.beside,
                     line={
                         "color": line.colour,
                         "width": line.width,
