@@ -71,6 +71,16 @@ def test_the_unit_of_a_column_sets_the_least_step():
     assert "| 0.013 | 50 | 7.64e-11 |" in markdown(Table(columns, [[0.01278, 0.5, 7.64e-11]]))
 
 
+def test_a_unit_in_brackets_counts_in_heads_and_rows():
+    rows = [["rate about x (deg/s)", 7.64e-11, 0.5], ["drift", 7.64e-11, 0.5]]
+    lines = markdown(Table(["quantity", "change", "share (%)"], rows)).splitlines()
+    assert lines[2:] == [
+        "| rate about x (deg/s) | <0.001 | 0.5 |",
+        "| drift | 7.64e-11 | 0.5 |",
+    ]
+    assert "| <0.001 |" in markdown(Table(["rate (deg/s)"], [[7.64e-11]]))
+
+
 def test_a_value_carries_its_uncertainty():
     columns = [Column("rate", "deg/s"), Column("force", "kN", "+.3g", 1e-3), Column("x, y", "mm")]
     both = [Measured(0.01234, 0.002), Measured(5071.2, 12.0), Measured((1.26, -3e-9), 0.3)]

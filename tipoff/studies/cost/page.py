@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
+from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.cost import choice, scaling_page
 from tipoff.studies.render.chart import Chart, Line, Panel
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _ERRORS = (
     "Condition {condition}. Errors against the finest finite-element mesh, whose uncertainty is the "
     "band: smaller errors count as the band in the Pareto front. Below: the part of the error that "
-    "a smaller tolerance removes. Labels: model, element size, tolerance, number of modes. The cross is "
+    "a smaller tolerance removes. Labels: model, element size, number of modes. The cross is "
     "the recommended model: the fastest surrogate within the band or 0.1 deg/s, whichever is larger."
 )
 
@@ -230,20 +230,12 @@ def _front(cost: dict) -> Line:
 def _cost_line(
     points: list[dict], error: str, model: str, colour: str, marker: str, dash: str, beside: str
 ) -> Line:
-    """One model, with its name at its slowest point. Tolerances are labelled for compliant contact in
-    the panel of the time integration only, numbers of modes wherever they are varied."""
+    """One model, with its name at its slowest point; meshes and numbers of modes have their own labels."""
     varied = any(point["modes"] for point in points)
     labels = [
-        str(point["modes"])
-        if varied
-        else point["numerics"].split(",")[0].removeprefix("tolerance ")
-        for point in points
+        str(point["modes"]) if varied else point["numerics"].split(",")[0] for point in points
     ]
-    if (
-        model != FINITE_ELEMENTS
-        and not varied
-        and (error != "integration_error_deg_s" or model != COMPLIANT)
-    ):
+    if model != FINITE_ELEMENTS and not varied:
         # right of the slowest point no other surrogate is in the way
         named = max(points, key=lambda point: point["wall_s"], default=None)
         labels = [model.split(" of ")[0] if point is named else "" for point in points]

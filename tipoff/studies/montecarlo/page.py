@@ -8,7 +8,7 @@ from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table, estimate, percent, span
-from tipoff.studies.render.uncertain import uncertain
+from tipoff.studies.render.uncertain import LEAST, number, uncertain
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
 _LOOKS = {0.5: (NAVY, "-", "o"), 0.95: (VERMILION, "--", "s"), 0.99: (TEAL, "-.", "^")}
@@ -300,7 +300,7 @@ def _readings(found: dict) -> Table:
                 *(rate["sd"] for rate in axes),
                 *(estimate(quantiles[share]) for share in shares),
                 item["distance"],
-                item["chance"],
+                number(item["chance"], ".2g", LEAST),
             )
         )
     heads: tuple[Column | str, ...] = (
@@ -308,7 +308,7 @@ def _readings(found: dict) -> Table:
         *(f"sd about {axis}" for axis in "xyz"),
         *(f"total, {percent(share, 'g')} % below" for share in shares),
         "distance",
-        Column("by chance", form=".2g"),
+        "by chance",
     )
     note = _READINGS.format(cases=found["readings"][0]["cases"])
     return Table(heads, rows, (note,), dense=True)

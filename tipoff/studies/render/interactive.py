@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tipoff.studies.render.chart import Chart, Line, Picture, across, upwards
+from tipoff.studies.render.chart import Chart, Line, Panel, Picture, across, upwards
 from tipoff.studies.render.palette import EDGE, GREY, INK, RULE, ZERO, themed
 
 _GAP = 106.0  # px between rows: an axis label, and the title below it
@@ -55,6 +55,7 @@ def to_html(chart: Chart | Picture) -> str:
                     showlegend=line.legend and line.name not in shown,
                     mode=_mode(line),
                     textposition=line.beside,
+                    cliponaxis=not line.labels,
                     line={
                         "color": line.colour,
                         "width": line.width,
@@ -68,7 +69,7 @@ def to_html(chart: Chart | Picture) -> str:
         x_kind = (
             _log_axis(across(panel), panel.ticks)
             if panel.log
-            else {"type": "log", "dtick": 1}
+            else {"type": "log", "dtick": _tick_step(panel)}
             if panel.log_x
             else {}
         )
@@ -133,6 +134,12 @@ def to_html(chart: Chart | Picture) -> str:
         div_id=f"chart-{chart.name}",
         config={"displayModeBar": False, "responsive": True},
     )
+
+
+def _tick_step(panel: Panel) -> int | str:
+    """Ticks at decades; at 1, 2 and 5 where x spans less than two of them."""
+    low, high = across(panel)
+    return "D2" if high < 150.0 * low else 1
 
 
 def _log_axis(limits: tuple[float, float], ticks: Sequence[float] = ()) -> dict:

@@ -10,7 +10,7 @@ import re
 NAVY, VERMILION, AMBER, TEAL, GREY = "#1d3461", "#d1495b", "#e8a33d", "#2e8b7a", "#7a7f87"
 AXIS_COLOURS = {"x": NAVY, "y": VERMILION, "z": AMBER}
 INK, RULE, EDGE, ZERO = "#24292f", "#e3e6ea", "#9aa1a9", "#c9ced4"
-_DARK = {
+DARK = {  # the colour of each light one on a dark page
     NAVY: "#8fb4f0",
     VERMILION: "#f27d8c",
     AMBER: "#f0b762",
@@ -21,6 +21,8 @@ _DARK = {
     "#b0b5bb": "#848c96",
     "#5f9ed1": "#83bbe8",
     "#c98bb9": "#dca8cd",
+    "#d5dae0": "#4a545f",
+    "#dfe3e8": "#cdd3da",
     INK: "#e6e8eb",
     RULE: "#2f3842",
     EDGE: "#6d7782",
@@ -34,12 +36,12 @@ _DARK = {
 
 def css() -> str:
     """The properties, light and dark, and the rules that give them to the charts of plotly."""
-    light = "".join(f"{_property(colour)}: {colour}; " for colour in _DARK)
-    dark = "".join(f"{_property(colour)}: {other}; " for colour, other in _DARK.items())
+    light = "".join(f"{_property(colour)}: {colour}; " for colour in DARK)
+    dark = "".join(f"{_property(colour)}: {other}; " for colour, other in DARK.items())
     rules = "".join(
         f'.js-plotly-plot [style*="{kind}: {_rgb(colour)}"] '
         f"{{ {kind}: var({_property(colour)}) !important; }}\n"
-        for colour in _DARK
+        for colour in DARK
         for kind in ("stroke", "fill")
     )
     return (
@@ -56,7 +58,7 @@ def themed(svg: str, name: str) -> str:
     body = re.sub(r"<metadata>.*?</metadata>", "", body, flags=re.DOTALL)
     body = re.sub(
         r"#[0-9a-f]{6}\b",
-        lambda found: f"var({_property(found[0])})" if found[0] in _DARK else found[0],
+        lambda found: f"var({_property(found[0])})" if found[0] in DARK else found[0],
         body,
     )
     body = re.sub(r'( id="|url\(#|href="#)', rf"\g<1>{name}-", body)

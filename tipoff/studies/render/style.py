@@ -48,7 +48,7 @@ table.judged td:last-child, table.judged th:last-child { position: sticky; right
 box-shadow: -1px 0 0 var(--rule); }
 table.judged tbody tr:nth-child(even) td:last-child { background: var(--tint); }
 tr.good td:last-child::before { color: var(--good); content: "\\2713\\00a0"; }
-tr.bad td:last-child { font-weight: 600; }
+tr.bad td:last-child, tr.best td { font-weight: 600; }
 tr.bad td:last-child::before { color: var(--bad); content: "\\2717\\00a0"; }
 tr.doubt td:last-child { font-style: italic; }
 .none { color: #9aa1a9; }

@@ -36,12 +36,20 @@ class Column:
 
     @property
     def least(self) -> float:
-        """The smallest step that is shown; 0 where the unit has none."""
-        return STEPS.get(self.unit, 0.0)
+        """The smallest step that is shown; 0 where the unit has none. The unit may stand in brackets
+        at the end of the title."""
+        return STEPS.get(self.unit or _unit(self.title), 0.0)
 
     def text(self, value: float) -> str:
         """A number as text."""
         return number(self.scale * value, self.form, self.least)
+
+    def of_row(self, row: Sequence[Any]) -> "Column":
+        """The column as it is in a row: without a unit it has that of the row, which stands in
+        brackets at the end of its first cell."""
+        if self.least or self.unit or not row or not (unit := _unit(row[0])):
+            return self
+        return _InRow(self.title, self.unit, self.form, self.scale, STEPS.get(unit, 0.0))
 
     def measured(self, cell: Measured) -> str:
         """A number, or several, rounded to their uncertainty."""
@@ -53,11 +61,28 @@ class Column:
         value = self.scale * cell.value
         error = None if cell.uncertainty is None else abs(self.scale) * cell.uncertainty
         least = self.least or STEPS.get(cell.unit) or LEAST * (error or 0.0)
-        if not least:
-            return self.text(cell.value)
+        if error is None or not least:
+            return number(value, self.form, least)
         if cell.apart:
             return rounded(value, error, least, "+" if self.form.startswith("+") else "")
         return with_uncertainty(value, error, least)
+
+
+@dataclass(frozen=True)
+class _InRow(Column):
+    """A column in a row that has a unit; ``own`` is the smallest step of that unit."""
+
+    own: float = 0.0
+
+    @property
+    def least(self) -> float:
+        return self.own
+
+
+def _unit(text: Any) -> str:
+    """The unit in brackets at the end of a text; empty without one."""
+    found = re.search(r"\(([^()]+)\)$", text) if isinstance(text, str) else None
+    return found[1] if found else ""
 
 
 @dataclass(frozen=True)
@@ -183,7 +208,7 @@ def _widths(columns: Sequence[Sequence[str]], limit: int) -> list[int]:
 def html(table: Table) -> Markup:
     """The table with its title and notes as HTML; all text is escaped."""
     rows = [
-        (kind, [_cell(value, column) for value, column in zip(row, _records(table))])
+        (kind, [_cell(value, column.of_row(row)) for value, column in zip(row, _records(table))])
         for row, kind in zip(table.rows, _kinds(table))
     ]
     judged = bool({"good", "bad", "doubt"} & set(table.kinds))
@@ -234,7 +259,8 @@ def _kinds(table: Table) -> Sequence[str]:
 
 def _texts(table: Table) -> list[list[str]]:
     return [
-        [plain(value, column) for value, column in zip(row, _records(table))] for row in table.rows
+        [plain(value, column.of_row(row)) for value, column in zip(row, _records(table))]
+        for row in table.rows
     ]
 
 

@@ -90,10 +90,10 @@ def _speed(page: "Page", rows: list[dict]) -> list[tuple[str, str]]:
     if not speeds:
         return []
     low, high = (uncertain(speed, least=STEPS["m/s"]) for speed in (min(speeds), max(speeds)))
-    studied = page.documents.get("convergence") or {"quantities": []}
+    studied = page.documents.get("convergence") or {}
     known = [
         row["nominal_uncertainty"]
-        for row in studied["quantities"]
+        for row in studied.get("quantities", [])
         if row["quantity"] == "settled axial velocity" and row["nominal_uncertainty"] is not None
     ]
     shown = low if low == high else f"{low} to {high}"
