@@ -9,6 +9,7 @@ from tipoff.studies.render.table import (
     Column,
     Noted,
     Table,
+    estimate,
     html,
     markdown,
     number,
@@ -16,9 +17,10 @@ from tipoff.studies.render.table import (
     span,
     terminal,
 )
+from tipoff.studies.render.uncertain import Measured
 
 TABLE = Table(
-    ["condition", Column("rate", "deg/s", "+.2f"), Column("L2", "%", scale=100.0), "steps"],
+    ["condition", Column("rate", "deg/s", "+.2f"), Column("drift", "J", scale=100.0), "steps"],
     [["<phi0>", 1.234, 1e-9, 12345], ["a|b", None, Noted(0.5, "0.4 to 0.6"), True]],
     notes=("Run `make cost`.",),
     title="Agreement",
@@ -44,6 +46,61 @@ def test_number(value, form, shown):
     assert number(value, form) == shown
 
 
+@pytest.mark.parametrize(
+    "value, form, shown",
+    [
+        (0.00832, ".3g", "0.008"),
+        (1.64, ".3g", "1.64"),
+        (0.0821, ".2g", "0.082"),
+        (7.64e-11, ".2g", "<0.001"),
+        (0.0, ".2g", "0"),
+        (-5.2e-11, "+.2g", "0.000"),
+        (5.2e-11, "+.2g", "0.000"),
+        (0.014, "+.3g", "+0.014"),
+        (float("nan"), ".3g", "nan"),
+    ],
+)
+def test_no_digit_stands_below_the_least_step(value, form, shown):
+    assert number(value, form, 1e-3) == shown
+
+
+def test_the_unit_of_a_column_sets_the_least_step():
+    """Control: without a unit every digit stands."""
+    columns = [Column("rate", "deg/s"), Column("share", "%", scale=100.0), Column("ratio")]
+    assert ">&lt;0.001<" in html(Table(columns, [[7.64e-11, 0.5, 1.0]]))
+    assert "| 0.013 | 50 | 7.64e-11 |" in markdown(Table(columns, [[0.01278, 0.5, 7.64e-11]]))
+
+
+def test_a_unit_in_brackets_counts_in_heads_and_rows():
+    rows = [["rate about x (deg/s)", 7.64e-11, 0.5], ["drift", 7.64e-11, 0.5]]
+    lines = markdown(Table(["quantity", "change", "share (%)"], rows)).splitlines()
+    assert lines[2:] == [
+        "| rate about x (deg/s) | <0.001 | 0.5 |",
+        "| drift | 7.64e-11 | 0.5 |",
+    ]
+    assert "| <0.001 |" in markdown(Table(["rate (deg/s)"], [[7.64e-11]]))
+
+
+def test_a_value_carries_its_uncertainty():
+    columns = [Column("rate", "deg/s"), Column("force", "kN", "+.3g", 1e-3), Column("x, y", "mm")]
+    both = [Measured(0.01234, 0.002), Measured(5071.2, 12.0), Measured((1.26, -3e-9), 0.3)]
+    assert "| 0.012 ± 0.002 | 5.071 ± 0.012 | 1.3 ± 0.3, 0.0 ± 0.3 |" in markdown(
+        Table(columns, [both])
+    )
+    alone = [Measured(cell.value, cell.uncertainty, apart=True) for cell in both]
+    assert "| 0.012 | +5.071 | 1.3, 0.0 |" in markdown(Table(columns, [alone]))
+    unknown = [Measured(None, 1.0), Measured(5071.2, None), Measured(1.26, 0.0)]
+    assert "| – | +5.07 | 1.26 |" in markdown(Table(columns, [unknown]))
+
+
+def test_estimates_are_rounded_to_their_interval():
+    shown = markdown(
+        Table(["rate"], [[estimate({"value": 5.0712, "low": 4.961, "high": 5.311})], [None]])
+    )
+    assert "| 5.07 (4.96 to 5.31) |" in shown
+    assert estimate({"value": 2.0, "low": None, "high": None}) == 2.0
+
+
 def test_percent_and_span():
     assert percent(0.0125) == "1.25" and percent(None) == "–"
     assert span(1.0, 2.5) == "1 to 2.5" and span(None, None) == "–"
@@ -62,7 +119,7 @@ def test_html_escapes_and_aligns():
 def test_markdown():
     lines = markdown(TABLE).splitlines()
     assert lines[0] == "Agreement" and lines[-1] == "Run `make cost`."
-    assert lines[2] == "| condition | rate (deg/s) | L2 (%) | steps |"
+    assert lines[2] == "| condition | rate (deg/s) | drift (J) | steps |"
     assert lines[4] == "| **<phi0>** | +1.23 | 1e-07 | 12,345 |"
     assert lines[5] == "| a\\|b | – | 50 (0.4 to 0.6) | yes |"
 

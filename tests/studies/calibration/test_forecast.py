@@ -12,7 +12,7 @@ from tipoff import scenes
 from tipoff.calibration import parameters, refine, search
 from tipoff.files import sealed, write_json
 from tipoff.mechanics.models import COMPLIANT
-from tipoff.studies.calibration import forecast, stage
+from tipoff.studies.calibration import forecast, page, stage
 from tipoff.studies.core.settings import defaults
 from tipoff.studies.core.study import Study
 
@@ -143,13 +143,13 @@ def test_curves_are_fitted_after_the_time_was_said(tmp_path, capsys, monkeypatch
     [
         ([1.0, 3.0], "1 to 3"),
         ([1.99995e-4, 2.00005e-4], "0.000199995 to 0.000200005"),
-        ([-2.004e-4, 2.2e-4], "-0.0002004 to 0.00022"),
+        ([-2.004e-4, 2.2e-4], "-0.0002 to 0.0002"),
         ([None, None], "not determined by the curves"),
     ],
 )
 def test_a_narrow_interval_shows_its_width(ends, said):
     """Control: with four digits both ends would be 0.0002."""
-    assert stage.interval([end if end is None else float(end) for end in ends]) == said
+    assert page.interval([end if end is None else float(end) for end in ends]) == said
 
 
 def test_a_fit_of_other_parameters_is_another_result(tmp_path, monkeypatch):

@@ -69,8 +69,8 @@ def test_numbers_are_rounded_to_their_uncertainty(page):
 
 def test_limits_that_the_user_gave(page):
     shown = html(answer.draw(page))
-    assert "<b>fail</b>" in shown and "above in phi15" in shown
-    assert "✗ rate about x 6 deg/s" in shown and "✓ pass" in shown
+    assert "<b>fail</b>" in shown and "above or not settled: phi15" in shown
+    assert "✗\u00a0x" in shown and "✓ pass" in shown
     page.limits = [Limit("total", 50.0)]
     assert "<b>pass</b>" in html(answer.draw(page))
     page.limits = []

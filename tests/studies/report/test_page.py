@@ -16,7 +16,8 @@ from tipoff.studies.calibration.page import calibration
 from tipoff.studies.core.settings import defaults
 from tipoff.studies.core.study import Study
 from tipoff.studies.cost.page import picture as cost_picture
-from tipoff.studies.render.chart import Chart, Line, Panel, to_files, to_html
+from tipoff.studies.render.chart import Chart, Line, Panel, to_files
+from tipoff.studies.render.interactive import to_html
 from tipoff.studies.render.table import Table, markdown, number
 from tipoff.studies.report import inputs, stage
 from tipoff.studies.report.page import Page
@@ -168,7 +169,7 @@ def test_figures_of_one_condition():
         "pad 2 (rear, -y +z)"
     ]
     panels = figures.figure6(runs, ["phi15"]).panels
-    assert [len(panel.lines) for panel in panels] == [2, 1, 6, 3]
+    assert [len(panel.lines) for panel in panels] == [2 + 5, 1, 6, 3]
     assert not any(
         line.y.any() for panel in panels[1::2] for line in panel.lines
     )  # the same flight

@@ -23,8 +23,8 @@ def ablation(document: dict) -> Table:
         Column("time", "s"),
         Column("time ratio", form=".2f"),
         Column("time per step", "ns", ",.0f"),
-        "settled x, y, z (deg/s)",
-        "change x, y, z (deg/s)",
+        Column("settled x, y, z", "deg/s"),
+        Column("change x, y, z", "deg/s", "+.3g"),
         "effects in the compiled kernel",
     )
     rows = [
@@ -35,8 +35,8 @@ def ablation(document: dict) -> Table:
             row["time_s"],
             row["time_ratio"],
             row["ns_per_step"],
-            _three(row["settled_rate_deg_s"], ""),
-            _three(row["settled_rate_change_deg_s"], "+"),
+            row["settled_rate_deg_s"],
+            row["settled_rate_change_deg_s"],
             ", ".join(row["compiled"]) or "none",
         )
         for row in document["rows"]
@@ -60,17 +60,11 @@ def terminal(document: dict) -> list[Part]:
         "status",
         Column("time", "s"),
         Column("time ratio", form=".2f"),
-        "change of the settled rates x, y, z (deg/s)",
+        Column("change of the settled rates x, y, z", "deg/s", "+.3g"),
     )
-    keys = ("fidelity", "variant", "status", "time_s", "time_ratio")
-    rows = [
-        [*(row[key] for key in keys), _three(row["settled_rate_change_deg_s"], "+")]
-        for row in document["rows"]
-    ]
+    keys = (
+        *("fidelity", "variant", "status", "time_s", "time_ratio"),
+        "settled_rate_change_deg_s",
+    )
+    rows = [[row[key] for key in keys] for row in document["rows"]]
     return [Table(columns, rows, title=f"Without each effect, condition {document['condition']}:")]
-
-
-def _three(values: list[float] | None, sign: str) -> str | None:
-    if values is None:
-        return None
-    return ", ".join(f"{value:{sign}.3g}" if value else "0" for value in values)

@@ -3,8 +3,9 @@ within 1 um, and the empirical distributions of one chaotic condition."""
 
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.studies.agreement.equivalence import AXES, CONFIDENCE, MARGIN_SHARE
-from tipoff.studies.render.chart import AMBER, NAVY, VERMILION, Chart, Line, Panel
+from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Fold, Part
+from tipoff.studies.render.palette import AMBER, NAVY, VERMILION
 from tipoff.studies.render.table import Column, Table
 
 _SHOWN = {"compliant": (VERMILION, 1.6, "-"), "calibrated": (AMBER, 1.6, "--")}

@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING
 
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.studies.agreement import growth
-from tipoff.studies.render.chart import NAVY, VERMILION, Chart, Line, Panel
+from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Part
+from tipoff.studies.render.palette import NAVY, VERMILION
 from tipoff.studies.render.table import Column, Table
 
 if TYPE_CHECKING:
@@ -117,8 +118,17 @@ def tables(found: list[dict]) -> list[Part]:
     ]
     kinds = ["good" if item["sensitive"] is False else "doubt" for item in found]
     notes = tuple(note.format(gate=found[0]["gate_deg_s"]) for note in _NOTES)
-    lines = [sentence(item) for item in found if item["model"] == FINITE_ELEMENTS]
-    return [Bullets(lines), Table(heads, rows, notes, "", "growth", kinds, dense=True)]
+    own = [item for item in found if item["model"] == FINITE_ELEMENTS]
+    return [Bullets(_sentences(own)), Table(heads, rows, notes, "", "growth", kinds, dense=True)]
+
+
+def _sentences(found: list[dict]) -> list[str]:
+    """One line on all stable conditions, and one on each other condition."""
+    stable = [item["condition"] for item in found if item["sensitive"] is False]
+    others = [f"condition {sentence(item)}" for item in found if item["sensitive"] is not False]
+    if not stable:
+        return others
+    return [f"stable, so that curves can be compared to the end: {', '.join(stable)}", *others]
 
 
 def sentence(item: dict) -> str:

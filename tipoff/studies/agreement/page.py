@@ -4,26 +4,27 @@ from typing import TYPE_CHECKING
 
 from tipoff.studies.agreement import distribution_page, verdicts
 from tipoff.studies.render.document import Fold, Part
-from tipoff.studies.render.table import Column, Table, number, percent
+from tipoff.studies.render.table import Column, Table, percent
+from tipoff.studies.render.uncertain import LEAST, Measured, number, rounded
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
 
 def _percent(title: str) -> Column:
-    return Column(title, "%", scale=100.0)
+    return Column(title, "%", ".2g", 100.0)
 
 
 _HEADS: tuple[Column | str, ...] = (
     "condition",
     "role",
     _percent("rate L2"),
-    "floor L2 (%)",
+    _percent("floor L2"),
     _percent("v_x L2"),
     Column("settled error", "deg/s"),
     Column("error x, y, z", "deg/s", "+.2g"),
-    "floor (deg/s)",
-    "reference ± (deg/s)",
+    Column("floor", "deg/s"),
+    Column("reference ±", "deg/s"),
     Column("ISO 18571", form=".3f"),
     _percent("S-G magnitude"),
     _percent("S-G phase"),
@@ -99,8 +100,9 @@ def _notes(document: dict) -> tuple[str, ...]:
         "extrapolated with the order it shows. Above "
         f"{document['converged_deg_s']:g} deg/s the reference is not converged. Such a condition, and "
         "one that 1 µm moves by more than the gate, is judged as a distribution.",
-        "A star marks the largest value of other conditions. ISO 18571 is the mean rating of the "
-        "three rates (1 is perfect); Sprague and Geers (S-G) is over the three rates together.",
+        "Settled errors are rounded to the floor. A star marks the largest value of other conditions. "
+        "ISO 18571 is the mean rating of the three rates (1 is perfect); Sprague and Geers (S-G) is "
+        "over the three rates together.",
     )
 
 
@@ -226,7 +228,8 @@ def stiffnesses(found: list[dict]) -> str:
 
 
 def _errors(row: dict) -> str:
-    return f"{percent(row['rate_relative_l2'])}; {number(row['settled_rate_error_deg_s'], '.2g')}"
+    error = number(row["settled_rate_error_deg_s"], ".2g", LEAST)
+    return f"{percent(row['rate_relative_l2'], '.2g')}; {error}"
 
 
 def summary(rows: list[dict], words: str = "") -> str:
@@ -262,18 +265,23 @@ def _agreement_row(row: dict) -> tuple:
         row["condition"],
         row["role"].replace("_", " "),
         row["rate_relative_l2"],
-        starred(percent(row["floor_l2"]), floor_here),
+        starred(percent(row["floor_l2"], ".2g"), floor_here),
         row["velocity_relative_l2"],
-        row["settled_rate_error_deg_s"],
-        row["settled_rate_error_xyz_deg_s"],
-        starred(number(row["floor_deg_s"]), floor_here),
-        starred(number(row["reference_uncertainty_deg_s"]), uncertainty_here),
+        Measured(row["settled_rate_error_deg_s"], row["floor_deg_s"], apart=True),
+        Measured(row["settled_rate_error_xyz_deg_s"], row["floor_deg_s"], apart=True),
+        starred(_rounded(row["floor_deg_s"]), floor_here),
+        starred(_rounded(row["reference_uncertainty_deg_s"]), uncertainty_here),
         row["iso18571"],
         row["sprague_geers_magnitude"],
         row["sprague_geers_phase"],
         row["judged_as"],
         row["verdict"],
     )
+
+
+def _rounded(uncertainty: float | None) -> str:
+    """A floor or an uncertainty (deg/s) with the digits that count."""
+    return rounded(uncertainty, uncertainty)
 
 
 def starred(shown: str, measured_here: bool) -> str:

@@ -6,6 +6,7 @@ from tipoff.studies import published
 from tipoff.studies.convergence import equal_accuracy
 from tipoff.studies.render.document import Caption, Part
 from tipoff.studies.render.table import Column, Table, span
+from tipoff.studies.render.uncertain import LEAST, Measured, rounded
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
@@ -37,9 +38,10 @@ def speedups(document: dict, equal: dict | None = None) -> list[Part]:
 def _equal(found: dict | None) -> str:
     """The speed-up at equal accuracy; the mesh of the tables above is fixed."""
     if found is None:
-        return "`make convergence` measures the speed-up at equal accuracy."
+        return "`tipoff convergence` measures the speed-up at equal accuracy."
     printed = float(published.headline()["speedup"])
-    return f"{equal_accuracy.sentence(found)}. The paper has {printed:,.0f} for its two models."
+    sentence = equal_accuracy.sentence(found)
+    return f"{sentence[0].upper()}{sentence[1:]}. The paper has {printed:,.0f} for its two models."
 
 
 def _speedup(model: str, found: dict) -> Table:
@@ -47,24 +49,30 @@ def _speedup(model: str, found: dict) -> Table:
     rows = [
         (
             "wall time of one reference run",
-            f"{found['highfi_wall_s']:.4g} s",
+            f"{_time(found['highfi_wall_s'], found['highfi_wall_range_s'])} s",
             f"{found['highfi_repeats']} repeats, {_range(found['highfi_wall_range_s'])} s, "
             f"{found['elements']:,} elements",
         ),
         (
             "wall time of one surrogate run",
-            f"{1e3 * found['lowfi_wall_s']:.4g} ms",
+            f"{_time(1e3 * found['lowfi_wall_s'], surrogate)} ms",
             f"{found['lowfi_repeats']} repeats, {_range(surrogate)} ms, compiled",
         ),
         (
             "ratio of wall times",
-            found["ratio"],
+            Measured(found["ratio"], 0.5 * (found["high"] - found["low"]), apart=True),
             f"{found['low']:,.0f} to {found['high']:,.0f} over all pairs of repeats",
         ),
         ("ratio of kernel times", found["kernel_ratio"], "time loops only"),
         ("ratio of processor times", found["cpu_ratio"], "whole process"),
     ]
     return Table((model, Column("value", form=",.0f"), "measurement"), rows)
+
+
+def _time(value: float, repeats: list[float]) -> str:
+    """A time, rounded to half the range of its repeats."""
+    half = 0.5 * (max(repeats) - min(repeats))
+    return rounded(value, half, LEAST * half) if half else f"{value:.3g}"
 
 
 def _range(values: list[float]) -> str:

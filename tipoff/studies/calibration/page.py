@@ -1,11 +1,12 @@
 """A calibration on the page."""
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from tipoff.studies.calibration.stage import interval
 from tipoff.studies.render.document import Fold, Part
-from tipoff.studies.render.table import Column, Table
+from tipoff.studies.render.table import Column, Table, span
+from tipoff.studies.render.uncertain import LEAST, Measured, rounded
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
@@ -36,7 +37,7 @@ def terminal(document: dict, folder: Path) -> list[Part]:
     keys = ("parameters", "values", "units", "intervals")
     rows = [list(row) for row in zip(*(document[key] for key in keys))]
     for row in rows:
-        row[3] = interval(row[3])
+        row[1], row[3] = constant(row[1], row[3]), interval(row[3])
     if wide:
         heads.append("with model error")
         rows = [[*row, interval(ends)] for row, ends in zip(rows, wide)]
@@ -77,11 +78,30 @@ def _residuals(document: dict) -> Table:
     )
 
 
+def constant(value: float, ends: Sequence[float | None]) -> Any:
+    """A fitted constant, rounded to half its interval; as it is where it has none."""
+    low, high = ends
+    if low is None or high is None or high <= low:
+        return value
+    return Measured(value, 0.5 * (high - low), apart=True)
+
+
+def interval(ends: Sequence[float | None]) -> str:
+    """The 95 % interval of a constant, rounded to half its width."""
+    low, high = ends
+    if low is None or high is None:
+        return "not determined by the curves"
+    half = 0.5 * (high - low)
+    if not half > 0.0:
+        return span(low, high)
+    return " to ".join(rounded(end, half, LEAST * half) for end in (low, high))
+
+
 def calibration(document: dict) -> list[Part]:
     """Fitted constants with bounds and reasons, weak directions, residuals."""
     columns = (
         "constant",
-        Column("value", form=".5g"),
+        Column("value", form=".3g"),
         "95 % interval",
         "unit",
         Column("lower bound", form=".4g"),
@@ -90,7 +110,7 @@ def calibration(document: dict) -> list[Part]:
     )
     keys = ("parameters", "values", "intervals", "units", "lower", "upper", "justification")
     rows = [
-        (name, value, interval(ends), *rest)
+        (name, constant(value, ends), interval(ends), *rest)
         for name, value, ends, *rest in zip(*(document[key] for key in keys))
     ]
     return [

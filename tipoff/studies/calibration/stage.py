@@ -212,23 +212,6 @@ def load(study: Study) -> Calibration:
     return Calibration.load(study.path(FILE))
 
 
-def interval(ends: list[float | None]) -> str:
-    """The 95 % interval of a constant as text."""
-    low, high = ends
-    if low is None or high is None:
-        return "not determined by the curves"
-    count = digits(ends)
-    return f"{low:.{count}g} to {high:.{count}g}"
-
-
-def digits(ends: list[float | None]) -> int:
-    """Digits of the ends of an interval that show a tenth of its width, four at least."""
-    low, high = ends
-    if low is None or high is None or not high > low:
-        return 4
-    return max(4, 2 + math.ceil(math.log10(max(abs(low), abs(high)) / (high - low))))
-
-
 def as_dict(found: Calibration) -> dict:
     """A calibration as JSON values."""
     return {

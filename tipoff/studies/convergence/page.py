@@ -4,9 +4,11 @@ tables of the refinements and changes."""
 from typing import TYPE_CHECKING
 
 from tipoff.studies.convergence import summary
-from tipoff.studies.render.chart import AXIS_COLOURS, GREY, Chart, Line, Panel
+from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Part
+from tipoff.studies.render.palette import AXIS_COLOURS, GREY
 from tipoff.studies.render.table import Column, Table
+from tipoff.studies.render.uncertain import Measured
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
@@ -86,21 +88,21 @@ def tables(document: dict) -> list[Part]:
             f"{parameter}: quantity",
             "unit",
             *(Column(size, form=".5g") for size in sizes),
-            "order",
-            Column(f"± at {sizes[-1]}", form=".2g"),
+            Column("order", form=".2g"),
+            f"± at {sizes[-1]}",
             Column("GCI", "%", ".2g"),
-            Column(f"± at {factor * rows[0]['nominal_size']:.4g} {unit}", form=".2g"),
+            f"± at {factor * rows[0]['nominal_size']:.4g} {unit}",
             "method",
         )
         shown = [
             (
                 row["quantity"],
                 row["unit"],
-                *row["values"],
+                *(_rounded(row, value) for value in row["values"]),
                 row["order"],
-                row["uncertainty"],
+                _rounded(row, row["uncertainty"]),
                 row["gci_percent"],
-                row["nominal_uncertainty"],
+                _rounded(row, row["nominal_uncertainty"], row["nominal_uncertainty"]),
                 row["method"],
             )
             for row in rows
@@ -108,6 +110,12 @@ def tables(document: dict) -> list[Part]:
         notes = (_meshes(document),) if parameter == "element size" else (_METHOD,)
         found.append(Table(heads, shown, notes, dense=True))
     return found
+
+
+def _rounded(row: dict, value: float | None, uncertainty: float | None = None) -> Measured:
+    """A value of a quantity, by default with the digits that the finest size gives it."""
+    own = row["uncertainty"] if uncertainty is None else uncertainty
+    return Measured(value, own, apart=True, unit=row["unit"])
 
 
 def _meshes(document: dict) -> str:
@@ -131,7 +139,7 @@ def _changes(document: dict) -> list[Part]:
         "background": Column("between multiples", "%", ".2g", 100.0),
     }
     settled = {
-        "settled_rate_deg_s": Column("settled x, y, z", "deg/s", ".4g"),
+        "settled_rate_deg_s": Column("settled x, y, z", "deg/s", ".3f"),
         "settled_rate_change_deg_s": Column("largest change", "deg/s", ".2g"),
         "status": Column("status"),
     }

@@ -2,11 +2,12 @@
 
 from typing import TYPE_CHECKING
 
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
+from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.cost import choice, scaling_page
-from tipoff.studies.render.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
+from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Heading, Part
+from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table
 
 if TYPE_CHECKING:
@@ -14,8 +15,8 @@ if TYPE_CHECKING:
 
 _ERRORS = (
     "Condition {condition}. Errors against the finest finite-element mesh, whose uncertainty is the "
-    "band: smaller errors count as the band in the Pareto front. Right: the part of the error that "
-    "a smaller tolerance removes. Labels: model, element size, tolerance, number of modes. The cross is "
+    "band: smaller errors count as the band in the Pareto front. Below: the part of the error that "
+    "a smaller tolerance removes. Labels: model, element size, number of modes. The cross is "
     "the recommended model: the fastest surrogate within the band or 0.1 deg/s, whichever is larger."
 )
 
@@ -59,7 +60,7 @@ def terminal(document: dict) -> list[Part]:
 
 def tables(document: dict) -> list[Part]:
     """Errors and wall times of all points, and meshes with the error of each surrogate."""
-    error = Column("error", "deg/s")
+    error = Column("error", "deg/s", ".2g")
     points = [
         (
             point["model"],
@@ -76,7 +77,7 @@ def tables(document: dict) -> list[Part]:
         "numerics",
         Column("wall time", "s"),
         error,
-        Column("rate L2", "%", scale=100.0),
+        Column("rate L2", "%", ".2g", 100.0),
         Column("error of time integration", "deg/s"),
     )
     kinds = ["best" if point["pareto"] else "" for point in document["points"]]
@@ -169,13 +170,14 @@ def picture(cost: dict) -> Chart:
                 error,
                 model,
                 *style,
+                beside=("bottom right", "top right")[place % 2],
             )
-            for model, style in look.items()
+            for place, (model, style) in enumerate(look.items(), 1)
         ]
         front = [_front(cost), *_recommended(cost)] if shaded else []
         shown = [line for line in front + lines if len(line.x)]
         panels.append(Panel(title, "wall time of one run (s)", label, shown, True, shaded))
-    return Chart("cost", [panel for panel in panels if panel.lines], columns=3, height=380)
+    return Chart("cost", [panel for panel in panels if panel.lines], columns=2, height=420)
 
 
 def recommended(cost: dict) -> dict | None:
@@ -226,26 +228,17 @@ def _front(cost: dict) -> Line:
 
 
 def _cost_line(
-    points: list[dict], error: str, model: str, colour: str, marker: str, dash: str
+    points: list[dict], error: str, model: str, colour: str, marker: str, dash: str, beside: str
 ) -> Line:
-    """One model. Tolerances are labelled for compliant contact in the panel of the time
-    integration only, numbers of modes wherever they are varied."""
+    """One model, with its name at its slowest point; meshes and numbers of modes have their own labels."""
     varied = any(point["modes"] is not None for point in points)
     labels = [
-        str(point["modes"])
-        if varied
-        else point["numerics"].split(",")[0].removeprefix("tolerance ")
-        for point in points
+        str(point["modes"]) if varied else point["numerics"].split(",")[0] for point in points
     ]
-    if (
-        model != FINITE_ELEMENTS
-        and not varied
-        and (error != "integration_error_deg_s" or model != COMPLIANT)
-    ):
-        # the curve by its name, at its fastest point, where errors are shown
-        named = min(points, key=lambda point: point["wall_s"], default=None)
-        is_first = error == "error_deg_s"
-        labels = [model if is_first and point is named else "" for point in points]
+    if model != FINITE_ELEMENTS and not varied:
+        # right of the slowest point no other surrogate is in the way
+        named = max(points, key=lambda point: point["wall_s"], default=None)
+        labels = [model.split(" of ")[0] if point is named else "" for point in points]
     return Line(
         [p["wall_s"] for p in points],
         [p[error] for p in points],
@@ -255,4 +248,5 @@ def _cost_line(
         dash,
         marker=marker,
         labels=tuple(labels),
+        beside="top center" if varied or model == FINITE_ELEMENTS else beside,
     )

@@ -4,8 +4,9 @@ the time of effects."""
 import math
 
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
-from tipoff.studies.render.chart import AMBER, NAVY, VERMILION, Chart, Line, Panel
+from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Part
+from tipoff.studies.render.palette import AMBER, NAVY, VERMILION
 from tipoff.studies.render.table import Column, Noted, Table, number
 
 CAPTION = (

@@ -8,18 +8,9 @@ import numpy as np
 from tipoff.studies.droptest import judgement, power
 from tipoff.studies.droptest.results import MAGNITUDES, PAIRS
 from tipoff.studies.populations import answers, population, spread
-from tipoff.studies.render.chart import (
-    AMBER,
-    AXIS_COLOURS,
-    GREY,
-    NAVY,
-    TEAL,
-    VERMILION,
-    Chart,
-    Line,
-    Panel,
-)
+from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Fold, Notice, Part
+from tipoff.studies.render.palette import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Noted, Table, estimate, percent
 
 _DASHES = {"x": "-", "y": "--", "z": "-."}

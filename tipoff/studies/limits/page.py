@@ -9,17 +9,9 @@ from tipoff.studies.limits import certificate_page
 from tipoff.studies.limits.search import ALL, FOUND, LOST, NONE, SMALL
 from tipoff.studies.limits.within import TOGETHER
 from tipoff.studies.populations import exceedance, population
-from tipoff.studies.render.chart import (
-    AMBER,
-    GREY,
-    NAVY,
-    TEAL,
-    VERMILION,
-    Chart,
-    Line,
-    Panel,
-)
+from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Part
+from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table, estimate, span
 
 _CURVES = (

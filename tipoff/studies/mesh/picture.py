@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from tipoff.files import replacing
-from tipoff.studies.render.chart import AMBER, GREY, NAVY, TEAL, VERMILION
+from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 
 _WALLS = (VERMILION, AMBER, NAVY)  # taken in turn by surfaces that pads touch
 _LIGHT = np.array([0.35, 0.5, 0.8])

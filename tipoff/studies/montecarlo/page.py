@@ -4,18 +4,11 @@ convergence, the readings of the paper's Table 3, and both surrogates."""
 import numpy as np
 
 from tipoff.studies.populations import population
-from tipoff.studies.render.chart import (
-    AMBER,
-    GREY,
-    NAVY,
-    TEAL,
-    VERMILION,
-    Chart,
-    Line,
-    Panel,
-)
+from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
-from tipoff.studies.render.table import Column, Table, estimate, number, percent, span
+from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
+from tipoff.studies.render.table import Column, Table, estimate, percent, span
+from tipoff.studies.render.uncertain import LEAST, number, uncertain
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
 _LOOKS = {0.5: (NAVY, "-", "o"), 0.95: (VERMILION, "--", "s"), 0.99: (TEAL, "-.", "^")}
@@ -254,8 +247,7 @@ def table_of_quantities(found: dict) -> Table:
 
 
 def _name_and_sd(item: dict) -> tuple[str, str]:
-    sd = f"{number(item['sd'], '.4g')} ± {number(item['sd_error'], '.1g')}"
-    return f"{item['label']} ({item['unit']})", sd
+    return f"{item['label']} ({item['unit']})", uncertain(item["sd"], item["sd_error"])
 
 
 def _quantiles(found: dict) -> Table:
@@ -309,7 +301,7 @@ def _readings(found: dict) -> Table:
                 *(rate["sd"] for rate in axes),
                 *(estimate(quantiles[share]) for share in shares),
                 item["distance"],
-                item["chance"],
+                number(item["chance"], ".2g", LEAST),
             )
         )
     heads: tuple[Column | str, ...] = (
@@ -317,7 +309,7 @@ def _readings(found: dict) -> Table:
         *(f"sd about {axis}" for axis in "xyz"),
         *(f"total, {percent(share, 'g')} % below" for share in shares),
         "distance",
-        Column("by chance", form=".2g"),
+        "by chance",
     )
     note = _READINGS.format(cases=found["readings"][0]["cases"])
     return Table(heads, rows, (note,), dense=True)

@@ -2,8 +2,9 @@
 
 from tipoff.highfi.rail.step_cost import in_words
 from tipoff.studies.populations import population
-from tipoff.studies.render.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
+from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Part
+from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table, estimate, number, percent, span
 
 _NAMES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")

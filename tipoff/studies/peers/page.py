@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 from tipoff.files import content_hash
 from tipoff.studies.peers import stage
 from tipoff.studies.peers.case import OURS
-from tipoff.studies.render.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
+from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Heading, Part
+from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table
 
 if TYPE_CHECKING:

@@ -1,6 +1,6 @@
 """Recovery of hidden values on the page and in the terminal."""
 
-from tipoff.studies.calibration.stage import interval
+from tipoff.studies.calibration.page import constant, interval
 from tipoff.studies.render.document import Part
 from tipoff.studies.render.table import Column, Table, number
 
@@ -52,7 +52,7 @@ def draw(found: dict) -> list[Part]:
                 (
                     f"`{row['parameter']}`",
                     row["hidden"],
-                    row["found"],
+                    constant(row["found"], row["interval"]),
                     interval(row["interval"]),
                     row["unit"],
                 )

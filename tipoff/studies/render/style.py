@@ -1,27 +1,31 @@
 """The look of the page: one column, system fonts, no colour that carries meaning alone."""
 
-CSS = """
+from tipoff.studies.render import palette
+
+_PAGE = """
 :root { color-scheme: light dark; --ink: #24292f; --soft: #59636e; --rule: #d9dee3; --tint: #f5f7f9; \
 --accent: #1d3461; --paper: #fff; --warn: #fdf6ee; --good: #1a7f37; --bad: #b42318; }
-@media (prefers-color-scheme: dark) {
+@media screen and (prefers-color-scheme: dark) {
   :root { --ink: #e6e8eb; --soft: #a3adb8; --rule: #39424c; --tint: #1d242c; --accent: #9db8ea; \
 --paper: #13181e; --warn: #2b2115; --good: #4ac26b; --bad: #ff8a80; }
-  .js-plotly-plot, .plotly-graph-div, main img { background: #fff; border-radius: 6px; }
+  main img { background: #fff; border-radius: 6px; }
 }
 html { scroll-padding-top: 84px; }
 * { box-sizing: border-box; }
 body { margin: 0; color: var(--ink); background: var(--paper); \
 font: 16px/1.55 system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif; }
-main, header { max-width: 1240px; margin: 0 auto; padding: 0 28px; }
-header { padding-top: 40px; }
+main, header { max-width: 1440px; margin: 0 auto; padding: 0 28px; }
+header { padding-top: 26px; }
 h1 { font-size: 30px; line-height: 1.2; margin: 0 0 6px; letter-spacing: -0.01em; }
 h2 { font-size: 21px; margin: 52px 0 12px; padding-top: 14px; border-top: 2px solid var(--accent); }
-h3 { font-size: 16px; margin: 26px 0 8px; }
-p { max-width: 78ch; margin: 8px 0; }
+h3 { font-size: 16px; margin: 22px 0 8px; }
+main > section:first-child > h2 { margin-top: 20px; border: 0; padding: 0; }
+main > h2.part + section > h2 { margin-top: 20px; }
+p { max-width: 78ch; margin: 8px 0; } li { max-width: 120ch; }
 .lead { font-size: 18px; color: var(--soft); }
 .caption { color: var(--soft); font-size: 14px; max-width: 92ch; }
 nav { position: sticky; top: 0; z-index: 5; background: var(--paper); border-bottom: 1px solid var(--rule); \
-font-size: 13px; padding: 6px max(28px, calc((100% - 1184px) / 2)); max-height: 30vh; overflow-y: auto; }
+font-size: 13px; padding: 6px max(28px, calc((100% - 1384px) / 2)); max-height: 30vh; overflow-y: auto; }
 nav b { color: var(--soft); font-weight: 600; margin-right: 10px; }
 nav span { display: inline-block; margin-right: 18px; }
 nav a { margin-right: 10px; white-space: nowrap; }
@@ -42,19 +46,20 @@ table.dense { font-size: 13px; } .dense td:last-child { min-width: 190px; } \
 tbody tr:nth-child(even) { background: var(--tint); }
 table.judged td:last-child, table.judged th:last-child { position: sticky; right: 0; background: var(--paper); \
 box-shadow: -1px 0 0 var(--rule); }
+table.judged tbody tr:nth-child(even) td:last-child { background: var(--tint); }
 tr.good td:last-child::before { color: var(--good); content: "\\2713\\00a0"; }
-tr.bad td:last-child { font-weight: 600; }
+tr.bad td:last-child, tr.best td { font-weight: 600; }
 tr.bad td:last-child::before { color: var(--bad); content: "\\2717\\00a0"; }
 tr.doubt td:last-child { font-style: italic; }
 .none { color: #9aa1a9; }
 .small { color: var(--soft); font-size: 12px; }
-.figures { display: flex; flex-wrap: wrap; gap: 14px; margin: 18px 0; }
-.figures div { border: 1px solid var(--rule); border-radius: 6px; padding: 10px 16px; min-width: 150px; }
-.figures b { display: block; font-size: 22px; font-variant-numeric: tabular-nums; }
-.figures span { color: var(--soft); font-size: 13px; }
+.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(180px, 1fr)); gap: 12px; margin: 14px 0; }
+.figures div { border: 1px solid var(--rule); border-radius: 6px; padding: 8px 14px; }
+.figures b { display: block; font-size: 20px; line-height: 1.25; font-variant-numeric: tabular-nums; }
+.figures span { display: block; color: var(--soft); font-size: 13px; line-height: 1.4; }
 .notice { border-left: 4px solid #b4540a; background: var(--warn); padding: 8px 14px; margin: 12px 0; max-width: 92ch; }
 .absent { border-left: 4px solid var(--rule); padding: 6px 14px; color: var(--soft); }
-img { max-width: 100%; height: auto; }
+img, svg.picture { max-width: 100%; height: auto; } svg.picture { fill: currentColor; }
 details { margin: 10px 0; } summary { cursor: pointer; color: var(--accent); }
 footer { max-width: 1240px; margin: 60px auto 40px; padding: 0 28px; color: var(--soft); font-size: 13px; }
 .drawing { display: flex; flex-wrap: wrap; gap: 14px; }
@@ -68,7 +73,7 @@ footer { max-width: 1240px; margin: 60px auto 40px; padding: 0 28px; color: var(
 .drawing .shift { stroke: #2e8b7a; stroke-width: 2.4; stroke-dasharray: 5 3; }
 @media (max-width: 700px) {
   main, header { padding: 0 14px; } header { padding-top: 20px; } h1 { font-size: 24px; }
-  nav { padding: 6px 14px; max-height: 74px; } .figures { display: block; } .figures div { margin: 8px 0; }
+  nav { padding: 6px 14px; max-height: 98px; } .figures { display: block; } .figures div { margin: 8px 0; }
   .drawing { display: block; } .js-plotly-plot { overflow-x: auto; }
 }
 @page { size: A4 landscape; margin: 12mm; }
@@ -77,9 +82,10 @@ footer { max-width: 1240px; margin: 60px auto 40px; padding: 0 28px; color: var(
   body { font-size: 10pt; } main, header, footer { max-width: none; padding: 0; } nav { display: none; }
   h2, h3 { break-after: avoid; } tr, img, .plotly-graph-div, .drawing, .figures { break-inside: avoid; }
   .wide { overflow: visible; } table { width: 100%; font-size: 8pt; } table.dense { font-size: 6.5pt; }
-  th, td, table.dense th, table.dense td { padding: 2px 4px 2px 2px; overflow-wrap: anywhere; }
-  td.number { white-space: normal; } .dense td:last-child { min-width: 0; }
+  th, td, table.dense th, table.dense td { padding: 2px 4px 2px 2px; }
+  details td.number { white-space: normal; overflow-wrap: anywhere; } .dense td:last-child { min-width: 0; }
   table.judged td:last-child, table.judged th:last-child { position: static; box-shadow: none; }
   .plotly-graph-div { zoom: 0.78; }
 }
 """
+CSS = palette.css() + _PAGE

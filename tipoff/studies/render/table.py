@@ -11,7 +11,8 @@ from typing import Any
 from jinja2 import Environment
 from markupsafe import Markup, escape
 
-_NOTHING = "–"
+from tipoff.studies.render.uncertain import LEAST, NOTHING, STEPS, Measured, number, rounded
+from tipoff.studies.render.uncertain import uncertain as with_uncertainty
 
 
 @dataclass(frozen=True)
@@ -19,7 +20,8 @@ class Column:
     """Head of a column, and how the numbers below it are shown.
 
     ``unit`` stands in brackets behind the ``title``. A number is multiplied by ``scale`` and shown
-    in ``form``, a format of Python; a whole number is shown as it is.
+    in ``form``, a format of Python, without digits below the smallest step of its unit; a whole
+    number is shown as it is.
     """
 
     title: str
@@ -31,6 +33,56 @@ class Column:
     def head(self) -> str:
         """Title and unit."""
         return f"{self.title} ({self.unit})" if self.unit else self.title
+
+    @property
+    def least(self) -> float:
+        """The smallest step that is shown; 0 where the unit has none. The unit may stand in brackets
+        at the end of the title."""
+        return STEPS.get(self.unit or _unit(self.title), 0.0)
+
+    def text(self, value: float) -> str:
+        """A number as text."""
+        return number(self.scale * value, self.form, self.least)
+
+    def of_row(self, row: Sequence[Any]) -> "Column":
+        """The column as it is in a row: without a unit it has that of the row, which stands in
+        brackets at the end of its first cell."""
+        if self.least or self.unit or not row or not (unit := _unit(row[0])):
+            return self
+        return _InRow(self.title, self.unit, self.form, self.scale, STEPS.get(unit, 0.0))
+
+    def measured(self, cell: Measured) -> str:
+        """A number, or several, rounded to their uncertainty."""
+        if isinstance(cell.value, (list, tuple)):
+            parts = (Measured(part, cell.uncertainty, cell.apart) for part in cell.value)
+            return ", ".join(map(self.measured, parts))
+        if cell.value is None:
+            return NOTHING
+        value = self.scale * cell.value
+        error = None if cell.uncertainty is None else abs(self.scale) * cell.uncertainty
+        least = self.least or STEPS.get(cell.unit) or LEAST * (error or 0.0)
+        if error is None or not least:
+            return number(value, self.form, least)
+        if cell.apart:
+            return rounded(value, error, least, "+" if self.form.startswith("+") else "")
+        return with_uncertainty(value, error, least)
+
+
+@dataclass(frozen=True)
+class _InRow(Column):
+    """A column in a row that has a unit; ``own`` is the smallest step of that unit."""
+
+    own: float = 0.0
+
+    @property
+    def least(self) -> float:
+        return self.own
+
+
+def _unit(text: Any) -> str:
+    """The unit in brackets at the end of a text; empty without one."""
+    found = re.search(r"\(([^()]+)\)$", text) if isinstance(text, str) else None
+    return found[1] if found else ""
 
 
 @dataclass(frozen=True)
@@ -45,8 +97,9 @@ class Noted:
 class Table:
     """``columns`` by title or as records, and ``rows`` of cells.
 
-    A cell is a number, a sequence of numbers, text, yes or no, None or ``Noted``. ``title`` is the
-    paragraph above the table, ``notes`` are those below it; ``name`` is the id on the page.
+    A cell is a number, a sequence of numbers, text, yes or no, None, ``Noted`` or ``Measured``.
+    ``title`` is the paragraph above the table, ``notes`` are those below it; ``name`` is the id on
+    the page.
     ``kinds`` holds for each row "good", "bad", "doubt", "best" or "". Words between backticks are
     code.
     """
@@ -65,47 +118,45 @@ class Table:
         return [column.head for column in _records(self)]
 
 
-def number(value: float | None, form: str = ".3g") -> str:
-    """``value`` in a format of Python, without a power of ten below a million; None is a dash."""
-    if value is None:
-        return _NOTHING
-    shown = format(value, form)
-    if form.endswith("g") and "e+" in shown and abs(value) < 1e6:
-        return format(value, form.partition(".")[0] + ".0f")
-    return shown
-
-
 def percent(value: float | None, form: str = ".3g") -> str:
     """A fraction as a number of percent."""
-    return number(None if value is None else 100.0 * value, form)
+    return number(None if value is None else 100.0 * value, form, STEPS["%"])
 
 
 def span(low: float | None, high: float | None, form: str = ".3g") -> str:
     """From ``low`` to ``high``; a dash where both are missing."""
     return (
-        _NOTHING if low is None and high is None else f"{number(low, form)} to {number(high, form)}"
+        NOTHING if low is None and high is None else f"{number(low, form)} to {number(high, form)}"
     )
 
 
 def estimate(row: dict, form: str = ".3g") -> Any:
-    """The ``value`` of a row, with its bounds ``low`` and ``high`` as a remark where it has one."""
-    if row["low"] is None and row["high"] is None:
+    """The ``value`` of a row, with its bounds ``low`` and ``high`` as a remark where it has one; all
+    rounded to half the width between both bounds."""
+    low, high = row["low"], row["high"]
+    if low is None and high is None:
         return row["value"]
-    return Noted(row["value"], span(row["low"], row["high"], form))
+    if low is None or high is None or high <= low:
+        return Noted(row["value"], span(low, high, form))
+    half = 0.5 * (high - low)
+    bounds = (rounded(bound, half, LEAST * half) for bound in (low, high))
+    return Noted(Measured(row["value"], half, apart=True), " to ".join(bounds))
 
 
 def plain(value: Any, column: Column = Column("")) -> str:
     """A cell as text."""
     if value is None:
-        return _NOTHING
+        return NOTHING
     if isinstance(value, Noted):
         return f"{plain(value.value, column)} ({value.remark})"
+    if isinstance(value, Measured):
+        return column.measured(value)
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, Integral):
         return f"{value:,}"
     if isinstance(value, Real):
-        return number(column.scale * float(value), column.form)
+        return column.text(float(value))
     if isinstance(value, (list, tuple)):
         return ", ".join(plain(part, column) for part in value)
     return str(value)
@@ -157,7 +208,7 @@ def _widths(columns: Sequence[Sequence[str]], limit: int) -> list[int]:
 def html(table: Table) -> Markup:
     """The table with its title and notes as HTML; all text is escaped."""
     rows = [
-        (kind, [_cell(value, column) for value, column in zip(row, _records(table))])
+        (kind, [_cell(value, column.of_row(row)) for value, column in zip(row, _records(table))])
         for row, kind in zip(table.rows, _kinds(table))
     ]
     judged = bool({"good", "bad", "doubt"} & set(table.kinds))
@@ -173,6 +224,7 @@ def inline(text: str) -> Markup:
 
 
 _POWER = re.compile(r"(?<=\d)e([+-]\d\d+)\b")
+_NUMBER = re.compile(r"[+-]?<?\d|–")
 _CODE = re.compile("`([^`]+)`")
 _ENVIRONMENT = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
 _ENVIRONMENT.filters["inline"] = inline
@@ -207,7 +259,8 @@ def _kinds(table: Table) -> Sequence[str]:
 
 def _texts(table: Table) -> list[list[str]]:
     return [
-        [plain(value, column) for value, column in zip(row, _records(table))] for row in table.rows
+        [plain(value, column.of_row(row)) for value, column in zip(row, _records(table))]
+        for row in table.rows
     ]
 
 
@@ -223,11 +276,11 @@ def _cell(value: Any, column: Column) -> tuple[bool, Markup]:
         right, shown = _cell(value.value, column)
         return right, shown + Markup(' <span class="small">{}</span>').format(inline(value.remark))
     if value is None:
-        return True, Markup(f'<span class="none">{_NOTHING}</span>')
+        return True, Markup(f'<span class="none">{NOTHING}</span>')
     text = plain(value, column)
     return not isinstance(value, bool) and _numeric(text), inline(text)
 
 
 def _numeric(text: str) -> bool:
     """Whether a cell is a number with little text, such as a unit, behind it."""
-    return text[:1] in tuple("+-0123456789–") and len(re.findall("[A-Za-z]", text)) <= 6
+    return bool(_NUMBER.match(text)) and len(re.findall("[A-Za-z]", text)) <= 6

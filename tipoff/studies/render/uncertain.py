@@ -1,9 +1,54 @@
-"""Numbers rounded to their uncertainty: no digit stands that the uncertainty makes meaningless."""
+"""Numbers as text, rounded to their uncertainty: no digit stands that the uncertainty makes
+meaningless, and none below the smallest step that has a meaning in its unit."""
 
 import math
+from dataclasses import dataclass
+from typing import Any
 
-_NOTHING = "–"
-LEAST = 1e-3  # the smallest step that is shown, in the unit of the value
+NOTHING = "–"
+LEAST = 1e-3  # the smallest step that is shown where no unit says otherwise
+# The smallest step (in the unit) that has a meaning in this field. A gyroscope of a payload reads
+# 0.001 deg/s at best; no gate of an agreement is below 0.1 %.
+STEPS = {
+    "deg/s": LEAST,
+    "deg/s per µm": LEAST,
+    "deg": LEAST,
+    "%": LEAST,
+    "margins": LEAST,
+    "m/s": 1e-4,
+    "mm/s": LEAST,
+    "MPa": LEAST,
+}
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A ``value``, or a sequence of values, with the ``uncertainty`` to which it is rounded (same
+    unit, None if not known). Where ``apart``, the uncertainty stands in a cell of its own."""
+
+    value: Any
+    uncertainty: float | None
+    apart: bool = False
+    unit: str = ""  # where its column has none
+
+
+def number(value: float | None, form: str = ".3g", least: float = 0.0) -> str:
+    """``value`` in a format of Python, without a power of ten below a million and without digits
+    below ``least``; "<0.001" for a smaller one. None is a dash."""
+    if value is None:
+        return NOTHING
+    if value == 0.0:
+        return format(0.0, form.removeprefix("+"))
+    if not math.isfinite(value):
+        return format(value, form)
+    if least and 0.0 < value < 0.5 * least and not form.startswith("+"):
+        return f"<{least:g}"
+    shown = format(value, form)
+    if least and form.endswith("g") and _shown_decimals(shown) > _decimals(least):
+        return _fixed(value, _decimals(least), "+" if form.startswith("+") else "")
+    if form.endswith("g") and "e+" in shown and abs(value) < 1e6:
+        return format(value, form.partition(".")[0] + ".0f")
+    return shown
 
 
 def uncertain(value: float | None, uncertainty: float | None = None, least: float = LEAST) -> str:
@@ -11,13 +56,27 @@ def uncertain(value: float | None, uncertainty: float | None = None, least: floa
     where the first is a one. Digits below ``least`` are left out; without an uncertainty they are
     the only ones. None is a dash."""
     if value is None:
-        return _NOTHING
+        return NOTHING
+    shown = rounded(value, uncertainty, least)
     if uncertainty is None:
-        return _fixed(value, _decimals(least))
-    if uncertainty < 0.5 * least:
-        return f"{_fixed(value, _decimals(least))} ± <{least:g}"
-    decimals = min(_decimals(uncertainty), _decimals(least))
-    return f"{_fixed(value, decimals)} ± {_fixed(uncertainty, decimals)}"
+        return shown
+    if uncertainty == 0.0:
+        return f"{shown} ± <{least:g}"
+    return f"{shown} ± {rounded(uncertainty, uncertainty, least)}"
+
+
+def rounded(
+    value: float | None, uncertainty: float | None, least: float = LEAST, sign: str = ""
+) -> str:
+    """``value`` alone, with the digits that ``uncertain`` gives it; "<0.001" for a smaller one.
+    ``sign`` "+" signs a positive one too. None is a dash."""
+    if value is None:
+        return NOTHING
+    if uncertainty is None or uncertainty < 0.5 * least:
+        if 0.0 < value < 0.5 * least and not sign:
+            return f"<{least:g}"
+        return _fixed(value, _decimals(least), sign)
+    return _fixed(value, min(_decimals(uncertainty), _decimals(least)), sign)
 
 
 def _decimals(uncertainty: float) -> int:
@@ -27,6 +86,11 @@ def _decimals(uncertainty: float) -> int:
     return (1 if 1.0 < leading < 1.95 else 0) - exponent
 
 
-def _fixed(value: float, decimals: int) -> str:
-    rounded = round(value, decimals) + 0.0  # no minus zero
-    return f"{rounded:,.{max(decimals, 0)}f}"
+def _shown_decimals(shown: str) -> int:
+    mantissa, _, exponent = shown.partition("e")
+    return len(mantissa.partition(".")[2]) - int(exponent or 0)
+
+
+def _fixed(value: float, decimals: int, sign: str = "") -> str:
+    shown = round(value, decimals) + 0.0  # no minus zero
+    return f"{shown:{sign if shown else ''},.{max(decimals, 0)}f}"

@@ -2,19 +2,21 @@
 the user's limits, agreement and speed-up, and how far the answer can be trusted."""
 
 import math
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+import re
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup
 
 from tipoff.scenes import provenance
+from tipoff.scenes.overrides import is_drop
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.page import counts
 from tipoff.studies.populations.exceedance import TOTAL, Limit
 from tipoff.studies.render.document import Bullets, Heading, KeyFigures, Part
-from tipoff.studies.render.table import Column, Table, number
-from tipoff.studies.render.uncertain import uncertain
-from tipoff.studies.report import inputs
+from tipoff.studies.render.table import Column, Table
+from tipoff.studies.render.uncertain import LEAST, STEPS, Measured, number, rounded, uncertain
+from tipoff.studies.report import drawing, inputs
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
@@ -22,25 +24,31 @@ if TYPE_CHECKING:
 _NOTE = (
     "Means over 2 ms after exit and burnout, by the finite elements. Velocity in the initial scene "
     "axes; rates inertial, in payload body axes: roll about X, transverse across it. ±: the largest "
-    "uncertainty of the reference by mesh, step and contact cells. By hand: moment impulse over "
-    "inertia, where nothing or one pad touches."
+    "uncertainty of the reference by mesh, step and contact cells."
+)
+_HAND_NOTE = (
+    "By hand: the same two rates of a rigid payload from the moment impulse of the thrust over the "
+    "inertia, where no pad touches. Where one pad touches, with the impulse of its force. Both must be "
+    "near the finite elements; left out is the gyroscopic moment."
 )
 
 
 def draw(page: "Page") -> list[Part]:
-    """Key figures, one row a condition, and what the answer rests on."""
+    """Key figures, what the answer rests on, the launcher with its axes, and one row a condition."""
     rows = page.rows()["highfi"]
     if not rows:
-        return [page.missing("highfi", "highfi")]
+        return [page.missing("highfi", "highfi"), drawing.launcher(page.scene)]
     compared = {
         row["condition"]: row
         for row in (page.documents.get("agreement") or {}).get("compliant", [])
     }
     return [
-        KeyFigures([*_largest(rows, compared), *_limits(rows, page.limits), *_models(page)]),
-        _conditions(page, rows, compared),
+        KeyFigures(_figures(page, rows, compared)),
         Heading("How far it can be trusted"),
         Bullets([*_numerics(compared), *_model(page, compared), *_inputs(page, compared)]),
+        drawing.launcher(page.scene),
+        Heading("Every condition"),
+        _conditions(page, rows, compared),
     ]
 
 
@@ -50,13 +58,39 @@ def transverse(settled: dict) -> float:
 
 
 def above(settled: dict, limits: Sequence[Limit]) -> list[str]:
-    """The limits that the rates of a condition are above, as text."""
+    """The axes of the limits that the rates of a condition are above."""
     rates = settled["rate_deg_s"]
     return [
-        limit.words
+        limit.axis
         for limit in limits
         if (math.hypot(*rates) if limit.axis == TOTAL else abs(rates["xyz".index(limit.axis)]))
         > limit.deg_s
+    ]
+
+
+def _figures(page: "Page", rows: list[dict], compared: dict[str, dict]) -> list[tuple[str, str]]:
+    rates = [*_speed(page, rows), *_largest(rows, compared)]
+    return [*rates, *_limits(rows, page.limits), *_models(page)]
+
+
+def _speed(page: "Page", rows: list[dict]) -> list[tuple[str, str]]:
+    """v_x over all conditions, with its uncertainty where the error of the reference was studied."""
+    speeds = [row["settled"]["velocity_m_s"][0] for row in rows if row["settled"]]
+    if not speeds:
+        return []
+    low, high = (uncertain(speed, least=STEPS["m/s"]) for speed in (min(speeds), max(speeds)))
+    studied = page.documents.get("convergence") or {}
+    known = [
+        row["nominal_uncertainty"]
+        for row in studied.get("quantities", [])
+        if row["quantity"] == "settled axial velocity" and row["nominal_uncertainty"] is not None
+    ]
+    shown = low if low == high else f"{low} to {high}"
+    if not known:
+        return [(shown, "v_x (m/s), uncertainty not measured (tipoff convergence)")]
+    error = rounded(max(known), max(known), STEPS["m/s"])
+    return [
+        (shown, f"v_x (m/s), each ± {error} by mesh and step, measured on {studied['condition']}")
     ]
 
 
@@ -64,20 +98,27 @@ def _largest(rows: list[dict], compared: dict[str, dict]) -> list[tuple[str, str
     settled = {row["condition"]: row["settled"] for row in rows if row["settled"]}
     if not settled:
         return [("–", "no condition settled")]
-    speeds = [found["velocity_m_s"][0] for found in settled.values()]
-    low, high = f"{min(speeds):.4g}", f"{max(speeds):.4g}"
-    figures = [(low if low == high else f"{low} to {high}", "v_x (m/s)")]
+    figures = []
     measures = {
         "largest transverse rate (deg/s)": transverse,
         "largest roll rate (deg/s)": lambda found: abs(found["rate_deg_s"][0]),
     }
     for words, measure in measures.items():
-        name = max(settled, key=lambda name: measure(settled[name]))
-        value = uncertain(measure(settled[name]), _uncertainty(compared.get(name)))
-        figures.append((value, f"{words}: {name}"))
+
+        def shown(names: Iterable[str], measure=measure) -> tuple[str, str]:
+            name = max(names, key=lambda name: measure(settled[name]))
+            return uncertain(measure(settled[name]), _uncertainty(compared.get(name))), name
+
+        value, name = shown(settled)
+        sure = [one for one in settled if compared.get(one, {}).get("reference_converged", True)]
+        words = f"{words}: {name}"
+        if name not in sure:
+            words += ", not converged"
+            words += "; of the converged ones {} ({})".format(*shown(sure)) if sure else ""
+        figures.append((value, words))
     name = max(settled, key=lambda name: settled[name]["direction_error_deg"])
     off = settled[name]["direction_error_deg"]
-    return [*figures, (f"{off:.2g}", f"largest angle off axis (deg): {name}")]
+    return [*figures, (number(off, ".2g", LEAST), f"largest angle off axis (deg): {name}")]
 
 
 def _uncertainty(row: dict | None) -> float | None:
@@ -91,7 +132,8 @@ def _limits(rows: list[dict], limits: Sequence[Limit]) -> list[tuple[str, str]]:
     failed = [
         row["condition"] for row in rows if not row["settled"] or above(row["settled"], limits)
     ]
-    words = f"limits {asked}" + (f": above in {', '.join(failed)}" if failed else "")
+    where = f"all {len(rows)} conditions" if len(failed) == len(rows) else ", ".join(failed)
+    words = f"limits: {asked}" + (f"; above or not settled: {where}" if failed else "")
     return [("fail" if failed else "pass", words)]
 
 
@@ -117,9 +159,9 @@ def _conditions(page: "Page", rows: list[dict], compared: dict[str, dict]) -> Ta
         Column(Markup("v<sub>x</sub> (m/s)"), form=".4f"),
         "roll rate (deg/s)",
         "transverse rate (deg/s)",
-        *(["by hand x, y, z (deg/s)"] if _by_hand(rows) else []),
+        *(["by hand: roll, transverse (deg/s)"] if _by_hand(rows) else []),
         Column("off axis", "deg", ".2g"),
-        "surrogate error (deg/s)",
+        Column("surrogate error", "deg/s"),
         *(["limits"] if page.limits else []),
         "verdict",
     )
@@ -133,13 +175,15 @@ def _conditions(page: "Page", rows: list[dict], compared: dict[str, dict]) -> Ta
                 *(_rates(settled, _uncertainty(other)) if settled else [None] * 3),
                 *([_hand(row)] if _by_hand(rows) else []),
                 settled and settled["direction_error_deg"],
-                uncertain(other["settled_rate_error_deg_s"]) if other else None,
+                other
+                and Measured(other["settled_rate_error_deg_s"], other["floor_deg_s"], apart=True),
                 *([_words(settled, page.limits)] if page.limits else []),
                 other["verdict"] if other else row["status"],
             ]
         )
         kinds.append(_kind(other))
-    return Table(columns, found, notes=(_NOTE,), kinds=kinds, name="answer-table")
+    notes = (_NOTE, *([_HAND_NOTE] if _by_hand(rows) else []))
+    return Table(columns, found, notes=notes, kinds=kinds, name="answer-table")
 
 
 def _rates(settled: dict, uncertainty: float | None) -> list:
@@ -156,15 +200,16 @@ def _by_hand(rows: list[dict]) -> bool:
 
 
 def _hand(row: dict) -> str | None:
-    """Moment impulse over inertia, where nothing or one pad touches."""
+    """Roll and transverse rate from moment impulse over inertia, where nothing or one pad touches."""
     found = row.get("by_hand")
-    return found and ", ".join(map(uncertain, found["rate_deg_s"]))
+    return found and f"{uncertain(found['rate_deg_s'][0])}, {uncertain(transverse(found))}"
 
 
 def _words(settled: dict | None, limits: Sequence[Limit]) -> str:
     if settled is None:
         return "✗ not settled"
-    return f"✗ {', '.join(over)}" if (over := above(settled, limits)) else "✓ pass"
+    over = above(settled, limits)
+    return f"✗ {', '.join(over)}".replace(" ", "\u00a0") if over else "✓ pass"
 
 
 def _kind(row: dict | None) -> str:
@@ -176,12 +221,25 @@ def _kind(row: dict | None) -> str:
 
 def stated(page: "Page", name: str) -> str:
     """What a condition changes in the scene."""
-    changes = page.scene.conditions.get(name, {})
-    short = {
-        key.rpartition(".")[0].rpartition(".")[2] + " " + key.rpartition(".")[2]: value
-        for key, value in changes.items()
-    }
-    return ", ".join(f"{key.strip()} {value}" for key, value in short.items()) or "the scene itself"
+    found: dict[str, list[str]] = {}
+    for key, value in page.scene.conditions.get(name, {}).items():
+        table_, _, last = key.rpartition(".")
+        if is_drop(value):
+            found[f"no {last.replace('_', ' ')}"] = []
+            continue
+        table_ = table_.rpartition(".")[2].replace("_", " ")
+        found.setdefault(table_, []).append(f"{last.replace('_', ' ')} {_readable(value)}")
+    parts = [f"{table_} {', '.join(values)}".strip() for table_, values in found.items()]
+    return "; ".join(parts) or "the scene itself"
+
+
+def _readable(value: Any) -> str:
+    """A value of an override: numbers of at most four digits."""
+    text = _LONG.sub(lambda found: f"{float(found[0]):.4g}", str(value))
+    return re.sub(r"\bum\b", "µm", text)
+
+
+_LONG = re.compile(r"\d+\.\d{5,}(?![\d.eE])")
 
 
 def _numerics(compared: dict[str, dict]) -> list[str]:
@@ -193,7 +251,7 @@ def _numerics(compared: dict[str, dict]) -> list[str]:
     name = max(known, key=lambda name: known[name])
     open_ = [name for name, row in compared.items() if not row["reference_converged"]]
     return [
-        f"numerics: mesh, step and contact cells leave at most {number(known[name], '.2g')} deg/s "
+        f"numerics: mesh, step and contact cells leave at most {number(known[name], '.2g', LEAST)} deg/s "
         f"({name}) uncertain in the reference"
         + (f"; it is not converged on {', '.join(open_)}" if open_ else "")
     ]
@@ -208,7 +266,7 @@ def _model(page: "Page", compared: dict[str, dict]) -> list[str]:
     chaotic = [row for row in compared.values() if row["judged_as"] == verdicts.DISTRIBUTION]
     alike = sum(row["judgement"] == verdicts.AS_DISTRIBUTION for row in chaotic)
     found = (
-        f"model: where one run can be judged, the surrogate is within {number(max(errors), '.2g')} "
+        f"model: where one run can be judged, the surrogate is within {number(max(errors), '.2g', LEAST)} "
         "deg/s of the finite elements; "
         if errors
         else "model: no single run can be judged against the finite elements; "
@@ -226,7 +284,7 @@ def _inputs(page: "Page", compared: dict[str, dict]) -> list[str]:
         assumed += text.startswith("assumed") or (was_stated and not text)
     floors = [row["floor_deg_s"] for row in compared.values() if row["floor_deg_s"] is not None]
     moved = (
-        f"; 1 µm of clearance moves a rate by up to {number(max(floors), '.2g')} deg/s"
+        f"; 1 µm of clearance moves a rate by up to {number(max(floors), '.2g', LEAST)} deg/s"
         if floors
         else ""
     )
@@ -238,6 +296,6 @@ def _inputs(page: "Page", compared: dict[str, dict]) -> list[str]:
     if interface:
         moved += (
             f"; a quarter or four times the interface stiffness by up to "
-            f"{number(max(interface), '.2g')} deg/s"
+            f"{number(max(interface), '.2g', LEAST)} deg/s"
         )
     return [f"inputs: {assumed} of {every} values are assumed or have no origin{moved}"]

@@ -128,7 +128,7 @@ def _side(scene: Scene) -> list[str]:
         view.box("pad", (x - 0.5 * length, inner[0]), (x + 0.5 * length, inner[1]))
     tip = view.point(-arm, 0.0)
     view.arrow((tip[0] - 56.0, tip[1]), tip, "thrust")
-    view.text((tip[0] - 30.0, tip[1] - 8.0), "thrust")
+    view.text((tip[0] - 30.0, tip[1] - 14.0), "thrust")
     origin = view.point(0.0, 0.0)
     view.arrow(origin, (origin[0] + 60.0, origin[1]))
     view.text((origin[0] + 70.0, origin[1] + 4.0), "X")
@@ -136,15 +136,23 @@ def _side(scene: Scene) -> list[str]:
     view.text((origin[0] + 10.0, origin[1] - 38.0), "Y")
     corner = view.point(scene.rail.end, b + wall)
     view.text((corner[0], corner[1] - 26.0), "open end")
-    words = "rails, pads (orange)"
-    view.text(
-        (_EDGE, 20.0),
-        f"From the side: {words}" + (", mounts (outside)" if _mounts(scene) else ""),
-        "start",
-    )
+    _names(view, scene, b, wall)
+    view.text((_EDGE, 20.0), "From the side", "start")
     travel = 1e3 * (scene.rail.end - scene.rail.start)
     view.text((0.5 * _WIDTH, _HEIGHT - 14.0), f"rail {travel:.4g} mm, payload {2e3 * a:.4g} mm")
     return view.shapes
+
+
+def _names(view: _View, scene: Scene, half: float, wall: float) -> None:
+    """The names of the parts beside one of each: rail, mount, pad."""
+    end = view.point(scene.rail.end, -half - wall)
+    view.text((end[0] + 5.0, end[1] + 15.0), "rail", "start")
+    for low, high in _mounts(scene)[:1]:
+        place = view.point(0.5 * (low + high), -half - 2.2 * wall)
+        view.text((place[0], place[1] + 15.0), "mount (fixed)")
+    pad = min(scene.pads, key=lambda pad: (-pad.position[0], pad.position[1]))
+    place = view.point(pad.position[0], -half)
+    view.text((place[0], place[1] - 16.0), "pad")
 
 
 def _end(scene: Scene) -> list[str]:

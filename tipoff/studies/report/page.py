@@ -15,10 +15,11 @@ from tipoff.studies.core import machine
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.registry import sections
 from tipoff.studies.render import document
-from tipoff.studies.render.chart import Chart, Picture, to_files, to_html
+from tipoff.studies.render.chart import Chart, Picture, to_files
 from tipoff.studies.render.document import Caption, Missing, Notice, Part
+from tipoff.studies.render.interactive import to_html
 from tipoff.studies.render.table import Table
-from tipoff.studies.report import answer, drawing, inputs, template
+from tipoff.studies.report import answer, inputs, template
 from tipoff.studies.report.promises import promises, table
 from tipoff.studies.report.template import Drawn, Group
 from tipoff.studies.runs.figures import Runs
@@ -116,7 +117,9 @@ class Page:
             return []
         names = ", ".join(dict.fromkeys(self._missing))
         return [
-            Missing(f"Not made: {names}. `{self._command('NAME')}` makes the one of this NAME.")
+            Missing(
+                f"Not made: {names}. `{self.command('NAME')}` makes the one whose name replaces NAME."
+            )
         ]
 
     def _drawn(self, anchor: str, link: str, title: str, parts: Sequence[Part]) -> Drawn:
@@ -134,9 +137,9 @@ class Page:
         if reason := self.problems.get(stage):
             return Notice(reason)
         self._missing.append(target)
-        return Missing(f"No result yet. `{self._command(target)}` makes it.")
+        return Missing(f"No result yet. `{self.command(target)}` makes it.")
 
-    def _command(self, name: str) -> str:
+    def command(self, name: str) -> str:
         """The command ``name`` for this scene and folder, as the user would type it."""
         scene, out = map(shlex.quote, (self.scene.origin, str(self.folder.parent)))
         return f"tipoff {name} --scene {scene} --out {out}"
@@ -163,7 +166,7 @@ class Page:
             f"Implausible: {warning}" for warning in plausibility.of_all_conditions(self.scene)
         ]
         warnings += [f"{stage}: {reason}" for stage, reason in self.problems.items()]
-        return [*answer.draw(self), drawing.launcher(self.scene), *map(Notice, warnings)]
+        return [*map(Notice, warnings), *answer.draw(self)]
 
     def _colophon(self) -> list[Part]:
         here = machine.describe()

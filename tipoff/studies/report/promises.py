@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from tipoff.mechanics.promises import FINITE_ELEMENTS, RIGID
 from tipoff.studies.core.words import counted
-from tipoff.studies.render.table import Table
+from tipoff.studies.render.table import Table, number
 
 
 class Promise(NamedTuple):
@@ -67,7 +67,7 @@ def _check(name: str, rows: list[dict], limit: float, words: str) -> Promise:
     worst, where = _worst(rows, name)
     return Promise(
         words,
-        "not reported" if worst is None else f"{worst:.2e} ({where})",
+        "not reported" if worst is None else f"{number(worst, '.2g')} ({where})",
         f"{limit:g}",
         worst is not None and worst <= limit,
     )
@@ -122,7 +122,7 @@ def _friction(rows: list[dict]) -> Promise | None:
         if worst is None
         else Promise(
             "friction never gives energy back",
-            f"{worst + 0.0:.2e} W ({where})",
+            f"{number(worst, '.2g')} W ({where})",
             "0 W",
             worst <= 0.0,
         )

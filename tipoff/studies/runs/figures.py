@@ -1,5 +1,6 @@
 """Figures of the trajectories of both models."""
 
+import math
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import NamedTuple
@@ -11,17 +12,8 @@ from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.scene import Scene
 from tipoff.studies.convergence.contact_loads import by_pad
-from tipoff.studies.render.chart import (
-    AMBER,
-    AXIS_COLOURS,
-    GREY,
-    NAVY,
-    TEAL,
-    VERMILION,
-    Chart,
-    Line,
-    Panel,
-)
+from tipoff.studies.render.chart import Chart, Line, Panel
+from tipoff.studies.render.palette import AMBER, AXIS_COLOURS, GREY, INK, NAVY, TEAL, VERMILION
 
 _MILLISECONDS = "time after ignition (ms)"
 
@@ -63,6 +55,7 @@ def figure6(runs: Runs, conditions: list[str]) -> Chart:
         _line(found.time, found.velocity[:, 0], NAVY, kind, legend=False)
         for kind, found in _of(runs, first).items()
     ]
+    speed += _legend(runs, first)
     slower = _differences(runs, first, lambda run: run.velocity[:, :1], {"x": NAVY}, 1e3)
     panels = [
         Panel(f"(a) {first}: velocity along X", _MILLISECONDS, "v_x (m/s)", speed),
@@ -70,11 +63,9 @@ def figure6(runs: Runs, conditions: list[str]) -> Chart:
     ]
     for letter, name in zip("bcdefghijk", conditions):
         lines = [
-            _line(
-                run.time, np.degrees(run.rate[:, i]), colour, kind, f"rate about {axis.upper()}, "
-            )
+            _line(run.time, np.degrees(run.rate[:, i]), colour, kind, legend=False)
             for kind, run in _of(runs, name).items()
-            for i, (axis, colour) in enumerate(AXIS_COLOURS.items())
+            for i, colour in enumerate(AXIS_COLOURS.values())
         ]
         other = _differences(runs, name, lambda run: np.degrees(run.rate), AXIS_COLOURS)
         panels += [
@@ -82,6 +73,17 @@ def figure6(runs: Runs, conditions: list[str]) -> Chart:
             Panel(f"{name}: difference of the rates", _MILLISECONDS, "difference (deg/s)", other),
         ]
     return Chart("figure6", panels, columns=2, height=290)
+
+
+def _legend(runs: Runs, name: str) -> list[Line]:
+    """Lines without points for the legend: one colour for each axis, one line for each model."""
+    nowhere = [math.nan]
+    axes = [
+        Line(nowhere, nowhere, f"along or about {axis.upper()}", colour, 3.0)
+        for axis, colour in AXIS_COLOURS.items()
+    ]
+    models = [_line(np.array(nowhere), nowhere, INK, kind) for kind in _of(runs, name)]
+    return axes + models
 
 
 def _of(runs: Runs, name: str) -> dict[str, Trajectory]:
@@ -113,9 +115,9 @@ def _differences(
     return lines
 
 
-def _line(time, values, colour: str, kind: str, name: str = "", legend: bool = True) -> Line:
+def _line(time, values, colour: str, kind: str, legend: bool = True) -> Line:
     model, width, dash, opacity = _STYLES[kind]
-    return Line(1e3 * time, values, f"{name}{model}", colour, width, dash, opacity, legend=legend)
+    return Line(1e3 * time, values, model, colour, width, dash, opacity, legend=legend)
 
 
 def contact_forces(scene: Scene, runs: Runs, condition: str) -> Chart:

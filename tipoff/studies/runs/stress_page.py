@@ -18,12 +18,12 @@ def draw(page: "Page") -> list[Part]:
     rows = page.rows()["highfi"]
     if not rows:
         return [page.missing("highfi", "highfi")]
-    return shown(rows, page.documents.get("view") or [], page.folder, page.scene.name)
+    return shown(rows, page.documents.get("view") or [], page.folder, page.command("view"))
 
 
-def shown(rows: list[dict], views: list[dict], folder: Path, scene: str) -> list[Part]:
+def shown(rows: list[dict], views: list[dict], folder: Path, command: str) -> list[Part]:
     """The section: ``rows`` of highfi.json, ``views`` results of the stage ``view``, whose files
-    are below ``folder``."""
+    are below ``folder``, ``command`` the one that makes them."""
     measured = [row for row in rows if row.get("peak_stress_pa") is not None]
     if not measured:
         return ["No run of the reference contains peak stresses."]
@@ -39,8 +39,8 @@ def shown(rows: list[dict], views: list[dict], folder: Path, scene: str) -> list
     )
     columns = (
         "condition",
-        Column("peak von Mises", "MPa", ".4g", 1e-6),
-        Column("of yield", "%", scale=100.0),
+        Column("peak von Mises", "MPa", ".3g", 1e-6),
+        Column("of yield", "%", ".2g", 100.0),
         "x, y, z (mm)",
         "rail",
         Column("at", "ms", ".4g", 1e3),
@@ -51,7 +51,7 @@ def shown(rows: list[dict], views: list[dict], folder: Path, scene: str) -> list
         *map(Notice, warnings),
         Table(columns, [_row(row) for row in measured], (note,), dense=True),
         *(part for view in views for part in _pictures(view, folder)),
-        *([] if views else [_how(scene)]),
+        *([] if views else [_how(command)]),
     ]
 
 
@@ -89,8 +89,7 @@ def _pictures(view: dict, folder: Path) -> Iterator[Part]:
     )
 
 
-def _how(scene: str) -> Caption:
+def _how(command: str) -> Caption:
     return Caption(
-        f"`make view SCENE={scene}` adds files for ParaView; after `make pictures` it adds pictures "
-        "too."
+        f"`{command}` adds files for ParaView; after `make pictures` it adds pictures too."
     )

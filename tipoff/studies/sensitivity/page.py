@@ -1,6 +1,7 @@
 """The sensitivity of the result, on the page and for the terminal: contact constants beside the
 paper's Table 2, and Sobol' indices of every quantity."""
 
+import math
 from dataclasses import replace
 from itertools import chain
 
@@ -8,19 +9,11 @@ import numpy as np
 
 from tipoff.studies.core.words import counted
 from tipoff.studies.populations import answers, population
-from tipoff.studies.render.chart import (
-    AMBER,
-    GREY,
-    NAVY,
-    TEAL,
-    VERMILION,
-    Chart,
-    Line,
-    Panel,
-    Picture,
-)
+from tipoff.studies.render.chart import Chart, Line, Panel, Picture
 from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
+from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table, span
+from tipoff.studies.render.uncertain import Measured
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s", "rate_deg_s")
 _STILL = 1e-6  # deg/s, the error of integration at the relative tolerance of the tables, 2e-7
@@ -172,7 +165,9 @@ def table_of_indices(sobol: dict) -> Table:
         rows.append(
             (
                 f"{item['label']} ({item['unit']})",
-                item["mean"],
+                Measured(item["mean"], item["sd"] / math.sqrt(sobol["used"]), apart=True)
+                if item["sd"]
+                else item["mean"],
                 item["sd"],
                 item["indices"] and sum(item["indices"]["first"]),
                 most,

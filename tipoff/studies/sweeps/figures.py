@@ -3,17 +3,8 @@ growth of the largest rates, and polar maps."""
 
 import numpy as np
 
-from tipoff.studies.render.chart import (
-    AMBER,
-    AXIS_COLOURS,
-    GREY,
-    NAVY,
-    TEAL,
-    Chart,
-    Line,
-    Panel,
-    Picture,
-)
+from tipoff.studies.render.chart import Chart, Line, Panel, Picture
+from tipoff.studies.render.palette import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL
 
 _LOOKS = {
     "rate_x_deg_s": ("x", "o", "-."),
