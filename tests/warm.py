@@ -8,12 +8,45 @@ Workers of pytest that meet the same kernel at the same time would each compile 
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 
-from tests.highfi.support import COARSE, tiny
+from tests.highfi.contact.test_deformed_wall import Pressed
+from tests.highfi.dynamics.test_mounts import DAMPED, SOFT
+from tests.highfi.support import COARSE, begun, tiny
 from tests.lowfi.compliance import REFERENCE, reference_compliance
 from tests.lowfi.support import PAPER_PAD, scene
 from tipoff import highfi, lowfi
+from tipoff.lowfi.run import Run
 
 LINEAR = {"law": "linear", "clearance": 1e-5, "stiffness": 7e7, "damping": 0.0}
+HUNT_CROSSLEY = {
+    "law": "hunt-crossley",
+    "clearance": 1e-5,
+    "stiffness": 7e7,
+    "exponent": 1.5,
+    "dissipation": 1.0,
+}
+NO_THRUST = {"kind": "gaussian", "peak": 0.0, "width": 1e-3, "centre": 0.0}
+FOUR = lowfi.Numerics(modes=4)
+
+
+def four_modes() -> None:
+    """The surrogate on compliant rails that vibrate."""
+    lowfi.run(REFERENCE, "compliant", compliance=reference_compliance(), numerics=FOUR)
+
+
+def four_modes_and_others_watched() -> None:
+    """The same, as the choice of modes makes it."""
+    Run(REFERENCE, FOUR, reference_compliance(), watches=True).begin()
+
+
+def modes_watched() -> None:
+    """The surrogate on compliant rails, its first run."""
+    lowfi.run(REFERENCE, "compliant", compliance=reference_compliance())
+
+
+def without_modes() -> None:
+    """The surrogate on compliant rails without inertia."""
+    none = lowfi.Numerics(modes=0)
+    lowfi.run(REFERENCE, "compliant", compliance=reference_compliance(), numerics=none)
 
 
 def finite_elements() -> None:
@@ -21,9 +54,24 @@ def finite_elements() -> None:
     highfi.run(tiny(), COARSE)
 
 
-def compliant() -> None:
-    """The surrogate on compliant rails."""
-    lowfi.run(REFERENCE, "compliant", compliance=reference_compliance())
+def damped_rails() -> None:
+    """The reference with structural damping."""
+    begun(tiny(**DAMPED))
+
+
+def rails_on_joints() -> None:
+    """The reference with soft mounts."""
+    begun(tiny(**SOFT))
+
+
+def hexahedra() -> None:
+    """The reference on hexahedra that are no extrusion."""
+    Pressed("twisted").energy((0.0, 0.0, 0.0))
+
+
+def tetrahedra() -> None:
+    """The reference on tetrahedra."""
+    Pressed("tetrahedra").energy((0.0, 0.0, 0.0))
 
 
 def springs() -> None:
@@ -41,13 +89,40 @@ def body_on_linear() -> None:
     lowfi.run(scene(1e-3, 1e-3, contact=LINEAR), "springs")
 
 
+def body_on_hunt_crossley() -> None:
+    """One body on the contact law of Hunt and Crossley."""
+    lowfi.run(scene(1e-3, 1e-3, contact=HUNT_CROSSLEY), "springs")
+
+
 def free_body() -> None:
     """One body without contact."""
     lowfi.run(scene(1e-3, 1e-3), "springs")
 
 
+def two_free_bodies() -> None:
+    """A payload and a platform without contact."""
+    lowfi.run(scene(1e-3, 1e-3, thrust=NO_THRUST), "springs")
+
+
+LOOPS = (
+    four_modes_and_others_watched,
+    four_modes,
+    modes_watched,
+    without_modes,
+    finite_elements,
+    damped_rails,
+    rails_on_joints,
+    hexahedra,
+    tetrahedra,
+    springs,
+    body_on_impact,
+    body_on_linear,
+    body_on_hunt_crossley,
+    free_body,
+    two_free_bodies,
+)
+
 if __name__ == "__main__":
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
-        loops = (finite_elements, compliant, springs, body_on_impact, body_on_linear, free_body)
-        for done in [pool.submit(loop) for loop in loops]:
+        for done in [pool.submit(loop) for loop in LOOPS]:
             done.result()

@@ -21,6 +21,7 @@ from tipoff.files import replacing
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = "tipoff"
+WITH_CODE = (PACKAGE, "tests")  # tests have kernels of their own
 # Syntax trees differ between versions of Python.
 _SYNTAX = f"{sys.version_info[0]}.{sys.version_info[1]}"
 _DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
@@ -71,7 +72,7 @@ def used_by(module: str) -> set[str]:
 
 def path(module: str) -> Path | None:
     """File of a ``module`` of the project, or None."""
-    if module.split(".")[0] != PACKAGE:
+    if module.split(".")[0] not in WITH_CODE:
         return None
     place = ROOT.joinpath(*module.split("."))
     for file in (place.with_suffix(".py"), place / "__init__.py"):

@@ -16,6 +16,20 @@ from tipoff.highfi.run import Loop
 from tipoff.scenes import load
 
 COARSE = Numerics(element_size=0.008)
+# Effects of the tiny scene without strength. Each set of effects that are present is one more
+# kernel, which takes ten seconds and more to compile, so scenes of one effect have the others too.
+IMMOVABLE = {"mass": 1e15, "inertia": {"xx": 1e15, "yy": 1e15, "zz": 1e15}}
+SMOOTH = {"static": 0.0, "dynamic": 0.0, "static_speed": 1e-3, "dynamic_speed": 2e-3}
+NO_THRUST = {"kind": "gaussian", "peak": 0.0, "width": 1e-3, "centre": 0.0}
+CENTRED = {"eccentricity": {"axial": 0.0}}
+UNTOUCHED = {"law": "linear", "clearance": 1e-6, "stiffness": 1.0, "interface_stiffness": 1.0}
+NEUTRAL = {
+    "platform": IMMOVABLE,
+    "contact": UNTOUCHED,
+    "friction": SMOOTH,
+    "thrust": NO_THRUST,
+    "thrust_offset": CENTRED,
+}
 
 
 def tiny(**overrides):

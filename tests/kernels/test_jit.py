@@ -26,6 +26,8 @@ ASK = (
     "from tipoff.highfi.caller import doubled; "
     "print(doubled(), sum(doubled.stats.cache_misses.values()))"
 )
+ASK_PART = "from tipoff.highfi.callee import value; print(value(), 0)"
+ASK_TESTS = ASK.replace("tipoff.highfi.caller", "tests.caller")
 # Numba's own cache: all kernels in one place, distinguished by their own code alone.
 STAMP = "    return hashlib.sha256(settings.encode()).hexdigest()[:16]"
 
@@ -43,17 +45,20 @@ def project(tmp_path):
     (package / "highfi").mkdir()
     (package / "highfi" / "__init__.py").write_text("")
     (package / "highfi" / "caller.py").write_text(CALLER)
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "tests" / "__init__.py").write_text("")
+    (tmp_path / "tests" / "caller.py").write_text(CALLER)
     return tmp_path
 
 
-def ask(project: Path) -> tuple[float, int]:
+def ask(project: Path, question: str = ASK) -> tuple[float, int]:
     """What the caller returns in a new process, and how many of its kernels were compiled there."""
     environment = os.environ | {
         "NUMBA_CACHE_DIR": str(project / "cache"),
         "PYTHONDONTWRITEBYTECODE": "1",
     }
     run = subprocess.run(
-        [sys.executable, "-c", ASK],
+        [sys.executable, "-c", question],
         cwd=project,
         env=environment,
         capture_output=True,
@@ -75,6 +80,24 @@ def test_an_edited_callee_is_used(project):
         write_callee(project, value)
         found.append(ask(project))
     assert found == [(2.0, 1), (6.0, 1), (2.0, 0)]
+
+
+def test_an_edited_callee_is_used_by_a_kernel_of_the_tests(project):
+    found = []
+    for value in (1.0, 3.0, 1.0):
+        write_callee(project, value)
+        found.append(ask(project, ASK_TESTS))
+    assert found == [(2.0, 1), (6.0, 1), (2.0, 0)]
+
+
+def test_a_kernel_that_python_calls_in_passing_is_kept_and_never_stale(project):
+    """Its caller is stored, and found by the next process."""
+    stored = []
+    for value in (1.0, 1.0, 3.0):
+        write_callee(project, value)
+        assert ask(project, ASK_PART) == (value, 0)
+        stored.append({path: path.stat().st_mtime_ns for path in project.rglob("*.nbc")})
+    assert len(stored[0]) == 1 and stored[1] == stored[0] and len(stored[2]) == 2
 
 
 def test_only_kernels_that_python_calls_have_machine_code(project):

@@ -29,6 +29,7 @@ RAIL = {
 }
 CENTRED = {"eccentricity": {"axial": 0.0}}
 WEIGHTLESS = {"x": 0.0, "y": 0.0, "z": 0.0}
+IMMOVABLE = {"mass": 1e15, "inertia": {"xx": 1e15, "yy": 1e15, "zz": 1e15}}
 SMOOTH = {"static": 0.0, "dynamic": 0.0, "static_speed": 1e-3, "dynamic_speed": 2e-3}
 ONE_PAD = [{"position": (0.0, 0.0, -0.1), "normals": ["-z"]}]
 
@@ -48,9 +49,12 @@ def corners(x: float = 0.1, y: float = 0.1, z: float = 0.1, normals=("y", "z")) 
 
 def with_neutral_effects(raw: dict) -> dict:
     """The tables of a scene with those of absent effects, without strength. With a Gaussian
-    thrust they are those of the reference scene, which has no gravity, elsewhere all."""
+    thrust they are those of the reference scene, which has a platform and no gravity, elsewhere
+    those of one body."""
     neutral = {"thrust_offset": CENTRED}
-    if raw["thrust"]["kind"] != "gaussian":
+    if raw["thrust"]["kind"] == "gaussian":
+        neutral["platform"] = IMMOVABLE
+    else:
         neutral["gravity"] = WEIGHTLESS
     if raw.get("contact"):
         neutral["friction"] = SMOOTH

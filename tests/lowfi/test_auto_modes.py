@@ -86,6 +86,14 @@ def test_frequencies_of_the_rails_span_a_factor_of_ten():
     assert first[1] > 10.0 * first[0]
 
 
+def test_neglected_modes_move_the_rates_by_a_fiftieth_of_a_degree_at_most():
+    """Fewest modes without which the others have at most 0.02 deg/s in sum: on both sides of it."""
+    one, rest = np.radians([1.0]), np.radians([0.011, 0.0085, 0.0004])
+    for others, count in ((rest, 1), (rest * 1.02, 2), (rest * [1.0, 0.0, 0.0], 1)):
+        assert modes.needed(np.concatenate([one, others])) == count
+    assert modes.needed(rest) == modes.needed(rest[:0]) == 0
+
+
 def test_no_modes_where_none_matter():
     """The bits of a run without modes, and the reason."""
     asked, compliance, told = REFERENCE.condition("phi15"), reference_compliance(), []

@@ -150,9 +150,24 @@ class _Part(CPUDispatcher):
 
     def __call__(self, *arguments):
         if not hasattr(self, "_caller"):
-            part = self
-            self._caller = numba.njit(lambda *arguments: part(*arguments), **_OPTIONS)
+            self._caller = _caller(self)
         return self._caller(*arguments)
+
+
+def _call(*arguments):
+    return part(*arguments)  # type: ignore[name-defined]  # noqa: F821
+
+
+def _caller(kernel: _Part) -> CPUDispatcher:
+    """What Python calls in the place of ``kernel``: ``_call``, kept on disk as a function of the
+    module of the kernel, which is the global ``part``. Numba finds no stored function with a
+    closure."""
+    function = kernel.py_func
+    names = {"__name__": function.__module__, "part": kernel}
+    made = FunctionType(_call.__code__, names, f"{function.__name__}_from_python")
+    made.__qualname__ = f"{function.__qualname__}_from_python"
+    kept = sources.path(function.__module__) is not None
+    return numba.njit(made, cache=kept, **_OPTIONS)
 
 
 _RARELY = 1_000_000  # objects

@@ -6,7 +6,7 @@ import pytest
 
 from tests.highfi import tets
 from tests.highfi.blocks import block
-from tests.highfi.support import loop_on
+from tests.highfi.support import NEUTRAL, loop_on
 from tipoff.highfi.contact.pads import FASTEST_APPROACH
 from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
 from tipoff.highfi.numerics import Numerics
@@ -27,7 +27,8 @@ PLACES = {
 def scene(relief: float):
     """A pad of 16 x 10 mm that faces +y, 0.1 m from the mass centre along X, without friction."""
     return parse(
-        {
+        NEUTRAL
+        | {
             "name": "pad",
             "duration": 1e-4,
             "pads": [
@@ -45,7 +46,6 @@ def scene(relief: float):
                 "end": 0.5 * LENGTH,
                 "material": {"density": 2700.0, "youngs_modulus": 70e9, "poisson_ratio": 0.3},
             },
-            "thrust": {"kind": "constant", "force": 0.0, "duration": 1e-4},
             "contact": {
                 "law": "linear",
                 "clearance": 1e-6,

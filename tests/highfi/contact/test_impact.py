@@ -10,7 +10,7 @@ import pytest
 
 from tests.exact import contact, elasticity
 from tests.highfi.blocks import block
-from tests.highfi.support import loop_on
+from tests.highfi.support import NEUTRAL, loop_on
 from tipoff.highfi.dynamics import observe
 from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
 from tipoff.highfi.numerics import Numerics
@@ -27,7 +27,8 @@ def scene(mass, speed, interface_stiffness, duration, interval):
     """A payload whose one flat face moves along +y at a surface in the plane y = 0, GAP away and
     wider than it."""
     return parse(
-        {
+        NEUTRAL
+        | {
             "name": "impact",
             "duration": duration,
             "output": {"interval": interval},
@@ -45,7 +46,6 @@ def scene(mass, speed, interface_stiffness, duration, interval):
                 "end": 0.5 * WIDTH,
                 "material": {"density": DENSITY, "youngs_modulus": MODULUS, "poisson_ratio": 0.0},
             },
-            "thrust": {"kind": "constant", "force": 0.0, "duration": duration},
             "contact": {
                 "law": "linear",
                 "clearance": GAP,

@@ -72,6 +72,9 @@ def test_a_rail_that_turns_with_its_frame_is_not_damped():
             "rail.end": length,
             "initial.platform_rate.z": rate,
             "platform": {"mass": 1e6, "inertia": {"xx": 1e6, "yy": 1e6, "zz": 1e6}},
+            # its tip is faster than contact search allows
+            "contact": None,
+            "friction": None,
         }
     )
     loop = loop_on(turning, bar_mesh(length, width, 30))

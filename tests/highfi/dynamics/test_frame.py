@@ -4,7 +4,15 @@ from outside."""
 import numpy as np
 import pytest
 
-from tests.highfi.support import COARSE, bar_mesh, loop_on, spinning_bar_stretch, tiny
+from tests.highfi.support import (
+    CENTRED,
+    COARSE,
+    NO_THRUST,
+    bar_mesh,
+    loop_on,
+    spinning_bar_stretch,
+    tiny,
+)
 from tipoff import highfi
 from tipoff.scenes import parse
 
@@ -50,8 +58,8 @@ def test_momenta_without_outside_load():
     """Payload, four elastic rails and free platform through contact and friction: p and L stay
     fixed over 1e5 steps."""
     scene = tiny(
-        thrust={"kind": "constant", "force": 0.0, "duration": 1e-3, "arm": 0.1},
-        thrust_offset=None,
+        thrust=NO_THRUST | {"arm": 0.1},
+        thrust_offset=CENTRED,
         duration="60 ms",
         initial={
             "velocity": {"x": 2.0, "y": 0.1, "z": 0.03},

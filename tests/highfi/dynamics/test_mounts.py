@@ -41,8 +41,7 @@ def on_springs(platform=None, joint=JOINT, **tables):
         "material": {"density": DENSITY, "youngs_modulus": MODULUS, "poisson_ratio": 0.33},
         "mount_stiffness": joint,
     }
-    extra = {"platform": platform} if platform else {}
-    return scene(rail=rail, **extra, **tables)
+    return scene(rail=rail, platform=platform, **tables)
 
 
 def released(loop, axis, count=60, amplitude=1e-6):

@@ -81,6 +81,26 @@ def test_on_a_fixed_platform_rest_changes_no_bit():
     assert 0.0 < one.resting()["stepped_share"] < 0.9
 
 
+@pytest.mark.parametrize("ahead", [0.0, 0.7, 1.4, 2.1])
+def test_a_rail_is_stepped_before_a_fast_pad_arrives(ahead):
+    """At 8 m/s pads need the two steps in which they may come at 10 m/s, wherever between two looks
+    they are. No bit changes."""
+    scene = tiny(
+        platform=None,
+        contact__clearance="0.02 mm",
+        duration="4 us",
+        output__interval="1 us",
+        initial={"velocity": {"y": 8.0}, "position": {"y": 1e-6 * ahead}},
+    )
+    one, other = (loop_of(scene, rests=rests) for rests in (True, False))
+    assert one.rests.all()
+    for loop in (one, other):
+        loop.integrate(None)
+    assert np.abs(one.forces).max() > 1.0 and not one.rests.all()
+    np.testing.assert_array_equal(rows(one), rows(other))
+    np.testing.assert_array_equal(one.forces, other.forces)
+
+
 def test_waking_too_late_is_seen():
     """Control: a rail that no pad wakes gives another motion, or none, since contact does not act
     on it."""

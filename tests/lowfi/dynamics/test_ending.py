@@ -210,7 +210,11 @@ def test_exit_from_a_turning_platform():
         "mass_centre": away,
     }
     asked = free(
-        0.1, 0.05, platform=platform, initial={"velocity": {"x": 5.0}, "platform_rate": {"z": rate}}
+        0.1,
+        0.05,
+        platform=platform,
+        thrust={"kind": "gaussian", "peak": 0.0, "width": 1e-3, "centre": 1e-3},
+        initial={"velocity": {"x": 5.0}, "platform_rate": {"z": rate}},
     )
 
     def past(t):

@@ -187,7 +187,7 @@ def test_recoil_of_a_free_platform(tolerance):
             4e-6,
             1e-6,
             platform=platform,
-            thrust={"kind": "constant", "force": 1e8, "duration": 1e-6},
+            thrust={"kind": "gaussian", "impulse": 100.0, "width": 1e-7, "centre": 1e-6},
         ),
         "springs",
         numerics=numerics(tolerance),

@@ -43,7 +43,9 @@ def stopped_run(tolerance: float, last: int, path) -> Run:
     kept, other = np.load(path), Run(ASKED, numerics)
     loop = {name: kept.get(name) for name in Loop._fields}
     for name in ("clock", "counts", "audit"):
-        loop[name] = loop[name].reshape(1).view(np.recarray)[0]
+        # Files do not say that records are aligned, and others need a kernel of their own.
+        aligned = loop[name].reshape(1).astype(getattr(run.loop, name).dtype)
+        loop[name] = aligned.view(np.recarray)[0]
     other.loop = Loop(**loop)
     other.rows, other.forces, other.taken = kept["rows"], kept["forces"], last + 1
     return other

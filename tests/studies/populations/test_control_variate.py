@@ -27,6 +27,11 @@ def test_a_surrogate_that_is_off_by_scale_and_bias_is_corrected_to_the_bit_of_ro
     spread = control_variate.standard_deviation(pairs)
     assert spread.value == pytest.approx(2.0 * population.std(ddof=1), rel=1e-12)
     assert spread.low < spread.value < spread.high < spread.plain_high
+    # of ln s, by the delta method
+    error = math.sqrt((stats.kurtosis(population, fisher=False) - 1.0) / (4.0 * 500))
+    half = stats.t.ppf(0.975, 18) * error
+    assert math.log(spread.high / spread.value) == pytest.approx(half, rel=2.0 / 500)
+    assert math.log(spread.value / spread.low) == pytest.approx(half, rel=2.0 / 500)
 
 
 def test_a_surrogate_that_explains_nothing_leaves_the_mean_of_the_reference():

@@ -25,6 +25,25 @@ def test_runs_without_the_event_leave_the_bound_of_their_number():
     assert plain < found.far_share < found.upper < 1.15 * plain and found.estimate == 0.0
 
 
+def test_the_bound_is_that_of_its_shares_and_weights():
+    """Clopper and Pearson by quantiles of the beta distribution; the parts of the error probability
+    add up to 5 %. Cases above count with certainty, near ones with their share, all others with
+    theirs."""
+    parts = {"far": 0.035, "near": 0.01, "above": 0.0025, "above or near": 0.0025}
+    assert sum(parts.values()) == pytest.approx(0.05)
+
+    def most(part: str, events: int, runs: int) -> float:
+        return float(stats.beta.ppf(1.0 - parts[part], events + 1, runs - events))
+
+    above, within = most("above", 40, 2000), most("above or near", 200, 2000)
+    near, far = most("near", 3, 30), most("far", 1, 170)
+    found = stratified.upper_bound((40, 160, 1800), Runs(30, 3), Runs(170, 1), CONFIDENCE)
+    assert (found.near_share, found.far_share) == pytest.approx((near, far), rel=1e-9)
+    expected = above + (within - above) * near + (1.0 - within) * far
+    assert found.upper == pytest.approx(expected, rel=1e-9)
+    assert found.estimate == pytest.approx((40 + 160 * 3 / 30 + 1800 / 170) / 2000)
+
+
 def test_the_allocation_is_the_best_of_all():
     cases = (100, 300, 19_600)
     errors = (0.2 * 0.05, 0.7 * 0.05)
