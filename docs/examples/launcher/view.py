@@ -1,0 +1,22 @@
+"""The view of one ejection in the browser: a widget that draws what it is sent."""
+
+from pathlib import Path
+
+import anywidget
+import traitlets
+
+_HERE = Path(__file__).parent
+_PARTS = ("colours.js", "space.js", "launcher.js", "charts.js", "section.js", "page.js", "view.js")
+
+
+class EjectionView(anywidget.AnyWidget):
+    """Draws ``shown`` (``message.made`` and the ``number`` of the run) and plays it. ``rested`` is the
+    number of the run that the reader has looked at for a moment; ``uncertainty`` belongs to the run
+    of its own ``number``."""
+
+    # A widget is one module to the browser, so the files are joined.
+    _esm = "\n".join((_HERE / name).read_text(encoding="utf-8") for name in _PARTS)
+    _css = (_HERE / "view.css").read_text(encoding="utf-8")
+    shown = traitlets.Dict().tag(sync=True)
+    uncertainty = traitlets.Dict().tag(sync=True)
+    rested = traitlets.Int(0).tag(sync=True)

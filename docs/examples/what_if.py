@@ -1,0 +1,152 @@
+# /// script
+# requires-python = ">=3.11"
+# dependencies = ["tipoff", "marimo", "anywidget"]
+# [tool.marimo.display]
+# theme = "system"
+# ///
+"""What if the thrust is tilted a little more? A page with sliders that answers at once.
+
+make examples                        # the reference scene
+make examples SCENE=my_launcher.toml
+"""
+
+import marimo
+
+app = marimo.App(width="medium", app_title="tipoff: what if?")
+
+
+@app.cell(hide_code=True)
+def _():
+    import marimo as mo
+    from launcher import answer, controls, message
+    from launcher.view import EjectionView
+
+    import tipoff
+
+    return EjectionView, answer, controls, message, mo, tipoff
+
+
+@app.cell(hide_code=True)
+def _(mo):
+    mo.md("""
+    # What if?
+
+    Move a slider: tipoff runs the ejection again and draws it. Press an arrow key for one step.
+    """)
+    return
+
+
+@app.cell(hide_code=True)
+def _(mo):
+    place = mo.ui.text(
+        value=mo.cli_args().get("scene") or "reference",
+        label="Scene: a name of the catalogue, or the path of your file",
+        full_width=True,
+    )
+    place
+    return (place,)
+
+
+@app.cell(hide_code=True)
+def _(answer, mo, place, tipoff):
+    def _opened():
+        scene = tipoff.load(place.value)
+        with mo.status.spinner(
+            title=f"Rail compliance of {scene.name}",
+            subtitle="found once for a rail and its pads, within a minute or two, and kept",
+        ) as progress:
+            compliance = answer.compliance(scene)
+            progress.update(title="First run", subtitle="its code is compiled once, and kept")
+            answer.run(scene, compliance)
+        return scene, compliance
+
+    try:
+        scene, compliance = _opened()
+    except tipoff.SceneError as error:
+        mo.stop(True, mo.callout(mo.plain_text(str(error)), kind="danger"))
+    return compliance, scene
+
+
+@app.cell(hide_code=True)
+def _(mo, scene):
+    begin = mo.ui.dropdown(
+        ["nominal", *scene.conditions], value="nominal", label="Begin at the condition"
+    )
+    begin
+    return (begin,)
+
+
+@app.cell(hide_code=True)
+def _(begin, controls, mo, scene):
+    condition = scene.condition(begin.value)
+    offered = controls.of_scene(condition)
+    sliders = mo.ui.array(
+        [
+            mo.ui.slider(
+                0.0,
+                item.high,
+                item.step,
+                value=start,
+                label=f"{item.title} ({item.unit})" if item.unit else item.title,
+                show_value=True,
+                full_width=True,
+            )
+            for item, start in offered.items()
+        ]
+    )
+    mo.Html(
+        "<div style='display: grid; gap: 4px 28px; "
+        "grid-template-columns: repeat(auto-fit, minmax(min(100%, 270px), 1fr))'>"
+        + "".join(slider.text for slider in sliders)
+        + "</div>"
+    )
+    return condition, offered, sliders
+
+
+@app.cell(hide_code=True)
+def _(EjectionView, mo):
+    drawing = EjectionView()
+    view = mo.ui.anywidget(drawing)
+    view
+    return drawing, view
+
+
+@app.cell(hide_code=True)
+def _(answer, compliance, condition, controls, drawing, message, mo, offered, sliders, tipoff):
+    try:
+        changed = condition.replace(
+            controls.overrides(condition, dict(zip(offered, sliders.value)))
+        )
+        trajectory = answer.run(changed, compliance)
+    except tipoff.SceneError as error:
+        mo.stop(True, mo.callout(mo.plain_text(str(error)), kind="danger"))
+    number = drawing.shown.get("number", 0) + 1
+    drawing.shown = message.made(changed, trajectory) | {"number": number}
+    return changed, number, trajectory
+
+
+@app.cell(hide_code=True)
+def _(answer, changed, compliance, drawing, mo, number, trajectory, view):
+    # Three more runs, made when the sliders rest: while they move, the next run comes first.
+    mo.stop(view.value["rested"] != number or trajectory.outcome.rate is None)
+    drawing.uncertainty = answer.disturbed(changed, compliance)._asdict() | {"number": number}
+    return
+
+
+@app.cell(hide_code=True)
+def _(mo):
+    mo.md("""
+    **How to read it.** The rates are those of the payload in its own axes, means over 2 ms that begin
+    1 ms after the last pad has left the rails (grey band). The dashed line is the exit. Pads turn
+    orange where they press on a rail. The motion across the rails, the clearance and the errors are
+    drawn larger by the factor under the picture; the numbers and curves are not.
+
+    **How far to trust it.** This is the surrogate with the static compliance of the rails.
+    `tipoff compare` measures its error against finite elements, and an ensemble says what rates to
+    expect when errors are random: see the tutorials.
+    """)
+    return
+
+
+if __name__ == "__main__":
+    app.run()
