@@ -1,6 +1,4 @@
 # /// script
-# requires-python = ">=3.11"
-# dependencies = ["tipoff", "marimo", "anywidget"]
 # [tool.marimo.display]
 # theme = "system"
 # ///
@@ -57,7 +55,7 @@ def _(answer, mo, place, tipoff):
         ) as progress:
             compliance = answer.compliance(scene)
             progress.update(title="First run", subtitle="its code is compiled once, and kept")
-            answer.run(scene, compliance)
+            answer.quick(scene, compliance)
         return scene, compliance
 
     try:
@@ -117,19 +115,23 @@ def _(answer, compliance, condition, controls, drawing, message, mo, offered, sl
         changed = condition.replace(
             controls.overrides(condition, dict(zip(offered, sliders.value)))
         )
-        trajectory = answer.run(changed, compliance)
+        quick = answer.quick(changed, compliance)
     except tipoff.SceneError as error:
         mo.stop(True, mo.callout(mo.plain_text(str(error)), kind="danger"))
     number = drawing.shown.get("number", 0) + 1
-    drawing.shown = message.made(changed, trajectory) | {"number": number}
-    return changed, number, trajectory
+    drawing.shown = message.made(changed, quick) | {"number": number, "is_final": False}
+    return changed, number
 
 
 @app.cell(hide_code=True)
-def _(answer, changed, compliance, drawing, mo, number, trajectory, view):
-    # Three more runs, made when the sliders rest: while they move, the next run comes first.
-    mo.stop(view.value["rested"] != number or trajectory.outcome.rate is None)
-    drawing.uncertainty = answer.disturbed(changed, compliance)._asdict() | {"number": number}
+def _(answer, changed, compliance, drawing, message, mo, number, view):
+    # What takes longer is computed when the sliders rest. While they move, the next run comes first.
+    mo.stop(view.value["rested"] != number)
+    final = answer.run(changed, compliance)
+    drawing.shown = message.made(changed, final) | {"number": number, "is_final": True}
+    if final.outcome.rate is not None:
+        changes = answer.disturbed(changed, compliance)._asdict()
+        drawing.uncertainty = changes | {"number": number}
     return
 
 
@@ -139,7 +141,9 @@ def _(mo):
     **How to read it.** The rates are those of the payload in its own axes, means over 2 ms that begin
     1 ms after the last pad has left the rails (grey band). The dashed line is the exit. Pads turn
     orange where they press on a rail. The motion across the rails, the clearance and the errors are
-    drawn larger by the factor under the picture; the numbers and curves are not.
+    drawn larger by the factor under the picture; the numbers and curves are not. While a slider
+    moves, the rails have no inertia; when it rests, as many of their vibration modes are taken as the
+    rates need.
 
     **How far to trust it.** This is the surrogate with the static compliance of the rails.
     `tipoff compare` measures its error against finite elements, and an ensemble says what rates to

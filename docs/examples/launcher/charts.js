@@ -1,5 +1,7 @@
-// Curves over time: axes with units, the exit, the settled window, the instant that is played, and
-// thin curves of the run that the reader kept.
+// Curves over time: axes with units, the exit, the settled window, and thin curves of the run that the
+// reader kept. They are drawn once for a run; the instant that is played is a line that moves over them.
+
+const LEFT = 50, RIGHT = 10, TOP = 26, BOTTOM = 36; // margins of a chart
 
 // Round numbers that divide a range into some four parts.
 function ticks(low, high) {
@@ -25,10 +27,10 @@ function limits(runs, columns, factor) {
 }
 
 // ``chart``: title, unit, columns, names and colours of the lines, factor from the column to the unit.
-function drawChart(canvas, chart, run, kept, time, look) {
+function drawChart(canvas, chart, run, kept, look) {
   const { pen, width, height } = sheet(canvas), runs = kept ? [run, kept] : [run];
-  const end = Math.max(...runs.map((item) => item.end)), [low, high] = limits(runs, chart.columns, chart.factor);
-  const left = 50, right = width - 10, top = 26, bottom = height - 36;
+  const end = endOf(run, kept), [low, high] = limits(runs, chart.columns, chart.factor);
+  const left = LEFT, right = width - RIGHT, top = TOP, bottom = height - BOTTOM;
   const x = (value) => left + value / end * (right - left), y = (value) => bottom - (value - low) / (high - low) * (bottom - top);
   pen.font = "12px system-ui, sans-serif";
   if (run.answer.window_ms !== null) { // the window over which settled values are means
@@ -47,8 +49,15 @@ function drawChart(canvas, chart, run, kept, time, look) {
   pen.clip();
   if (kept) chart.columns.forEach((column, i) => curve(pen, kept, column, chart.factor, x, y, look.axes[chart.colours[i]], 1, [3, 3]));
   chart.columns.forEach((column, i) => curve(pen, run, column, chart.factor, x, y, look.axes[chart.colours[i]], 1.8, []));
-  rule(pen, x(time), top, bottom, look.text, []);
   pen.restore();
+}
+
+const endOf = (run, kept) => Math.max(run.end, kept ? kept.end : 0);
+
+// Moves the line of the instant that is played.
+function moveCursor(figure, run, kept, time) {
+  const width = figure.clientWidth - LEFT - RIGHT;
+  figure.lastChild.style.transform = `translateX(${LEFT + time / endOf(run, kept) * width}px)`;
 }
 
 function grid(pen, frame, look) {

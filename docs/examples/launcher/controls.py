@@ -33,9 +33,7 @@ CONTROLS = (
     Control("Thrust eccentricity", f"{_OFFSET}.eccentricity.axial", "mm", 1e-3, 1.0, 0.01),
     Control("its clock angle, +Z to +Y", f"{_OFFSET}.eccentricity.radial", "deg", _DEGREE, 360, 1),
     Control("Mass eccentricity", "mass_offset.eccentricity.axial", "mm", 1e-3, 1.0, 0.01),
-    Control(
-        "its clock angle, +Z to +Y", "mass_offset.eccentricity.radial", "deg", _DEGREE, 360, 1
-    ),
+    Control("its clock angle, +Z to +Y", "mass_offset.eccentricity.radial", "deg", _DEGREE, 360, 1),
     Control("Clearance of the pads", "contact.clearance", "mm", 1e-3, 0.5, 0.005),
     Control("Friction coefficient", "friction.dynamic", "", 1.0, 0.5, 0.01),
     Control("Peak thrust", "thrust.peak", "kN", 1e3, 12.0, 0.1),

@@ -28,16 +28,16 @@ const MARKUP = `<div class="body">
   <button type="button" data-do="keep">Compare with this run</button>
 </div>
 <div class="charts">
-  <canvas role="img" aria-label="Angular rates over time"></canvas>
-  <canvas role="img" aria-label="Velocity along the rails over time"></canvas>
-  <canvas role="img" aria-label="Velocity across the rails over time"></canvas>
+  <figure><canvas role="img" aria-label="Angular rates over time"></canvas><i></i></figure>
+  <figure><canvas role="img" aria-label="Velocity along the rails over time"></canvas><i></i></figure>
+  <figure><canvas role="img" aria-label="Velocity across the rails over time"></canvas><i></i></figure>
 </div></div>`;
 
 const AXES = ["x", "y", "z"];
 const said = (value, digits) => (value === null ? "–" : value.toFixed(digits));
 const signed = (value, digits) => (value < 0 ? "" : "+") + value.toFixed(digits);
 
-function write(root, answer, kept) {
+function write(root, { answer, is_final }, kept) {
   const put = (name, text) => (root.querySelector(`[data-name="${name}"]`).textContent = text);
   const settled = answer.rate !== null;
   AXES.forEach((axis, i) => {
@@ -46,17 +46,19 @@ function write(root, answer, kept) {
     put(`change-${axis}`, settled && kept && kept.rate ? signed(answer.rate[i] - kept.rate[i], 3) : "");
   });
   root.classList.toggle("comparing", Boolean(kept));
+  root.classList.toggle("preliminary", !is_final);
   put("status", settled
     ? `Leaves the rails ${answer.exit_ms.toFixed(2)} ms after ignition, ${answer.off_axis.toFixed(3)} deg off the axis.`
     : `${answer.status}: no settled rates. ${answer.message}`);
 }
 
 // How far the rates can be trusted; ``found`` is empty until the sliders rest.
-function writeUncertainty(root, answer, found) {
+function writeUncertainty(root, { answer, is_final }, found) {
   const place = root.querySelector('[data-name="uncertainty"]');
   place.classList.remove("sensitive");
   if (answer.rate === null) return void (place.textContent = "");
-  if (!found) return void (place.textContent = "Uncertainty: found when the sliders rest.");
+  if (!is_final) return void (place.textContent = "Rails without inertia, until the slider rests.");
+  if (!found) return void (place.textContent = "How far small changes move the rates is being found.");
   const parts = [["1 µm of clearance", found.by_clearance], ["a tolerance of 1e-10", found.by_tolerance]].map(([cause, change]) =>
     (change === null ? `${cause} keeps the run from settling` : `${cause} moves a rate by ±${change.toPrecision(2)} deg/s`));
   const sensitive = [found.by_clearance, found.by_tolerance].some((change) => change === null || change > answer.limit);

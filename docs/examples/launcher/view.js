@@ -9,7 +9,7 @@ const CHARTS = [
 ];
 
 // A message with its samples as numbers, and what scales the drawing.
-function received({ number, launcher, loads, answer, rows, width }) {
+function received({ number, is_final, launcher, loads, answer, rows, width }) {
   const bytes = new Uint8Array(rows.buffer, rows.byteOffset, rows.byteLength).slice();
   const numbers = new Float32Array(bytes.buffer), count = numbers.length / width;
   let largest = 1, peak = 1e-9, farthest = 0;
@@ -18,7 +18,7 @@ function received({ number, launcher, loads, answer, rows, width }) {
     peak = Math.max(peak, numbers[i * width + COLUMN.thrust]);
     farthest = Math.max(farthest, numbers[i * width + COLUMN.place]);
   }
-  return { number, shape: launcher, loads, answer, rows: numbers, width, count, largest, peak, farthest,
+  return { number, is_final, shape: launcher, loads, answer, rows: numbers, width, count, largest, peak, farthest,
     end: numbers[(count - 1) * width] };
 }
 
@@ -28,7 +28,7 @@ function render({ model, el }) {
   root.innerHTML = MARKUP;
   el.append(root);
   const find = (query) => root.querySelector(query), camera = new Camera();
-  const canvases = [...root.querySelectorAll(".charts canvas")];
+  const figures = [...root.querySelectorAll(".charts figure")];
   const state = { run: null, kept: null, time: 0, playing: !matchMedia("(prefers-reduced-motion: reduce)").matches, asked: 0, timer: 0 };
 
   const draw = (now) => {
@@ -40,15 +40,21 @@ function render({ model, el }) {
     const time = Math.min(state.time, state.run.end), look = colours(el), factor = Number(find("[data-set=factor]").value);
     root.classList.toggle("dark", look === DARK);
     drawLauncher(find(".space"), camera, state.run, time, factor, look);
-    canvases.forEach((canvas, i) => drawChart(canvas, CHARTS[i], state.run, state.kept, time, look));
-    drawSection(find(".section"), state.run.loads, look);
+    if (state.stale || look !== state.look) {
+      figures.forEach((figure, i) => drawChart(figure.firstChild, CHARTS[i], state.run, state.kept, look));
+      drawSection(find(".section"), state.run.loads, look);
+      Object.assign(state, { stale: false, look });
+    }
+    figures.forEach((figure) => moveCursor(figure, state.run, state.kept, time));
     if (state.playing) find("[data-set=time]").value = Math.round(1000 * time / state.run.end);
     find("[data-name=time]").textContent = `${time.toFixed(1)} ms`;
     find("[data-name=factor]").textContent = `${factor} times`;
-    root.dataset.number = state.run.number;
+    const drawn = `${state.run.number}${state.run.is_final ? " final" : ""}`;
+    if (root.dataset.drawn !== drawn) root.dataset.drawn = drawn;
     if (state.playing) ask();
   };
   const ask = () => (state.asked ||= requestAnimationFrame(draw));
+  const renew = () => ((state.stale = true), ask());
   const pause = (stop) => {
     state.playing = !stop;
     find("[data-do=play]").textContent = stop ? "Play" : "Pause";
@@ -58,18 +64,18 @@ function render({ model, el }) {
     const message = model.get("shown");
     if (!message.rows) return;
     state.run = received(message);
-    write(root, state.run.answer, state.kept?.answer);
+    write(root, state.run, state.kept?.answer);
     tell();
-    ask();
+    renew();
     clearTimeout(state.timer);
-    state.timer = setTimeout(() => {
+    if (!message.is_final) state.timer = setTimeout(() => {
       model.set("rested", message.number);
       model.save_changes();
     }, RESTS);
   };
   const tell = () => {
     const found = model.get("uncertainty");
-    if (state.run) writeUncertainty(root, state.run.answer, found.number === state.run.number ? found : null);
+    if (state.run) writeUncertainty(root, state.run, found.number === state.run.number ? found : null);
   };
 
   find("[data-do=play]").onclick = () => pause(state.playing);
@@ -81,8 +87,8 @@ function render({ model, el }) {
   find("[data-do=keep]").onclick = () => {
     state.kept = state.kept ? null : state.run;
     find("[data-do=keep]").textContent = state.kept ? "End the comparison" : "Compare with this run";
-    write(root, state.run.answer, state.kept?.answer);
-    ask();
+    write(root, state.run, state.kept?.answer);
+    renew();
   };
   find(".space").onpointerdown = (event) => event.target.setPointerCapture(event.pointerId);
   find(".space").onpointermove = (event) => {
@@ -91,7 +97,7 @@ function render({ model, el }) {
     ask();
   };
   find(".space").ondblclick = () => (camera.reset(), ask());
-  const resized = new ResizeObserver(ask);
+  const resized = new ResizeObserver(renew);
   resized.observe(root);
   model.on("change:shown", show);
   model.on("change:uncertainty", tell);

@@ -10,9 +10,9 @@ _PARTS = ("colours.js", "space.js", "launcher.js", "charts.js", "section.js", "p
 
 
 class EjectionView(anywidget.AnyWidget):
-    """Draws ``shown`` (``message.made`` and the ``number`` of the run) and plays it. ``rested`` is the
-    number of the run that the reader has looked at for a moment; ``uncertainty`` belongs to the run
-    of its own ``number``."""
+    """Draws ``shown`` and plays it: ``message.made``, the ``number`` of the values of the sliders, and
+    ``is_final`` for a run that was made when they rested. ``rested`` is the number of the values at
+    which they rest; ``uncertainty`` belongs to the values of its own ``number``."""
 
     # A widget is one module to the browser, so the files are joined.
     _esm = "\n".join((_HERE / name).read_text(encoding="utf-8") for name in _PARTS)
