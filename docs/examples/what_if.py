@@ -10,6 +10,7 @@ make examples SCENE=my_launcher.toml
 
 import marimo
 
+__generated_with = "0.25.2"
 app = marimo.App(width="medium", app_title="tipoff: what if?")
 
 
@@ -29,7 +30,7 @@ def _(mo):
     mo.md("""
     # What if?
 
-    Move a slider: tipoff runs the ejection again and draws it. Press an arrow key for one step.
+    Move a slider with the mouse or the arrow keys: tipoff runs the ejection again and plays it.
     """)
     return
 
@@ -85,17 +86,20 @@ def _(begin, controls, mo, scene):
                 item.high,
                 item.step,
                 value=start,
-                label=f"{item.title} ({item.unit})" if item.unit else item.title,
+                label=item.label,
                 show_value=True,
                 full_width=True,
             )
             for item, start in offered.items()
         ]
     )
+    groups = {}
+    for item, slider in zip(offered, sliders):
+        groups.setdefault(item.group, []).append(slider.text)
     mo.Html(
-        "<div style='display: grid; gap: 4px 28px; "
-        "grid-template-columns: repeat(auto-fit, minmax(min(100%, 270px), 1fr))'>"
-        + "".join(slider.text for slider in sliders)
+        "<div style='display: grid; gap: 10px 28px; "
+        "grid-template-columns: repeat(auto-fit, minmax(min(100%, 200px), 1fr))'>"
+        + "".join(f"<div><b>{name}</b>{''.join(texts)}</div>" for name, texts in groups.items())
         + "</div>"
     )
     return condition, offered, sliders

@@ -8,7 +8,7 @@ const LIGHT = {
 const DARK = {
   text: "#e4e9ee", faint: "#8a97a4", grid: "#333d47", panel: "#1a2026", mark: "#56616c",
   axes: ["#56b4e9", "#f0924c", "#2fc79a"], body: [104, 140, 176], pad: [176, 188, 200],
-  pressed: [255, 110, 50], wall: [128, 140, 152], plate: [84, 94, 104], thrust: "#ff6f9f", mass: "#b79cff",
+  pressed: [255, 110, 50], wall: [128, 140, 152], plate: [136, 146, 156], thrust: "#ff6f9f", mass: "#b79cff",
 };
 const pixel = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
 const known = new Map(); // text colour as the browser writes it, which may be of any colour space

@@ -9,9 +9,10 @@ from tipoff import Scene
 
 
 class Control(NamedTuple):
-    """A slider: dotted ``key`` of the scene, ``unit`` of its numbers, ``si`` value of one unit, and
-    ``high`` end and ``step`` in that unit. The low end is zero."""
+    """A slider under the heading ``group``: dotted ``key`` of the scene, ``unit`` of its numbers, ``si``
+    value of one unit, and ``high`` end and ``step`` in that unit. The low end is zero."""
 
+    group: str
     title: str
     key: str
     unit: str
@@ -24,19 +25,27 @@ class Control(NamedTuple):
         """Whether it is a clock angle, which repeats after a full turn."""
         return self.high == 360.0
 
+    @property
+    def label(self) -> str:
+        """Title and unit."""
+        return f"{self.title} ({self.unit})" if self.unit else self.title
 
-_DEGREE = math.radians(1.0)
-_OFFSET = "thrust_offset"
+
+def _errors(group: str, table: str, size: tuple, way: str) -> tuple[Control, Control]:
+    """Size and clock angle of one error."""
+    turn = (f"clock angle, {way}", f"{table}.radial", "deg", math.radians(1.0), 360.0, 1.0)
+    return Control(group, size[0], f"{table}.axial", *size[1:]), Control(group, *turn)
+
+
+_TILT = ("angle off the axis", "deg", math.radians(1.0), 1.0, 0.01)
+_RADIUS = ("distance from the axis", "mm", 1e-3, 1.0, 0.01)
 CONTROLS = (
-    Control("Thrust misalignment", f"{_OFFSET}.misalignment.axial", "deg", _DEGREE, 1.0, 0.01),
-    Control("its clock angle, +Y to +Z", f"{_OFFSET}.misalignment.radial", "deg", _DEGREE, 360, 1),
-    Control("Thrust eccentricity", f"{_OFFSET}.eccentricity.axial", "mm", 1e-3, 1.0, 0.01),
-    Control("its clock angle, +Z to +Y", f"{_OFFSET}.eccentricity.radial", "deg", _DEGREE, 360, 1),
-    Control("Mass eccentricity", "mass_offset.eccentricity.axial", "mm", 1e-3, 1.0, 0.01),
-    Control("its clock angle, +Z to +Y", "mass_offset.eccentricity.radial", "deg", _DEGREE, 360, 1),
-    Control("Clearance of the pads", "contact.clearance", "mm", 1e-3, 0.5, 0.005),
-    Control("Friction coefficient", "friction.dynamic", "", 1.0, 0.5, 0.01),
-    Control("Peak thrust", "thrust.peak", "kN", 1e3, 12.0, 0.1),
+    *_errors("Thrust misalignment", "thrust_offset.misalignment", _TILT, "+Y to +Z"),
+    *_errors("Thrust eccentricity", "thrust_offset.eccentricity", _RADIUS, "+Z to +Y"),
+    *_errors("Mass eccentricity", "mass_offset.eccentricity", _RADIUS, "+Z to +Y"),
+    Control("Launcher", "clearance of the pads", "contact.clearance", "mm", 1e-3, 0.5, 0.005),
+    Control("Launcher", "friction coefficient", "friction.dynamic", "", 1.0, 0.5, 0.01),
+    Control("Launcher", "peak thrust", "thrust.peak", "kN", 1e3, 12.0, 0.1),
 )
 _NEEDS = ("contact", "friction", "thrust")  # without the table there is nothing to change
 

@@ -23,7 +23,7 @@ const MARKUP = `<div class="body">
   <p data-name="uncertainty"></p>
   <div class="errors">
     <canvas class="section" role="img" aria-label="Errors across the axis, seen from the open end"></canvas>
-    <p>Seen from the open end. <span class="thrust">Arrow: tilt of the thrust. Cross: its line.</span> <span class="mass">Dot: mass centre.</span></p>
+    <p>Seen from the open end. Ring: <span data-name="ring"></span>. <span class="thrust">Arrow: tilt of the thrust, <span data-name="arrow"></span> at the ring. Cross: its line.</span> <span class="mass">Dot: mass centre.</span></p>
   </div>
   <button type="button" data-do="keep">Compare with this run</button>
 </div>
@@ -34,10 +34,10 @@ const MARKUP = `<div class="body">
 </div></div>`;
 
 const AXES = ["x", "y", "z"];
-const said = (value, digits) => (value === null ? "–" : value.toFixed(digits));
+const said = (value, digits) => (value === null ? "–" : value.toFixed(digits).replace(/^-(0\.0+)$/, "$1"));
 const signed = (value, digits) => (value < 0 ? "" : "+") + value.toFixed(digits);
 
-function write(root, { answer, is_final }, kept) {
+function write(root, { answer, loads, is_final }, kept) {
   const put = (name, text) => (root.querySelector(`[data-name="${name}"]`).textContent = text);
   const settled = answer.rate !== null;
   AXES.forEach((axis, i) => {
@@ -47,6 +47,9 @@ function write(root, { answer, is_final }, kept) {
   });
   root.classList.toggle("comparing", Boolean(kept));
   root.classList.toggle("preliminary", !is_final);
+  const scales = sectionScales(loads);
+  put("ring", `${scales.ring} mm`);
+  put("arrow", `${scales.arrow} deg`);
   put("status", settled
     ? `Leaves the rails ${answer.exit_ms.toFixed(2)} ms after ignition, ${answer.off_axis.toFixed(3)} deg off the axis.`
     : `${answer.status}: no settled rates. ${answer.message}`);

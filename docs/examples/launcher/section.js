@@ -3,29 +3,26 @@
 
 const ROUND = [0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
 
+const across = ([, y, z]) => Math.hypot(y, z);
+const tilt = ({ direction }) => Math.atan2(across(direction), direction[0]) * 180 / Math.PI;
+const above = (value) => ROUND.find((item) => item >= value * (1 - 1e-6)) || Number(value.toPrecision(2));
+
+// What the radius of the ring stands for: mm of a point, deg of the arrow.
+const sectionScales = (loads) => ({ ring: above(Math.max(across(loads.line), across(loads.mass))), arrow: above(tilt(loads)) });
+
 function drawSection(canvas, loads, look) {
   const { pen, width, height } = sheet(canvas), centre = [width / 2, height / 2 + 8];
-  const radius = Math.min(width, height - 16) / 2 - 22;
-  const largest = Math.max(Math.hypot(loads.line[1], loads.line[2]), Math.hypot(loads.mass[1], loads.mass[2]));
-  const scale = ROUND.find((item) => item >= largest) || largest;
-  const tilt = Math.hypot(loads.direction[1], loads.direction[2]), degrees = Math.atan2(tilt, loads.direction[0]) * 180 / Math.PI;
+  const radius = Math.min(width - 24, height - 16) / 2 - 16, { ring, arrow: most } = sectionScales(loads);
   pen.font = "12px system-ui, sans-serif";
   pen.textBaseline = "middle";
   dial(pen, centre, radius, look);
-  pen.textAlign = "left";
-  pen.fillStyle = look.faint;
-  pen.fillText(`ring: ${scale} mm`, 4, 10);
   const at = ([, y, z], length) => [centre[0] + y * length, centre[1] - z * length];
-  if (tilt > 0) {
-    const most = ROUND.find((item) => item >= degrees) || degrees;
-    pen.textAlign = "right";
-    pen.fillText(`arrow to the ring: ${most} deg`, width - 4, 10);
-    arrow(pen, centre, at(loads.direction, radius * degrees / most / tilt), look.thrust, 2.5);
-  }
-  cross(pen, at(loads.line, radius / scale), look.thrust);
+  const sine = across(loads.direction);
+  if (sine > 0) arrow(pen, centre, at(loads.direction, radius * tilt(loads) / most / sine), look.thrust, 2.5);
+  cross(pen, at(loads.line, radius / ring), look.thrust);
   pen.fillStyle = look.mass;
   pen.beginPath();
-  pen.arc(...at(loads.mass, radius / scale), 4.5, 0, 7);
+  pen.arc(...at(loads.mass, radius / ring), 4.5, 0, 7);
   pen.fill();
 }
 

@@ -29,7 +29,7 @@ function render({ model, el }) {
   el.append(root);
   const find = (query) => root.querySelector(query), camera = new Camera();
   const figures = [...root.querySelectorAll(".charts figure")];
-  const state = { run: null, kept: null, time: 0, playing: !matchMedia("(prefers-reduced-motion: reduce)").matches, asked: 0, timer: 0 };
+  const state = { run: null, kept: null, time: 0, playing: !window.matchMedia("(prefers-reduced-motion: reduce)").matches, asked: 0, timer: 0 };
 
   const draw = (now) => {
     const passed = Math.min(100, now - state.last);
