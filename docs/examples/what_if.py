@@ -134,7 +134,7 @@ def _(answer, changed, compliance, drawing, message, mo, number, view):
     final = answer.run(changed, compliance)
     drawing.shown = message.made(changed, final) | {"number": number, "is_final": True}
     if final.outcome.rate is not None:
-        changes = answer.disturbed(changed, compliance)._asdict()
+        changes = answer.disturbed(changed, compliance, final)._asdict()
         drawing.uncertainty = changes | {"number": number}
     return
 

@@ -4,12 +4,17 @@ rests, and how far small changes move its rates."""
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 import tipoff
+
+CLEARANCE_CHANGE = 1e-6  # m
+TIGHT = 1e-10  # relative tolerance
 
 
 class Disturbance(NamedTuple):
     """Largest change of a settled rate (deg/s) by 1 um of clearance either way and by a relative
-    tolerance of 1e-10; None where a disturbed run does not settle or nothing is there to change."""
+    tolerance of 1e-10, as ``tipoff run`` prints them; None where a disturbed run does not settle."""
 
     by_clearance: float | None
     by_tolerance: float | None
@@ -33,17 +38,21 @@ def run(scene: tipoff.Scene, found: tipoff.RailCompliance | None) -> tipoff.Traj
     return tipoff.run(scene, compliance=found)
 
 
-def disturbed(scene: tipoff.Scene, found: tipoff.RailCompliance | None) -> Disturbance:
-    """How far small changes move the settled rates of ``scene``, which has exited."""
-    cases = tipoff.ensemble(scene, [{}], compliance=found, sensitivity=True, workers=1)
+def disturbed(
+    scene: tipoff.Scene, found: tipoff.RailCompliance | None, nominal: tipoff.Trajectory
+) -> Disturbance:
+    """How far small changes move the settled rates of ``nominal``, the run of ``scene``, which has
+    exited. The rails keep their number of modes, so that nothing else moves the rates."""
+
+    def change(of: tipoff.Scene, **numerics: float) -> float | None:
+        moved = tipoff.run(of, compliance=found, modes=nominal.numerics["modes"], **numerics)
+        if moved.outcome.rate is None:
+            return None
+        return math.degrees(np.abs(np.subtract(moved.outcome.rate, nominal.outcome.rate)).max())
+
+    gaps = scene.contact.either_way(CLEARANCE_CHANGE).values() if scene.contact else ()
+    changes = [change(scene.replace(gap)) for gap in gaps]
     return Disturbance(
-        by_clearance=_degrees(cases, "rate_change_by_clearance"),
-        by_tolerance=_degrees(cases, "rate_change_by_tolerance"),
+        by_clearance=None if None in changes else max(changes, default=0.0),
+        by_tolerance=change(scene, relative_tolerance=TIGHT),
     )
-
-
-def _degrees(cases, name: str) -> float | None:
-    if name not in cases:
-        return None
-    change = math.degrees(float(cases[name].values[0]))
-    return change if math.isfinite(change) else None
