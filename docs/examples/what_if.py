@@ -122,19 +122,24 @@ def _(answer, compliance, condition, controls, drawing, message, mo, offered, sl
         quick = answer.quick(changed, compliance)
     except tipoff.SceneError as error:
         mo.stop(True, mo.callout(mo.plain_text(str(error)), kind="danger"))
-    number = drawing.shown.get("number", 0) + 1
-    drawing.shown = message.made(changed, quick) | {"number": number, "is_final": False}
-    return changed, number
+    drawing.shown = message.made(changed, quick) | {
+        "number": drawing.shown.get("number", 0) + 1,
+        "is_final": False,
+    }
+    drawing.latest = changed, compliance
+    return
 
 
 @app.cell(hide_code=True)
-def _(answer, changed, compliance, drawing, message, mo, number, view):
-    # What takes longer is computed when the sliders rest. While they move, the next run comes first.
-    mo.stop(view.value["rested"] != number)
-    final = answer.run(changed, compliance)
-    drawing.shown = message.made(changed, final) | {"number": number, "is_final": True}
+def _(answer, drawing, message, mo, view):
+    # What takes longer is computed when the sliders rest. This cell reads no slider, so it does not run
+    # while they move.
+    number = view.value["rested"]
+    mo.stop(number == 0 or number != drawing.shown["number"])
+    final = answer.run(*drawing.latest)
+    drawing.shown = message.made(drawing.latest[0], final) | {"number": number, "is_final": True}
     if final.outcome.rate is not None:
-        changes = answer.disturbed(changed, compliance, final)._asdict()
+        changes = answer.disturbed(*drawing.latest, final)._asdict()
         drawing.uncertainty = changes | {"number": number}
     return
 

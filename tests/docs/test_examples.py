@@ -1,6 +1,7 @@
 """The examples of ``docs/examples``: what the page of sliders changes, computes and sends, and both
 notebooks as scripts. ``test_what_if`` looks at the page in a browser."""
 
+import json
 import os
 import subprocess
 import sys
@@ -116,6 +117,15 @@ def test_walls_lie_outside_the_body_and_each_is_drawn_once(scene):
     for wall in drawn["walls"]:
         assert wall["sign"] * wall["face"] > drawn["body"][wall["axis"]]
     assert drawn["gaps"] == pytest.approx([0.25] * 3)
+
+
+@pytest.mark.parametrize("name", tipoff.catalog())
+def test_every_scene_of_the_catalogue_can_be_drawn(name):
+    found = tipoff.load(name)
+    drawn = message.launcher(found)
+    assert min(drawn["body"]) > 0.0 and len(drawn["pads"]) == len(found.pads)
+    assert all(wall["across"][0] < wall["across"][1] for wall in drawn["walls"])
+    json.dumps([drawn, message.loads(found)], allow_nan=False)
 
 
 def test_an_ejection_that_does_not_settle_says_so(scene, compliance):

@@ -5,6 +5,8 @@ from pathlib import Path
 import anywidget
 import traitlets
 
+from tipoff import RailCompliance, Scene
+
 _HERE = Path(__file__).parent
 _PARTS = ("colours.js", "space.js", "launcher.js", "charts.js", "section.js", "page.js", "view.js")
 
@@ -12,7 +14,8 @@ _PARTS = ("colours.js", "space.js", "launcher.js", "charts.js", "section.js", "p
 class EjectionView(anywidget.AnyWidget):
     """Draws ``shown`` and plays it: ``message.made``, the ``number`` of the values of the sliders, and
     ``is_final`` for a run that was made when they rested. ``rested`` is the number of the values at
-    which they rest; ``uncertainty`` belongs to the values of its own ``number``."""
+    which they rest; ``uncertainty`` belongs to the values of its own ``number``. ``latest`` are the
+    scene that is shown and the compliance of its rails; they stay here."""
 
     # A widget is one module to the browser, so the files are joined.
     _esm = "\n".join((_HERE / name).read_text(encoding="utf-8") for name in _PARTS)
@@ -20,3 +23,4 @@ class EjectionView(anywidget.AnyWidget):
     shown = traitlets.Dict().tag(sync=True)
     uncertainty = traitlets.Dict().tag(sync=True)
     rested = traitlets.Int(0).tag(sync=True)
+    latest: tuple[Scene, RailCompliance | None]
