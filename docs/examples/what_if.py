@@ -97,8 +97,8 @@ def _(begin, controls, mo, scene):
     for item, slider in zip(offered, sliders):
         groups.setdefault(item.group, []).append(slider.text)
     mo.Html(
-        "<div style='display: grid; gap: 10px 28px; "
-        "grid-template-columns: repeat(auto-fit, minmax(min(100%, 200px), 1fr))'>"
+        "<div style='display: grid; gap: 10px 20px; "
+        "grid-template-columns: repeat(auto-fit, minmax(min(100%, 170px), 1fr))'>"
         + "".join(f"<div><b>{name}</b>{''.join(texts)}</div>" for name, texts in groups.items())
         + "</div>"
     )

@@ -60,8 +60,8 @@ def value(scene: Scene, control: Control) -> float | None:
         return None if head in _NEEDS else 0.0
     if found is None:  # a pulse that is given by its impulse
         return None
-    # 12 digits hide that a conversion to SI and back changes the last bit
-    return float(f"{found / control.si:.12g}")
+    # as many digits as stand beside a slider; a value that nobody moves is not taken from here
+    return float(f"{found / control.si:.4g}")
 
 
 def of_scene(scene: Scene) -> dict[Control, float]:
