@@ -12,6 +12,7 @@ ASKED = --scene $(SCENE) --out $(OUT)
 READY = .venv/.ready
 CHECKED = .venv/.checked
 DOCUMENTED = .venv/.documented
+EXAMPLED = .venv/.exampled
 # Tests that take a second or two each where kernels are compiled.
 QUICK = tests/test_layers.py tests/test_sources.py tests/scenes tests/mechanics tests/meshes \
   $(patsubst %,tests/highfi/%,elements mesh statics extruded contact/test_hertz.py test_compliance.py) \
@@ -22,10 +23,10 @@ QUICK = tests/test_layers.py tests/test_sources.py tests/scenes tests/mechanics 
   tests/studies/core/test_models.py tests/studies/report
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest paper recovery report view pictures peers convergence rails full-report bench docs check coverage hooks test test-slow fuzz clean
+.PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest paper recovery report view pictures peers convergence rails full-report bench docs examples examples-ready check coverage hooks test test-slow fuzz clean
 
 help: ## print this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-12s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-14s %s\n", $$1, $$2}' Makefile
 	@echo "  SCENE=$(SCENE) OUT=$(OUT)"
 
 mesh: $(READY) ## mesh the rails of the scene
@@ -111,6 +112,11 @@ full-report: rails ## the report with every study on it, and with two more rails
 docs: $(DOCUMENTED) ## the documentation site, every warning an error: docs/_build/index.html
 	.venv/bin/python -m sphinx --fail-on-warning --keep-going --quiet -b html docs docs/_build
 
+examples: $(EXAMPLED) ## what if? A page in the browser with sliders, for any SCENE
+	.venv/bin/marimo run docs/examples/what_if.py -- --scene $(SCENE)
+
+examples-ready: $(EXAMPLED) ## add what the examples need to .venv, so that `make test` runs them too
+
 check: $(CHECKED) ## format, lint, types and the quick tests: within a minute where kernels are compiled
 	.venv/bin/ruff format --check --quiet .
 	.venv/bin/ruff check --quiet .
@@ -145,6 +151,10 @@ $(CHECKED): requirements-check.lock $(READY)
 
 $(DOCUMENTED): requirements-docs.lock $(READY)
 	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements-docs.lock
+	@touch $@
+
+$(EXAMPLED): requirements-examples.lock $(READY)
+	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements-examples.lock
 	@touch $@
 
 # The environment. The stamp is written last, so an install that was cut short is taken up again.

@@ -346,8 +346,8 @@ def test_lock_holds_every_dependency():
     )
     normal = {re.sub(r"[-_.]+", "-", name).lower() for name in pinned}
     assert {re.match(r"[A-Za-z0-9_.-]+", name).group().lower() for name in asked} <= normal
-    # Extras for pictures, documentation, other codes and developers have locks of their own, beside the first one.
-    for extra in ("view", "check", "docs", "peers"):
+    # Each of the other extras has a lock of its own, beside the first one.
+    for extra in ("view", "check", "docs", "examples", "peers"):
         lock = (ROOT / f"requirements-{extra}.lock").read_text()
         added = set(re.findall(r"^([A-Za-z0-9_.-]+)==", lock, re.MULTILINE))
         wanted = {re.match(r"[A-Za-z0-9_.-]+", name).group() for name in extras[extra]}
