@@ -7,6 +7,7 @@ from typing import Any
 
 NOTHING = "–"
 LEAST = 1e-3  # the smallest step that is shown where no unit says otherwise
+_POWERS = 1e7  # larger numbers are written with a power of ten
 # The smallest step (in the unit) that has a meaning in this field. A gyroscope of a payload reads
 # 0.001 deg/s at best; no gate of an agreement is below 0.1 %.
 STEPS = {
@@ -93,4 +94,7 @@ def _shown_decimals(shown: str) -> int:
 
 def _fixed(value: float, decimals: int, sign: str = "") -> str:
     shown = round(value, decimals) + 0.0  # no minus zero
+    if abs(shown) >= _POWERS:
+        digits = math.floor(math.log10(abs(shown))) + decimals + 1
+        return f"{shown:{sign}.{min(max(digits, 1), 6)}g}"
     return f"{shown:{sign if shown else ''},.{max(decimals, 0)}f}"
