@@ -99,7 +99,8 @@ def _(mo):
     mo.md("""
     ## 4. What if?
 
-    `replace` changes values by their keys. Text has a unit, `absent` removes an effect.
+    `replace` changes values by their keys. Text has a unit, a bare number is SI, and `"absent"` in place
+    of a table, such as `friction`, removes an effect.
     """)
     return
 
@@ -111,7 +112,7 @@ def _(compliance, np, scene, tipoff):
         "as it is": {},
         "three times the misalignment": {"thrust_offset.misalignment.axial": "0.3 deg"},
         "half the clearance": {"contact.clearance": "0.125 mm"},
-        "no friction": {"friction": "absent"},
+        "half the friction": {"friction.static": 0.1, "friction.dynamic": 0.1},
     }
     for words, change in changes.items():
         changed = tipoff.run(phi15.replace(change), compliance=compliance)
