@@ -38,8 +38,8 @@ def settled(ensemble: Ensemble, store: str | Path | None = None) -> Ensemble:
     count = chosen[int((1.0 - _LEFT_OUT) * (len(chosen) - 1))] if chosen else 0
     above = sum(number > count for number in chosen)
     why = (
-        f"{count or 'none'}: enough for {len(chosen) - above} of {len(chosen)} pilot cases; more would "
-        f"move their settled rates by less than {np.degrees(modes.THRESHOLD):g} deg/s"
+        f"{count or 'none'}: enough for {len(chosen) - above} of {len(chosen)} pilot cases; the others "
+        f"would move their settled rates by less than {np.degrees(modes.THRESHOLD):g} deg/s"
     )
     return _with(ensemble, count, why)
 

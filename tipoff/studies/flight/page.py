@@ -285,8 +285,8 @@ def remarks(found: dict) -> list[str]:
         f"No clearance is computed: {flight['no_clearance']}.": flight["no_clearance"],
         "The rails come from a file: the clearance includes only those that `flight.envelope` "
         "lists.": flight["rails_listed"],
-        f"The flights of {counted(left, 'case')} end before it is known whether they reach the "
-        "pointing limit; they are not counted.": left,
+        f"{counted(left, 'case')} {'does' if left == 1 else 'do'} not show whether the pointing limit is "
+        "reached; not counted.": left,
     }
     return [line for line, holds in lines.items() if holds]
 
