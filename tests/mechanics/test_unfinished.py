@@ -5,6 +5,7 @@ import re
 
 import pytest
 
+from tests.lowfi.support import CENTRED, IMMOVABLE, WEIGHTLESS
 from tipoff import lowfi
 from tipoff.mechanics import unfinished
 from tipoff.mechanics.outcome import relative_motion
@@ -54,7 +55,8 @@ def test_a_payload_on_the_rail_has_its_way_and_a_duration_that_is_enough(scene):
 
 
 def test_the_way_is_the_one_that_a_run_has_made_at_its_exit(scene):
-    fine = scene.replace({"output.interval": "1 us", "thrust_offset": None, "platform": None})
+    alone = {"thrust_offset": CENTRED, "platform": IMMOVABLE}
+    fine = scene.replace({"output.interval": "1 us"} | alone)
     run = lowfi.run(fine)
     place = relative_motion(run)["relative_position"][:, 0]
     at_exit = place[abs(run.time - run.outcome.exit_time).argmin()]
@@ -64,7 +66,9 @@ def test_the_way_is_the_one_that_a_run_has_made_at_its_exit(scene):
 
 def test_thrust_without_an_end_and_a_payload_that_hardly_moves(scene):
     burning = {"kind": "constant", "force": "9 kN", "duration": "1 hour"}
-    constant = scene.replace({"thrust": burning, "duration": "6 ms"})
+    # the effects of one body, for which a kernel is compiled
+    one_body = {"platform": None, "gravity": WEIGHTLESS}
+    constant = scene.replace({"thrust": burning, "duration": "6 ms"} | one_body)
     assert "the thrust does not end" in told(constant)
     still = scene.replace({"thrust.peak": "1 mN", "duration": "3 ms"})
     assert "needs more thrust" in told(still) and "lasts until" in told(still)

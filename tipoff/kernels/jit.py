@@ -155,10 +155,10 @@ class _Part(CPUDispatcher):
 
 
 def _call(*arguments):
-    return part(*arguments)  # type: ignore[name-defined]  # noqa: F821
+    return part(*arguments)  # noqa: F821
 
 
-def _caller(kernel: _Part) -> CPUDispatcher:
+def _caller(kernel: _Part) -> Callable:
     """What Python calls in the place of ``kernel``: ``_call``, kept on disk as a function of the
     module of the kernel, which is the global ``part``. Numba finds no stored function with a
     closure."""
@@ -200,7 +200,7 @@ def _entry(function: Callable | None = None, **options: Any) -> Callable:
 
 # error_model="numpy": division by zero gives inf, which reaches the status check, instead of an
 # exception inside a kernel.
-_OPTIONS = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
+_OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
 
 if TYPE_CHECKING:
     njit: Decorator
