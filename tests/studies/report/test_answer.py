@@ -103,6 +103,36 @@ def test_a_condition_is_stated_in_its_row(page):
     assert answer.stated(page, "nominal") == "the scene itself"
 
 
+def test_stated_changes_name_their_owner_and_have_four_digits(page):
+    page.scene = scenes.load("reference")
+    assert answer.stated(page, "h9") == (
+        "misalignment axial 0.2667 deg, radial 70 deg; thrust eccentricity axial 0.4 mm, radial 160 "
+        "deg; mass eccentricity axial 0.2667 mm, radial 310 deg"
+    )
+    assert answer.stated(page, "h6").startswith("no thrust offset; mass eccentricity axial 0.2 mm")
+    assert answer.stated(page, "h10").endswith("position y 20 µm")
+
+
+def test_rates_by_hand_stand_beside_those_of_the_run(page):
+    assert "by hand" not in html(answer.draw(page))
+    rows = page.documents["highfi"]["conditions"]
+    rows[1] |= {"by_hand": {"rate_deg_s": [1.0004, 0.3, 0.4], "words": "no pad touches"}}
+    shown = html(answer.draw(page))
+    assert "by hand: roll, transverse (deg/s)" in shown and "1.000, 0.500" in shown
+    assert "moment impulse of the thrust over the inertia" in shown
+
+
+def test_the_largest_rate_of_converged_conditions_is_said_where_another_is_larger(page):
+    shown = html(answer.draw(page))
+    assert "phi15, not converged; of the converged ones 1.000 ± &lt;0.001 (phi60)" in shown
+    page.documents["convergence"] = {
+        "condition": "phi60",
+        "equal_accuracy": None,
+        "quantities": [{"quantity": "settled axial velocity", "nominal_uncertainty": 2e-3}],
+    }
+    assert "v_x (m/s), each ± 0.002 by mesh and step, measured on phi60" in html(answer.draw(page))
+
+
 @pytest.mark.parametrize("name", ["reference", "channel"])
 def test_the_drawing_has_the_launcher_to_scale_with_both_clock_angles(name):
     scene = scenes.load(name)

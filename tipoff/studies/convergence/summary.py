@@ -5,6 +5,7 @@ from tipoff.studies.agreement import verdicts
 from tipoff.studies.convergence import equal_accuracy
 from tipoff.studies.convergence.quantities import RATE
 from tipoff.studies.core.extrapolation import NOT_CONVERGED
+from tipoff.studies.render.uncertain import LEAST, number
 
 
 def lines(found: dict) -> list[str]:
@@ -44,9 +45,9 @@ def refinements(found: dict) -> list[str]:
             continue
         text.append(
             f"{parameter} on {name}: uncertainty of the settled rates "
-            f"{worst['nominal_uncertainty']:.2g} deg/s at the default "
+            f"{number(worst['nominal_uncertainty'], '.2g', LEAST)} deg/s at the default "
             f"{factor * worst['nominal_size']:.3g} {unit}{default}, "
-            f"{max(row['uncertainty'] for row in rows):.2g} deg/s at "
+            f"{number(max(row['uncertainty'] for row in rows), '.2g', LEAST)} deg/s at "
             f"{factor * worst['sizes'][-1]:.3g} {unit}"
             f"{f'; {NOT_CONVERGED}' if worst['method'] == NOT_CONVERGED else ''}"
         )
@@ -66,7 +67,7 @@ def _changes(title: str, key: str, rows: list[dict]) -> list[str]:
     found = (
         "no run settled"
         if change is None
-        else f"a settled rate changes by up to {change:.2g} deg/s"
+        else f"a settled rate changes by up to {number(change, '.2g', LEAST)} deg/s"
     )
     return [f"{title} {rows[0][key]:g} to {rows[-1][key]:g}: {found}{odd}"]
 

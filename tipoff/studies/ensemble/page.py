@@ -4,6 +4,7 @@ from tipoff.studies.core.words import counted
 from tipoff.studies.ensemble.sensitivity import CAUSES
 from tipoff.studies.render.document import Bullets, Part
 from tipoff.studies.render.table import Table, estimate, percent
+from tipoff.studies.render.uncertain import LEAST, number
 
 _LABELS = {
     "rate_deg_s": "total rate (deg/s)",
@@ -109,7 +110,8 @@ def case(found: dict) -> list[Part]:
         parts.append(Table(["", "x", "y", "z"], rows))
     if "sensitivity" in found:
         parts += [
-            f"{CAUSES[cause]}: " + ("does not settle" if change is None else f"{change:.2g} deg/s")
+            f"{CAUSES[cause]}: "
+            + ("does not settle" if change is None else f"{number(change, '.2g', LEAST)} deg/s")
             for cause, change in found["sensitivity"]["by"].items()
         ]
     return [*parts, _STORED[found["stored"]]]

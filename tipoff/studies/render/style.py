@@ -85,7 +85,7 @@ footer { max-width: 1240px; margin: 60px auto 40px; padding: 0 28px; color: var(
   th, td, table.dense th, table.dense td { padding: 2px 4px 2px 2px; }
   details td.number { white-space: normal; overflow-wrap: anywhere; } .dense td:last-child { min-width: 0; }
   table.judged td:last-child, table.judged th:last-child { position: static; box-shadow: none; }
-  .plotly-graph-div { zoom: 0.78; }
+  div:has(> .plotly-graph-div) { zoom: 0.72; }
 }
 """
 CSS = palette.css() + _PAGE

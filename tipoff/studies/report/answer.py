@@ -225,12 +225,18 @@ def stated(page: "Page", name: str) -> str:
     for key, value in page.scene.conditions.get(name, {}).items():
         table_, _, last = key.rpartition(".")
         if is_drop(value):
-            found[f"no {last.replace('_', ' ')}"] = []
+            found[f"no {_short(key)}"] = []
             continue
-        table_ = table_.rpartition(".")[2].replace("_", " ")
-        found.setdefault(table_, []).append(f"{last.replace('_', ' ')} {_readable(value)}")
+        found.setdefault(_short(table_), []).append(f"{last.replace('_', ' ')} {_readable(value)}")
     parts = [f"{table_} {', '.join(values)}".strip() for table_, values in found.items()]
     return "; ".join(parts) or "the scene itself"
+
+
+def _short(key: str) -> str:
+    """The last word of a key; an eccentricity with its owner, since thrust and mass have one."""
+    owner, _, last = key.rpartition(".")
+    words = f"{owner.removesuffix('_offset')} {last}" if last == "eccentricity" else last
+    return words.replace("_", " ")
 
 
 def _readable(value: Any) -> str:
