@@ -40,7 +40,7 @@ def shown(rows: list[dict], views: list[dict], folder: Path, command: str) -> li
     columns = (
         "condition",
         Column("peak von Mises", "MPa", ".3g", 1e-6),
-        Column("of yield", "%", ".2g", 100.0),
+        Column("of yield", "%", scale=100.0),
         "x, y, z (mm)",
         "rail",
         Column("at", "ms", ".4g", 1e3),
