@@ -148,7 +148,7 @@ def test_neighbours_that_do_not_settle(study, monkeypatch):
     )
     stub(monkeypatch, float("nan"))
     found = judged(study)["models"]["calibrated"]
-    assert found["verdict"] == "misses: 324 of 324 neighbours did not settle"
+    assert found["verdict"] == "misses: 36 of 36 neighbours did not settle"
 
 
 def test_verdicts_go_into_the_table(study, monkeypatch):

@@ -149,16 +149,16 @@ def _judged(
 def _model(reference: np.ndarray, rates: np.ndarray, limit: float) -> dict:
     """Verdict on one surrogate, its comparisons, and the curves of its distribution."""
     count = len(reference)
-    lost = [int((~np.isfinite(part).all(axis=1)).sum()) for part in (reference, rates)]
     settled = rates[np.isfinite(rates).all(axis=1)]
     curve = np.quantile(settled, _CURVE, axis=0).T.tolist() if len(settled) else None
-    if lost[0] or not np.isfinite(rates[:count]).all() or lost[1] * count > len(rates):
-        word, why = (
-            (verdicts.CANNOT, f"{lost[0]} of {count} neighbours did not settle in the reference")
-            if lost[0]
-            else (verdicts.MISSES, f"{lost[1]} of {len(rates)} neighbours did not settle")
-        )
+    if lost := _lost(reference):
+        word = verdicts.CANNOT
+        why = f"{lost} of {count} neighbours did not settle in the reference"
         return _entry(word, f"{word}: {why}", [], curve)
+    for part, most in ((rates[:count], 0.0), (rates, len(rates) / count)):
+        if (lost := _lost(part)) > most:
+            word, why = verdicts.MISSES, f"{lost} of {len(part)} neighbours did not settle"
+            return _entry(word, f"{word}: {why}", [], curve)
     further = rates[count:][np.isfinite(rates[count:]).all(axis=1)]
     found = equivalence.compare(reference, rates[:count], further, limit)
     word = {
@@ -167,6 +167,11 @@ def _model(reference: np.ndarray, rates: np.ndarray, limit: float) -> dict:
         equivalence.UNKNOWN: verdicts.CANNOT,
     }[equivalence.verdict(found)]
     return _entry(word, f"{word}{_why(word, found, count)}", found, curve)
+
+
+def _lost(rates: np.ndarray) -> int:
+    """How many neighbours (rows of ``rates``) did not settle."""
+    return int((~np.isfinite(rates).all(axis=1)).sum())
 
 
 def _entry(word: str, words: str, found: list[equivalence.Comparison], curve: list | None) -> dict:

@@ -5,6 +5,7 @@ from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes.scene import NOMINAL
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.core.study import Study
+from tipoff.studies.core.words import counted
 
 
 def rows(study: Study, model: str, calibrated: bool = False, modes: int | str = AUTO) -> list[dict]:
@@ -68,7 +69,7 @@ def words(
     parts = []
     if known:
         parts.append(
-            f"at most {max(known):.2g} deg/s from the reference on the {len(known)} conditions where "
+            f"at most {max(known):.2g} deg/s from the reference on {counted(len(known), 'condition')} where "
             "that is converged and pads touch"
         )
     if lost := len(errors) - len(known):

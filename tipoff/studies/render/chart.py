@@ -222,5 +222,6 @@ def upwards(panel: Panel) -> tuple[float, float]:
 
 
 def _decades(values: list[float]) -> tuple[float, float]:
-    low, high = min(values, default=1.0) / 1.5, max(values, default=1.0) * 1.5
+    shown = [value for value in values if value > 0.0]  # a logarithm has no place for zero
+    low, high = min(shown, default=1.0) / 1.5, max(shown, default=1.0) * 1.5
     return 10.0 ** math.floor(math.log10(low)), 10.0 ** math.ceil(math.log10(high))
