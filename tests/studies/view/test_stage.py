@@ -221,10 +221,10 @@ def test_page_shows_peaks_and_says_what_would_show_more(viewed):
     )
     shown = html(section.draw(page))
     assert "+y +z" in shown and "503 MPa" in shown and ">3.98<" in shown
-    assert "make view SCENE=tiny" in shown and "notice" not in shown
+    assert "tipoff view --scene tiny --out" in shown and "notice" not in shown
     page.documents["view"] = [found]
     shown = html(section.draw(page))
-    assert "make view" not in shown and "make pictures" in shown and found["collection"] in shown
+    assert "tipoff view" not in shown and "make pictures" in shown and found["collection"] in shown
     without = Page(study.scene, study.folder, {}, Runs({}, {}, {}), {})
     assert "tipoff highfi --scene tiny --out" in html(section.draw(without))
 
