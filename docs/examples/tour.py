@@ -90,7 +90,7 @@ def _(np, run):
     pressed = np.linalg.norm(run.pad_force, axis=2)  # N, samples by faces of pads
     first = run.time[(pressed > 0.0).any(axis=1)][0]
     print(f"first contact {1e3 * first:.1f} ms, largest force on a face {pressed.max():.0f} N")
-    run.plot()[0].axes
+    run.plot()
     return
 
 

@@ -232,28 +232,12 @@ class RailCompliance(Shown):
         made for, a temperature while this has no thermal offset, or a factor on the stiffness of
         its mounts that this does not cover."""
         if self.made_for != digest(scene):
-            raise SceneError(
-                [
-                    Fault(
-                        scene.name,
-                        "rail",
-                        "another rail, or other pads",
-                        "those of this compliance: make it again",
-                    )
-                ]
-            )
+            expected = "those of this compliance: make it again"
+            raise SceneError([Fault(scene.name, "rail", "another rail, or other pads", expected)])
         if scene.thermal is not None and self.warm is None:
-            raise SceneError(
-                [
-                    Fault(
-                        scene.name,
-                        "thermal",
-                        "a compliance without thermal offset",
-                        "a compliance for warm rails: make it again",
-                    )
-                ]
-            )
-
+            given = "a compliance without thermal offset"
+            expected = "a compliance for warm rails: make it again"
+            raise SceneError([Fault(scene.name, "thermal", given, expected)])
         factor = _factor(scene)
         if factor != 1.0 and (self.joints is None or not LEAST <= factor <= MOST):
             expected = (

@@ -56,7 +56,7 @@ def study(tmp_path):
 def test_a_model_that_does_not_settle_has_no_error_there(study, monkeypatch):
     lost = ROW | {"condition": "h1", "settled_rate_error_deg_s": None, "judgement": "misses"}
     for rows, said in (
-        ([ROW, lost], "at most 0.012 deg/s from the reference on the 1 conditions"),
+        ([ROW, lost], "at most 0.012 deg/s from the reference on 1 condition"),
         ([lost], "it does not settle on 1 where the reference does"),
     ):
         found = TABLE | {"compliant": rows}
@@ -117,7 +117,7 @@ def test_an_answer_names_its_model_and_its_error(tmp_path):
     assert again["model"] == COMPLIANT
     vibrating = call(*asked, "--modes", "1")
     assert (
-        "model compliant, 1 modes of each rail" in vibrating.stdout
+        "model compliant, 1 mode of each rail" in vibrating.stdout
         and "rail compliance" not in vibrating.stderr
     )
     springs = json.loads(call(*asked, "--model", "springs", "--json").stdout)
@@ -131,7 +131,7 @@ def test_the_error_comes_from_the_agreement_table(study, monkeypatch):
     )
     assert kept.words(study, COMPLIANT, "h8").endswith("but the reference is not converged there")
     assert kept.words(study, COMPLIANT) == (
-        "at most 0.012 deg/s from the reference on the 1 conditions where that is converged and "
+        "at most 0.012 deg/s from the reference on 1 condition where that is converged and "
         "pads touch"
     )
     assert "0.14 deg/s" in kept.words(study, SPRINGS, "phi15", calibrated=True)

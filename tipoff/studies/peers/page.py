@@ -11,6 +11,7 @@ from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Heading, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table
+from tipoff.studies.render.uncertain import number
 
 if TYPE_CHECKING:
     from tipoff.studies.core.study import Study
@@ -73,8 +74,11 @@ def equal_error(peers: list[dict]) -> Table:
             # equal elements differ in the last digits that are printed
             enough = [point for point in points if point["error"] <= 1.001 * reached]
             best = min(enough, key=lambda point: point["cpu_s"])
-            rows.append((case["error_of"], reached, code, best["setting"], best["cpu_s"]))
-    columns = ("error of", Column("at most", "%", ".2g"), "code", "setting", Column("CPU", "s"))
+            # as text: errors of a code are below the smallest step of a result
+            rows.append(
+                (case["error_of"], number(reached, ".2g"), code, best["setting"], best["cpu_s"])
+            )
+    columns = ("error of", "at most (%)", "code", "setting", Column("CPU", "s"))
     return Table(columns, rows, title="Time at equal error:")
 
 

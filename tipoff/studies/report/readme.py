@@ -18,6 +18,7 @@ from tipoff.studies.core.study import read
 from tipoff.studies.montecarlo import tails_page
 from tipoff.studies.render.document import Part, markdown
 from tipoff.studies.render.table import Column, Table, number, percent
+from tipoff.studies.render.uncertain import STEPS
 from tipoff.studies.report import further
 
 _ROOT = Path(__file__).resolve().parents[3]
@@ -34,15 +35,12 @@ _TAILS = """# Random errors checked by the reference
 Scene {scene}. Written by `python -m tipoff.studies.report.readme` from the file of
 `tipoff montecarlo --cases {cases} --reference {draws} --finer {fine}`. All runs of the surrogate have the
 [number of rail modes](rail_modes.md#one-number-in-a-study) that pilot cases of the population chose."""
-_BEGIN, _END = "<!-- results: python -m tipoff.studies.report.readme -->", "<!-- end of results -->"
+_BEGIN, _END = "<!-- {name}: python -m tipoff.studies.report.readme -->", "<!-- end of {name} -->"
 
 
 def main(folder: Path) -> None:
     """Replace the figures in README.md, the page of results, and the pictures beside it."""
-    readme = _ROOT / "README.md"
-    before, rest = readme.read_text(encoding="utf-8").split(_BEGIN)
-    after = rest.split(_END)[1]
-    write_text(readme, f"{before}{_BEGIN}\n{headline(folder)}\n{_END}{after}")
+    _into_readme("results", headline(folder))
     page = f"{_TITLE}\n\n{section(folder)}\n\n{further.details(folder)}\n"
     write_text(_ROOT / "docs" / "results.md", page)
     for name in ("figure6.png", "cost.png"):
@@ -52,10 +50,23 @@ def main(folder: Path) -> None:
 
 
 def tails(found: dict, folder: Path) -> None:
-    """Write the page of random errors that the reference has checked, with its picture."""
+    """Write the page of random errors that the reference has checked, with its picture, and what
+    README says of it."""
+    _into_readme(
+        "tails",
+        "- **Tails**: " + " ".join(_upper(f"{said}.") for said in tails_page.sentences(found)),
+    )
     text = markdown(tails_page.document(found))
     write_text(_ROOT / "docs" / "tails.md", f"{_TAILS.format(**found)}\n\n{text}\n")
     shutil.copyfile(folder / "figures" / "tails.png", _ROOT / "docs" / "tails.png")
+
+
+def _into_readme(name: str, text: str) -> None:
+    """Replace the lines of README between the marks of ``name``."""
+    path = _ROOT / "README.md"
+    begin, end = (mark.format(name=name) for mark in (_BEGIN, _END))
+    before, rest = path.read_text(encoding="utf-8").split(begin)
+    write_text(path, f"{before}{begin}\n{text}\n{end}{rest.split(end)[1]}")
 
 
 def headline(folder: Path) -> str:
@@ -119,8 +130,9 @@ def section(folder: Path) -> str:
 
 _SPRINGS, _OURS = "springs, calibrated", "compliant contact"
 _BOUNDS = (
-    Column("floor, deg/s", form=".2g"),
-    Column("reference uncertainty, deg/s", form=".2g"),
+    Column("floor", "deg/s", ".2g"),
+    Column("reference uncertainty", "deg/s", ".2g"),
+    "judged as",
     "verdict",
 )
 
@@ -153,6 +165,7 @@ def _judged(row: dict) -> tuple:
         _pair(row),
         row["floor_deg_s"],
         row["reference_uncertainty_deg_s"],
+        row["judged_as"],
         row["verdict"],
     )
 
@@ -160,7 +173,7 @@ def _judged(row: dict) -> tuple:
 def _pair(row: dict) -> str:
     return (
         f"{percent(row['rate_relative_l2'], '.2g')} / "
-        f"{number(row['settled_rate_error_deg_s'], '.2g')}"
+        f"{number(row['settled_rate_error_deg_s'], '.2g', STEPS['deg/s'])}"
     )
 
 
@@ -171,14 +184,16 @@ def _growth(found: list[dict]) -> list[Part]:
     stable = [item for item in own if item["sensitive"] is False]
     lines = [
         f"- {growth_page.sentence(item)} "
-        f"({number(item['settled_growth_deg_s_um'], '.2g')} deg/s per µm)"
+        f"({number(item['settled_growth_deg_s_um'], '.2g', STEPS['deg/s'])} deg/s per µm)"
         for item in own
         if item["sensitive"] is not False
     ]
     if stable:
         most = max(item["settled_growth_deg_s_um"] for item in stable)
         names = ", ".join(item["condition"] for item in stable)
-        lines.append(f"- {names}: stable to the end (up to {number(most, '.2g')} deg/s per µm)")
+        lines.append(
+            f"- {names}: stable to the end (up to {number(most, '.2g', STEPS['deg/s'])} deg/s per µm)"
+        )
     return ["How 1 µm of clearance grows in the reference:", "\n".join(lines)] if lines else []
 
 
@@ -239,8 +254,8 @@ def _ladder(found: dict) -> list[Part]:
         "model",
         "numerics",
         "wall time",
-        Column("settled rates, deg/s", form=".2g"),
-        Column("rate L2, %", form=".2g"),
+        Column("settled rates", "deg/s", ".2g"),
+        Column("rate L2", "%", ".2g"),
     )
     return [
         f"What accuracy costs in time (`make cost`, {found['condition']}): errors against the "
