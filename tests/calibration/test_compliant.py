@@ -155,7 +155,7 @@ def test_the_command_fits_curves_and_others_run_with_the_file(tmp_path, monkeypa
     said = call(*fit)
     path = tmp_path / "tiny/curves/calibration-compliant.toml"
     assert f"  {path}" in said.stdout and "the search, about" in said.stderr
-    assert "initial.position.y" in said.stdout and "; with model error " in said.stdout
+    assert "initial.position.y" in said.stdout and "with model error" in said.stdout
     fitted = Calibration.load(path)
     clearances = []
     monkeypatch.setattr(

@@ -37,7 +37,7 @@ def test_constants_and_residuals_are_tables(tmp_path):
     fitted = stage.as_dict(FOUND) | {"calibration": "calibration.toml"}
     lines = shown(fitted, tmp_path).splitlines()
     force = next(line for line in lines if line.strip().startswith("force at"))
-    assert force.split()[-5:] == ["6.3", "N", "6", "to", "6.5"]
+    assert force.split()[-5:] == ["6.3", "N", "6.0", "to", "6.5"]
     assert any(
         line.split()[:3] == ["mu", "0.25", "1"] and "not determined" in line for line in lines
     )
