@@ -92,17 +92,17 @@ def _agreed(rows: list[dict]) -> str:
         f"- **Agreement**: the reference is converged on {len(judged)} of {len(rows)} conditions. Compliant contact, "
         f"with nothing fitted, agrees on {len(agree)} of these {len(judged)}."
     )
-    if chaotic := [row for row in rows if row["judged_as"] == verdicts.DISTRIBUTION]:
-        alike = sum(row["judgement"] == verdicts.AS_DISTRIBUTION for row in chaotic)
-        said += f" Chaotic conditions are judged as distributions: {alike} of {len(chaotic)} agree."
-    if not touched:
-        return said
-    settled = max(row["settled_rate_error_deg_s"] for row in touched)
-    return (
-        f"{said} Pads touch in {len(touched)} of them: there rates differ by "
-        f"{percent(min(errors), '.2g')} to {percent(max(errors), '.2g')} % (L2) and settled rates "
-        f"by at most {number(settled, '.2g')} deg/s."
-    )
+    if touched:
+        settled = max(row["settled_rate_error_deg_s"] for row in touched)
+        said += (
+            f" Pads touch in {len(touched)} of them: there rates differ by "
+            f"{percent(min(errors), '.2g')} to {percent(max(errors), '.2g')} % (L2) and settled "
+            f"rates by at most {number(settled, '.2g')} deg/s."
+        )
+    if others := [row for row in rows if row["judged_as"] == verdicts.DISTRIBUTION]:
+        alike = sum(row["judgement"] == verdicts.AS_DISTRIBUTION for row in others)
+        said += f" The others are judged as distributions: {alike} of {len(others)} agree."
+    return said
 
 
 def _upper(sentence: str) -> str:
