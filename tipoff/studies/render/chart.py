@@ -137,11 +137,12 @@ def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
                 )
         _dress(axes, panel)
     if len(handles) > 1:
+        widest = 5.2 * max(map(len, handles)) + 45.0  # points, with the line before the words
         figure.legend(
             handles.values(),
             handles.keys(),
             loc="outside lower center",
-            ncols=min(len(handles), 4),
+            ncols=max(min(len(handles), 4, int(72.0 * figure.get_figwidth() / widest)), 1),
             frameon=False,
             fontsize=9,
         )
