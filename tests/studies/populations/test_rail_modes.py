@@ -124,7 +124,7 @@ def test_one_pilot_serves_all_readings_of_a_population(study, watch):
     described = [store.described(path) for path in study.folder.glob("montecarlo*-*")]
     assert len(described) == len(runs.modes)
     assert {each["identity"]["numerics"]["modes"] for each in described} == {3}
-    line = "model compliant with 3 modes of each rail (enough for 16 of 16 pilot cases; the others"
+    line = "model compliant with 3 modes of each rail (enough for 16 of 16 pilot cases, whose"
     assert line in " ".join(terminal(page.summary(found)).split())
     assert "with 3 modes of each rail" in html(page.draw(found))
 
