@@ -7,13 +7,22 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from tipoff import highfi
+import tipoff
+from tipoff import highfi, lowfi
 from tipoff.highfi import Numerics
 from tipoff.highfi.statics import assembly
+from tipoff.lowfi.dynamics import cases
+from tipoff.mechanics.models import COMPLIANT
 from tipoff.scenes import load
 from tipoff.studies.bench import reference
 from tipoff.studies.bench.csr_loop import CsrLoop
-from tipoff.studies.bench.methods import PlainRungeKutta, SolveIvp
+from tipoff.studies.bench.methods import (
+    PlainRungeKutta,
+    Population,
+    SolveIvp,
+    Surrogate,
+    varied,
+)
 from tipoff.studies.cli import app
 from tipoff.studies.report.page import Page
 from tipoff.studies.runs.figures import Runs
@@ -73,9 +82,31 @@ def test_bench_writes_one_row_per_size(tmp_path):
     for row in surrogate["single"]:
         assert row["measured_percent"] <= row["error_percent"] and row["cpu_ms"] > 0.0
         assert f"{row['cpu_ms']:.3f}" in page
+        compliant = row["method"] == "compliant contact"
+        assert (row["run_auto_cpu_ms"] is not None) == compliant
+    assert "pilot cases" in surrogate["modes_why"]
     for ensemble in surrogate["ensembles"]:
         assert (
             ensemble["cases"] == ensemble["ok"] == 40
             and ensemble["cpu_ms_per_case"] > 0.0 < ensemble["wall_s"]
         )
         assert ensemble["peak_memory_bytes"] > 10**7
+
+
+def test_runs_of_a_method_have_the_modes_of_its_population():
+    """Otherwise the two columns of a row compare different equations."""
+    scene = load("tiny")
+    population = Population(scene, varied(2), COMPLIANT, tipoff.compliance(scene))
+    population.modes = 3  # unlike what the cases need
+    method, tolerance = Surrogate(population), 1e-5
+    runs = method.whole(tolerance)()
+    assert [run.numerics["modes"] for run in runs] == [3, 3]
+    steps = method.piece(tolerance)()[:, cases.STEPS]
+    same, other = (
+        population.many(population.rows, lowfi.Numerics(relative_tolerance=tolerance, modes=modes))
+        for modes in (3, 0)
+    )
+    assert [run.cost["steps"] for run in runs] == same.steps.values.tolist()
+    assert steps.tolist() == same.steps.values.tolist() != other.steps.values.tolist()
+    for run in method.whole(tolerance, modes="auto")():
+        assert "modes_why" in run.numerics

@@ -2,6 +2,7 @@
 coarse to fine, the ``error`` (%) at one, and a ``piece``: a call that solves all cases."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
@@ -45,7 +46,8 @@ def varied(count: int, seed: int = 2024) -> list[dict[str, float]]:
 
 class Population:
     """The varied scenes, their settled rates on a ``model`` at a tight tolerance and the starts of
-    their windows (s)."""
+    their windows (s). All runs have the number of ``modes`` that the pilot of the cases chooses, so
+    that methods and tolerances differ by nothing else."""
 
     def __init__(
         self,
@@ -57,7 +59,9 @@ class Population:
         from tipoff.lowfi import Numerics
 
         self.base, self.rows, self.model, self.compliance = base, rows, model, compliance
-        tight = self.many(rows, Numerics(relative_tolerance=_TIGHT))
+        chosen = self.many(rows, Numerics())
+        self.modes, self.modes_why = chosen.attrs["modes"], chosen.attrs.get("modes_why", "")
+        tight = self.many(rows, Numerics(relative_tolerance=_TIGHT, modes=self.modes))
         self.rates = tight.rate.values
         self.scenes = [base.replace(row) for row in rows]
         marks = outcome.milestones(base, models.build(base))
@@ -110,35 +114,27 @@ class Surrogate:
 
     def piece(self, tolerance: float) -> Callable:
         """A call that integrates and evaluates every case; set-up is done before."""
-        from tipoff.lowfi.ensemble import pilot
-        from tipoff.lowfi.ensemble.request import Ensemble
-        from tipoff.lowfi.ensemble.rows import Listed
+        from tipoff.lowfi.ensemble.batch import Family
 
         population = self.population
-        asked = Ensemble(
-            population.base,
-            Listed(population.rows),
-            None,
-            self._numerics(tolerance),
-            population.compliance,
-        )
-        (job,) = pilot.settled(asked).family().kernels(population.rows)
+        family = Family(population.base, None, self._numerics(tolerance), population.compliance)
+        (job,) = family.kernels(population.rows)
         return job
 
-    def whole(self, tolerance: float) -> Callable:
-        """A call that makes every case a run with curves."""
+    def whole(self, tolerance: float, **numerics) -> Callable:
+        """A call that makes every case a run with curves, with other ``numerics`` if given."""
         from tipoff import lowfi
 
-        population, numerics = self.population, self._numerics(tolerance)
+        population, used = self.population, replace(self._numerics(tolerance), **numerics)
         return lambda: [
-            lowfi.run(scene, population.model, compliance=population.compliance, numerics=numerics)
+            lowfi.run(scene, population.model, compliance=population.compliance, numerics=used)
             for scene in population.scenes
         ]
 
     def _numerics(self, tolerance: float):
         from tipoff.lowfi import Numerics
 
-        return Numerics(relative_tolerance=tolerance)
+        return Numerics(relative_tolerance=tolerance, modes=self.population.modes)
 
 
 class PlainRungeKutta:

@@ -7,7 +7,8 @@ error of its settled rate over the axes, against a run of the same model with a 
 relative to the largest rate. Each method uses its coarsest setting for which, and for all finer ones,
 the 95th percentile is within the requested error. Times are processor times of one core: for the
 surrogate from the records to the settled values, with the detection of the exit; for the baselines
-only the integration, to a given end of the window.
+only the integration, to a given end of the window. Runs with curves are timed twice on compliant
+contact: with the rail modes of the ensemble, and with modes that each run chooses, as by default.
 """
 
 import resource
@@ -17,6 +18,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from tipoff.files import write_json
+from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.scenes.scene import load
 from tipoff.studies.bench.methods import (
@@ -53,6 +55,7 @@ def run(out: Path, cases: int = 2000, few: int = 20, repeats: int = 5) -> dict:
             _ensemble(population, cases, tolerance[MODELS[population.model]])
             for population in populations
         ],
+        "modes_why": populations[0].modes_why,
         "varied_cases": few,
         "repeats": repeats,
         "hardware": machine.describe(),
@@ -65,7 +68,8 @@ def run(out: Path, cases: int = 2000, few: int = 20, repeats: int = 5) -> dict:
 
 def _single(populations: list[Population], requested: float, repeats: int) -> list[dict]:
     """Processor time per case (ms) of each method at the ``requested`` error (%): medians of
-    ``repeats``, taken in turn."""
+    ``repeats``, taken in turn; of a surrogate also as runs with curves, ``run_cpu_ms`` with the same
+    modes and ``run_auto_cpu_ms`` with modes that each run chooses (None without rail modes)."""
     surrogates = [Surrogate(population) for population in populations]
     methods: list[Method] = [
         *surrogates,
@@ -74,10 +78,10 @@ def _single(populations: list[Population], requested: float, repeats: int) -> li
     ]
     chosen = [(method, *coarsest(method.settings, method.error, requested)) for method in methods]
     pieces = {method.name: method.piece(setting) for method, setting, _ in chosen}
-    pieces |= {
-        _with_curves(method.name): method.whole(setting)
-        for method, (_, setting, _) in zip(surrogates, chosen)
-    }
+    for method, (_, setting, _) in zip(surrogates, chosen):
+        pieces[_with_curves(method.name)] = method.whole(setting)
+        if method.population.modes_why:
+            pieces[_chosen_modes(method.name)] = method.whole(setting, modes=AUTO)
     times = _times(pieces, repeats, len(populations[0].rows))
     return [
         {
@@ -85,6 +89,7 @@ def _single(populations: list[Population], requested: float, repeats: int) -> li
             "error_percent": requested,
             "cpu_ms": times[method.name],
             "run_cpu_ms": times.get(_with_curves(method.name)),
+            "run_auto_cpu_ms": times.get(_chosen_modes(method.name)),
             "setting": setting,
             "setting_unit": method.unit,
             "measured_percent": error,
@@ -95,6 +100,10 @@ def _single(populations: list[Population], requested: float, repeats: int) -> li
 
 def _with_curves(name: str) -> str:
     return f"{name}, with curves"
+
+
+def _chosen_modes(name: str) -> str:
+    return f"{name}, with curves and modes chosen"
 
 
 def _times(pieces: dict[str, Callable], repeats: int, cases: int) -> dict[str, float]:
@@ -115,6 +124,7 @@ def lines(found: dict) -> list[str]:
         f"  {row['method']} at {row['error_percent']:g} % of the settled rate: "
         f"{row['cpu_ms']:.3f} ms per case"
         + (f", with curves {row['run_cpu_ms']:.2f} ms" if row["run_cpu_ms"] else "")
+        + (f", and modes chosen {row['run_auto_cpu_ms']:.2f} ms" if row["run_auto_cpu_ms"] else "")
         for row in found["single"]
     ]
     return said + [
@@ -139,5 +149,6 @@ def _ensemble(population: Population, cases: int, tolerance: float) -> dict:
         "wall_s": time.perf_counter() - wall,
         "ok": table.attrs["ok"],
         "tolerance": tolerance,
+        "modes": table.attrs["modes"],
         "peak_memory_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
     }

@@ -179,6 +179,7 @@ def _surrogate(found: dict) -> Table:
         "method": "method",
         "cpu_ms": Column("time", form=".3f"),
         "run_cpu_ms": Column("with curves", form=".2f"),
+        "run_auto_cpu_ms": Column("with curves and modes chosen", form=".2f"),
     }
     return Table(
         list(columns.values()),
@@ -186,7 +187,8 @@ def _surrogate(found: dict) -> Table:
         title="Speed of the surrogate (`make bench`), processor ms per case on one core at the "
         f"same error of the settled rate (95th percentile of {found['varied_cases']} varied "
         f"cases); an ensemble of {found['ensembles'][0]['cases']:,} takes {many} per case at "
-        f"{found['single'][0]['error_percent']:g} %, set-up included:",
+        f"{found['single'][0]['error_percent']:g} %, set-up and the choice of modes included. Modes "
+        f"of compliant contact: {found['modes_why']}; in the last column each run chooses its own:",
     )
 
 
