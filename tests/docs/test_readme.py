@@ -50,10 +50,11 @@ def test_conditions_are_counted_by_their_verdict(tmp_path):
             _row(verdicts.CANNOT, 0.2, 3.0),
             _row(verdicts.AS_DISTRIBUTION, 0.3, 3.0, judged_as=verdicts.DISTRIBUTION),
             _row(verdicts.MISSES, 0.4, 3.0, judged_as=verdicts.DISTRIBUTION),
+            _row(verdicts.MISSES, 0.4, 3.0, judged_as=verdicts.DISTRIBUTION),
         ],
     )
-    assert "converged on 4 of 7 conditions" in said and "agrees on 3 of these 4" in said
-    assert said.endswith("The others are judged as distributions: 1 of 2 agree.")
+    assert "converged on 4 of 8 conditions" in said and "agrees on 3 of these 4" in said
+    assert said.endswith("of 3, 1 agree, 2 miss, 0 cannot be judged.")
     assert "Pads touch in 2" in said and "0.2 to 0.4 %" in said and "at most 0.03 deg/s" in said
 
 

@@ -6,6 +6,7 @@ files of ``make full-report``.
 
 import shutil
 import sys
+from collections import Counter
 from pathlib import Path
 
 from tipoff.files import read_json, write_text
@@ -100,8 +101,12 @@ def _agreed(rows: list[dict]) -> str:
             f"rates by at most {number(settled, '.2g')} deg/s."
         )
     if others := [row for row in rows if row["judged_as"] == verdicts.DISTRIBUTION]:
-        alike = sum(row["judgement"] == verdicts.AS_DISTRIBUTION for row in others)
-        said += f" The others are judged as distributions: {alike} of {len(others)} agree."
+        count = Counter(row["judgement"] for row in others)
+        said += (
+            f" The others are judged as distributions: of "
+            f"{len(others)}, {count[verdicts.AS_DISTRIBUTION]} agree, {count[verdicts.MISSES]} "
+            f"miss, {count[verdicts.CANNOT]} cannot be judged."
+        )
     return said
 
 
