@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from tests.written_names import ARRAYS_OF_REFERENCE
 from tipoff import calibration, highfi, lowfi, scenes
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
@@ -46,21 +47,6 @@ UNSTABLE = (
     "threads",
     "times",
 )
-_ARRAYS = (
-    "time",
-    "position",
-    "velocity",
-    "quaternion",
-    "rate",
-    "platform_position",
-    "platform_velocity",
-    "platform_quaternion",
-    "platform_rate",
-    "pad_force",
-    "energy",
-    "transverse_energy",
-    "wall_stress",
-)
 
 
 def digest(*parts: Any) -> str:
@@ -84,7 +70,7 @@ def of_trajectory(run: Trajectory) -> str:
         run.outcome._asdict(),
         run.checks,
         run.stress,
-        *(getattr(run, name) for name in _ARRAYS),
+        *(getattr(run, name) for name in ARRAYS_OF_REFERENCE),
     )
 
 

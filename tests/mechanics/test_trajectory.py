@@ -10,26 +10,12 @@ import numpy as np
 import pytest
 
 from tests.scenes.support import motion
+from tests.written_names import ARRAYS
 from tipoff.files import content_hash, replacing, write_json, write_text
 from tipoff.mechanics import ledger
 from tipoff.mechanics.outcome import Outcome
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import load
-
-ARRAYS = (
-    "time",
-    "position",
-    "velocity",
-    "quaternion",
-    "rate",
-    "platform_position",
-    "platform_velocity",
-    "platform_quaternion",
-    "platform_rate",
-    "pad_force",
-    "energy",
-    "transverse_energy",
-)
 
 
 def random_trajectory(**parts) -> Trajectory:

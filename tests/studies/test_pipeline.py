@@ -11,6 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 from tests.studies.shown import html
+from tests.written_names import AGREEMENT_ROW, RUN_ROW
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import load
 from tipoff.scenes.calibration import Calibration
@@ -23,31 +24,6 @@ from tipoff.studies.registry import QUESTIONS, results
 # TIPOFF_REPORT, nothing is computed again.
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(1500)]
 
-ROW = {
-    "condition",
-    "velocity_relative_l2",
-    "rate_relative_l2",
-    "iso18571",
-    "settled_rate_error_deg_s",
-    "settled_rate_error_xyz_deg_s",
-    "floor_deg_s",
-    "floor_l2",
-    "reference_uncertainty_deg_s",
-}
-RUN = {
-    "condition",
-    "status",
-    "wall_s",
-    "compile_s",
-    "steps",
-    "dt_s",
-    "energy_error",
-    "transverse_energy_error",
-    "linear_momentum_error",
-    "angular_momentum_error",
-    "settled",
-    "trajectory",
-}
 SECTIONS = (
     "answer",
     "scene",
@@ -111,7 +87,7 @@ def test_runs_hold_the_keys_other_tools_read(pipeline, fidelity):
     assert [row["condition"] for row in rows] == ["phi15", "phi60", "h1", "h2"]
     extra = {"elements", "ns_per_element_step"} if fidelity == "highfi" else set()
     for row in rows:
-        assert RUN | extra <= set(row)
+        assert RUN_ROW | extra <= set(row)
         assert row["status"] == "exited"
         assert len(row["settled"]["velocity_m_s"]) == len(row["settled"]["rate_deg_s"]) == 3
         expected = "finite-elements" if fidelity == "highfi" else "compliant"
@@ -129,7 +105,7 @@ def test_agreement_holds_the_keys_other_tools_read(pipeline):
     assert [row["condition"] for row in found["held_out"]] == ["h1", "h2"]
     assert len(found["uncalibrated"]) == len(found["compliant"]) == len(found["modal"]) == 4
     assert all(
-        ROW <= set(row)
+        AGREEMENT_ROW <= set(row)
         for group in ("uncalibrated", "fitted", "held_out", "compliant", "modal")
         for row in found[group]
     )
@@ -302,7 +278,7 @@ def test_blind_conditions_are_judged_beside_what_was_made(pipeline):
         == ["blind1", "blind2"]
         == [row["condition"] for row in kept["calibrated"]]
     )
-    assert all(ROW <= set(row) and row["role"] == "held_out" for row in kept["compliant"])
+    assert all(AGREEMENT_ROW <= set(row) and row["role"] == "held_out" for row in kept["compliant"])
     assert (pipeline[0] / "calibration.toml").stat().st_mtime_ns == fitted
     from tipoff.studies.blind import page as blind
 

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from tests.highfi.support import COARSE, Stopped, begun, stopped, tiny
+from tests.written_names import ARRAYS_OF_REFERENCE
 from tipoff import highfi
 from tipoff.highfi import Numerics
 from tipoff.highfi.dynamics.checkpoint import CONSTANT, Checkpoint, arrays, digest, restore
@@ -21,21 +22,6 @@ from tipoff.mechanics.trajectory import Trajectory
 
 pytestmark = pytest.mark.case("X20")
 ROOT = Path(__file__).resolve().parents[3]
-ARRAYS = (
-    "time",
-    "position",
-    "velocity",
-    "quaternion",
-    "rate",
-    "platform_position",
-    "platform_velocity",
-    "platform_quaternion",
-    "platform_rate",
-    "pad_force",
-    "energy",
-    "transverse_energy",
-    "wall_stress",
-)
 TOUCHING = 115  # a sample at which pads of ``tiny`` touch
 
 
@@ -47,7 +33,7 @@ def whole() -> Trajectory:
 
 def assert_same(found: Trajectory, expected: Trajectory) -> None:
     """All that a result holds but what it cost, bit for bit."""
-    for name in ARRAYS:
+    for name in ARRAYS_OF_REFERENCE:
         np.testing.assert_array_equal(getattr(found, name), getattr(expected, name), err_msg=name)
     for name in ("status", "message", "outcome", "checks", "stress"):
         assert getattr(found, name) == getattr(expected, name), name
@@ -166,6 +152,7 @@ def test_what_is_left_out_does_not_change():
 
 CHILD = """
 import sys
+from tests.written_names import ARRAYS_OF_REFERENCE
 from tipoff import highfi
 from tests.highfi.support import COARSE, tiny
 found = highfi.run(tiny(), COARSE, progress=lambda fraction: print(fraction, flush=True), checkpoint=sys.argv[1],
