@@ -11,11 +11,14 @@ import gc
 import os
 
 import pytest
+import scipy.linalg  # noqa: F401  its BLAS is loaded before its threads are limited
 from hypothesis import settings
+from threadpoolctl import threadpool_limits
 
 from tipoff.meshes import generator
 
 os.environ.setdefault("MPLBACKEND", "Agg")
+threadpool_limits(limits=1, user_api="blas")  # a worker on each core: more threads only wait
 gc.set_threshold(100_000, 50, 50)  # tests hold much and leave little: a tenth of their time
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.register_profile("explore", deadline=None)

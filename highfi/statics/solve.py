@@ -2,12 +2,27 @@
 loads.
 """
 
+from functools import cache
+
 import numpy as np
 from scipy.sparse import csc_array, csr_array
 from scipy.sparse.linalg import splu
+from threadpoolctl import ThreadpoolController
 
 from tipoff.highfi.mesh.rail_mesh import MeshError
 from tipoff.highfi.statics import assembly
+
+
+@cache
+def _libraries() -> ThreadpoolController:
+    return ThreadpoolController()
+
+
+def one_thread():
+    """Context in which BLAS has one thread. The dense blocks of a sparse factor are small: more
+    threads wait for each other, for several times the processor time of the work. No bit of a
+    result depends on it."""
+    return _libraries().limit(limits=1, user_api="blas")
 
 
 class Clamped:
@@ -25,17 +40,19 @@ class Clamped:
         self.stiffness = csc_array(self._free_rows[:, self.free])
         # A positive definite matrix needs no pivoting, and an ordering for symmetric ones keeps its
         # factors sparse.
-        self._factor = splu(
-            self.stiffness,
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )
+        with one_thread():
+            self._factor = splu(
+                self.stiffness,
+                permc_spec="MMD_AT_PLUS_A",
+                diag_pivot_thresh=0.0,
+                options={"SymmetricMode": True},
+            )
 
     def solve(self, loads: np.ndarray) -> np.ndarray:
         """Displacement (m) of the free degrees of freedom under ``loads`` (N) on them, (3k,) or
         (3k,c)."""
-        return self._factor.solve(loads)
+        with one_thread():
+            return self._factor.solve(loads)
 
     def displaced(self, loads: np.ndarray, held: np.ndarray) -> np.ndarray:
         """Displacement (3n,c) m under ``loads`` (3n,c) N, the fixed degrees of freedom, or what
@@ -43,5 +60,5 @@ class Clamped:
         if self._joints is not None:
             loads = loads + self._joints @ held
         found = np.where(self.free[:, None], 0.0, held)
-        found[self.free] = self._factor.solve(loads[self.free] - self._free_rows @ found)
+        found[self.free] = self.solve(loads[self.free] - self._free_rows @ found)
         return found

@@ -10,6 +10,8 @@ from scipy.linalg import eigh
 from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import LinearOperator, eigsh
 
+from tipoff.highfi.statics.solve import one_thread
+
 
 def modes(
     stiffness: csc_array, mass: np.ndarray, solve: Callable[[np.ndarray], np.ndarray], count: int
@@ -33,12 +35,13 @@ def modes(
         return np.sqrt(squares), shapes / root[:, None]
     # The same bits each time; nothing symmetric, or half the modes stay unseen.
     start = np.random.default_rng(1).standard_normal(freedoms)
-    squares, shapes = eigsh(
-        stiffness,
-        count,
-        diags_array(mass),
-        sigma=0.0,
-        v0=start,
-        OPinv=LinearOperator(stiffness.shape, matvec=solve, dtype=float),
-    )
+    with one_thread():
+        squares, shapes = eigsh(
+            stiffness,
+            count,
+            diags_array(mass),
+            sigma=0.0,
+            v0=start,
+            OPinv=LinearOperator(stiffness.shape, matvec=solve, dtype=float),
+        )
     return np.sqrt(squares), shapes
