@@ -11,10 +11,8 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-import cma
 import numpy as np
 from scipy.optimize import least_squares
-from scipy.stats import qmc
 
 from tipoff.calibration.information import jacobian
 
@@ -55,6 +53,8 @@ def search(
 
     ``progress`` is called with the fraction of the evaluations done.
     """
+    from scipy.stats import qmc  # slow to load, and commands that do not calibrate do without
+
     counted = _Counted(residuals, evaluations(first.size, plan), progress)
     points = np.vstack(
         [np.clip(first, 0.0, 1.0), qmc.Sobol(first.size, rng=plan.seed).random(plan.points)]
@@ -114,6 +114,8 @@ def _evolve(
 ) -> tuple[float, np.ndarray]:
     """Value and point CMA-ES reaches from ``start``, whose ``value`` is known. It draws from
     ``generator`` only, never from NumPy's global state."""
+    import cma  # loads matplotlib
+
     strategy = cma.CMAEvolutionStrategy(
         start,
         plan.step,

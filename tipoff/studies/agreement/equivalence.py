@@ -33,7 +33,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import beta, norm, t
+from scipy.special import betainc, ndtr, stdtrit
 
 from tipoff.studies.populations import order_statistics
 
@@ -136,7 +136,7 @@ def harrell_davis(samples: np.ndarray) -> np.ndarray:
     count = samples.shape[1]
     places = np.arange(count + 1) / count
     steps = np.array(
-        [np.diff(beta.cdf(places, (count + 1) * p, (count + 1) * (1.0 - p))) for p in SHARES]
+        [np.diff(betainc((count + 1) * p, (count + 1) * (1.0 - p), places)) for p in SHARES]
     )
     return np.einsum("bnc,qn->bcq", np.sort(samples, axis=1), steps)
 
@@ -162,7 +162,7 @@ def _resampled(values: np.ndarray, generator: np.random.Generator) -> np.ndarray
 def _tails(level: float, count: int) -> tuple[float, float]:
     """Shares of bootstrap replicates beyond which one-sided bounds at a ``level`` lie: further out for
     few draws, as Student's t is wider than the normal distribution."""
-    tail = float(norm.cdf(math.sqrt(count / (count - 1.0)) * t.ppf(level, count - 1)))
+    tail = float(ndtr(math.sqrt(count / (count - 1.0)) * stdtrit(count - 1, level)))
     return tail, 1.0 - tail
 
 

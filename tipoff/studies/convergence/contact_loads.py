@@ -8,7 +8,6 @@ forwards and backwards: no phase, half the amplitude at the cut-off).
 """
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
 
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
@@ -39,6 +38,8 @@ def cutoff(scene: Scene) -> float:
 
 def low_passed(scene: Scene, samples: np.ndarray) -> np.ndarray:
     """Samples (n,...) of a run of the scene without frequencies above ``cutoff``."""
+    from scipy.signal import butter, sosfiltfilt  # slow to load
+
     sections = butter(_ORDER, cutoff(scene), fs=1.0 / scene.output.interval, output="sos")
     return sosfiltfilt(sections, samples, axis=0)
 

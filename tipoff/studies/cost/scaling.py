@@ -20,7 +20,6 @@ import statistics
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.stats import linregress
 
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.scenes.faults import SceneError
@@ -42,6 +41,8 @@ def power_law(sizes: Sequence[float], times: Sequence[float]) -> dict:
     ``standard_error``, None for two points."""
     if len(set(sizes)) < 2:
         return {"exponent": None, "standard_error": None}
+    from scipy.stats import linregress  # slow to load
+
     line = linregress(np.log(sizes), np.log(times))
     return {
         "exponent": float(line.slope),

@@ -9,7 +9,6 @@ confidence ``1 - n p^(n-1) + (n-1) p^n`` (Wilks, Ann. Math. Statist. 12, 1941).
 import math
 
 import numpy as np
-from scipy.stats import quantile_test
 
 
 def runs_needed(share: float, confidence: float = 0.95, sides: int = 1) -> int:
@@ -32,6 +31,8 @@ def bounds(
 ) -> tuple[float | None, float | None]:
     """Two-sided bounds of the quantile ``share`` from independent draws (n,); a bound is None where
     n is too small for it."""
+    from scipy.stats import quantile_test  # slow to load
+
     found = quantile_test(values, q=0.0, p=share).confidence_interval(confidence)
     low, high = (None if math.isnan(value) else float(value) for value in found)
     return low, high
