@@ -93,6 +93,24 @@ def test_a_first_use_is_announced_once(solvers, capsys):
     assert len(solvers) == 4
 
 
+@pytest.mark.parametrize("chosen", [(), (2, 20)])
+def test_kernels_of_chosen_modes_are_announced_before_they_are_used(
+    monkeypatch, found, tmp_path, capsys, chosen
+):
+    """Control: a run that chooses none."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    said = []
+
+    def run(scene, model, *, vibrates, **_):
+        for modes in chosen:
+            vibrates(modes)
+            said.append(capsys.readouterr().err)
+
+    monkeypatch.setattr(lowfi, "run", run)
+    tipoff.run(SCENE)
+    assert ["with modes of the rails" in text for text in said] == ([True, False] if chosen else [])
+
+
 def test_an_ensemble_draws_as_many_cases_as_asked_for(solvers):
     tipoff.ensemble(SCENE, "paper", "springs", count=7, seed=3, relative_tolerance=1e-3)
     (_, cases, model, more) = solvers[0]

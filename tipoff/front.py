@@ -71,7 +71,8 @@ def run(
 
     chosen = lowfi.Numerics(**numerics)
     found = _pressed(scene, model, compliance, calibration)
-    with kernel_marks.first_use(Run("lowfi", scene.name, scene, chosen, calibration, found)):
+    asked = Run("lowfi", scene.name, scene, chosen, calibration, found)
+    with kernel_marks.first_use(asked), kernel_marks.chosen_modes(asked) as vibrates:
         return lowfi.run(
             scene,
             model,
@@ -79,6 +80,7 @@ def run(
             calibration=calibration,
             numerics=chosen,
             progress=progress,
+            vibrates=vibrates,
         )
 
 

@@ -5,7 +5,7 @@ A surrogate run that chooses its modes of the rails begins with kernels without 
 are others; they are compiled only where the run turns out to need them, and have a mark of their own.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -32,6 +32,22 @@ def first_use(run: "Run", many: bool = False) -> Iterator[None]:
     announce(run, many=many)
     yield
     remember(run, many=many)
+
+
+@contextmanager
+def chosen_modes(run: "Run") -> Iterator[Callable[[int], None]]:
+    """The argument ``vibrates`` of ``lowfi.run`` for ``run``: it announces the kernels with modes once
+    the run has chosen some. They are noted when the block has used them."""
+    chosen: list[int] = []
+
+    def vibrates(modes: int) -> None:
+        if not chosen:
+            announce(run, chosen=True)
+        chosen.append(modes)
+
+    yield vibrates
+    if chosen:
+        remember(run, chosen=True)
 
 
 def announce(run: "Run", chosen: bool = False, many: bool = False) -> None:

@@ -118,17 +118,8 @@ def _surrogate(
     run: Run, progress: Callable[[float], None], threads: int | None = None
 ) -> Trajectory:
     """Run the surrogate. Kernels with modes of the rails are announced once it has chosen some."""
-    chosen: list[int] = []
-
-    def vibrates(modes: int) -> None:
-        if not chosen:
-            kernel_marks.announce(run, chosen=True)
-        chosen.append(modes)
-
-    found = execute(run, progress, threads, vibrates=vibrates)
-    if chosen:
-        kernel_marks.remember(run, chosen=True)
-    return found
+    with kernel_marks.chosen_modes(run) as vibrates:
+        return execute(run, progress, threads, vibrates=vibrates)
 
 
 class Store:
