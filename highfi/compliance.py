@@ -18,6 +18,7 @@ patterns, so that a full set of them gives C::
 """
 
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import NamedTuple
@@ -30,9 +31,10 @@ from tipoff.highfi.mesh import pieces
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.run import prepare
+from tipoff.highfi.state.threads import processors
 from tipoff.highfi.statics import assembly, joint_terms, thermal, vibration
 from tipoff.highfi.statics.pressure import Pressed, pressed
-from tipoff.highfi.statics.solve import Clamped
+from tipoff.highfi.statics.solve import Clamped, one_thread
 from tipoff.mechanics import model as scene_model
 from tipoff.mechanics.joint_terms import JointTerms
 from tipoff.mechanics.rail_compliance import MODES, PATTERNS, RailCompliance, digest
@@ -42,6 +44,7 @@ from tipoff.scenes.rail import MaterialTable
 from tipoff.scenes.scene import Scene
 
 BATCH = 64  # loads solved for at once; bounds the memory
+_MOST_THREADS = 8  # bounds it too
 _DIGITS = 9  # of a place in m: faces whose places agree in them share one solution
 _SPACING = 4e-3  # m between stations; what mounts and ends change takes a leg or so
 # of the largest eigenvalue of G: patterns that hardly differ on what wall there is
@@ -288,10 +291,7 @@ class _Patches:
         load, held = thermal.of_each_field(self._rail, operator, material, middle)
         warm = loads.T @ clamped.displaced(load, held)
         loads = loads[clamped.free]
-        answer, report = [], reported()
-        for start in range(0, loads.shape[1], BATCH):
-            answer.append(loads.T @ clamped.solve(loads[:, start : start + BATCH].toarray()))
-            report(min(start + BATCH, loads.shape[1]) / loads.shape[1])
+        answer = _under_each_other(clamped, loads)
         frequency, shape = vibration.modes(
             clamped.stiffness, np.repeat(operator.mass, 3)[clamped.free], clamped.solve, modes
         )
@@ -301,7 +301,7 @@ class _Patches:
             terms = joint_terms.solved(operator, clamped, loads, heat, shape)
         under = len(self.found), self._patterns
         return (
-            np.concatenate(answer, axis=1).reshape(2 * under),
+            answer.reshape(2 * under),
             warm.reshape(*under, FIELDS),
             frequency,
             (loads.T @ shape).reshape(*under, modes),
@@ -324,3 +324,19 @@ class _Patches:
                 shape=shape,
             )
         )
+
+
+def _under_each_other(clamped: Clamped, loads: csc_array) -> np.ndarray:
+    """Displacement (c,c) that the ``loads`` (d,c) see under each other, L' K^-1 L. Threads solve for
+    batches side by side, each with bits that do not depend on the others."""
+    answer, report = [], reported()
+    starts = range(0, loads.shape[1], BATCH)
+
+    def under(start: int) -> np.ndarray:
+        return loads.T @ clamped.solve(loads[:, start : start + BATCH].toarray())
+
+    with one_thread(), ThreadPoolExecutor(min(_MOST_THREADS, processors())) as pool:
+        for start, found in zip(starts, pool.map(under, starts)):
+            answer.append(found)
+            report(min(start + BATCH, loads.shape[1]) / loads.shape[1])
+    return np.concatenate(answer, axis=1)

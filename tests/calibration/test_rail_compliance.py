@@ -83,3 +83,13 @@ def test_the_loads_solved_for_are_reported(monkeypatch):
     assert seen == sorted(seen) and seen[-1] == 1.0 and len(seen) > 3
     rail_compliance.direct(load("tiny"), 16e-3)
     assert seen[-1] == 1.0 and seen.count(1.0) == 1
+
+
+def test_threads_do_not_change_a_bit(monkeypatch):
+    """Batches that are solved for side by side, and one after another."""
+    monkeypatch.setattr(statics, "BATCH", 2)
+    found = []
+    for cores in (1, 4):
+        monkeypatch.setattr(statics, "processors", lambda cores=cores: cores)
+        found.append(statics.condense(load("tiny"), 16e-3).hash)
+    assert found[0] == found[1]
