@@ -56,11 +56,11 @@ class Draws(NamedTuple):
 def run(study: Study, model: Surrogate, rows: Rows, fine: int) -> Draws:
     """The cases with the overrides ``rows`` of the scene, the first ``fine`` of them on the finer
     mesh too. Runs are kept in the store of the study, so that an interrupted call goes on."""
-    coarse, finer, beside = requests(study, model, rows, fine)
+    coarse, finer, surrogates = requests(study, model, rows, fine)
     announce(study, [*coarse, *finer])
     many = filled(study, "tails, reference", coarse)
     few = filled(study, "tails, finer mesh", finer)
-    surrogate = filled(study, "tails, surrogate", beside)
+    surrogate = filled(study, "tails, surrogate", surrogates)
     return Draws(
         results(many),
         results(surrogate),
@@ -80,29 +80,32 @@ def requests(
     """The runs of the reference, those on the finer mesh, and those of the surrogate ``model``, whose
     modes the population has chosen (ValueError before)."""
     coarse_size, fine_size = study.settings.coarse_size, study.settings.element_size
-    labels = [f"{NOMINAL}-draw{number}" for number in range(len(rows))]
     coarse, finer = (
         [
             reference(study, label + tag, study.scene.replace(dict(row)), size)
-            for label, row in zip(labels, part)
+            for label, row in zip(_labels(part), part)
         ]
         for part, tag, size in ((rows, "-coarse", coarse_size), (rows[:fine], "", fine_size))
     )
+    return coarse, finer, beside(study, model, rows, model.numerics(Numerics().relative_tolerance))
+
+
+def beside(
+    study: Study, model: Surrogate, rows: Rows, numerics: Numerics, tag: str = ""
+) -> list[Run]:
+    """Runs of the surrogate ``model`` with ``numerics``, on the rail compliance of the mesh of the
+    reference; ``tag`` distinguishes their labels."""
     under = model.compliance
     if model.name == COMPLIANT and study.scene.contact is not None:
-        under = study.rail_compliance(study.scene, element_size=coarse_size)
-    beside = [
-        Run(
-            "lowfi",
-            f"{label}-{model.name}",
-            model.at(dict(row)).scene,
-            model.numerics(Numerics().relative_tolerance),
-            None,
-            under,
-        )
-        for label, row in zip(labels, rows)
+        under = study.rail_compliance(study.scene, element_size=study.settings.coarse_size)
+    return [
+        Run("lowfi", f"{label}-{model.name}{tag}", model.at(dict(row)).scene, numerics, None, under)
+        for label, row in zip(_labels(rows), rows)
     ]
-    return coarse, finer, beside
+
+
+def _labels(rows: Rows) -> list[str]:
+    return [f"{NOMINAL}-draw{number}" for number in range(len(rows))]
 
 
 def reference(study: Study, label: str, scene: Scene, element_size: float) -> Run:
@@ -125,13 +128,14 @@ def seconds_per_case(model: Surrogate, rows: Rows) -> float:
 
 
 class Kept(NamedTuple):
-    """What remains of a run: its result, number of contacts, processor seconds, and number of
-    elements (zero in the surrogate)."""
+    """What remains of a run: its result, number of contacts, processor seconds, number of elements
+    (zero in the surrogate), and the number of rail modes that it chose (zero where it was given)."""
 
     case: Case
     contacts: int
     cpu_s: float
     elements: int
+    modes: int = 0
 
 
 def results(runs: Sequence[Kept]) -> Columns:
@@ -172,4 +176,5 @@ def _kept(found: Trajectory) -> Kept:
         len(growth.contacts(found.time, loaded)),
         cost.get("cpu_s", cost["wall_s"]),
         int(cost.get("elements", 0)),
+        int(cost.get("modes", 0)),
     )
