@@ -18,7 +18,7 @@ import numpy as np
 from tipoff.lowfi import modes
 from tipoff.lowfi.ensemble import store as stores
 from tipoff.lowfi.ensemble.request import Ensemble
-from tipoff.lowfi.numerics import AUTO, Numerics
+from tipoff.lowfi.numerics import AUTO
 from tipoff.lowfi.run import solved
 from tipoff.mechanics.rail_compliance import may_vibrate
 from tipoff.scenes.faults import SceneError
@@ -64,9 +64,7 @@ def _kept(ensemble: Ensemble, path: Path) -> Ensemble | None:
 def _chosen(ensemble: Ensemble) -> list[int]:
     """Numbers of modes that the pilot cases choose; those that the scene refuses have none."""
     found, source = [], ensemble.source
-    asked, single = ensemble.numerics, Numerics()
-    tolerance = min(asked.relative_tolerance, single.relative_tolerance)
-    numerics = replace(asked, relative_tolerance=tolerance)
+    numerics = ensemble.numerics.accurate()
     last, count = source.asked - 1, min(PILOT, source.asked)
     for number in np.linspace(0, last, count).round().astype(int).tolist():
         (row,) = source.rows(number, number + 1)
