@@ -25,7 +25,7 @@ from tipoff.studies.limits import within
 from tipoff.studies.limits.inputs import Options as Limits
 from tipoff.studies.montecarlo import page, tails, tails_page
 from tipoff.studies.montecarlo import stage as montecarlo
-from tipoff.studies.populations import draws, population
+from tipoff.studies.populations import draws, own_modes, population
 from tipoff.studies.populations.draws import Kept
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render import chart
@@ -166,6 +166,10 @@ def test_each_draw_chooses_its_own_modes_beside_those_of_the_population(study, w
     """Where the rails have modes. Each draw has a run that chooses, one without modes, one with those
     of the population, one with all, and one with more clearance."""
     monkeypatch.setattr(Study, "rail_compliance", lambda *_, **__: VIBRATING)
+    took = {0: 1e-3, 3: 2e-3, HELD: 3e-3, AUTO: 4e-3}
+    monkeypatch.setattr(
+        own_modes, "execute", lambda run: SimpleNamespace(cost={"cpu_s": took[run.numerics.modes]})
+    )
     runs = watch(3)
     montecarlo.run(study, OPTIONS)
     found = tails.run(study, tails.Options(10, None, OPTIONS))
@@ -174,6 +178,7 @@ def test_each_draw_chooses_its_own_modes_beside_those_of_the_population(study, w
     own = found["own_modes"]
     assert (own["held"], own["choosing"], own["choosing_all"]) == (HELD, 10, 10)
     assert [row["modes"] for row in own["rows"]] == [0, 3, HELD, AUTO]
+    assert [row["cpu_s"] for row in own["rows"]] == pytest.approx([1e-3, 2e-3, 3e-3, 4e-3])
     for shown in (tails_page.summary, tails_page.draw, tails_page.document):
         text = " ".join(html(shown(found)).split())
         assert "10 of 10 draws choose rail modes for themselves" in text

@@ -6,7 +6,7 @@ from tipoff.studies.render.document import Part
 from tipoff.studies.render.table import Column, Table, number, percent
 
 _NOTE = (
-    "Rail modes in a single run of the surrogate on the mesh of the reference. Processor time: mean "
+    "Rail modes in single runs of the surrogate on the mesh of the reference. Processor time: mean "
     "over the draws; that of case by case has the runs from which a draw chooses. Error: the "
     "largest of the three axes."
 )
