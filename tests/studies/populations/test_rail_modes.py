@@ -179,6 +179,10 @@ def test_each_draw_chooses_its_own_modes_beside_those_of_the_population(study, w
     assert (own["held"], own["choosing"], own["choosing_all"]) == (HELD, 10, 10)
     assert [row["modes"] for row in own["rows"]] == [0, 3, HELD, AUTO]
     assert [row["cpu_s"] for row in own["rows"]] == pytest.approx([1e-3, 2e-3, 3e-3, 4e-3])
+    assert own["rows"][-1]["case_s"] is None and all(
+        row["case_s"] > 0.0 for row in own["rows"][:-1]
+    )
+    assert {0, 3, HELD} <= set(runs.modes), "timed"
     for shown in (tails_page.summary, tails_page.draw, tails_page.document):
         text = " ".join(html(shown(found)).split())
         assert "10 of 10 draws choose rail modes for themselves" in text

@@ -109,7 +109,8 @@ def _agreement(error: np.ndarray, gate: float) -> dict:
 
 def by_modes(own: OwnModes, drawn: Draws, gate: float) -> dict:
     """The draws by rail modes. ``rows``: agreement as in ``by_contacts``, ``modes`` and processor
-    seconds of a run, with one number in every draw and, last, with those that each draw chooses.
+    seconds of a single run and of a case of a population, with one number in every draw and, last,
+    with those that each draw chooses.
     ``choosing``: how many draws choose some modes, ``choosing_all`` those that the rails have.
     ``moved_deg_s``: largest change of a rate by the chosen modes, median over the draws that choose
     some; ``moved_by_clearance_deg_s``: the same by ``clearance_change_m``; ``more_by_clearance``:
@@ -129,6 +130,7 @@ def by_modes(own: OwnModes, drawn: Draws, gate: float) -> dict:
             {
                 "modes": series.modes,
                 "cpu_s": series.cpu_s,
+                "case_s": series.case_s,
                 **_agreement(_largest(series.results, drawn.reference), gate),
             }
             for series in (*own.same, own.own)

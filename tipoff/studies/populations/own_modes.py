@@ -27,11 +27,13 @@ _REPEATS = 2  # of the timed runs
 class Series(NamedTuple):
     """``results`` of n draws with the same ``modes`` of each rail, or ``"auto"``: each draw chooses.
     ``cpu_s``, mean processor seconds of a run, with the runs that a choice takes, where kernels are
-    loaded."""
+    loaded; ``case_s``, those of a case of a population with these modes, None where each draw
+    chooses."""
 
     modes: int | str
     results: Columns
     cpu_s: float
+    case_s: float | None = None
 
 
 class OwnModes(NamedTuple):
@@ -82,7 +84,12 @@ def _same(study: Study, model: Surrogate, rows: Rows, count: int) -> Series:
     tag = "" if count == model.modes else f"-{count}-modes"
     requested = draws.beside(study, model, rows, Numerics(modes=count), tag)
     found = draws.filled(study, f"tails, {count} modes", requested)
-    return Series(count, draws.results(found), _seconds(requested))
+    return Series(
+        modes=count,
+        results=draws.results(found),
+        cpu_s=_seconds(requested),
+        case_s=draws.seconds_per_case(model._replace(modes=count), rows),
+    )
 
 
 def _seconds(requested: list[Run]) -> float:
