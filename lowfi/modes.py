@@ -6,6 +6,11 @@ The first run has none. From its forces follows what each neglected mode would d
 The change of the rates from run to run shows by how much later contacts enlarge such a sum, and the
 next number is chosen with this factor. The third run has all modes and is the last. The last run is
 the result, and ``cost`` has the sum of all.
+
+The forces of a coarse integration excite modes that the contact does not, and its error shows as a
+change of the rates. So at a tolerance above the default, where the first run would choose modes, it is
+repeated at the default, and the repeated run takes its place in the choice. If that needs no modes,
+the first run is the result.
 """
 
 import math
@@ -25,36 +30,45 @@ _MOST_RUNS = 3
 @dataclass(frozen=True)
 class Choice:
     """``modes`` of each rail that vibrate, and ``why``, one line of text; ``runs`` that were made for
-    it before the last one."""
+    it beside the result."""
 
     modes: int
     why: str
     runs: tuple["Run", ...] = ()
 
     def cost(self) -> dict[str, int]:
-        """``modes``; for how many runs before the last, and their steps."""
+        """``modes``; for how many runs beside the result, and their steps."""
         steps = sum(int(run.loop.counts.steps) + run.discarded for run in self.runs)
-        before = {"auto_runs": len(self.runs), "auto_steps": steps} if self.runs else {}
-        return {"modes": self.modes} | before
+        beside = {"auto_runs": len(self.runs), "auto_steps": steps} if self.runs else {}
+        return {"modes": self.modes} | beside
 
 
-def choose(run: "Callable[[int], Run]") -> tuple["Run", Choice]:
-    """The run with the modes that matter, and the choice; ``run`` makes one with so many modes that
-    has watched the others."""
-    made, enlarged = [run(0)], 1.0
-    effects = [made[0].neglected()]
-    if made[0].message:
-        return made[0], Choice(0, "none: the run without modes failed")
+def choose(
+    run: "Callable[[int], Run]", accurate: "Callable[[], Run] | None" = None
+) -> tuple["Run", Choice]:
+    """The run with the modes that matter, and the choice. ``run`` makes one with so many modes that
+    has watched the others; ``accurate``, for runs of a looser tolerance than the default, makes the
+    one without modes at the default."""
+    first = run(0)
+    if first.message:
+        return first, Choice(0, "none: the run without modes failed")
+    every = [first]
+    if accurate is not None and needed(first.neglected()):
+        every.append(accurate())
+    made = [every[-1] if not every[-1].message else first]
+    effects, enlarged, failed = [made[0].neglected()], 1.0, ""
     while needed(effects[-1] * enlarged) > made[-1].modes and len(made) < _MOST_RUNS:
         last = len(made) == _MOST_RUNS - 1
-        tried = run(effects[0].size if last else needed(effects[-1] * enlarged))
+        every.append(tried := run(effects[0].size if last else needed(effects[-1] * enlarged)))
         if tried.message:  # the answer is that of the last run that went through
-            why = f"{made[-1].modes or 'none'}: a run with {tried.modes} failed: {tried.message}"
-            return made[-1], Choice(made[-1].modes, why, (*made[:-1], tried))
+            failed = f"a run with {tried.modes} failed: {tried.message}"
+            break
         made.append(tried)
         effects.append(tried.neglected())
         enlarged = max(1.0, _enlarged(made[-2:], effects[-2]))
-    return made[-1], Choice(made[-1].modes, _why(made, effects, enlarged), tuple(made[:-1]))
+    result = first if len(made) == 1 else made[-1]
+    why = f"{result.modes or 'none'}: {failed}" if failed else _why(made, effects, enlarged)
+    return result, Choice(result.modes, why, tuple(each for each in every if each is not result))
 
 
 def needed(effect: np.ndarray) -> int:

@@ -63,6 +63,11 @@ class Numerics:
         """The same with a tenth of the tolerance, or the finest there is."""
         return replace(self, relative_tolerance=max(0.1 * self.relative_tolerance, _FINEST))
 
+    def accurate(self) -> "Numerics":
+        """The same at the default tolerance, or at its own where that is tighter."""
+        tolerance = min(self.relative_tolerance, Numerics().relative_tolerance)
+        return replace(self, relative_tolerance=tolerance)
+
     def as_dict(self) -> dict:
         """Plain values, as written into results."""
         return dict(vars(self))

@@ -76,21 +76,22 @@ def solved(
         {"compile_s": 0.0, "compile_cpu_s": 0.0, "kernel_s": 0.0},
     )
 
-    def made(modes: int | None = None) -> Run:
-        chosen = numerics if modes is None else replace(numerics, modes=modes)
-        if modes and vibrates:
-            vibrates(modes)
-        return _integrated(
-            Run(scene, chosen, compliance, watches=modes is not None), progress, spent
-        )
+    def made(asked: Numerics, watches: bool = False) -> Run:
+        if watches and asked.count and vibrates:
+            vibrates(asked.count)
+        return _integrated(Run(scene, asked, compliance, watches=watches), progress, spent)
 
     if numerics.modes == AUTO and may_vibrate(scene, compliance):
-        run_, choice = modes.choose(made)
+        accurate = numerics.accurate()
+        run_, choice = modes.choose(
+            lambda count: made(replace(numerics, modes=count), True),
+            None if accurate == numerics else lambda: made(replace(accurate, modes=0), True),
+        )
         result = run_.trajectory()
         result.numerics["modes_why"] = choice.why
         result.cost.update(choice.cost())
     else:
-        result = made().trajectory()
+        result = made(numerics).trajectory()
     compile_cpu = spent.pop("compile_cpu_s")
     result.cost.update(wall_s=clock.perf_counter() - began - spent["compile_s"], **spent)
     result.cost["cpu_s"] = clock.thread_time() - cpu - compile_cpu

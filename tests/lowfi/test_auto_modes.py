@@ -11,6 +11,7 @@ from tests.highfi.support import COARSE
 from tests.lowfi.compliance import REFERENCE, reference_compliance
 from tipoff import highfi, lowfi
 from tipoff.lowfi import Numerics, modes
+from tipoff.lowfi.run import Run
 from tipoff.scenes import load
 
 STEEL = {"density": 7850.0, "youngs_modulus": 210e9, "poisson_ratio": 0.3}
@@ -108,6 +109,45 @@ def test_no_modes_where_none_matter():
     assert auto.cost["steps"] == static.cost["steps"] and "auto_runs" not in auto.cost
 
 
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-4])
+def test_a_coarse_integration_chooses_no_modes_that_the_contact_does_not_excite(tolerance):
+    """The bits of a run without modes at this tolerance, after one run more, at the default tolerance.
+    Control: from its own forces the coarse run would choose some."""
+    asked, compliance = REFERENCE.condition("phi35"), reference_compliance()
+    coarse = Numerics(relative_tolerance=tolerance, modes=0)
+    auto, static, accurate = (
+        lowfi.run(asked, compliance=compliance, numerics=each)
+        for each in (replace(coarse, modes="auto"), coarse, Numerics(modes=0))
+    )
+    assert auto.numerics["modes"] == 0 and auto.numerics["modes_why"].startswith("none: all 20")
+    np.testing.assert_array_equal(auto.rate, static.rate)
+    assert auto.cost["steps"] == static.cost["steps"] < accurate.cost["steps"]
+    assert (auto.cost["auto_runs"], auto.cost["auto_steps"]) == (1, accurate.cost["steps"])
+
+    control = Run(asked, coarse, compliance, watches=True)
+    control.begin()
+    control.integrate(None)
+    assert modes.needed(control.neglected()) > 0
+
+
+def test_a_coarse_run_that_needs_no_modes_is_not_repeated():
+    found = lowfi.run(
+        REFERENCE.condition("phi15"), compliance=reference_compliance(), numerics=Numerics(1e-2)
+    )
+    assert found.cost["modes"] == 0 and "auto_runs" not in found.cost
+
+
+def test_a_coarse_run_has_the_modes_that_matter():
+    """On a soft rail, at the tolerance that was asked for, to the last bit."""
+    asked, numerics = scene(STRIP), Numerics(relative_tolerance=1e-3)
+    compliance = highfi.condense(asked, COARSE.element_size)
+    auto = lowfi.run(asked, compliance=compliance, numerics=numerics)
+    count = auto.cost["modes"]
+    hand = lowfi.run(asked, compliance=compliance, numerics=replace(numerics, modes=count))
+    assert count > 0 and auto.cost["auto_runs"] >= 2
+    np.testing.assert_array_equal(auto.rate, hand.rate)
+
+
 def test_the_chosen_number_gives_the_bits_of_the_same_number_by_hand():
     asked = scene(STRIP)
     compliance = highfi.condense(asked, COARSE.element_size)
@@ -146,6 +186,31 @@ def test_where_a_run_with_modes_fails_the_one_before_is_the_result():
         assert found.modes == choice.modes == (0 if message else 20)
         assert (f"failed: {message}" in choice.why) is bool(message)
         assert len(choice.runs) == 1
+
+
+def settled(count: int, effect: float, message: str = "", rate: float = 0.0):
+    """A run with ``count`` of 20 modes that neglects modes of the ``effect`` (rad/s) each."""
+    return SimpleNamespace(
+        modes=count,
+        message=message,
+        neglected=lambda: np.where(np.arange(20) < count, 0.0, effect),
+        judged=lambda: ("exited", SimpleNamespace(rate=[rate, 0.0, 0.0])),
+    )
+
+
+@pytest.mark.parametrize(
+    ("accurate", "expected"),
+    [(settled(0, 0.0), 0), (settled(0, 1.0, rate=0.3), 20), (settled(0, 0.0, "failed"), 20)],
+)
+def test_the_accurate_run_decides_unless_it_fails(accurate, expected):
+    """Whatever the coarse one would choose: here all modes. Its change of the rates counts, not that
+    of the coarse run. A failed run counts in the cost alone."""
+    coarse = {count: settled(count, 1.0, rate=0.3 if count else 9.0) for count in range(21)}
+    found, choice = modes.choose(coarse.__getitem__, lambda: accurate)
+    assert found is coarse[expected] and choice.modes == expected
+    assert accurate in choice.runs and len(choice.runs) == (1 if expected == 0 else 2)
+    if not accurate.message and expected:
+        assert "they moved them by 0 deg/s" in choice.why
 
 
 def test_an_ensemble_has_one_number_of_modes():

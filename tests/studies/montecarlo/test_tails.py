@@ -9,8 +9,8 @@ import pytest
 from typer.testing import CliRunner
 
 from tests.studies import free_flight
+from tests.studies.montecarlo.synthetic_draws import drawn, results
 from tests.studies.shown import html
-from tipoff.lowfi.ensemble import columns
 from tipoff.scenes import load
 from tipoff.scenes.faults import SceneError
 from tipoff.studies.cli import app
@@ -20,7 +20,6 @@ from tipoff.studies.core.study import Study
 from tipoff.studies.montecarlo import paired_statistics, tails, tails_page
 from tipoff.studies.montecarlo.stage import Options as Cases
 from tipoff.studies.populations import answers, draws, exceedance, random_factors
-from tipoff.studies.populations.draws import Draws
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.populations.random_factors import Reading
 from tipoff.studies.render.document import terminal
@@ -133,31 +132,6 @@ def test_the_reference_has_every_override_of_a_case(reading, tmp_path, monkeypat
         for part in key.split("."):
             found = found["xyz".index(part)] if isinstance(found, tuple) else getattr(found, part)
         assert found == pytest.approx(value, rel=1e-12)
-
-
-def results(rates) -> columns.Columns:
-    """Columns of cases with ``rates`` (n,3), deg/s; NaN did not settle."""
-    rates = np.radians(np.asarray(rates, dtype=float))
-    settled = np.where(np.isnan(rates).any(axis=1), np.nan, 1.0)
-    return columns.Columns(
-        *[
-            rates
-            if name == "rate"
-            else np.zeros((len(rates), 3)) * settled[:, None]
-            if name in columns.VECTORS
-            else np.zeros(len(rates), dtype=int)
-            if name in ("status", "steps")
-            else settled
-            for name in columns.Columns._fields
-        ]
-    )
-
-
-def drawn(reference, surrogate, contacts) -> Draws:
-    return Draws(
-        results(reference), results(surrogate), results(reference[:2]), np.array(contacts), [],
-        reference_cpu_s=1.0, fine_cpu_s=8.0, elements=1, fine_elements=8,
-    )  # fmt: skip
 
 
 def test_errors_by_number_of_contacts():

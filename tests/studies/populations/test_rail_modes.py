@@ -5,6 +5,7 @@ No case runs. In place of the kernels a case has the total rate of a free payloa
 with modes, so that a mixture of both shows in the rates too."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -14,6 +15,7 @@ from tests.lowfi.compliance import REFERENCE, handmade
 from tests.studies.shown import html
 from tipoff.lowfi.ensemble import fill, pilot, store
 from tipoff.lowfi.ensemble.batch import Case
+from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.outcome import Outcome
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.study import Study
@@ -23,7 +25,7 @@ from tipoff.studies.limits import within
 from tipoff.studies.limits.inputs import Options as Limits
 from tipoff.studies.montecarlo import page, tails, tails_page
 from tipoff.studies.montecarlo import stage as montecarlo
-from tipoff.studies.populations import draws, population
+from tipoff.studies.populations import draws, own_modes, population
 from tipoff.studies.populations.draws import Kept
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render import chart
@@ -31,6 +33,12 @@ from tipoff.studies.render.document import terminal
 
 pytest.importorskip("zarr")
 WALLS = handmade(REFERENCE, {})
+HELD = 5  # modes of each rail
+VIBRATING = replace(
+    WALLS,
+    frequency=np.ones((len(WALLS.frequency), HELD)),
+    shape=np.zeros((*WALLS.shape.shape[:3], HELD)),
+)
 MODAL = 1.3  # times the rate without modes
 PER_RADIAN, PER_METRE = math.radians(20.0) / math.radians(0.2), math.radians(20.0) / 0.4e-3
 OPTIONS = montecarlo.Options(cases=120, limits=("8 deg/s",))
@@ -91,7 +99,15 @@ class Runs:
             }
             for thrust, mass in tables
         ]
-        return [Kept(case(rates(row, 0)), 1, 1.0, 8) for row in rows]
+        return [
+            Kept(case(rates(row, 0)), 1, 1.0, 8, HELD if chooses(run) else 0)
+            for run, row in zip(runs, rows)
+        ]
+
+
+def chooses(run) -> bool:
+    """Whether a run chooses its modes by itself: then it takes all."""
+    return run.fidelity == "lowfi" and run.numerics.modes == AUTO
 
 
 @pytest.fixture
@@ -143,6 +159,34 @@ def test_pairs_and_their_cost_have_the_modes_of_the_population(study, watch):
     assert runs.single == [3] * 10 and set(runs.modes) == {3}, "pairs, and cases that are timed"
     assert found["modes"] == 3 and found["modes_why"].startswith("3: ")
     assert "with 3 modes of each rail" in " ".join(terminal(tails_page.summary(found)).split())
+    assert "own_modes" not in found, "these rails have none"
+
+
+def test_each_draw_chooses_its_own_modes_beside_those_of_the_population(study, watch, monkeypatch):
+    """Where the rails have modes. Each draw has a run that chooses, one without modes, one with those
+    of the population, one with all, and one with more clearance."""
+    monkeypatch.setattr(Study, "rail_compliance", lambda *_, **__: VIBRATING)
+    took = {0: 1e-3, 3: 2e-3, HELD: 3e-3, AUTO: 4e-3}
+    monkeypatch.setattr(
+        own_modes, "execute", lambda run: SimpleNamespace(cost={"cpu_s": took[run.numerics.modes]})
+    )
+    runs = watch(3)
+    montecarlo.run(study, OPTIONS)
+    found = tails.run(study, tails.Options(10, None, OPTIONS))
+    beside, *further = (runs.single[begin : begin + 10] for begin in range(0, 60, 10))
+    assert beside == [3] * 10 and [set(each) for each in further] == [{AUTO}, {0}, {3}, {5}, {5}]
+    own = found["own_modes"]
+    assert (own["held"], own["choosing"], own["choosing_all"]) == (HELD, 10, 10)
+    assert [row["modes"] for row in own["rows"]] == [0, 3, HELD, AUTO]
+    assert [row["cpu_s"] for row in own["rows"]] == pytest.approx([1e-3, 2e-3, 3e-3, 4e-3])
+    assert own["rows"][-1]["case_s"] is None and all(
+        row["case_s"] > 0.0 for row in own["rows"][:-1]
+    )
+    assert {0, 3, HELD} <= set(runs.modes), "timed"
+    for shown in (tails_page.summary, tails_page.draw, tails_page.document):
+        text = " ".join(html(shown(found)).split())
+        assert "10 of 10 draws choose rail modes for themselves" in text
+        assert "case by case" in text and "3, as the population" in text
 
 
 def test_no_pair_is_made_before_the_modes_are_chosen(study):

@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from tipoff.lowfi.ensemble import twins
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.studies.populations import (
     allocation,
@@ -16,6 +17,7 @@ from tipoff.studies.populations import (
 )
 from tipoff.studies.populations.control_variate import Estimate, Pairs
 from tipoff.studies.populations.draws import Draws
+from tipoff.studies.populations.own_modes import OwnModes
 from tipoff.studies.populations.population import Population
 
 RATES = (*answers.RATES, answers.TOTAL_RATE)
@@ -29,8 +31,8 @@ def both_settled(drawn: Draws, whole: Population) -> np.ndarray:
     return np.isfinite(drawn.reference.exit_time) & whole.settled[:count]
 
 
-def _first(found: Columns, count: int) -> Columns:
-    return Columns(*[values[:count] for values in found])
+def _part(found: Columns, which: slice | np.ndarray) -> Columns:
+    return Columns(*[values[which] for values in found])
 
 
 def _apart(quantity: answers.Quantity, one: Columns, other: Columns) -> dict | None:
@@ -57,46 +59,89 @@ def errors(quantity: answers.Quantity, drawn: Draws, whole: Population) -> dict:
     that is studied, of the reference on the finer mesh, ``mesh``, and of the population from that,
     ``finer``."""
     count, fine = len(drawn.reference.exit_time), len(drawn.fine.exit_time)
-    cases = _first(whole.results, count)
+    cases = _part(whole.results, slice(count))
     return {
         "name": quantity.name,
         "label": quantity.label,
         "unit": quantity.unit,
         "same_mesh": _apart(quantity, drawn.surrogate, drawn.reference),
         "population": _apart(quantity, cases, drawn.reference),
-        "mesh": _apart(quantity, _first(drawn.reference, fine), drawn.fine),
-        "finer": _apart(quantity, _first(cases, fine), drawn.fine),
+        "mesh": _apart(quantity, _part(drawn.reference, slice(fine)), drawn.fine),
+        "finer": _apart(quantity, _part(cases, slice(fine)), drawn.fine),
     }
 
 
 def by_contacts(drawn: Draws, gate: float) -> list[dict]:
     """The largest error (deg/s) of any rate of a draw on the same mesh, by the number of contacts,
     and the share of draws within the ``gate`` (deg/s); the last row has all draws."""
-    error = np.abs(np.degrees(drawn.surrogate.rate - drawn.reference.rate)).max(axis=1)
+    error = _largest(drawn.surrogate, drawn.reference)
     number = np.minimum(drawn.contacts, _MOST_CONTACTS)
     groups = [(str(count), number == count) for count in range(_MOST_CONTACTS)]
     groups += [(f"{_MOST_CONTACTS} or more", number == _MOST_CONTACTS)]
-    rows = []
-    for name, inside in (*groups, ("all", np.ones_like(error, dtype=bool))):
-        found = error[inside & np.isfinite(error)]
-        low, high = (
-            exceedance.bounds(int((found <= gate).sum()), found.size, spread.CONFIDENCE)
-            if found.size
-            else (None, None)
-        )
-        rows.append(
+    groups += [("all", np.ones_like(error, dtype=bool))]
+    return [{"contacts": name, **_agreement(error[inside], gate)} for name, inside in groups]
+
+
+def _largest(one: Columns, other: Columns) -> np.ndarray:
+    """Largest difference (n,) of the settled rates over the axes, deg/s; NaN where one has none."""
+    return np.degrees(twins.change(one.rate, other.rate))
+
+
+def _agreement(error: np.ndarray, gate: float) -> dict:
+    """Median and largest ``error`` (deg/s) of draws that settled, and their share within the ``gate``
+    (deg/s) with its bounds."""
+    found = error[np.isfinite(error)]
+    low, high = (
+        exceedance.bounds(int((found <= gate).sum()), found.size, spread.CONFIDENCE)
+        if found.size
+        else (None, None)
+    )
+    return {
+        "draws": int(error.size),
+        "settled": int(found.size),
+        "median": float(np.median(found)) if found.size else None,
+        "most": float(found.max()) if found.size else None,
+        "within_gate": float((found <= gate).mean()) if found.size else None,
+        "low": low,
+        "high": high,
+    }
+
+
+def by_modes(own: OwnModes, drawn: Draws, gate: float) -> dict:
+    """The draws by rail modes. ``rows``: agreement as in ``by_contacts``, ``modes`` and processor
+    seconds of a single run and of a case of a population, with one number in every draw and, last,
+    with those that each draw chooses.
+    ``choosing``: how many draws choose some modes, ``choosing_all`` those that the rails have.
+    ``moved_deg_s``: largest change of a rate by the chosen modes, median over the draws that choose
+    some; ``moved_by_clearance_deg_s``: the same by ``clearance_change_m``; ``more_by_clearance``:
+    how many of these draws the clearance moves more."""
+    chose = own.chosen > 0
+    with_modes, without = (_part(series.results, chose) for series in (own.own, own.same[0]))
+    by_choice, by_clearance = (_largest(with_modes, other) for other in (without, own.wider))
+    return {
+        "held": own.held,
+        "choosing": int(chose.sum()),
+        "choosing_all": int((own.chosen == own.held).sum()),
+        "moved_deg_s": _median(by_choice),
+        "clearance_change_m": own.clearance_change,
+        "moved_by_clearance_deg_s": _median(by_clearance),
+        "more_by_clearance": int((by_clearance > by_choice).sum()),
+        "rows": [
             {
-                "contacts": name,
-                "draws": int(inside.sum()),
-                "settled": int(found.size),
-                "median": float(np.median(found)) if found.size else None,
-                "most": float(found.max()) if found.size else None,
-                "within_gate": float((found <= gate).mean()) if found.size else None,
-                "low": low,
-                "high": high,
+                "modes": series.modes,
+                "cpu_s": series.cpu_s,
+                "case_s": series.case_s,
+                **_agreement(_largest(series.results, drawn.reference), gate),
             }
-        )
-    return rows
+            for series in (*own.same, own.own)
+        ],
+    }
+
+
+def _median(values: np.ndarray) -> float | None:
+    """Median of those that are finite; None without one."""
+    found = values[np.isfinite(values)]
+    return float(np.median(found)) if found.size else None
 
 
 def of(quantity: answers.Quantity, drawn: Draws, whole: Population) -> list[dict]:

@@ -22,13 +22,14 @@ from tipoff.studies.populations import (
     answers,
     control_variate,
     exceedance,
+    own_modes,
     population,
     random_factors,
     spread,
 )
 from tipoff.studies.populations import draws as paired
 from tipoff.studies.populations.derived import Derived
-from tipoff.studies.populations.draws import Draws
+from tipoff.studies.populations.draws import Draws, Rows
 from tipoff.studies.populations.population import Population, Surrogate
 
 NAME = "tails"
@@ -55,8 +56,9 @@ class Options:
 
 
 def run(study: Study, options: Options = Options()) -> dict:
-    """Errors of the surrogate by axis and by number of ``contacts``, change by the ``mesh``,
-    corrected ``statistics`` and ``tails``, and what they would cost without the surrogate.
+    """Errors of the surrogate by axis, by number of ``contacts`` and by rail modes, ``own_modes``,
+    where the rails have some; change by the ``mesh``, corrected ``statistics`` and ``tails``, and
+    what they would cost without the surrogate.
 
     Raises SceneError for bad input, every fault listed, and StudyError where too few cases settle.
     """
@@ -88,6 +90,7 @@ def run(study: Study, options: Options = Options()) -> dict:
             "cost": _costs(drawn, whole, paired.seconds_per_case(model, rows)),
             "errors": [paired_statistics.errors(item, drawn, whole) for item in answers.ALL],
             "contacts": paired_statistics.by_contacts(drawn, _gate(study)),
+            **_own_modes(study, model, rows, drawn),
             "statistics": [
                 row for item in RATES for row in paired_statistics.of(item, drawn, whole)
             ],
@@ -126,6 +129,14 @@ def _require_counts(options: Options) -> None:
         faults.append(Fault("--finer", "value", f"{options.fine:,}", expected))
     if faults:
         raise SceneError(faults)
+
+
+def _own_modes(study: Study, model: Surrogate, rows: Rows, drawn: Draws) -> dict:
+    """The draws by rail modes, ``own_modes``; empty where the rails have none."""
+    found = own_modes.run(study, model, rows)
+    if found is None:
+        return {}
+    return {"own_modes": paired_statistics.by_modes(found, drawn, _gate(study))}
 
 
 def _facts(study: Study, drawn: Draws, whole: Population, model: Surrogate) -> dict:

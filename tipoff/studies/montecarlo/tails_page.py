@@ -1,6 +1,7 @@
 """The random errors checked by the reference, on the page and for the terminal."""
 
 from tipoff.highfi.rail.step_cost import in_words
+from tipoff.studies.montecarlo import own_modes_page
 from tipoff.studies.populations import population
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Part
@@ -54,6 +55,7 @@ def draw(found: dict) -> list[Part]:
         Bullets([*sentences(found), *_run(found)]),
         Figure(*chart(found)),
         by_contacts(found),
+        *own_modes_page.table(found),
         statistics(found),
         *_tails(found),
         Fold("Differences of every quantity, and the finer mesh", [_errors(found)]),
@@ -65,6 +67,7 @@ def summary(found: dict) -> list[Part]:
     return [
         Bullets([*sentences(found), *_run(found)]),
         by_contacts(found),
+        *own_modes_page.table(found),
         statistics(found),
         *_tails(found),
     ]
@@ -76,6 +79,7 @@ def document(found: dict) -> list[Part]:
         Bullets(sentences(found)),
         "![Settled rates of both models, and their quantiles](tails.png)",
         by_contacts(found),
+        *own_modes_page.table(found),
         Bullets(_run(found)),
     ]
 
@@ -138,6 +142,7 @@ def _run(found: dict) -> list[str]:
         f"{1e3 * found['fine_element_size_m']:g} mm",
         *([f"not settled in the reference: {lost}"] if lost else []),
         population.model_line(found),
+        *own_modes_page.sentences(found),
         f"random errors: {found['reading']}; {found['cases']:,} cases",
         *_mesh(found),
         f"a run of the reference takes {cost['reference_cpu_s']:.3g} s of one core, on the finer mesh "

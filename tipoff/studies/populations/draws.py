@@ -23,6 +23,7 @@ from tipoff.mechanics.models import COMPLIANT
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import NOMINAL, Scene
 from tipoff.studies.agreement import growth
+from tipoff.studies.core import kernel_marks
 from tipoff.studies.core.announcing import announce
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study
@@ -56,11 +57,11 @@ class Draws(NamedTuple):
 def run(study: Study, model: Surrogate, rows: Rows, fine: int) -> Draws:
     """The cases with the overrides ``rows`` of the scene, the first ``fine`` of them on the finer
     mesh too. Runs are kept in the store of the study, so that an interrupted call goes on."""
-    coarse, finer, beside = requests(study, model, rows, fine)
+    coarse, finer, surrogates = requests(study, model, rows, fine)
     announce(study, [*coarse, *finer])
     many = filled(study, "tails, reference", coarse)
     few = filled(study, "tails, finer mesh", finer)
-    surrogate = filled(study, "tails, surrogate", beside)
+    surrogate = filled(study, "tails, surrogate", surrogates)
     return Draws(
         results(many),
         results(surrogate),
@@ -80,29 +81,32 @@ def requests(
     """The runs of the reference, those on the finer mesh, and those of the surrogate ``model``, whose
     modes the population has chosen (ValueError before)."""
     coarse_size, fine_size = study.settings.coarse_size, study.settings.element_size
-    labels = [f"{NOMINAL}-draw{number}" for number in range(len(rows))]
     coarse, finer = (
         [
             reference(study, label + tag, study.scene.replace(dict(row)), size)
-            for label, row in zip(labels, part)
+            for label, row in zip(_labels(part), part)
         ]
         for part, tag, size in ((rows, "-coarse", coarse_size), (rows[:fine], "", fine_size))
     )
+    return coarse, finer, beside(study, model, rows, model.numerics(Numerics().relative_tolerance))
+
+
+def beside(
+    study: Study, model: Surrogate, rows: Rows, numerics: Numerics, tag: str = ""
+) -> list[Run]:
+    """Runs of the surrogate ``model`` with ``numerics``, on the rail compliance of the mesh of the
+    reference; ``tag`` distinguishes their labels."""
     under = model.compliance
     if model.name == COMPLIANT and study.scene.contact is not None:
-        under = study.rail_compliance(study.scene, element_size=coarse_size)
-    beside = [
-        Run(
-            "lowfi",
-            f"{label}-{model.name}",
-            model.at(dict(row)).scene,
-            model.numerics(Numerics().relative_tolerance),
-            None,
-            under,
-        )
-        for label, row in zip(labels, rows)
+        under = study.rail_compliance(study.scene, element_size=study.settings.coarse_size)
+    return [
+        Run("lowfi", f"{label}-{model.name}{tag}", model.at(dict(row)).scene, numerics, None, under)
+        for label, row in zip(_labels(rows), rows)
     ]
-    return coarse, finer, beside
+
+
+def _labels(rows: Rows) -> list[str]:
+    return [f"{NOMINAL}-draw{number}" for number in range(len(rows))]
 
 
 def reference(study: Study, label: str, scene: Scene, element_size: float) -> Run:
@@ -113,25 +117,29 @@ def reference(study: Study, label: str, scene: Scene, element_size: float) -> Ru
 def seconds_per_case(model: Surrogate, rows: Rows) -> float:
     """Processor seconds that a population of the ``model``, modes included, takes for a case of the
     ``rows``, without compilation."""
-    family = Family(model.scene, None, model.numerics(TOLERANCE), model.compliance)
+    numerics = model.numerics(TOLERANCE)
+    family = Family(model.scene, None, numerics, model.compliance)
 
     def once(part: Rows) -> float:
         began = time.process_time()
         list(completed(family, [part], 1))
         return (time.process_time() - began) / len(part)
 
-    once(rows[:1])  # compiles
+    like = Run("lowfi", "timed", model.scene, numerics, None, model.compliance)
+    with kernel_marks.first_use(like, many=True):
+        once(rows[:1])
     return statistics.median(once(rows) for _ in range(_REPEATS))
 
 
 class Kept(NamedTuple):
-    """What remains of a run: its result, number of contacts, processor seconds, and number of
-    elements (zero in the surrogate)."""
+    """What remains of a run: its result, number of contacts, processor seconds, number of elements
+    (zero in the surrogate), and the number of rail modes that it chose (zero where it was given)."""
 
     case: Case
     contacts: int
     cpu_s: float
     elements: int
+    modes: int = 0
 
 
 def results(runs: Sequence[Kept]) -> Columns:
@@ -172,4 +180,5 @@ def _kept(found: Trajectory) -> Kept:
         len(growth.contacts(found.time, loaded)),
         cost.get("cpu_s", cost["wall_s"]),
         int(cost.get("elements", 0)),
+        int(cost.get("modes", 0)),
     )

@@ -35,7 +35,8 @@ _TAILS = """# Random errors checked by the reference
 
 Scene {scene}. Written by `python -m tipoff.studies.report.readme` from the file of
 `tipoff montecarlo --cases {cases} --reference {draws} --finer {fine}`. All runs of the surrogate have the
-[number of rail modes](rail_modes.md#one-number-in-a-study) that pilot cases of the population chose."""
+[number of rail modes](rail_modes.md#one-number-in-a-study) that pilot cases of the population chose, but
+those of the table by rail modes."""
 _BEGIN, _END = "<!-- {name}: python -m tipoff.studies.report.readme -->", "<!-- end of {name} -->"
 
 

@@ -1,0 +1,62 @@
+"""The draws by rail modes: one number for all draws, beside the modes that each draw chooses."""
+
+from tipoff.lowfi.numerics import AUTO
+from tipoff.studies.core.words import counted
+from tipoff.studies.render.document import Part
+from tipoff.studies.render.table import Column, Table, number, percent
+
+_NOTE = (
+    "Errors are those of single runs on the mesh of the reference, the largest of the three axes. Times "
+    "are means over the draws, of one core: of a single run, case by case with the runs from which a "
+    "draw chooses, and of a case of a population with this number in all cases, whose steps are longer."
+)
+
+
+def table(found: dict) -> list[Part]:
+    """Agreement and cost by rail modes; nothing where the rails have none."""
+    if not (own := found.get("own_modes")):
+        return []
+    rows = [
+        (
+            _words(row["modes"], own["held"], found["modes"]),
+            percent(row["within_gate"], ".1f"),
+            row["median"],
+            row["most"],
+            1e3 * row["cpu_s"],
+            None if row["case_s"] is None else 1e3 * row["case_s"],
+        )
+        for row in own["rows"]
+    ]
+    heads: tuple[Column | str, ...] = (
+        "modes of each rail",
+        f"within {found['gate_deg_s']:g} deg/s (%)",
+        Column("median error", "deg/s", ".2g"),
+        Column("largest", "deg/s", ".2g"),
+        Column("single run", "ms", ".2g"),
+        Column("case of a population", "ms", ".2g"),
+    )
+    return [Table(heads, rows, (_NOTE,))]
+
+
+def sentences(found: dict) -> list[str]:
+    """How many draws choose modes, and what these change; nothing where the rails have none."""
+    if not (own := found.get("own_modes")):
+        return []
+    draws, choosing = counted(found["draws"], "draw"), own["choosing"]
+    if not choosing:
+        return [f"none of {draws} chooses rail modes for itself"]
+    return [
+        f"{choosing} of {draws} choose rail modes for themselves, {own['choosing_all']} of them all "
+        f"{own['held']}; these modes change a rate of such a draw by "
+        f"{number(own['moved_deg_s'], '.2g')} deg/s in the median, "
+        f"{1e6 * own['clearance_change_m']:g} µm more of every clearance by "
+        f"{number(own['moved_by_clearance_deg_s'], '.2g')} deg/s, and in "
+        f"{own['more_by_clearance']} of the {choosing} by more than the modes"
+    ]
+
+
+def _words(modes: int | str, held: int, population: int) -> str:
+    if modes == AUTO:
+        return "case by case"
+    words = {0: "none", held: f"all {held}"}.get(int(modes), str(modes))
+    return f"{words}, as the population" if modes == population else words
