@@ -65,6 +65,7 @@ def found(study):
             "margin",
             lambda *_: constants.Margin(dict.fromkeys(("x", "y", "z", "total"), 1.0), "assumed"),
         )
+        patch.setattr(limits, "RAYS", 3)
         return limits.run(study, QUICK)
 
 
