@@ -5,7 +5,7 @@ import pytest
 
 from tests.fuzz import cases
 
-SHORT = {"curve": 20, "mesh": 20, "solid": 1}  # of the slower kinds
+SHORT = {"curve": 20, "solid": 1}  # of the slower kinds
 COUNT = 40
 CODES = {0, 1, 2}
 

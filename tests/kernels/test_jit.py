@@ -194,7 +194,13 @@ def test_code_names_whole_functions_only():
 
 
 @pytest.mark.parametrize("suffix", ["nbi", "nbc"])
-@pytest.mark.parametrize("harm", [lambda content: content[: len(content) // 2], lambda _: b""])
+@pytest.mark.parametrize(
+    "harm",
+    [
+        lambda content: content[: len(content) // 2],
+        pytest.param(lambda _: b"", marks=pytest.mark.slow),
+    ],
+)
 def test_a_damaged_kernel_is_compiled_again(project, suffix, harm):
     kept = of_the_caller(project, suffix)
     kept.write_bytes(harm(kept.read_bytes()))
