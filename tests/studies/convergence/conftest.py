@@ -43,7 +43,7 @@ def asked(monkeypatch):
     return _stubbed(monkeypatch)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def finished(tmp_path_factory):
     """A study and what it found, which no test changes."""
     with pytest.MonkeyPatch.context() as patch:
