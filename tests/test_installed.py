@@ -139,5 +139,5 @@ def test_a_scene_is_run_on_the_wheel(python, tmp_path):
         *("--model", "springs"),
         cwd=tmp_path,
     )
-    assert said.startswith("mine / phi15, model springs: exited")
+    assert said.startswith("mine / phi15, model springs, with the scene's constants: exited")
     assert list((tmp_path / "out" / "mine" / "lowfi").glob("phi15-*.nc"))
