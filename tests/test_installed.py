@@ -15,6 +15,8 @@ import pytest
 from tests.docs import pages
 
 ROOT = Path(__file__).resolve().parent.parent
+# Pages whose programs run on the wheel, with the scene that each names.
+PAGES = {"README.md": "reference", "docs/tutorials/surrogate_and_reference.md": "tiny"}
 # Every module by its file: one that was loaded under two names stands there twice.
 LOADED = """
 import os, sys
@@ -106,16 +108,16 @@ def test_a_source_distribution_gives_the_same_wheel(wheel, tmp_path):
         assert sorted(again.namelist()) == sorted(own.namelist())
 
 
-@pytest.mark.parametrize(
-    "page, scene",
-    [("README.md", "reference"), ("docs/tutorials/surrogate_and_reference.md", "tiny")],
-)
-def test_the_python_of_a_page_runs_on_the_wheel(python, tmp_path, page, scene):
-    """On the small scene, which has the same conditions, and with fewer cases."""
-    text = "\n".join(pages.of_language(page, "python"))
-    assert text.startswith("import tipoff\n") and text.count(f'"{scene}"') == 1
+def test_the_python_of_pages_runs_on_the_wheel(python, tmp_path):
+    """On the small scene, which has the same conditions, and with fewer cases. One process runs
+    one page after the other."""
+    programs = []
+    for page, scene in PAGES.items():
+        programs.append("\n".join(pages.of_language(page, "python")) + "\n")
+        assert programs[-1].startswith("import tipoff\n")
+        assert programs[-1].count(f'"{scene}"') == 1
     said = _run(
-        *(python, "-c", pages.smaller(text) + LOADED),
+        *(python, "-c", "".join(map(pages.smaller, programs)) + LOADED),
         cwd=tmp_path,
         env={"PATH": "", "HOME": str(Path.home()), "MPLBACKEND": "Agg"},
     )
@@ -134,7 +136,8 @@ def test_a_scene_is_run_on_the_wheel(python, tmp_path):
     )
     said = _run(
         *(python, "-m", "tipoff", "run", "--scene", "mine.toml", "--condition", "phi15"),
+        *("--model", "springs"),
         cwd=tmp_path,
     )
-    assert said.startswith("mine / phi15, model compliant: exited")
+    assert said.startswith("mine / phi15, model springs, with the scene's constants: exited")
     assert list((tmp_path / "out" / "mine" / "lowfi").glob("phi15-*.nc"))

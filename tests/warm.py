@@ -2,127 +2,35 @@
 
     python -m tests.warm
 
-Workers of pytest that meet the same kernel at the same time would each compile it.
+Workers of pytest that meet the same kernel at the same time would each compile it. An empty file
+beside the kernels says that all loops of this code are compiled: then nothing is done.
 """
 
 from concurrent.futures import ProcessPoolExecutor
+from importlib import import_module, metadata
 from multiprocessing import get_context
+from pathlib import Path
 
-from tests.highfi.contact.test_deformed_wall import Pressed
-from tests.highfi.dynamics.test_mounts import DAMPED, SOFT
-from tests.highfi.support import COARSE, begun, tiny
-from tests.lowfi.compliance import REFERENCE, reference_compliance
-from tests.lowfi.support import PAPER_PAD, scene
-from tipoff import highfi, lowfi
-from tipoff.lowfi.run import Run
+from tipoff import sources
 
-LINEAR = {"law": "linear", "clearance": 1e-5, "stiffness": 7e7, "damping": 0.0}
-HUNT_CROSSLEY = {
-    "law": "hunt-crossley",
-    "clearance": 1e-5,
-    "stiffness": 7e7,
-    "exponent": 1.5,
-    "dissipation": 1.0,
-}
-NO_THRUST = {"kind": "gaussian", "peak": 0.0, "width": 1e-3, "centre": 0.0}
-FOUR = lowfi.Numerics(modes=4)
+LOOPS = "tests.loops"  # takes seconds to load
 
 
-def four_modes() -> None:
-    """The surrogate on compliant rails that vibrate."""
-    lowfi.run(REFERENCE, "compliant", compliance=reference_compliance(), numerics=FOUR)
+def stamp() -> Path:
+    """The file that is there once the loops of the present code are compiled."""
+    name = f"loops-{metadata.version('numba')}-{sources.digest(LOOPS)[:16]}"
+    return sources.cache_folder() / "kernels" / name
 
 
-def four_modes_and_others_watched() -> None:
-    """The same, as the choice of modes makes it."""
-    Run(REFERENCE, FOUR, reference_compliance(), watches=True).begin()
+def main() -> None:
+    """Compile what is not compiled yet."""
+    if stamp().exists():
+        return
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
+        for done in [pool.submit(loop) for loop in import_module(LOOPS).LOOPS]:
+            done.result()
+    stamp().touch()
 
-
-def modes_watched() -> None:
-    """The surrogate on compliant rails, its first run."""
-    lowfi.run(REFERENCE, "compliant", compliance=reference_compliance())
-
-
-def without_modes() -> None:
-    """The surrogate on compliant rails without inertia."""
-    none = lowfi.Numerics(modes=0)
-    lowfi.run(REFERENCE, "compliant", compliance=reference_compliance(), numerics=none)
-
-
-def finite_elements() -> None:
-    """The reference on the small scene."""
-    highfi.run(tiny(), COARSE)
-
-
-def damped_rails() -> None:
-    """The reference with structural damping."""
-    begun(tiny(**DAMPED))
-
-
-def rails_on_joints() -> None:
-    """The reference with soft mounts."""
-    begun(tiny(**SOFT))
-
-
-def hexahedra() -> None:
-    """The reference on hexahedra that are no extrusion."""
-    Pressed("twisted").energy((0.0, 0.0, 0.0))
-
-
-def tetrahedra() -> None:
-    """The reference on tetrahedra."""
-    Pressed("tetrahedra").energy((0.0, 0.0, 0.0))
-
-
-def springs() -> None:
-    """The surrogate on springs."""
-    lowfi.run(REFERENCE, "springs")
-
-
-def body_on_impact() -> None:
-    """One body on the contact law of the paper."""
-    lowfi.run(scene(1e-3, 1e-3, contact=PAPER_PAD), "springs")
-
-
-def body_on_linear() -> None:
-    """One body on a linear contact law."""
-    lowfi.run(scene(1e-3, 1e-3, contact=LINEAR), "springs")
-
-
-def body_on_hunt_crossley() -> None:
-    """One body on the contact law of Hunt and Crossley."""
-    lowfi.run(scene(1e-3, 1e-3, contact=HUNT_CROSSLEY), "springs")
-
-
-def free_body() -> None:
-    """One body without contact."""
-    lowfi.run(scene(1e-3, 1e-3), "springs")
-
-
-def two_free_bodies() -> None:
-    """A payload and a platform without contact."""
-    lowfi.run(scene(1e-3, 1e-3, thrust=NO_THRUST), "springs")
-
-
-LOOPS = (
-    four_modes_and_others_watched,
-    four_modes,
-    modes_watched,
-    without_modes,
-    finite_elements,
-    damped_rails,
-    rails_on_joints,
-    hexahedra,
-    tetrahedra,
-    springs,
-    body_on_impact,
-    body_on_linear,
-    body_on_hunt_crossley,
-    free_body,
-    two_free_bodies,
-)
 
 if __name__ == "__main__":
-    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
-        for done in [pool.submit(loop) for loop in LOOPS]:
-            done.result()
+    main()

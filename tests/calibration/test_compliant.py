@@ -21,7 +21,7 @@ from tipoff.scenes import Calibration, SceneError
 from tipoff.studies.cli import app
 from tipoff.studies.runs import disturbed
 
-CONDITIONS = ("phi15", "phi35", "phi60")
+CONDITIONS = ("phi15", "phi60")
 SCENE = scenes.load("reference").replace({"agreement.fitted": list(CONDITIONS)})
 TRUTH = {
     "contact.interface_stiffness": 4.1e12,

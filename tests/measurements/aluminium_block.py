@@ -4,6 +4,8 @@ The lumped mass and the incompatible modes are those of every rail. The frequenc
 are extrapolated with the order 2 that O13 tests.
 """
 
+import functools
+
 import numpy as np
 
 from tests.highfi.blocks import block, modes
@@ -26,6 +28,7 @@ def elastic(c11: float = C11, c44: float = C44) -> dict[str, float]:
     }
 
 
+@functools.cache
 def on_mesh(elements: int, count: int) -> dict[tuple[int, ...], list[float]]:
     """Frequencies (kHz, ascending) above zero on a mesh of ``elements`` along each edge, by the
     parities of their shapes under the three mirror images of the block.

@@ -226,7 +226,7 @@ def perforated(occ):
     occ.cut([(3, occ.addBox(0, 0, 0, 220, 24, 4))], holes)
 
 
-@pytest.mark.parametrize("elements", ["hex8", "tet10"])
+@pytest.mark.parametrize("elements", ["hex8", pytest.param("tet10", marks=pytest.mark.slow)])
 def test_the_best_of_several_fillings_is_taken_and_a_slow_one_warned_about(tmp_path, elements):
     """At 2 mm the step is within six times those of cubes, or nearly so in skewed hexahedra. At 4 mm
     elements of 8 mm bend around holes of 8 mm: no filling is good, and the time of a run is told.

@@ -31,13 +31,12 @@ high = ["132 mm", "105 mm", "105 mm"]
 """
 
 
-@pytest.fixture
-def bare(tmp_path):
+@pytest.fixture(scope="module")
+def bare(tmp_path_factory):
     """Runs a module where the loader finds a library of gmsh's that is no library."""
     if not sys.platform.startswith("linux"):
         pytest.skip("the loader of Linux is asked to fail")
-    hidden = tmp_path / "hidden"
-    hidden.mkdir()
+    hidden = tmp_path_factory.mktemp("hidden")
     (hidden / "libGL.so.1").touch()
 
     def call(*arguments):

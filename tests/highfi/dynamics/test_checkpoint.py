@@ -59,7 +59,7 @@ def test_run_stopped_at_37_percent_goes_on_to_the_same_bits(tmp_path):
     assert_same(resumed, whole())
 
 
-@pytest.mark.parametrize("samples", [1, TOUCHING, 212])
+@pytest.mark.parametrize("samples", [pytest.param(1, marks=pytest.mark.slow), TOUCHING, 212])
 def test_any_sample_is_a_place_to_stop(tmp_path, samples):
     """At the start, while pads touch, and after the run has seen where it ends; resumed by another
     number of threads."""

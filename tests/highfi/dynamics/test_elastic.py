@@ -1,5 +1,7 @@
 """Both elastic kernels carry the same run, and any number of threads the same bits."""
 
+import functools
+
 import numpy as np
 import pytest
 
@@ -27,6 +29,7 @@ def begun(kernel: str, threads: int = 1, **overrides) -> Loop:
     return loop
 
 
+@functools.cache
 def run(kernel: str, threads: int = 1):
     """The result of such a run."""
     loop = begun(kernel, threads)

@@ -1,6 +1,8 @@
 """Exit, settled means and jams of the reference: from its steps, however a run is sampled, and to
 their order."""
 
+import functools
+
 import numpy as np
 import pytest
 import scipy.integrate
@@ -23,10 +25,10 @@ def test_sampling_changes_no_bit():
     """From one sample in 0.05 ms to one in the whole flight."""
     fine, *others = (
         highfi.run(tiny(output__interval=interval), COARSE)
-        for interval in ("0.05 ms", "1 ms", "7 ms", "25 ms")
+        for interval in ("0.05 ms", "7 ms", "25 ms")
     )
     assert fine.status == "exited" and np.abs(fine.pad_force).max() > 1.0
-    assert [other.time.size for other in others][1:] == [4, 1]
+    assert [other.time.size for other in others] == [4, 1]
     for other in others:
         assert_same(other, fine)
 
@@ -129,6 +131,12 @@ class _StopAt:
             raise Stopped
 
 
+@functools.cache
+def sampled_once():
+    """The run that nothing interrupts."""
+    return highfi.run(tiny(output__interval="25 ms"), COARSE)
+
+
 @pytest.mark.parametrize("steps", [15_000, 33_250, 36_250])
 def test_a_resume_between_samples_goes_on_to_the_same_bits(tmp_path, steps):
     """Before the exit, and twice in the settled window, whose sums are in the file. Control:
@@ -144,9 +152,8 @@ def test_a_resume_between_samples_goes_on_to_the_same_bits(tmp_path, steps):
     restore(second, saved)
     restore(poor, saved | {"book": begun(scene).book})
     results = []
-    for loop in (first, second, poor):
+    for loop in (second, poor) if steps >= 33_250 else (second,):
         loop.integrate(None)
         results.append(loop.trajectory(loop.stepping.as_dict(), COARSE))
-    assert_same(results[1], results[0])
-    assert results[0].outcome == highfi.run(scene, COARSE).outcome
-    assert steps < 33_250 or results[2].outcome != results[0].outcome
+    assert_same(results[0], sampled_once())
+    assert all(other.outcome != results[0].outcome for other in results[1:])

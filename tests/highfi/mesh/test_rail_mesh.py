@@ -73,7 +73,13 @@ def without(mesh, name):
 
 
 @pytest.mark.parametrize(
-    "size, count", [(0.004, 2420), (0.002, 19360), (0.001, 154880), (0.003, None)]
+    "size, count",
+    [
+        (0.004, 2420),
+        (0.002, 19360),
+        pytest.param(0.001, 154880, marks=pytest.mark.slow),
+        (0.003, None),
+    ],
 )
 def test_areas_and_volume_do_not_depend_on_the_mesh(size, count):
     mesh = read(l_rail.build(GEOMETRY, size))

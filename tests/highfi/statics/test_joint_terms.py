@@ -31,7 +31,7 @@ def largest(found, exact):
     return np.abs(found - exact).max() / np.abs(exact).max()
 
 
-@pytest.mark.parametrize("factor", [0.4, 2.0])
+@pytest.mark.parametrize("factor", [0.4, pytest.param(2.0, marks=pytest.mark.slow)])
 def test_a_factor_gives_what_condensation_there_gives(nominal, factor):
     """Flexibility and thermal offset to 1e-6, frequencies of the lowest modes to 1e-4. What is
     left beside the modes is positive. Controls: the nominal stiffness is off by a tenth and more,

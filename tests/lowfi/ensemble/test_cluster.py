@@ -18,7 +18,7 @@ from tipoff.scenes import SceneError, load, uncertainty
 
 pytest.importorskip("zarr")
 distributed = pytest.importorskip("distributed")
-CASES, CHUNK = 480, 20
+CASES, CHUNK = 240, 20
 
 
 @pytest.fixture(autouse=True)
@@ -42,33 +42,40 @@ def local_cluster(workers: int):
     )
 
 
-def test_a_worker_that_is_killed_changes_no_bit(tmp_path):
+@pytest.fixture(scope="module")
+def two_workers():
+    """A cluster whose workers come back when they die."""
+    with local_cluster(2) as workers:
+        yield workers
+
+
+def test_twins_have_the_bits_of_one_process(tmp_path, two_workers):
+    """Each worker changes its Family."""
+    asked = ensemble(cases=3 * CHUNK)
+    for twin in (asked, *twins.of(asked).values()):
+        here, there = twin.store(tmp_path / twin.key), twin.store(tmp_path / f"{twin.key}-far")
+        fill(twin, here)
+        fill(twin, there, scheduler=two_workers.scheduler_address)
+        assert there.pending() == [] and there.digest() == here.digest()
+
+
+def test_a_worker_that_is_killed_changes_no_bit(tmp_path, two_workers):
     asked = ensemble()
     here = asked.store(tmp_path / "here")
     fill(asked, here)
-    with local_cluster(2) as workers:
-        pids = [worker.pid for worker in workers.workers.values()]
-        told, there = [], asked.store(tmp_path / "there")
+    pids = [worker.pid for worker in two_workers.workers.values()]
+    told, there = [], asked.store(tmp_path / "there")
 
-        def kill_one(stored: int) -> None:
-            told.append(stored)
-            if len(told) == 3:
-                os.kill(pids[0], signal.SIGKILL)
+    def kill_one(stored: int) -> None:
+        told.append(stored)
+        if len(told) == 3:
+            os.kill(pids[0], signal.SIGKILL)
 
-        assert fill(asked, there, scheduler=workers.scheduler_address, progress=kill_one) == CASES
-        assert len(told) == CASES // CHUNK and told[-1] == CASES
-        assert pids[0] not in [worker.pid for worker in workers.workers.values()]
+    address = two_workers.scheduler_address
+    assert fill(asked, there, scheduler=address, progress=kill_one) == CASES
+    assert len(told) == CASES // CHUNK and told[-1] == CASES
+    assert pids[0] not in [worker.pid for worker in two_workers.workers.values()]
     assert there.pending() == [] and there.digest() == here.digest()
-
-
-def test_twins_have_the_bits_of_one_process(tmp_path):
-    asked = ensemble(cases=3 * CHUNK)
-    with local_cluster(1) as workers:
-        for twin in (asked, *twins.of(asked).values()):  # one worker, which changes its Family
-            here, there = twin.store(tmp_path / twin.key), twin.store(tmp_path / f"{twin.key}-far")
-            fill(twin, here)
-            fill(twin, there, scheduler=workers.scheduler_address)
-            assert there.pending() == [] and there.digest() == here.digest()
 
 
 def test_a_lost_scheduler_ends_with_a_message_and_a_store_that_resumes(tmp_path):

@@ -13,14 +13,14 @@ from tipoff.studies.core.study import Study
 from tipoff.studies.cost import timing
 
 
-@pytest.fixture
-def asked(monkeypatch):
-    """Labels of the runs that were made, in order; ``asked.failing`` maps a label to what became of
-    it instead."""
+class Labels(list):
+    """Labels of the runs that were made, in order; ``failing`` maps a label to what became of it
+    instead."""
 
-    class Labels(list):
-        failing: ClassVar[dict[str, str]] = {}
+    failing: ClassVar[dict[str, str]] = {}
 
+
+def _stubbed(monkeypatch) -> Labels:
     made = Labels()
 
     def execute(run, progress=None, threads=None, **kept):
@@ -35,6 +35,21 @@ def asked(monkeypatch):
     monkeypatch.setattr(convergence.ripple, "measure", stub.rippling)
     monkeypatch.setattr(convergence.statics, "quantities", stub.resting)
     return made
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """``Labels`` of the stubbed runs."""
+    return _stubbed(monkeypatch)
+
+
+@pytest.fixture(scope="session")
+def finished(tmp_path_factory):
+    """A study and what it found, which no test changes."""
+    with pytest.MonkeyPatch.context() as patch:
+        _stubbed(patch)
+        made = Study(scenes.load("tiny"), tmp_path_factory.mktemp("tiny"), defaults("tiny"))
+        return made, convergence.run(made)
 
 
 @pytest.fixture

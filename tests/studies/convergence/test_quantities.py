@@ -17,17 +17,17 @@ from tipoff.studies.report.page import Page
 from tipoff.studies.runs.figures import Runs
 
 
-def test_a_deflection_of_first_order_stands_beside_the_rates(study):
+def test_a_deflection_of_first_order_stands_beside_the_rates(finished):
     """As at the edge of a rigid mount: what is left is more than the last change."""
-    found = stub.row(convergence.run(study), "element size", "deflection under 100 N")
+    found = stub.row(finished[1], "element size", "deflection under 100 N")
     assert found["values"] == pytest.approx([8.4, 9.2, 9.6]) and found["unit"] == "µm"
     assert found["order"] == pytest.approx(1.0) and found["method"] == "GCI"
     assert found["uncertainty"] == pytest.approx(1.25 * 0.4)
     assert found["nominal_uncertainty"] == pytest.approx(0.4 + 1.25 * 0.4)
 
 
-def test_loads_of_the_one_pad_that_touches(study):
-    found = convergence.run(study)
+def test_loads_of_the_one_pad_that_touches(finished):
+    _, found = finished
     names = [
         item["quantity"] for item in found["quantities"] if item["parameter"] == "element size"
     ]

@@ -16,7 +16,7 @@ from tipoff.studies.convergence import summary
 from tipoff.studies.convergence.page import draw
 from tipoff.studies.core.settings import Settings, defaults
 from tipoff.studies.core.study import Study, StudyError
-from tipoff.studies.render import document
+from tipoff.studies.render import chart, document
 from tipoff.studies.render.table import inline
 from tipoff.studies.report import stage as report
 from tipoff.studies.report.page import Page
@@ -28,8 +28,8 @@ def page_of(study, found):
     return Page(study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {})
 
 
-def test_order_and_uncertainty_of_a_law_of_second_order(study):
-    found = convergence.run(study)
+def test_order_and_uncertainty_of_a_law_of_second_order(finished):
+    _, found = finished
     x = stub.row(found, "element size", "settled rate x")
     assert (x["unit"], x["size_unit"], x["sizes"]) == ("deg/s", "m", [0.016, 0.008, 0.004])
     assert x["order"] == pytest.approx(2.0, abs=1e-9)
@@ -44,8 +44,8 @@ def test_order_and_uncertainty_of_a_law_of_second_order(study):
     assert in_time["uncertainty"] == pytest.approx(1.25 * 0.1 * 0.225**2)
 
 
-def test_values_without_order_are_told_apart(study):
-    found = convergence.run(study)
+def test_values_without_order_are_told_apart(finished):
+    _, found = finished
     y = stub.row(found, "element size", "settled rate y")
     assert y["order"] is None and y["method"] == "not converged: changes do not fall"
     assert y["uncertainty"] == pytest.approx(3.0 * 0.3)
@@ -55,8 +55,8 @@ def test_values_without_order_are_told_apart(study):
     assert line.endswith("0.9 deg/s at 4 mm; not converged: changes do not fall")
 
 
-def test_interface_stiffness_and_contact_cells_are_compared_with_the_nominal_run(study):
-    found = convergence.run(study)
+def test_interface_stiffness_and_contact_cells_are_compared_with_the_nominal_run(finished):
+    _, found = finished
     assert [item["factor"] for item in found["interface_stiffness"]] == [0.25, 1.0, 4.0, 16.0]
     assert [
         item["settled_rate_change_deg_s"] for item in found["interface_stiffness"]
@@ -75,8 +75,8 @@ def test_interface_stiffness_and_contact_cells_are_compared_with_the_nominal_run
     ]
 
 
-def test_ripple_of_both_meshes_beside_that_of_few_cells(study):
-    found = convergence.run(study)
+def test_ripple_of_both_meshes_beside_that_of_few_cells(finished):
+    study, found = finished
     assert [
         (row["element_size_m"], row["cells_per_edge"], row["ripple"]) for row in found["ripple"]
     ] == [(0.016, 3, 0.04 / 3), (0.016, 16, 0.0025), (0.008, 16, 0.0025)]
@@ -183,8 +183,8 @@ def test_stored_result_counts_only_while_nothing_changed(study):
     assert convergence.stored(Study(study.scene, study.folder, Settings())) is None
 
 
-def test_page_shows_the_study_only_where_there_is_one(study):
-    found = convergence.run(study)
+def test_page_shows_the_study_only_where_there_is_one(finished):
+    study, found = finished
     page = page_of(study, found)
     shown = document.html(draw(page), page.figure)
     assert 'id="chart-convergence"' in shown
@@ -233,6 +233,7 @@ def test_command_refuses_an_unknown_condition(tmp_path, asked):
 def test_report_takes_up_a_study_that_is_there(study, monkeypatch):
     shown = [item for item in registry.results() if item.stored is not None]
     monkeypatch.setattr(report, "results", lambda: shown)
+    monkeypatch.setattr(chart, "to_files", lambda *_: [])  # drawn in another test
     page = study.path("report.html")
     report.run(study)
     assert 'id="convergence"' not in page.read_text()

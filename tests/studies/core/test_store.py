@@ -170,28 +170,38 @@ def test_settings_and_roles_change_a_stage_key_and_workers_do_not(study):
     assert key(scene=study.scene.replace({"payload.mass": "9 kg"})) != key()
 
 
+MOMENTS = (0.0, 0.003, 0.007, 0.012, 0.017, 0.023, 0.031, 0.043)  # s after a file was written
+# The bytes are made once, so that the loop hardly does anything but write.
 KILLED = """
-import sys
+import os, sys
+import xarray
 from tests.studies.synthetic import flight
 run = flight(samples=40001)
-while True:
-    run.save(sys.argv[1])
-    print("saved", flush=True)
+content = run.to_xarray().to_netcdf(engine="h5netcdf")
+xarray.Dataset.to_netcdf = lambda *_, **__: content
+for path in sys.argv[1:]:  # a process each
+    child = os.fork()
+    while child == 0:
+        run.save(path)
+        print(os.getpid(), flush=True)
+    os.waitpid(child, 0)
 """
 
 
 def test_kill_while_writing_leaves_no_half_file(tmp_path):
     """SIGKILL at several moments of a loop that only writes: the file under its final name can
     always be read."""
-    for delay in (0.0, 0.017, 0.043):
-        path = tmp_path / f"{delay}" / "victim.nc"
-        writer = subprocess.Popen(
-            [sys.executable, "-c", KILLED, str(path)], cwd=ROOT, stdout=subprocess.PIPE, text=True
-        )
-        try:
-            assert writer.stdout.readline().strip() == "saved"
+    moments = {tmp_path / str(delay) / "victim.nc": delay for delay in MOMENTS}
+    command = [sys.executable, "-c", KILLED, *map(str, moments)]
+    writer = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    killed = set()
+    try:
+        for delay in moments.values():
+            child = next(each for line in writer.stdout if (each := int(line)) not in killed)
             time.sleep(delay)
-        finally:
-            os.kill(writer.pid, signal.SIGKILL)
-            writer.wait()
-        assert Trajectory.load(path).time.size == 40001
+            os.kill(child, signal.SIGKILL)
+            killed.add(child)
+    finally:
+        writer.kill()
+        writer.communicate()
+    assert [Trajectory.load(path).time.size for path in moments] == [40001] * len(moments)

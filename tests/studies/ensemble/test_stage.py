@@ -23,17 +23,17 @@ def call(*arguments, model="springs"):
 
 
 def test_compliant_contact_is_the_default(tmp_path):
-    options = ("--scene", "tiny", "--cases", 40, "--out", tmp_path)
+    options = ("--scene", "tiny", "--cases", 8, "--out", tmp_path)
     default = CliRunner().invoke(app, ["ensemble", *map(str, options)])
     assert default.exit_code == 0, default.output
     assert (
-        "tiny, model compliant: 40 cases" in default.stdout
+        "tiny, model compliant: 8 cases" in default.stdout
         and "agreement: not measured for this scene" in default.stdout
     )
     assert default.stderr.count("rail compliance, once per rail and pads") == 1
     named = call(*options, model="compliant")
     assert "rail compliance" not in named.stderr and "all of them stored before" in named.stderr
-    assert "tiny, model springs, with the scene's constants: 40 cases" in call(*options).stdout
+    assert "tiny, model springs, with the scene's constants: 8 cases" in call(*options).stdout
 
 
 def test_default_errors_run_and_are_kept(tmp_path):

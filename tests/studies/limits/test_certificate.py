@@ -31,7 +31,7 @@ OPTIONS = Options(("6 deg/s",), probability=0.7, cases=200, certify=20)
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
     return Study(
-        free_flight.scene(), tmp_path_factory.mktemp("out"), Settings(element_size=0.008, workers=1)
+        free_flight.scene(), tmp_path_factory.mktemp("out"), Settings(element_size=0.016, workers=1)
     )
 
 

@@ -65,6 +65,7 @@ def found(study):
             "margin",
             lambda *_: constants.Margin(dict.fromkeys(("x", "y", "z", "total"), 1.0), "assumed"),
         )
+        patch.setattr(limits, "RAYS", 3)
         return limits.run(study, QUICK)
 
 
@@ -207,28 +208,27 @@ def test_limits_that_no_tolerance_or_every_tolerance_keeps_are_reported(study, m
 
 def test_values_are_kept_with_names_units_and_scale(study, found, monkeypatch):
     """A whole file is only read; a damaged one is made again with the same values."""
-    cases = within.Cases(
-        study, limits.NAME, Surrogate(study.scene, None, None), {"misalignment": 0.01}, 20, 3
-    )
-    values, before = cases.values(0.5), set((study.folder / "limits").glob("*.nc"))
-    assert not list((study.folder / "limits").glob("*.npy")) and len(before) > 20
-    files = {path: xarray.load_dataset(path, engine="h5netcdf") for path in before}
-    path, kept = next((path, kept) for path, kept in files.items() if kept.sizes["case"] == 20)
-    assert kept["value"].dims == ("case", "quantity") and kept.attrs["scale"] == 0.5
+    folder, model = study.folder / "limits", Surrogate(study.scene, None, None)
+
+    def values_again():
+        tolerances = {"misalignment": 0.01}
+        return within.Cases(study, limits.NAME, model, tolerances, 20, 3).values(0.5)
+
+    before = set(folder.glob("*.nc"))
+    values = values_again()
+    assert not list(folder.glob("*.npy")) and len(before) > 20
+    (path,) = set(folder.glob("*.nc")) - before
+    kept = xarray.load_dataset(path, engine="h5netcdf")
+    assert kept["value"].dims == ("case", "quantity") and kept.sizes["case"] == 20
+    assert kept.attrs["scale"] == 0.5
     assert kept["quantity"].values.tolist() == [item.name for item in answers.ALL]
     assert kept["units"].values.tolist() == [item.unit for item in answers.ALL]
     assert json.loads(kept.attrs["tolerances_si"]) == {"misalignment": 0.005}
     assert np.array_equal(kept["value"], values, equal_nan=True)
     path.write_bytes(path.read_bytes()[:600])
-    again = within.Cases(
-        study, limits.NAME, Surrogate(study.scene, None, None), {"misalignment": 0.01}, 20, 3
-    )
-    assert np.array_equal(again.values(0.5), values, equal_nan=True)
+    assert np.array_equal(values_again(), values, equal_nan=True)
     monkeypatch.setattr(within, "completed", lambda *_: pytest.fail("ran again"))
-    third = within.Cases(
-        study, limits.NAME, Surrogate(study.scene, None, None), {"misalignment": 0.01}, 20, 3
-    )
-    assert np.array_equal(third.values(0.5), values, equal_nan=True)
+    assert np.array_equal(values_again(), values, equal_nan=True)
     for row in found["rows"]:
         assert [item["name"] for item in row["beside"]] == [item.name for item in answers.ALL]
 

@@ -12,12 +12,15 @@ KEPT = {
     for case in read_json(path)["cases"]
 }
 CASES = {case.name: case for peer in stage.PEERS for case in peer.cases()}
+# Cases whose set of effects no other quick test has: each kernel takes ten seconds to compile. Quick
+# tests compare the same laws with CalculiX (events), with quadratic elements and with Exudyn.
+OWN_KERNEL = ("calculix-impact", "mujoco-linear", "mujoco-friction")
 SETTINGS = [
     pytest.param(
         case.name,
         setting,
         id=f"{case.name}: {setting}",
-        marks=[pytest.mark.slow] if setting in case.slow else [],
+        marks=[pytest.mark.slow] if setting in case.slow or case.name in OWN_KERNEL else [],
     )
     for case in CASES.values()
     for setting in case.settings
