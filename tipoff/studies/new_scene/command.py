@@ -163,11 +163,11 @@ def _numbers(given: dict[str, str | None], thrust_curve: Path | None, pads: int 
             raise SceneError([Fault(option, "value", text, expected)])
         return tuple(sides)
 
-    found = together(
+    *found, _ = together(
         *((lambda name=name: read(name)) for name in _ASKED),
         lambda: _require_curve(thrust_curve, given),
     )
-    numbers = Numbers(*found[:-1], thrust_curve=thrust_curve)
+    numbers = Numbers(*found)._replace(thrust_curve=thrust_curve)
     return numbers if pads is None else numbers._replace(pads=pads)
 
 
