@@ -274,6 +274,7 @@ def test_page_is_whole_and_self_contained(pipeline):
     figures = {path.name for path in (pipeline[0] / "figures").glob("*.png")}
     assert {
         "mesh.png",
+        "mesh-dark.png",
         "compliance.png",
         "thrust.png",
         "figure6.png",
