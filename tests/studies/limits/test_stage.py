@@ -28,7 +28,6 @@ from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render import document
 from tipoff.studies.render import table as tables
 
-pytest.importorskip("zarr")
 LIMIT, PROBABILITY = 6.0, 0.9
 QUICK = Options(limits=("6 deg/s",), probability=PROBABILITY, cases=120)
 FITTED = Calibration({}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0)

@@ -29,7 +29,6 @@ from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render import chart
 from tipoff.studies.render.document import terminal
 
-pytest.importorskip("zarr")
 WALLS = handmade(REFERENCE, {})
 MODAL = 1.3  # times the rate without modes
 PER_RADIAN, PER_METRE = math.radians(20.0) / math.radians(0.2), math.radians(20.0) / 0.4e-3
