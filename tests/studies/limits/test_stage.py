@@ -359,7 +359,7 @@ def test_the_model_error_is_the_largest_of_the_held_out_conditions(tmp_path, mon
     study = Study(load("reference"), tmp_path, Settings())
     assert (
         constants.margin(study, "springs").deg_s is None
-        and "make compare" in constants.margin(study, "springs").source
+        and "tipoff compare" in constants.margin(study, "springs").source
     )
     rows = [
         {

@@ -51,7 +51,7 @@ def touching():
 
 def test_without_pyvista_there_are_files_and_a_way_to_pictures(viewed):
     study, found = viewed
-    assert found["pictures"] == {} and "make pictures" in found["without_pictures"]
+    assert found["pictures"] == {} and "pip install pyvista" in found["without_pictures"]
     assert len(found["frames"]) == 7 and len(found["files"]) == 2 * 7 + 1
     assert view.run(study, "phi15", 7) == found  # nothing changed, nothing made
     assert view.stored(study) == [found]
@@ -224,7 +224,11 @@ def test_page_shows_peaks_and_says_what_would_show_more(viewed):
     assert "tipoff view --scene tiny --out" in shown and "notice" not in shown
     page.documents["view"] = [found]
     shown = html(section.draw(page))
-    assert "tipoff view" not in shown and "make pictures" in shown and found["collection"] in shown
+    assert (
+        "tipoff view" not in shown
+        and "pip install pyvista" in shown
+        and found["collection"] in shown
+    )
     without = Page(study.scene, study.folder, {}, Runs({}, {}, {}), {})
     assert "tipoff highfi --scene tiny --out" in html(section.draw(without))
 

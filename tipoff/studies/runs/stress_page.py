@@ -91,5 +91,5 @@ def _pictures(view: dict, folder: Path) -> Iterator[Part]:
 
 def _how(command: str) -> Caption:
     return Caption(
-        f"`{command}` adds files for ParaView; after `make pictures` it adds pictures too."
+        f"`{command}` adds files for ParaView; with pyvista installed it adds pictures too."
     )
