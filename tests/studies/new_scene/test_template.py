@@ -104,7 +104,11 @@ def test_a_scene_refers_to_the_curve_of_its_thrust(tmp_path, monkeypatch):
         ("time_s,force_N\n0,0\n1,x\n0.5,1 N\n", [], ["force_N: 'x' in line 3", "'1 N' in line 4"]),
         ("t,F\n0,0\n", [], ["a CSV whose header is time_s,force_N"]),
         ("time_s,force_N\n0,0\n1,-5\n", [], ["an impulse above zero", "-2.5 N s"]),
-        (None, ["--mass", "9 m"], ["2 faults", "No such file", "--mass"]),
+        (
+            None,
+            ["--mass", "9 m", "--pads", "6"],
+            ["3 faults", "No such file", "--mass", "multiple of 4"],
+        ),
         (CURVE, ["--thrust", "4 kN", "--burn-time", "9 ms"], ["2 faults", "none beside"]),
     ],
 )

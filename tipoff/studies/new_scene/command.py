@@ -163,9 +163,10 @@ def _numbers(given: dict[str, str | None], thrust_curve: Path | None, pads: int 
             raise SceneError([Fault(option, "value", text, expected)])
         return tuple(sides)
 
-    *found, _ = together(
+    *found, _, _ = together(
         *((lambda name=name: read(name)) for name in _ASKED),
         lambda: _require_curve(thrust_curve, given),
+        lambda: _require_pads(pads),
     )
     numbers = Numbers(*found)._replace(thrust_curve=thrust_curve)
     return numbers if pads is None else numbers._replace(pads=pads)
@@ -185,6 +186,15 @@ def _require_curve(file: Path | None, given: dict[str, str | None]) -> None:
         if given[name] is not None
     ]
     if faults := faults + template.curve_faults(file):
+        raise SceneError(faults)
+
+
+def _require_pads(pads: int | None) -> None:
+    """Raise SceneError for a number of pads that the rails do not hold."""
+    from tipoff.scenes.faults import SceneError
+    from tipoff.studies.new_scene import template
+
+    if pads is not None and (faults := template.pads_faults(pads)):
         raise SceneError(faults)
 
 

@@ -70,16 +70,22 @@ class Numbers(NamedTuple):
         return self.size[0] * 0.08 / 0.35
 
 
-def _of_pads(numbers: Numbers) -> list[Fault]:
-    """A number of pads that the four rails do not hold, or that do not fit side by side."""
-    if numbers.pads < _RAILS or numbers.pads % _RAILS:
-        expected = "4, 8, 12 or another multiple of 4: each of the four rails holds as many pads"
-    elif min(numbers.size) > 0.0 and numbers.pads > (
-        most := _RAILS * max(1, int(2.0 * numbers.station / numbers.pad) + 1)
-    ):
-        expected = f"at most {most}: more pads overlap on a payload of this length"
-    else:
+def pads_faults(count: int) -> list[Fault]:
+    """A number of pads that four rails do not hold alike."""
+    if count >= _RAILS and count % _RAILS == 0:
         return []
+    expected = "4, 8, 12 or another multiple of 4: each of the four rails holds as many pads"
+    return [Fault("--pads", "value", str(count), expected)]
+
+
+def _of_pads(numbers: Numbers) -> list[Fault]:
+    """A number of pads that the rails do not hold, or that do not fit side by side."""
+    if (faults := pads_faults(numbers.pads)) or min(numbers.size) <= 0.0:
+        return faults
+    most = _RAILS * max(1, int(2.0 * numbers.station / numbers.pad) + 1)
+    if numbers.pads <= most:
+        return []
+    expected = f"at most {most}: more pads overlap on a payload of this length"
     return [Fault("--pads", "value", str(numbers.pads), expected)]
 
 
