@@ -131,6 +131,12 @@ def _section() -> View:
     outer = (b + rail.thickness, c + rail.thickness)
     level = view.point(*outer)[1] - 16.0
     _across(view, {"leg": (outer[0] - rail.leg, outer[0])}, level, outer[1])
+    strip = 0.0008  # m, as drawn
+    view.box("mount", (outer[0] - rail.mount_width, outer[1]), (outer[0], outer[1] + strip))
+    view.box("mount", (outer[0], outer[1] - rail.mount_width), (outer[0] + strip, outer[1]))
+    side = view.point(*outer)[0] + 16.0
+    ends = [view.point(0.0, outer[1] - part)[1] for part in (0.0, rail.mount_width)]
+    view.dimension((side, ends[0]), (side, ends[1]), "mount_width")
     foot = view.point(b, outer[1] - rail.leg)[1] + 20.0
     _across(view, {"": (b, outer[0])}, foot, outer[1] - rail.leg)
     view.text((view.point(outer[0], 0.0)[0] + 6.0, foot + 4.0), "thickness", "start")
