@@ -26,7 +26,7 @@ html_theme = "furo"
 html_math_renderer = "mathml"
 html_title = f"tipoff {release}"
 html_static_path = ["_static"]
-html_css_files = ["wide.css"]
+html_css_files = ["wide.css", "drawing.css"]
 html_show_copyright = False
 
 myst_enable_extensions = ["dollarmath", "colon_fence"]

@@ -1,5 +1,7 @@
 """The package as a user gets it: a wheel in an environment of its own, away from the repository."""
 
+import ast
+import re
 import shutil
 import subprocess
 import sys
@@ -8,6 +10,7 @@ import tarfile
 import tomllib
 import venv
 import zipfile
+from importlib.metadata import packages_distributions
 from pathlib import Path
 
 import pytest
@@ -27,6 +30,12 @@ assert len(own) == len(set(own)) > 50, len(own)
 assert not {"highfi", "lowfi", "calibrate", "meshes", "scenes", "studies"} & set(sys.modules)
 print(sys.modules["tipoff"].__file__)
 """
+
+
+# Libraries that a dependency brings by its own metadata, and those of extras, without which a
+# command says what to install.
+BROUGHT = {"llvmlite": "numba", "PIL": "matplotlib", "pydantic_core": "pydantic"}
+OPTIONAL = {"distributed", "exudyn", "mujoco", "pyvista"}
 
 
 @pytest.fixture(scope="module")
@@ -82,6 +91,35 @@ def test_a_wheel_puts_one_name_into_an_environment(wheel):
     for held in ("highfi/run.py", "lowfi/run.py", "calibration/run.py", "meshes/l_rail.py"):
         assert f"tipoff/{held}" in names
     assert "tipoff/scenes/catalog/reference.toml" in names
+
+
+def _imported() -> set[str]:
+    """Names of the libraries that any module of the package imports, at its top or later."""
+    trees = [ast.parse(path.read_text()) for path in _modules()]
+    nodes = [node for tree in trees for node in ast.walk(tree)]
+    names = {name.name for node in nodes if isinstance(node, ast.Import) for name in node.names}
+    names |= {node.module for node in nodes if isinstance(node, ast.ImportFrom) and not node.level}
+    return {name.partition(".")[0] for name in names} - set(sys.stdlib_module_names) - {"tipoff"}
+
+
+def _modules() -> list[Path]:
+    folders = [ROOT / name for name in ("tipoff", "highfi", "lowfi", "meshes", "calibrate")]
+    return [path for folder in folders for path in folder.rglob("*.py")]
+
+
+def test_every_library_of_the_package_is_a_dependency():
+    """zarr and SALib were extras, and a wheel without them failed in its main commands."""
+    declared = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
+    installed = {re.match(r"[\w-]+", line)[0].lower() for line in declared}
+    owners = packages_distributions()
+    imported = _imported()
+    assert imported >= {"zarr", "SALib", "numba", "pyvista"}  # those of functions too
+    missing = {
+        name
+        for name in imported - OPTIONAL
+        if not {owner.lower() for owner in owners.get(BROUGHT.get(name, name), ())} & installed
+    }
+    assert not missing
 
 
 def test_the_citation_is_of_this_version():

@@ -349,13 +349,7 @@ def test_lock_holds_every_dependency():
     clone."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     extras = project["optional-dependencies"]
-    asked = (
-        project["dependencies"]
-        + extras["test"]
-        + extras["ensemble"]
-        + extras["studies"]
-        + extras["cluster"]
-    )
+    asked = project["dependencies"] + extras["test"] + extras["cluster"]
     pinned = set(
         re.findall(r"^([A-Za-z0-9_.-]+)==", (ROOT / "requirements.lock").read_text(), re.MULTILINE)
     )

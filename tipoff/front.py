@@ -1,16 +1,16 @@
 """The Python interface: scenes, runs in any model, ensembles, calibration, comparison."""
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tipoff import sources
+from tipoff import scenes, sources
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.scenes import Calibration, Fault, Scene, SceneError, uncertainty
+from tipoff.scenes import Calibration, Fault, Scene, SceneError, reading, uncertainty
 from tipoff.scenes import catalog as catalog
-from tipoff.scenes import load as load
 from tipoff.scenes import parse as parse
 from tipoff.scenes.uncertainty import Uncertainty
 
@@ -19,6 +19,33 @@ if TYPE_CHECKING:
 
     from tipoff.calibration import Curves
     from tipoff.studies.agreement.metrics import Difference
+
+
+def load(name_or_path: str | Path) -> Scene:
+    """Read a scene.
+
+    Args:
+        name_or_path: name in the catalogue, or path of a TOML file.
+
+    Returns:
+        Scene: the scene.
+
+    Raises:
+        SceneError: every fault with file, key, given and expected.
+
+    Warns:
+        UserWarning: a value of a file that extends another, which the conditions that it inherits
+            replace.
+
+    Example:
+        >>> scene = tipoff.load("tiny")
+        >>> scene.payload.mass  # kg
+        9.9
+    """
+    scene = scenes.load(name_or_path)
+    for words in reading.replaced_by_conditions(name_or_path):
+        warnings.warn(words, stacklevel=2)
+    return scene
 
 
 def run(

@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+from docs.pages import key_drawings
 from docs.pages.markdown import table
 from docs.pages.meanings import meanings
 from tipoff.scenes.scene import Scene
@@ -97,7 +98,8 @@ def _section(title: str, schema: dict, of: type[Table]) -> str:
         (f"`{key}`", _value(entry), _default(key, entry, required), said[key])
         for key, entry in schema["properties"].items()
     ]
-    return f"## {title}\n\n" + table(("key", "value", "default", "meaning"), rows)
+    drawn = key_drawings.of(title)
+    return f"## {title}\n\n{drawn}" + table(("key", "value", "default", "meaning"), rows)
 
 
 def _value(entry: dict) -> str:

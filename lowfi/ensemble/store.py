@@ -106,7 +106,9 @@ class Store:
 
     def _create(self, place, attributes: dict) -> None:
         """The group and its arrays, without cases, in a folder or in memory."""
-        root = _zarr().create_group(place, attributes=attributes)
+        import zarr
+
+        root = zarr.create_group(place, attributes=attributes)
         for name in Columns._fields:
             units = {"units": columns.UNITS[name]} if name in columns.UNITS else {}
             arrays.create(root, name, self.asked, CHUNK, units, arrays.kind(name))
@@ -144,8 +146,10 @@ class Store:
     def _describe(self, attributes: dict) -> None:
         """Write every description again that differs from a new store; attributes that fit their
         digest may differ."""
+        import zarr
+
         new: dict = {}
-        self._create(_zarr().storage.MemoryStore(new), attributes)
+        self._create(zarr.storage.MemoryStore(new), attributes)
         for name, content in new.items():
             path = self.path / "cases.zarr" / name
             if not path.is_file() or not _alike(path.read_bytes(), content.to_bytes()):
@@ -155,8 +159,10 @@ class Store:
 
     def _opened(self) -> tuple[dict, list]:
         """Arrays of the results by name, and of the inputs."""
+        import zarr
+
         try:
-            group = _zarr().open_group(self.path / "cases.zarr", mode="r+")
+            group = zarr.open_group(self.path / "cases.zarr", mode="r+")
             return {name: group[name] for name in Columns._fields}, [
                 group[f"inputs/{name}"] for name in self.names
             ]
@@ -217,10 +223,12 @@ class Store:
     def add(self, name: str, attributes: dict, values: Iterable[np.ndarray]) -> None:
         """Keep a further column (n,) beside the results, its ``values`` by chunk; it takes the place
         of the one there, and appears in one piece. Raises StoreError as ``write`` does."""
+        import zarr
+
         with self._explained():
             folder = Path(tempfile.mkdtemp(prefix=f".{name}.", dir=self.path))
             try:
-                group = _zarr().create_group(folder / "group")
+                group = zarr.create_group(folder / "group")
                 column = arrays.create(group, name, self.asked, CHUNK, attributes)
                 for number, part in enumerate(values):
                     column[slice(*self.bounds(number))] = part
@@ -375,11 +383,3 @@ def _plain(row: Mapping[str, Any]) -> dict[str, Any]:
         else repr(value)
         for key, value in row.items()
     }
-
-
-def _zarr():
-    try:
-        import zarr
-    except ImportError:
-        raise StoreError("a store needs zarr: pip install 'tipoff[ensemble]'") from None
-    return zarr

@@ -76,3 +76,32 @@ def test_every_option_of_a_command_is_on_the_page():
         said = CliRunner(env={"COLUMNS": "200"}).invoke(app, [name, "--help"]).output
         options = set(re.findall(r"│ (--[a-z-]+)", said)) - {"--help"}
         assert len(options) > 3 and all(f"`{option}" in sections[name] for option in options)
+
+
+def test_a_table_with_geometry_has_a_drawing_that_names_its_keys():
+    """Each drawing stands in a section and names two of its keys or more, or its only ones.
+    Control: a section without geometry has none."""
+    sections = scene_keys.markdown().split("\n## ")
+    drawn = {}
+    for section in sections:
+        keys = set(re.findall(r"^\| `(\w+)`", section, flags=re.MULTILINE))
+        labels = " ".join(re.findall(r"<text[^>]*>([^<]*)</text>", section))
+        if "<svg" in section:
+            words = set(re.findall(r"\w+", labels))
+            drawn[section.splitlines()[0]] = keys & words
+            assert section.count('role="img"') == section.count("aria-label=") and keys & words
+    assert {heading.split("`")[1] for heading in drawn} == {
+        *(
+            "[payload]",
+            "[[pads]]",
+            "[rail]",
+            "[contact]",
+            "[platform]",
+            "[mass_offset.eccentricity]",
+        ),
+        *(f"[thrust_offset{part}]" for part in ("", ".misalignment", ".eccentricity")),
+    }
+    assert drawn["`[[pads]]`"] >= {"position", "length", "width", "inset"}
+    section = {"leg", "thickness", "mount_width"}
+    assert drawn["`[rail]`, built-in section"] >= {"start", "end", "mounts"} | section
+    assert not any("Sampling" in section and "<svg" in section for section in sections)

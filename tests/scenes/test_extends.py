@@ -1,7 +1,10 @@
 """Scene files that build on others: what is inherited, replaced and dropped."""
 
+import warnings
+
 import pytest
 
+import tipoff
 from tipoff import scenes
 from tipoff.scenes import SceneError, load, reading
 
@@ -103,3 +106,22 @@ def test_values_that_inherited_conditions_replace_are_warned_about(tmp_path):
     assert reading.replaced_by_conditions(path) == []
     path.write_text('extends = "reference"\n[payload]\nmass = "9 kg"\n')
     assert reading.replaced_by_conditions(path) == reading.replaced_by_conditions("tiny") == []
+
+
+def test_python_warns_once_of_values_that_inherited_conditions_replace(tmp_path):
+    """Control: a file that sets what no condition does, and a scene of the catalogue, are quiet."""
+    path = tmp_path / "child.toml"
+    path.write_text('extends = "tiny"\n[thrust_offset.misalignment]\nradial = "9 deg"\n')
+    with pytest.warns(UserWarning) as caught:
+        scene = tipoff.load(path)
+        for name in ("phi15", "phi35"):
+            scene.condition(name)
+    (warned,) = caught
+    assert warned.filename == __file__  # it points at the line of the user
+    (words,) = reading.replaced_by_conditions(path)
+    assert str(warned.message) == words and "phi0, phi15" in words
+    path.write_text('extends = "tiny"\n[payload]\nmass = "9 kg"\n')
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert tipoff.load(path).payload.mass == 9.0
+        assert tipoff.load("tiny").hash == scenes.load("tiny").hash

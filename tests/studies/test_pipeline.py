@@ -250,6 +250,7 @@ def test_page_is_whole_and_self_contained(pipeline):
     figures = {path.name for path in (pipeline[0] / "figures").glob("*.png")}
     assert {
         "mesh.png",
+        "mesh-dark.png",
         "compliance.png",
         "thrust.png",
         "figure6.png",
@@ -309,6 +310,6 @@ def test_a_model_is_chosen_from_what_the_pipeline_measured(pipeline, condition):
     assert ("-compliant" in found["trajectory"]) == (
         found["chosen"]["rung"] in ("along", "compliant", "modal")
     )
-    assert ("errors on h1 from make compare" in found["chosen"]["why"]) == (condition == "h1")
+    assert ("errors on h1 from tipoff compare" in found["chosen"]["why"]) == (condition == "h1")
     assert ("none are measured on nominal" in found["chosen"]["why"]) == (condition == "nominal")
     assert (folder / "calibration.json").read_bytes() == before

@@ -296,21 +296,10 @@ def parse(
 
 
 def load(name_or_path: str | Path) -> Scene:
-    """Read a scene.
+    """Read a scene by its name in the catalogue or from a TOML file. Raises SceneError, every fault
+    with file, key, given and expected.
 
-    Args:
-        name_or_path: name in the catalogue, or path of a TOML file.
-
-    Returns:
-        Scene: the scene.
-
-    Raises:
-        SceneError: every fault with file, key, given and expected.
-
-    Example:
-        >>> scene = tipoff.load("tiny")
-        >>> scene.payload.mass  # kg
-        9.9
+    ``tipoff.load`` also warns of values that inherited conditions replace.
     """
     return parse(*reading.read(name_or_path))
 

@@ -16,7 +16,6 @@ from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.lowfi.ensemble.store import StoreError
 from tipoff.scenes import SceneError, load, uncertainty
 
-pytest.importorskip("zarr")
 distributed = pytest.importorskip("distributed")
 CASES, CHUNK = 240, 20
 

@@ -12,7 +12,6 @@ from tipoff.lowfi.ensemble import store as stores
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.lowfi.ensemble.store import Chunk, Store, StoreError
 
-pytest.importorskip("zarr")
 CASES, CHUNK, IDENTITY = 20, 8, {"scene": "a scene", "cases": {"seed": 1}}
 KEYS = ["payload.mass", "thrust.peak"]
 

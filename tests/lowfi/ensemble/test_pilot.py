@@ -13,7 +13,6 @@ from tipoff.lowfi.ensemble.batch import Family
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.rows import Listed
 
-pytest.importorskip("zarr")
 WALLS = handmade(REFERENCE, {})
 ROWS = [{"thrust_offset.misalignment.radial": 0.01 * number} for number in range(40)]
 

@@ -19,7 +19,6 @@ from tipoff.lowfi.ensemble.rows import Drawn, Listed
 from tipoff.lowfi.ensemble.store import StoreError
 from tipoff.scenes import load, uncertainty
 
-pytest.importorskip("zarr")
 ROOT = Path(__file__).resolve().parents[3]
 CASES, CHUNK = 76, 16
 

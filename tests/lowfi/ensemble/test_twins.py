@@ -139,7 +139,6 @@ def test_a_store_is_taken_up_where_its_twins_stopped(tmp_path, monkeypatch):
     """A disk that is full in the second chunk of the first twin: the columns appear when they are
     whole, no chunk is run twice, and the bits are those without a store."""
     xarray = pytest.importorskip("xarray")
-    pytest.importorskip("zarr")
     monkeypatch.setattr(stores, "CHUNK", 4)
     rows, real, written = varied(10), stores.write_json, []
 

@@ -116,9 +116,9 @@ def test_what_holds_on_one_condition_is_not_promised_of_another():
     """Control: without the agreement study the errors of phi15 are taken, and that is said."""
     found = choose(COST, "phi60", agreement(13.0, 9.0), 0.03)
     assert found["trusted_deg_s"] == 0.02 and found["why"].endswith(
-        "errors on phi60 from make compare"
+        "errors on phi60 from tipoff compare"
     )
-    with pytest.raises(StudyError, match="(?s)no model fits.*errors on h8 from make compare"):
+    with pytest.raises(StudyError, match="(?s)no model fits.*errors on h8 from tipoff compare"):
         choose(COST, "h8", agreement(13.0, 9.0), 0.03)
     # a model without an error there never counts
     nearest = choose(COST, "h8", agreement(13.0, 9.0), budget=0.01)

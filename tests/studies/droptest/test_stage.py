@@ -23,7 +23,6 @@ from tipoff.studies.droptest.sheet import SAMPLES
 from tipoff.studies.populations import answers
 from tipoff.studies.render import chart, document
 
-pytest.importorskip("zarr")
 xarray = pytest.importorskip("xarray")
 
 

@@ -13,8 +13,6 @@ from tipoff.studies.cli import app
 from tipoff.studies.ensemble import page, sensitivity, stage
 from tipoff.studies.render import table as tables
 
-pytest.importorskip("zarr")
-
 
 def call(*arguments, model="springs"):
     return CliRunner().invoke(

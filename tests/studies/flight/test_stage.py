@@ -21,7 +21,6 @@ from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render import chart
 from tipoff.studies.render.table import Noted
 
-pytest.importorskip("zarr")
 xarray = pytest.importorskip("xarray")
 
 

@@ -21,8 +21,6 @@ from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.populations.stratified import Runs
 from tipoff.studies.render.document import terminal
 
-pytest.importorskip("zarr")
-
 LIMIT = Limit("total", 6.0)
 TILT = math.radians(0.35)  # three sigma
 OPTIONS = Options(("6 deg/s",), probability=0.7, cases=200, certify=20)

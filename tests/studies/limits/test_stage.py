@@ -28,7 +28,6 @@ from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render import document
 from tipoff.studies.render import table as tables
 
-pytest.importorskip("zarr")
 LIMIT, PROBABILITY = 6.0, 0.9
 QUICK = Options(limits=("6 deg/s",), probability=PROBABILITY, cases=120)
 FITTED = Calibration({}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0)
@@ -360,7 +359,7 @@ def test_the_model_error_is_the_largest_of_the_held_out_conditions(tmp_path, mon
     study = Study(load("reference"), tmp_path, Settings())
     assert (
         constants.margin(study, "springs").deg_s is None
-        and "make compare" in constants.margin(study, "springs").source
+        and "tipoff compare" in constants.margin(study, "springs").source
     )
     rows = [
         {

@@ -24,8 +24,6 @@ from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render import table as tables
 from tipoff.studies.render.document import terminal
 
-pytest.importorskip("zarr")
-
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):

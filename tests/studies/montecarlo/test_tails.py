@@ -24,8 +24,6 @@ from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.populations.random_factors import Reading
 from tipoff.studies.render.document import terminal
 
-pytest.importorskip("zarr")
-
 DRAWS = 10
 OPTIONS = tails.Options(DRAWS, None, Cases(cases=120, limits=("y=6 deg/s", "8 deg/s")))
 # of this solver's and that one's steps, deg/s of some ten

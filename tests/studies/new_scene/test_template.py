@@ -1,10 +1,12 @@
 """A scene from a few numbers holds them, is plausible, and its payload leaves the rail and settles."""
 
 import math
+import tomllib
 
 import pytest
 from typer.testing import CliRunner
 
+import tipoff
 from tipoff import lowfi, scenes
 from tipoff.mechanics import unfinished
 from tipoff.scenes import SceneError, plausibility
@@ -17,7 +19,11 @@ LAUNCHERS = {
     "slow": Numbers(mass=12.0, thrust=1500.0),
     "small": Numbers(0.8, (0.10, 0.05, 0.06), 0.10, 0.1e-3, 300.0, 0.010),
     "large": Numbers(150.0, (1.2, 0.6, 0.5), 1.0, 0.5e-3, 40_000.0, 0.1),
+    "three stations": Numbers(pads=12),
 }
+
+
+CURVE = "time_s,force_N\n0,0\n0.008,1200\n0.012,5900\n0.012,3100\n0.024,0\n"
 
 
 def call(*arguments):
@@ -26,8 +32,8 @@ def call(*arguments):
 
 @pytest.fixture(params=LAUNCHERS)
 def launcher(request, tmp_path):
-    path = tmp_path / f"{request.param}.toml"
-    path.write_text(template.text(request.param, LAUNCHERS[request.param]))
+    path = tmp_path / f"{request.param.split()[0]}.toml"
+    path.write_text(template.text("new", LAUNCHERS[request.param]))
     return LAUNCHERS[request.param], scenes.load(path)
 
 
@@ -43,8 +49,8 @@ def test_it_holds_the_numbers_and_is_plausible(launcher):
 
 @pytest.mark.parametrize("name", LAUNCHERS)
 def test_it_runs_to_settled_rates_within_its_duration(name, tmp_path):
-    path = tmp_path / f"{name}.toml"
-    path.write_text(template.text(name, LAUNCHERS[name]))
+    path = tmp_path / "new.toml"
+    path.write_text(template.text("new", LAUNCHERS[name]))
     run = lowfi.run(scenes.load(path), "springs")
     assert run.status == "exited", unfinished.advice(scenes.load(path), run)
 
@@ -57,6 +63,107 @@ def test_the_duration_is_that_of_the_pulse_alone():
     coasting = numbers.rail_length / (impulse / numbers.mass)  # after the middle of the pulse
     expected = 1.25 * (coasting + 0.012 + 0.003)
     assert template.duration(numbers) == pytest.approx(expected, rel=1e-5)
+
+
+def test_the_duration_is_that_of_the_curve_alone(tmp_path):
+    """A constant push of 20 ms, then a pull back of 10 ms, then the exit by coasting: in three
+    pieces with a closed form. Control: the duration of the default pulse is another one."""
+    path = tmp_path / "firing.csv"
+    path.write_text("time_s,force_N\n0,100\n0.02,100\n0.02,-50\n0.03,-50\n")
+    numbers = Numbers(mass=10.0, rail_length=0.05, thrust_curve=path)
+    speed = 100.0 * 0.02 / 10.0
+    way = 0.5 * speed * 0.02 + speed * 0.01 - 0.5 * 5.0 * 0.01**2
+    exits = 0.03 + (0.05 - way) / (speed - 5.0 * 0.01)
+    assert template.duration(numbers) == pytest.approx(1.25 * (exits + 0.003), rel=1e-6)
+    assert template.duration(numbers._replace(thrust_curve=None)) < 0.5 * exits
+    # on a rail this short it leaves before it is pulled back, at t = sqrt(2 m s / F)
+    short = 1.25 * (0.03 + 0.002)  # the thrust ends later than the exit
+    assert template.duration(numbers._replace(rail_length=1e-3)) == pytest.approx(short, rel=1e-6)
+
+
+def test_a_scene_refers_to_the_curve_of_its_thrust(tmp_path, monkeypatch):
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / 'my "firing".csv').write_text(CURVE)
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "scenes" / "measured.toml"
+    file.parent.mkdir()
+    found = call("new", file, "--thrust-curve", 'data/my "firing".csv')
+    assert found.exit_code == 0, found.stderr
+    monkeypatch.chdir("/")
+    scene = scenes.load(file)
+    assert scene.thrust.requested() == pytest.approx(0.5 * (1.2 * 8 + 7.1 * 4 + 3.1 * 12))
+    assert tomllib.loads(file.read_text())["thrust"]["file"] == '../data/my "firing".csv'
+    assert plausibility.of_all_conditions(scene) == []
+    run = lowfi.run(scene, "springs")
+    assert run.status == "exited", unfinished.advice(scene, run)
+
+
+@pytest.mark.parametrize(
+    "curve, others, words",
+    [
+        ("time_s,force_N\n0,0\n1,x\n0.5,1 N\n", [], ["force_N: 'x' in line 3", "'1 N' in line 4"]),
+        ("t,F\n0,0\n", [], ["a CSV whose header is time_s,force_N"]),
+        ("time_s,force_N\n0,0\n1,-5\n", [], ["an impulse above zero", "-2.5 N s"]),
+        (
+            None,
+            ["--mass", "9 m", "--pads", "6"],
+            ["3 faults", "No such file", "--mass", "multiple of 4"],
+        ),
+        (CURVE, ["--thrust", "4 kN", "--burn-time", "9 ms"], ["2 faults", "none beside"]),
+    ],
+)
+def test_faults_of_a_curve_are_listed_before_anything_is_written(
+    curve, others, words, tmp_path, monkeypatch
+):
+    monkeypatch.setenv("COLUMNS", "200")
+    monkeypatch.chdir(tmp_path)
+    if curve is not None:
+        (tmp_path / "firing.csv").write_text(curve)
+    found = call("new", "mine.toml", "--thrust-curve", "firing.csv", *others)
+    assert found.exit_code == 2 and not (tmp_path / "mine.toml").exists()
+    assert all(word in found.stderr for word in words), found.stderr
+
+
+def _scene(numbers, tmp_path):
+    path = tmp_path / "pads.toml"
+    path.write_text(template.text("pads", numbers))
+    return scenes.load(path)
+
+
+def test_pads_stand_at_their_stations(tmp_path):
+    places = {
+        count: sorted({pad.position[0] for pad in _scene(Numbers(pads=count), tmp_path).pads})
+        for count in (4, 8, 12)
+    }
+    assert places == {4: [0.0], 8: [-0.08, 0.08], 12: [-0.08, 0.0, 0.08]}
+    assert [len(_scene(Numbers(pads=count), tmp_path).pads) for count in (4, 8, 12)] == [4, 8, 12]
+
+
+def test_four_long_pads_reach_as_far_as_eight_and_hold_the_payload(tmp_path):
+    """The payload turns by less than the clearance allows a body between the ends of its pads.
+    Control: pads as short as those of two stations let it turn by more."""
+    four, eight = (_scene(Numbers(pads=count), tmp_path) for count in (4, 8))
+    assert unfinished.way_to_exit(four) == pytest.approx(unfinished.way_to_exit(eight), rel=1e-9)
+    assert plausibility.of_all_conditions(four) == []
+    held = 2.0 * four.contact.clearance / four.pads[0].length
+    tilted = four.replace({"thrust_offset.misalignment.axial": "2 deg"})
+    short = tilted.replace({f"pads.{pad}.length": 0.016 for pad in range(4)})
+
+    def turned(scene):
+        run = tipoff.run(scene, compliance=tipoff.compliance(scene, 16e-3), modes=0)
+        on_rail = run.position[:, 0] < 0.04  # whole pads
+        return abs(2.0 * run.quaternion[on_rail, 1:]).max()
+
+    assert turned(tilted) < 1.1 * held < turned(short)
+
+
+@pytest.mark.parametrize("pads, words", [(0, "4, 8, 12"), (6, "4, 8, 12"), (48, "at most 44")])
+def test_pads_that_the_rails_cannot_hold_are_refused(pads, words, tmp_path):
+    template.text("bad", Numbers(pads=44))
+    with pytest.raises(SceneError, match=f"--pads.*{words}"):
+        template.text("bad", Numbers(pads=pads))
+    found = call("new", tmp_path / "mine.toml", "--pads", pads)
+    assert found.exit_code == 2 and words in found.stderr
 
 
 def test_every_number_that_makes_no_launcher_is_refused():

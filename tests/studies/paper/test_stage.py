@@ -179,11 +179,11 @@ def test_headline_has_our_cost_of_the_present_code_only(quick, monkeypatch):
     write_json(study.path("agreement.json"), {"key": "of other code", "speedup": speed})
     stale = paper.stored(study)
     for text in (page(stale), shown(stale)):
-        assert "make compare SCENE=reference" in text and "30,000" not in text
+        assert "tipoff compare --scene reference" in text and "30,000" not in text
     monkeypatch.setattr(compare, "stored", lambda _: {"speedup": speed})
     fresh = paper.stored(study)
     for text in (page(fresh), shown(fresh)):
-        assert "make compare" not in text and "30,000" in text
+        assert "tipoff compare" not in text and "30,000" in text
     monkeypatch.setattr(solutions, "run", lambda *_: pytest.fail("searched again"))
     assert paper.run(study, SMALL) == fresh
 

@@ -31,7 +31,6 @@ from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render import chart
 from tipoff.studies.render.document import terminal
 
-pytest.importorskip("zarr")
 WALLS = handmade(REFERENCE, {})
 HELD = 5  # modes of each rail
 VIBRATING = replace(

@@ -14,7 +14,6 @@ from tipoff.studies.core.study import Study
 from tipoff.studies.populations import answers, population, random_factors, spread
 from tipoff.studies.populations.random_factors import ERRORS, READINGS, Reading
 
-pytest.importorskip("zarr")
 SCENE, COUNT = load("reference"), 20_000
 
 

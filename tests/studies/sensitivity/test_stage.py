@@ -21,7 +21,6 @@ from tipoff.studies.render import table as tables
 from tipoff.studies.sensitivity import page as section
 from tipoff.studies.sensitivity import stage as sensitivity
 
-pytest.importorskip("zarr")
 TOLERANCES = """
 [vary."thrust_offset.misalignment.y"]
 distribution = "normal"
@@ -230,10 +229,3 @@ def test_bad_input_is_listed_whole_and_nothing_written(tiny, tmp_path):
         ).exit_code
         == 2
     )
-
-
-def test_a_missing_library_is_named_before_any_case_runs(tmp_path, monkeypatch):
-    monkeypatch.setattr(sensitivity.importlib.util, "find_spec", lambda name: None)
-    monkeypatch.setattr(population, "surrogate", lambda *_: pytest.fail("computed"))
-    found = CliRunner().invoke(app, ["sensitivity", "--scene", "tiny", "--out", str(tmp_path)])
-    assert found.exit_code == 1 and "pip install 'tipoff[studies]'" in found.stderr

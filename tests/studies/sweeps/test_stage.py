@@ -21,7 +21,6 @@ from tipoff.studies.sweeps import burnout, factors, sides
 from tipoff.studies.sweeps import page as sections
 from tipoff.studies.sweeps import stage as sweeps
 
-pytest.importorskip("zarr")
 # Of the reference scene, whose pulse begins three widths before its peak.
 IMPULSE, ARM = (
     6000.0 * 4e-3 * np.sqrt(2.0 * np.pi) * 0.5 * (1.0 + math.erf(3.0 / math.sqrt(2.0))),

@@ -51,7 +51,7 @@ def touching():
 
 def test_without_pyvista_there_are_files_and_a_way_to_pictures(viewed):
     study, found = viewed
-    assert found["pictures"] == {} and "make pictures" in found["without_pictures"]
+    assert found["pictures"] == {} and "pip install pyvista" in found["without_pictures"]
     assert len(found["frames"]) == 7 and len(found["files"]) == 2 * 7 + 1
     assert view.run(study, "phi15", 7) == found  # nothing changed, nothing made
     assert view.stored(study) == [found]
@@ -224,7 +224,11 @@ def test_page_shows_peaks_and_says_what_would_show_more(viewed):
     assert "tipoff view --scene tiny --out" in shown and "notice" not in shown
     page.documents["view"] = [found]
     shown = html(section.draw(page))
-    assert "tipoff view" not in shown and "make pictures" in shown and found["collection"] in shown
+    assert (
+        "tipoff view" not in shown
+        and "pip install pyvista" in shown
+        and found["collection"] in shown
+    )
     without = Page(study.scene, study.folder, {}, Runs({}, {}, {}), {})
     assert "tipoff highfi --scene tiny --out" in html(section.draw(without))
 
@@ -246,14 +250,15 @@ def test_pictures_are_drawn_and_embedded(viewed, monkeypatch):
     drawn, why = view.draw_pictures(
         found | {"frames": found["frames"][:4], "peak": found["peak"] | {"frame": 3}}, folder
     )
-    assert (drawn, why) == (["peak.png", "ejection.webp"], "")
-    with Image.open(folder / "peak.png") as still, Image.open(folder / "ejection.webp") as moving:
-        assert still.width > 1000 and len(still.convert("RGB").getcolors(1 << 24)) > 100
-        assert moving.n_frames >= 2
-    assert (folder / "ejection.webp").stat().st_size < 3_000_000
-    pictures = {
-        "peak": f"{found['folder']}/peak.png",
-        "ejection": f"{found['folder']}/ejection.webp",
-    }
+    names = ["peak.png", "ejection.webp", "peak-dark.png", "ejection-dark.webp"]
+    assert (drawn, why) == (names, "")
+    for still, moving, paper in ([*names[:2], (255, 255, 255)], [*names[2:], (19, 24, 30)]):
+        with Image.open(folder / still) as picture, Image.open(folder / moving) as film:
+            colours = picture.convert("RGB").getcolors(1 << 24)
+            assert picture.width > 1000 and len(colours) > 100 and max(colours)[1] == paper
+            assert film.n_frames >= 2
+        assert (folder / moving).stat().st_size < 1_500_000
+    pictures = {name.partition(".")[0]: f"{found['folder']}/{name}" for name in names}
     shown = html(section.shown([known()], [found | {"pictures": pictures}], study.folder, "tiny"))
-    assert shown.count("data:image/") == 2 and "times their deformation" in shown
+    assert shown.count("data:image/") == 4 and shown.count("<picture>") == 2
+    assert "times their deformation" in shown

@@ -32,8 +32,8 @@ def parts(found: list[dict]) -> list[Part]:
     """Agreement and constants of the scenes ``found``."""
     note = (
         "The springs are calibrated for each scene. Judged are conditions with contact, as curves or "
-        "as distributions; errors are those of the curves. `make rails` makes the results of the thin "
-        "and titanium rails of the catalogue at 4 mm."
+        "as distributions; errors are those of the curves. `tipoff compare --scene "
+        "thin --element-size 4` makes those of the thin rail of the catalogue."
     )
     rows = [
         (

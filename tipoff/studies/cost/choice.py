@@ -123,7 +123,7 @@ def _measured(cost: dict, condition: str, there: dict[str, float]) -> str:
     if condition == cost["condition"]:
         return ""
     return (
-        f"; errors on {condition} from make compare"
+        f"; errors on {condition} from tipoff compare"
         if there
         else f"; the errors are those of {cost['condition']}, none are measured on {condition}"
     )

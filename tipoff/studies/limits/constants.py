@@ -82,7 +82,7 @@ def margin(study: Study, model: str) -> Margin:
         for row in (read(study.path("calibration.json")) or {}).get("residuals", {}).values()
     ]
     if model == COMPLIANT or not left or None in left:
-        return Margin(None, "not measured (make compare measures it)")
+        return Margin(None, "not measured (tipoff compare measures it)")
     worst = max(left)
     return Margin(
         {"x": worst, "y": worst, "z": worst, "total": 3**0.5 * worst},

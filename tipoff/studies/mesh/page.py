@@ -15,7 +15,11 @@ def draw(page: "Page") -> list[Part]:
     if not found:
         return [page.missing("mesh", "mesh")]
     return [
-        Image(page.folder / found["picture"], "mesh of the rails"),
+        Image(
+            page.folder / found["picture"],
+            "mesh of the rails",
+            page.folder / found["dark_picture"],
+        ),
         Caption(
             f"{found['elements']:,} {found['kind']}, {found['nodes']:,} nodes, elements of about "
             f"{1e3 * found['element_size_m']:g} mm. Edges: {1e3 * found['shortest_edge_m']:.3g} to "

@@ -1,18 +1,23 @@
-"""A drawing of the rail mesh: all rails, and a cross-section of one; named surfaces are coloured."""
+"""A drawing of the rail mesh: all rails, and a cross-section of one; named surfaces are coloured.
+
+It has no background. Text, axes and surfaces have the colours of a light or of a dark page.
+"""
 
 from pathlib import Path
 
 import numpy as np
 
 from tipoff.files import replacing
-from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
+from tipoff.studies.render.palette import AMBER, DARK, GREY, INK, NAVY, TEAL, VERMILION
 
 _WALLS = (VERMILION, AMBER, NAVY)  # taken in turn by surfaces that pads touch
+_METAL = "#c6cbd1"
 _LIGHT = np.array([0.35, 0.5, 0.8])
 
 
-def draw(mesh, path: Path) -> None:
-    """Write a PNG of ``mesh`` (a ``highfi.mesh.rail_mesh.RailMesh``)."""
+def draw(mesh, path: Path, dark: bool = False) -> None:
+    """Write a PNG of ``mesh`` (a ``highfi.mesh.rail_mesh.RailMesh``) for a light or a ``dark``
+    page."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
@@ -20,18 +25,23 @@ def draw(mesh, path: Path) -> None:
     figure = Figure(figsize=(9.6, 4.2), dpi=140, layout="constrained")
     FigureCanvasAgg(figure)
     left, right = figure.subplots(1, 2, width_ratios=[1.9, 1.0])
-    colours = _colours(mesh)
-    _oblique(left, mesh, colours)
-    _section(right, mesh, colours)
+    ink = DARK[INK] if dark else INK
+    colours = {name: DARK[colour] if dark else colour for name, colour in _colours(mesh).items()}
+    _oblique(left, mesh, colours, ink)
+    _section(right, mesh, colours, ink)
     figure.legend(
-        [Patch(color=GREY, alpha=0.6), *(Patch(color=colour) for colour in colours.values())],
+        [
+            Patch(facecolor=_METAL, edgecolor=GREY),
+            *(Patch(color=colour) for colour in colours.values()),
+        ],
         ["rail", *(name.replace("_", " ") for name in colours)],
         loc="outside lower center",
         ncols=4,
         frameon=False,
+        labelcolor=ink,
     )
     with replacing(path) as temporary:
-        figure.savefig(temporary, format="png")
+        figure.savefig(temporary, format="png", transparent=True)
 
 
 def _colours(mesh) -> dict[str, str]:
@@ -55,7 +65,7 @@ def _boundary(mesh) -> tuple[np.ndarray, list[str]]:
     return facets, [names.get(tuple(sorted(facet)), "rail") for facet in facets.tolist()]
 
 
-def _oblique(axes, mesh, colours: dict[str, str]) -> None:
+def _oblique(axes, mesh, colours: dict[str, str], ink: str) -> None:
     """Draw the facets that face the viewer, from back to front."""
     from matplotlib.collections import PolyCollection
     from matplotlib.colors import to_rgb
@@ -70,7 +80,7 @@ def _oblique(axes, mesh, colours: dict[str, str]) -> None:
     front = np.flatnonzero(normal[:, 2] > 1e-9)
     order = front[np.argsort(corners[front, :, 2].mean(axis=1))]
     shade = 0.62 + 0.38 * np.abs(normal @ (_LIGHT / np.linalg.norm(_LIGHT)))
-    base = np.array([to_rgb(colours.get(name, "#c6cbd1")) for name in names])
+    base = np.array([to_rgb(colours.get(name, _METAL)) for name in names])
     axes.add_collection(
         PolyCollection(
             1e3 * corners[order][:, :, :2],
@@ -82,10 +92,10 @@ def _oblique(axes, mesh, colours: dict[str, str]) -> None:
     axes.autoscale()
     axes.set_aspect("equal")
     axes.set_axis_off()
-    axes.set_title(f"all rails, {len(mesh.cells):,} elements", fontsize=10.5)
+    axes.set_title(f"all rails, {len(mesh.cells):,} elements", fontsize=10.5, color=ink)
 
 
-def _section(axes, mesh, colours: dict[str, str]) -> None:
+def _section(axes, mesh, colours: dict[str, str], ink: str) -> None:
     """Draw the middle layer of the rail at +y +z (of all rails without one there), seen along X, with
     thick lines for the named surfaces."""
     from matplotlib.collections import LineCollection, PolyCollection
@@ -112,11 +122,12 @@ def _section(axes, mesh, colours: dict[str, str]) -> None:
     axes.autoscale()
     axes.margins(0.08)
     axes.set_aspect("equal")
-    axes.set_xlabel("y (mm)", fontsize=9)
-    axes.set_ylabel("z (mm)", fontsize=9)
-    axes.tick_params(labelsize=8)
+    axes.set_xlabel("y (mm)", fontsize=9, color=ink)
+    axes.set_ylabel("z (mm)", fontsize=9, color=ink)
+    axes.tick_params(labelsize=8, colors=ink)
     axes.spines[["top", "right"]].set_visible(False)
-    axes.set_title("section of one rail", fontsize=10.5, color=NAVY)
+    axes.spines[["bottom", "left"]].set_color(ink)
+    axes.set_title("section of one rail", fontsize=10.5, color=ink)
 
 
 def _cut(mesh, among, x: float) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Stage ``mesh``: the mesh of the rails for the reference, its size and quality, and a picture."""
+"""Stage ``mesh``: the mesh of the rails for the reference, its size and quality, and pictures."""
 
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from tipoff.studies.core.study import Study
 
 
 def run(study: Study) -> dict:
-    """Elements, nodes, areas of named surfaces, quality; writes ``mesh.vtu`` and a picture."""
+    """Elements, nodes, areas of named surfaces, quality; writes ``mesh.vtu`` and pictures."""
     name = next(iter(study.conditions))
     request = study.highfi(name)
 
@@ -24,9 +24,11 @@ def run(study: Study) -> dict:
             say(f"mesh: {warning}")
         from tipoff.studies.mesh.picture import draw
 
-        path, picture = study.path("mesh.vtu"), study.path("figures") / "mesh.png"
+        path, folder = study.path("mesh.vtu"), study.path("figures")
+        pictures = [folder / "mesh.png", folder / "mesh-dark.png"]
         _save(mesh, path)
-        draw(mesh, picture)
+        for picture, dark in zip(pictures, (False, True)):
+            draw(mesh, picture, dark)
         lengths = checks.edge_lengths(mesh.points, mesh.cells)
         _, scaled = checks.jacobians(mesh.points, mesh.cells)
         surfaces = {
@@ -48,8 +50,9 @@ def run(study: Study) -> dict:
             "warnings": list(mesh.warnings),
             "surfaces": surfaces,
             "mesh": study.relative(path),
-            "picture": study.relative(picture),
-        }, [path, picture]
+            "picture": study.relative(pictures[0]),
+            "dark_picture": study.relative(pictures[1]),
+        }, [path, *pictures]
 
     return study.stage("mesh", study.key(__name__, request.key), make)
 

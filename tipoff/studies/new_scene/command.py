@@ -29,8 +29,13 @@ def add(app: typer.Typer) -> None:
 
 def _option(name: str) -> typer.models.OptionInfo:
     _, question, default = _ASKED[name]
-    option = f"--{name.replace('_', '-')}"
-    return typer.Option(option, metavar="QUANTITY", help=f"{question}; default: {default}.")
+    return typer.Option(
+        _option_name(name), metavar="QUANTITY", help=f"{question}; default: {default}."
+    )
+
+
+def _option_name(name: str) -> str:
+    return f"--{name.replace('_', '-')}"
 
 
 def new(
@@ -41,6 +46,22 @@ def new(
     clearance: Annotated[str | None, _option("clearance")] = None,
     thrust: Annotated[str | None, _option("thrust")] = None,
     burn_time: Annotated[str | None, _option("burn_time")] = None,
+    thrust_curve: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE.csv",
+            help="Your thrust in place of --thrust and --burn-time: a table with the header "
+            "time_s,force_N. The scene refers to the file.",
+        ),
+    ] = None,
+    pads: Annotated[
+        int | None,
+        typer.Option(
+            metavar="4|8|12...",
+            help="Pads on all four rails: 4 is a long one on each rail, 8 is two on each, and so "
+            "on; default: 8.",
+        ),
+    ] = None,
     json_: Json = False,
 ) -> None:
     """Write a commented scene of your own launcher from a few numbers; it runs as it is.
@@ -49,9 +70,11 @@ def new(
     listed so under [provenance] in the file.
 
       tipoff new my_launcher.toml --mass "12 kg" --thrust "4 kN"
+      tipoff new cubesat.toml --mass "4 kg" --size "340 mm, 100 mm, 100 mm" --pads 4
+      tipoff new measured.toml --thrust-curve firing.csv
       tipoff run --scene my_launcher.toml
     """
-    given = {
+    given: dict[str, str | None] = {
         "mass": mass,
         "size": size,
         "rail_length": rail_length,
@@ -59,7 +82,8 @@ def new(
         "thrust": thrust,
         "burn_time": burn_time,
     }
-    if all(value is None for value in given.values()) and sys.stdin.isatty():
+    nothing = all(value is None for value in (*given.values(), thrust_curve, pads))
+    if nothing and sys.stdin.isatty():
         given = {
             name: typer.prompt(question, default=default)
             for name, (_, question, default) in _ASKED.items()
@@ -67,19 +91,30 @@ def new(
 
     def work() -> dict:
         from tipoff.files import write_text
-        from tipoff.scenes import parse, reading
         from tipoff.studies.core.checked import together
         from tipoff.studies.new_scene import template
 
         _, text = together(
             lambda: _require_new(file),
-            lambda: template.text(file.stem, _numbers(given)),
+            lambda: template.text(file.stem, _numbers(given, thrust_curve, pads), file.parent),
         )
+        _require_scene(text, file)
         write_text(file, text)
-        parse(*reading.read(file))
         return {"scene": file.stem, "file": str(file), "text": text}
 
     guarded(work, json_, _next)
+
+
+def _require_scene(text: str, file: Path) -> None:
+    """Raise SceneError unless ``text`` would be a sound scene as the content of ``file``."""
+    import tomllib
+
+    from tipoff.scenes import parse
+
+    raw = tomllib.loads(text)
+    if "file" in raw["thrust"]:
+        raw["thrust"]["file"] = str(file.parent / raw["thrust"]["file"])
+    parse(raw, str(file))
 
 
 def _require_new(file: Path) -> None:
@@ -110,7 +145,7 @@ def _next(found: dict) -> list[str]:
     ]
 
 
-def _numbers(given: dict):
+def _numbers(given: dict[str, str | None], thrust_curve: Path | None, pads: int | None):
     """The numbers of the new scene in SI. Raises SceneError, every fault listed."""
     from tipoff.scenes.faults import Fault, SceneError
     from tipoff.studies.core.checked import together
@@ -118,7 +153,7 @@ def _numbers(given: dict):
 
     def read(name: str):
         unit, _, default = _ASKED[name]
-        text, option = given[name] or default, f"--{name.replace('_', '-')}"
+        text, option = given[name] or default, _option_name(name)
         if name != "size":
             return quantity(option, text, unit, default)
         example = default.split(",")[0]
@@ -128,8 +163,39 @@ def _numbers(given: dict):
             raise SceneError([Fault(option, "value", text, expected)])
         return tuple(sides)
 
-    found = together(*((lambda name=name: read(name)) for name in _ASKED))
-    return Numbers(*found)
+    *found, _, _ = together(
+        *((lambda name=name: read(name)) for name in _ASKED),
+        lambda: _require_curve(thrust_curve, given),
+        lambda: _require_pads(pads),
+    )
+    numbers = Numbers(*found)._replace(thrust_curve=thrust_curve)
+    return numbers if pads is None else numbers._replace(pads=pads)
+
+
+def _require_curve(file: Path | None, given: dict[str, str | None]) -> None:
+    """Raise SceneError for a curve of the thrust that is no such curve, or that stands beside what
+    it replaces."""
+    from tipoff.scenes.faults import Fault, SceneError
+    from tipoff.studies.new_scene import template
+
+    if file is None:
+        return
+    faults = [
+        Fault(_option_name(name), "value", given[name] or "", "none beside --thrust-curve")
+        for name in ("thrust", "burn_time")
+        if given[name] is not None
+    ]
+    if faults := faults + template.curve_faults(file):
+        raise SceneError(faults)
+
+
+def _require_pads(pads: int | None) -> None:
+    """Raise SceneError for a number of pads that the rails do not hold."""
+    from tipoff.scenes.faults import SceneError
+    from tipoff.studies.new_scene import template
+
+    if pads is not None and (faults := template.pads_faults(pads)):
+        raise SceneError(faults)
 
 
 def schema() -> None:

@@ -1,27 +1,33 @@
 """A commented scene file of a launcher from a few numbers.
 
-The payload is a box of uniform density in four L rails, pushed by one pulse of thrust that is tilted
-by 0.1 deg. What is not given has the proportions of the scene ``reference``; its provenance is
-"assumed".
+The payload is a box of uniform density in four L rails, pushed by one pulse of thrust, or by a
+measured one, that is tilted by 0.1 deg. What is not given has the proportions of the scene
+``reference``; its provenance is "assumed".
 """
 
 import math
+import os
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import tomlkit
 
 from tipoff.mechanics.outcome import SETTLE_DELAY, SETTLE_WINDOW
 from tipoff.scenes.effects import thrust_law
+from tipoff.scenes.effects.measured import read_curve
 from tipoff.scenes.effects.thrust import GaussianTable
 from tipoff.scenes.faults import Fault, SceneError
 
 _WIDTH = 0.2  # m, of the payload of the scene ``reference``, whose sections are scaled
 _MARGIN = 1.25  # of the duration: friction delays the exit
+_RAILS = 4  # one along each edge of the payload, with one pad at each station
 
 
 class Numbers(NamedTuple):
     """Mass (kg) and outer sizes (m) of the payload, travel along the rail (m), clearance (m), peak
-    of the thrust (N), time in which it rises and falls (s)."""
+    of the thrust (N), time in which it rises and falls (s); a CSV file with the curve of the thrust
+    in place of both; number of pads."""
 
     mass: float = 9.9
     size: tuple[float, float, float] = (0.35, 0.20, 0.20)
@@ -29,6 +35,8 @@ class Numbers(NamedTuple):
     clearance: float = 0.25e-3
     thrust: float = 6000.0
     burn_time: float = 0.024
+    thrust_curve: Path | None = None
+    pads: int = 8
 
     def faults(self) -> list[Fault]:
         """Numbers that make no launcher."""
@@ -49,12 +57,59 @@ class Numbers(NamedTuple):
             given = f"{1e3 * self.clearance:g} mm"
             most = f"at most {50.0 * min(self.size[1:]):g} mm, a twentieth of the payload's width"
             found.append(Fault("--clearance", "value", given, most))
-        return found
+        return found + _of_pads(self) + curve_faults(self.thrust_curve)
+
+    @property
+    def pad(self) -> float:
+        """Width of a pad (m), and its length where there are several on a rail."""
+        return 0.016 * min(self.size[1:]) / _WIDTH
+
+    @property
+    def station(self) -> float:
+        """Distance (m) of the middle of the outermost pads from the mass centre, along the rail."""
+        return self.size[0] * 0.08 / 0.35
 
 
-def duration(numbers: Numbers) -> float:
-    """Duration (s) in which the rates settle: the exit of a payload that the thrust alone moves, and
-    the settled window after it (``mechanics.outcome``), with a margin."""
+def pads_faults(count: int) -> list[Fault]:
+    """A number of pads that four rails do not hold alike."""
+    if count >= _RAILS and count % _RAILS == 0:
+        return []
+    expected = "4, 8, 12 or another multiple of 4: each of the four rails holds as many pads"
+    return [Fault("--pads", "value", str(count), expected)]
+
+
+def _of_pads(numbers: Numbers) -> list[Fault]:
+    """A number of pads that the rails do not hold, or that do not fit side by side."""
+    if (faults := pads_faults(numbers.pads)) or min(numbers.size) <= 0.0:
+        return faults
+    most = _RAILS * max(1, int(2.0 * numbers.station / numbers.pad) + 1)
+    if numbers.pads <= most:
+        return []
+    expected = f"at most {most}: more pads overlap on a payload of this length"
+    return [Fault("--pads", "value", str(numbers.pads), expected)]
+
+
+def curve_faults(file: Path | None) -> list[Fault]:
+    """A curve of the thrust that cannot be read, or that does not push; none without a file."""
+    if file is None:
+        return []
+    try:
+        curve = read_curve(file)
+    except ValueError as fault:
+        return [Fault("--thrust-curve", "file", str(file), str(fault))]
+    if (impulse := float(np.trapezoid(curve.force, curve.time))) <= 0.0:
+        expected = f"a curve with an impulse above zero (this one has {impulse:.4g} N s)"
+        return [Fault("--thrust-curve", "file", str(file), expected)]
+    return []
+
+
+def _law(numbers: Numbers) -> tuple[thrust_law.Thrust, np.ndarray]:
+    """The thrust, and times (s) from ignition until it is over that contain its corners."""
+    if numbers.thrust_curve is not None:
+        times, forces = read_curve(numbers.thrust_curve)
+        both_sides = np.append(times, np.nextafter(times, -np.inf))  # of a jump
+        grid = np.append(np.linspace(0.0, times[-1], 4001), both_sides[both_sides >= 0.0])
+        return thrust_law.Thrust(None, thrust_law.Curve(times, forces)), np.unique(grid)
     law = GaussianTable.model_validate(
         {
             "kind": "gaussian",
@@ -64,13 +119,22 @@ def duration(numbers: Numbers) -> float:
         },
         context={"bare_numbers_are_si": True},
     ).record()
-    time = np.linspace(0.0, 2.0 * numbers.burn_time, 4001)
+    return law, np.linspace(0.0, 2.0 * numbers.burn_time, 4001)
+
+
+def duration(numbers: Numbers) -> float:
+    """Duration (s) in which the rates settle: the exit of a payload that the thrust alone moves, and
+    the settled window after it (``mechanics.outcome``), with a margin."""
+    law, time = _law(numbers)
     speed = _integral(thrust_law.sample(law, time) / numbers.mass, time)
     place = _integral(speed, time)
-    exits = float(np.interp(numbers.rail_length, place, time))
-    if place[-1] < numbers.rail_length:
+    past = np.flatnonzero(place >= numbers.rail_length)
+    if past.size:
+        until = past[0] + 1  # a curve may push back later
+        exits = float(np.interp(numbers.rail_length, place[:until], time[:until]))
+    else:
         exits = float(time[-1] + (numbers.rail_length - place[-1]) / speed[-1])
-    burnt = thrust_law.burnout(law, 1e-3, 2.0 * numbers.burn_time)
+    burnt = thrust_law.burnout(law, 1e-3, float(time[-1]))
     return _MARGIN * (max(exits + SETTLE_DELAY, burnt) + SETTLE_WINDOW)
 
 
@@ -79,14 +143,13 @@ def _integral(values: np.ndarray, time: np.ndarray) -> np.ndarray:
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
-def text(name: str, numbers: Numbers) -> str:
-    """The scene as TOML. Raises SceneError, every fault listed."""
+def text(name: str, numbers: Numbers, folder: Path = Path()) -> str:
+    """The scene as TOML, for a file in ``folder``. Raises SceneError, every fault listed."""
     if faults := numbers.faults():
         raise SceneError(faults)
     a, b, c = numbers.size
     scale, rail = min(b, c) / _WIDTH, numbers.rail_length
-    pad, station = 16.0 * scale, 1e3 * a * 0.08 / 0.35
-    start = -station - 0.5 * pad
+    start = -1e3 * (numbers.station + 0.5 * numbers.pad)
     mounts = [
         (rail * 1e3 * at, rail * 1e3 * (at + 20.0 / 220.0))
         for at in (8 / 220, 100 / 220, 192 / 220)
@@ -102,21 +165,57 @@ def text(name: str, numbers: Numbers) -> str:
         xx=_n(numbers.mass * (b**2 + c**2) / 12.0),
         yy=_n(numbers.mass * (a**2 + c**2) / 12.0),
         zz=_n(numbers.mass * (a**2 + b**2) / 12.0),
-        station=_n(station),
+        **_pads(numbers),
         y=_n(500.0 * b),
         z=_n(500.0 * c),
-        pad=_n(pad),
+        pad=_n(1e3 * numbers.pad),
         inset=_n(9.0 * scale),
         start=_n(start),
         end=_n(start + 1e3 * rail),
         leg=_n(24.0 * scale),
         thickness=_n(4.0 * scale),
         mounts=spans,
-        peak=_n(numbers.thrust),
-        width=_n(1e3 * numbers.burn_time / 6.0),
-        centre=_n(1e3 * numbers.burn_time / 2.0),
+        thrust=_thrust(numbers, folder),
         arm=_n(1e3 * a * 0.10 / 0.35),
         clearance=_n(1e3 * numbers.clearance),
+    )
+
+
+def _pads(numbers: Numbers) -> dict[str, str]:
+    """Where the pads are along the rail, and how long they are. One alone on each rail reaches as
+    far as two would, because nothing else keeps the payload from turning about Y and Z."""
+    if numbers.pads == _RAILS:
+        length = _n(1e3 * (2.0 * numbers.station + numbers.pad))
+        return {
+            "stations": '"0 mm"',
+            "length": f'"{length} mm"  # long, because one pad on a rail holds the payload straight '
+            "alone\n# The model springs has one point for a pad, which does not: use compliant, the "
+            "default.",
+        }
+    places = 1e3 * np.linspace(-numbers.station, numbers.station, numbers.pads // _RAILS)
+    return {
+        "stations": ", ".join(f'"{_n(place)} mm"' for place in places),
+        "length": f'"{_n(1e3 * numbers.pad)} mm"',
+    }
+
+
+def _thrust(numbers: Numbers, folder: Path) -> str:
+    """The keys that differ between a pulse and a measured curve."""
+    if numbers.thrust_curve is not None:
+        path = os.path.relpath(numbers.thrust_curve.resolve(), folder.resolve())
+        file = tomlkit.item(path).as_string()
+        return (
+            "[thrust]  # other kinds: gaussian (a pulse), gaussians (a sum), constant\n"
+            'kind = "measured"\n'
+            f"file = {file}  # columns time_s,force_N; relative to this file\n"
+            'use = "curve"  # "fit": the Gaussian through the points acts instead'
+        )
+    return (
+        "[thrust]  # other kinds: gaussians (a sum), constant, measured (a CSV file)\n"
+        'kind = "gaussian"\n'
+        f'peak = "{_n(numbers.thrust)} N"\n'
+        f'width = "{_n(1e3 * numbers.burn_time / 6.0)} ms"  # standard deviation\n'
+        f'centre = "{_n(1e3 * numbers.burn_time / 2.0)} ms"'
     )
 
 
@@ -143,9 +242,9 @@ zz = "{zz} kg*m**2"
 # xy, xz, yz: entries of the tensor, xy = -integral of x y dm; CAD often prints the other sign
 
 [pads]  # one at each of the four corners of each station, with two faces that point outwards
-stations = ["-{station} mm", "{station} mm"]  # X of the rear and of the front pads
+stations = [{stations}]  # X of the pads, from the rear to the front
 corner = ["{y} mm", "{z} mm"]  # distance of the corners from the axis along Y and Z
-length = "{pad} mm"
+length = {length}
 width = "{pad} mm"
 inset = "{inset} mm"  # from the corner to the middle of a face, along the face and towards the axis
 relief = "20 um"  # how far the edges of the crowned face lie behind its middle
@@ -164,11 +263,7 @@ youngs_modulus = "72 GPa"
 poisson_ratio = 0.33
 yield_strength = "503 MPa"
 
-[thrust]  # other kinds: gaussians (a sum), constant, measured (a CSV file)
-kind = "gaussian"
-peak = "{peak} N"
-width = "{width} ms"  # standard deviation
-centre = "{centre} ms"
+{thrust}
 arm = "{arm} mm"  # distance of the point of application behind the mass centre
 
 [thrust_offset.misalignment]

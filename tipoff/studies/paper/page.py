@@ -325,7 +325,7 @@ def _headline(found: dict) -> list[Part]:
         "rigid bodies, wall time of one case",
         Column("speed-up", form=",.0f"),
     )
-    missing = f"Not measured here yet; `make compare SCENE={found['scene']}` measures it."
+    missing = f"Not measured here yet; `tipoff compare --scene {found['scene']}` measures it."
     return [Table(heads, rows, () if ours else (missing,))]
 
 

@@ -75,10 +75,12 @@ class Figure:
 
 @dataclass(frozen=True)
 class Image:
-    """An image file that the page contains; ``text`` stands in its place where it is not shown."""
+    """An image file that the page contains; ``text`` stands in its place where it is not shown.
+    Where a page is dark, ``dark`` is shown."""
 
     path: Path
     text: str
+    dark: Path | None = None
 
 
 @dataclass(frozen=True)
@@ -132,10 +134,7 @@ def _html(part: Part, figure: Callable[[Chart | Picture, str], str]) -> Markup:
             )
             return Markup('<div class="figures">{}</div>').format(Markup("").join(boxes))
         case Image():
-            content = base64.b64encode(part.path.read_bytes()).decode()
-            return Markup('<p><img alt="{}" src="data:{};base64,{}"></p>').format(
-                part.text, _MIME[part.path.suffix], content
-            )
+            return _image(part)
         case Bullets():
             lines = map(inline, part.sentences())
             return Markup("<ul>{}</ul>").format(
@@ -149,6 +148,21 @@ def _html(part: Part, figure: Callable[[Chart | Picture, str], str]) -> Markup:
             return Markup(part)
         case str():
             return Markup("<p>{}</p>").format(inline(part))
+
+
+def _image(image: Image) -> Markup:
+    """The image with its content; with its ``dark`` one for screens with a dark scheme."""
+    shown = Markup('<img alt="{}" src="{}">').format(image.text, _data(image.path))
+    if image.dark is not None:
+        shown = Markup(
+            '<picture><source media="screen and (prefers-color-scheme: dark)" srcset="{}">{}</picture>'
+        ).format(_data(image.dark), shown)
+    return Markup("<p>{}</p>").format(shown)
+
+
+def _data(path: Path) -> str:
+    """The address that is the content of an image file."""
+    return f"data:{_MIME[path.suffix]};base64,{base64.b64encode(path.read_bytes()).decode()}"
 
 
 def markdown(parts: Sequence[Part]) -> str:

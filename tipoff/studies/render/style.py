@@ -8,7 +8,7 @@ _PAGE = """
 @media screen and (prefers-color-scheme: dark) {
   :root { --ink: #e6e8eb; --soft: #a3adb8; --rule: #39424c; --tint: #1d242c; --accent: #9db8ea; \
 --paper: #13181e; --warn: #2b2115; --good: #4ac26b; --bad: #ff8a80; }
-  main img { background: #fff; border-radius: 6px; }
+  main p > img { background: #fff; border-radius: 6px; }
 }
 html { scroll-padding-top: 84px; }
 * { box-sizing: border-box; }

@@ -6,75 +6,14 @@ from +Y towards +Z, an eccentricity from +Z towards +Y.
 """
 
 import math
-from collections.abc import Iterable
 
 from markupsafe import Markup
 
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
+from tipoff.studies.render.sketch import HEIGHT, WIDTH, View, svg
 
-_WIDTH, _HEIGHT, _GAP, _EDGE = 640.0, 330.0, 40.0, 46.0  # px
-
-
-class _View:
-    """Shapes in a plane of the scene: its first axis to the right, its second one upwards, with
-    ``scale`` px per metre from a point of the scene at ``at`` (px)."""
-
-    def __init__(self, at: tuple[float, float], scale: float, centre: tuple[float, float]):
-        self.at, self.scale, self.centre = at, scale, centre
-        self.shapes: list[str] = []
-
-    def point(self, x: float, y: float) -> tuple[float, float]:
-        """Place (px) of a point of the scene (m)."""
-        return (
-            self.at[0] + self.scale * (x - self.centre[0]),
-            self.at[1] - self.scale * (y - self.centre[1]),
-        )
-
-    def box(self, kind: str, low: tuple[float, float], high: tuple[float, float]) -> None:
-        """A rectangle between two corners (m)."""
-        left, bottom = self.point(*low)
-        right, top = self.point(*high)
-        self.shapes.append(
-            f'<rect class="{kind}" x="{left:.1f}" y="{top:.1f}" width="{right - left:.1f}" '
-            f'height="{bottom - top:.1f}"/>'
-        )
-
-    def arrow(
-        self, begin: tuple[float, float], end: tuple[float, float], kind: str = "axis"
-    ) -> None:
-        """An arrow between two places (px)."""
-        (a, b), (c, d) = begin, end
-        self.shapes.append(
-            f'<line class="{kind}" x1="{a:.1f}" y1="{b:.1f}" x2="{c:.1f}" y2="{d:.1f}" '
-            f'marker-end="url(#tip)"/>'
-        )
-
-    def arc(self, begin: float, end: float, radius: float, kind: str) -> None:
-        """An arc with an arrow about the centre; angles (rad) from the first axis to the second,
-        ``radius`` in px."""
-        (a, b), (c, d) = (
-            (
-                self.at[0] + radius * math.cos(angle),
-                self.at[1] - radius * math.sin(angle),
-            )
-            for angle in (begin, end)
-        )
-        sweep = 0 if end > begin else 1
-        self.shapes.append(
-            f'<path class="{kind}" d="M {a:.1f} {b:.1f} A {radius:.1f} {radius:.1f} 0 0 {sweep} '
-            f'{c:.1f} {d:.1f}" marker-end="url(#tip)"/>'
-        )
-
-    def text(self, place: tuple[float, float], words: str, anchor: str = "middle") -> None:
-        """Words at a place (px)."""
-        self.shapes.append(
-            str(
-                Markup('<text x="{}" y="{}" text-anchor="{}">{}</text>').format(
-                    f"{place[0]:.1f}", f"{place[1]:.1f}", anchor, words
-                )
-            )
-        )
+_EDGE = 46.0  # px
 
 
 def launcher(scene: Scene) -> Markup:
@@ -82,21 +21,12 @@ def launcher(scene: Scene) -> Markup:
     # all of it is made here; what comes from the scene are numbers
     return Markup(
         '<div class="drawing">'
-        f"{_svg('Launcher from the side', _side(scene))}{_svg('From the open end', _end(scene))}"
+        f"{svg('Launcher from the side', _side(scene))}{svg('From the open end', _end(scene))}"
         "</div>"
     )
 
 
-def _svg(title: str, shapes: Iterable[str]) -> str:
-    return (
-        f'<svg viewBox="0 0 {_WIDTH:g} {_HEIGHT:g}" role="img" aria-label="{title}">'
-        '<defs><marker id="tip" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" '
-        'markerHeight="7" orient="auto-start-reverse"><path class="tip" d="M0 0 8 4 0 8z"/>'
-        f"</marker></defs>{''.join(shapes)}</svg>"
-    )
-
-
-def _halves(scene: Scene) -> tuple[float, float, float]:
+def halves(scene: Scene) -> tuple[float, float, float]:
     """Half sizes (m) of the payload; those of the box of its pads where it has no size."""
     pads = [max(abs(pad.position[axis]) for pad in scene.pads) for axis in range(3)]
     size = scene.payload.size
@@ -105,15 +35,16 @@ def _halves(scene: Scene) -> tuple[float, float, float]:
     )
 
 
-def _side(scene: Scene) -> list[str]:
-    a, b, _ = _halves(scene)
+def side_view(scene: Scene) -> View:
+    """Payload, rails, mounts and pads to scale, X to the right and Y upwards."""
+    a, b, _ = halves(scene)
     arm = getattr(scene.thrust, "arm", 0.0) or 0.0
-    wall = _thickness(scene)
+    wall = thickness(scene)
     low, high = min(scene.rail.start, -a, -arm), max(scene.rail.end, a)
     scale = min(
-        (_WIDTH - 2 * _EDGE - 60.0) / (high - low), (_HEIGHT - 130.0) / (2.0 * b + 4.0 * wall)
+        (WIDTH - 2 * _EDGE - 60.0) / (high - low), (HEIGHT - 130.0) / (2.0 * b + 4.0 * wall)
     )
-    view = _View((0.5 * _WIDTH + 20.0, 0.5 * _HEIGHT - 8.0), scale, (0.5 * (low + high), 0.0))
+    view = View((0.5 * WIDTH + 20.0, 0.5 * HEIGHT - 8.0), scale, (0.5 * (low + high), 0.0))
     view.box("payload", (-a, -b), (a, b))
     for side in (-1.0, 1.0):
         near, far = sorted((side * b, side * (b + wall)))
@@ -126,6 +57,12 @@ def _side(scene: Scene) -> list[str]:
     ):
         inner = sorted((y, y - math.copysign(0.35 * length, y)))
         view.box("pad", (x - 0.5 * length, inner[0]), (x + 0.5 * length, inner[1]))
+    return view
+
+
+def _side(scene: Scene) -> list[str]:
+    view, (a, b, _), wall = side_view(scene), halves(scene), thickness(scene)
+    arm = getattr(scene.thrust, "arm", 0.0) or 0.0
     tip = view.point(-arm, 0.0)
     view.arrow((tip[0] - 56.0, tip[1]), tip, "thrust")
     view.text((tip[0] - 30.0, tip[1] - 14.0), "thrust")
@@ -139,11 +76,11 @@ def _side(scene: Scene) -> list[str]:
     _names(view, scene, b, wall)
     view.text((_EDGE, 20.0), "From the side", "start")
     travel = 1e3 * (scene.rail.end - scene.rail.start)
-    view.text((0.5 * _WIDTH, _HEIGHT - 14.0), f"rail {travel:.4g} mm, payload {2e3 * a:.4g} mm")
+    view.text((0.5 * WIDTH, HEIGHT - 14.0), f"rail {travel:.4g} mm, payload {2e3 * a:.4g} mm")
     return view.shapes
 
 
-def _names(view: _View, scene: Scene, half: float, wall: float) -> None:
+def _names(view: View, scene: Scene, half: float, wall: float) -> None:
     """The names of the parts beside one of each: rail, mount, pad."""
     end = view.point(scene.rail.end, -half - wall)
     view.text((end[0] + 5.0, end[1] + 15.0), "rail", "start")
@@ -155,21 +92,27 @@ def _names(view: _View, scene: Scene, half: float, wall: float) -> None:
     view.text((place[0], place[1] - 16.0), "pad")
 
 
-def _end(scene: Scene) -> list[str]:
-    _, b, c = _halves(scene)
-    wall, leg = _thickness(scene), _leg(scene)
-    scale = (_HEIGHT - 110.0) / (2.0 * max(b, c) + 4.0 * wall)
-    view = _View((0.32 * _WIDTH, 0.5 * _HEIGHT), scale, (0.0, 0.0))
+def end_view(scene: Scene) -> View:
+    """Payload, rails and pads to scale, seen from the open end: Y to the right and Z upwards."""
+    _, b, c = halves(scene)
+    wall, leg = thickness(scene), _leg(scene)
+    scale = (HEIGHT - 110.0) / (2.0 * max(b, c) + 4.0 * wall)
+    view = View((0.32 * WIDTH, 0.5 * HEIGHT), scale, (0.0, 0.0))
     view.box("payload", (-b, -c), (b, c))
     for y in (-1.0, 1.0):
         for z in (-1.0, 1.0):
             if isinstance(scene.rail, SectionTable):
-                _corner(view, (y, z), (b, c), leg, wall)
+                rail_corner(view, (y, z), (b, c), leg, wall)
     for pad in dict.fromkeys(
         (pad.position[1:], pad.normals, pad.width, pad.inset) for pad in scene.pads
     ):
         _pad(view, *pad)
-    at, reach = view.at, scale * max(b, c)
+    return view
+
+
+def _end(scene: Scene) -> list[str]:
+    view, (_, b, c) = end_view(scene), halves(scene)
+    at, reach = view.at, view.scale * max(b, c)
     view.arrow(at, (at[0] + reach + 52.0, at[1]))
     view.text((at[0] + reach + 62.0, at[1] + 4.0), "Y")
     view.arrow(at, (at[0], at[1] - reach - 34.0))
@@ -180,7 +123,7 @@ def _end(scene: Scene) -> list[str]:
     view.arc(math.radians(86.0), math.radians(34.0), 0.46 * reach, "shift")
     left = at[0] + reach + 84.0
     for row, (kind, lines) in enumerate(_LEGEND.items()):
-        y = 0.30 * _HEIGHT + 92.0 * row
+        y = 0.30 * HEIGHT + 92.0 * row
         view.shapes.append(
             f'<line class="{kind}" x1="{left:.1f}" y1="{y - 4.0:.1f}" x2="{left + 24.0:.1f}" '
             f'y2="{y - 4.0:.1f}"/>'
@@ -202,8 +145,8 @@ _LEGEND = {
 }
 
 
-def _corner(
-    view: _View, signs: tuple[float, float], half: tuple[float, float], leg: float, wall: float
+def rail_corner(
+    view: View, signs: tuple[float, float], half: tuple[float, float], leg: float, wall: float
 ) -> None:
     """The two legs of an L around one edge of the payload."""
     (y, z), (b, c) = signs, half
@@ -216,7 +159,7 @@ def _corner(
 
 
 def _pad(
-    view: _View, corner: tuple[float, float], normals: tuple[str, ...], width: float, inset: float
+    view: View, corner: tuple[float, float], normals: tuple[str, ...], width: float, inset: float
 ) -> None:
     """The faces of a pad as bars of its width, ``inset`` from its corner."""
     y, z = corner
@@ -237,10 +180,10 @@ def _pad(
         view.box("pad", (left, bottom), (right, top))
 
 
-def _thickness(scene: Scene) -> float:
+def thickness(scene: Scene) -> float:
     """Thickness (m) of a wall as drawn: its own, else a twentieth of the payload's width."""
     own = getattr(scene.rail, "thickness", None)
-    return own or 0.05 * _halves(scene)[1]
+    return own or 0.05 * halves(scene)[1]
 
 
 def _leg(scene: Scene) -> float:

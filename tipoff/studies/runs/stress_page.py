@@ -78,9 +78,9 @@ def _pictures(view: dict, folder: Path) -> Iterator[Part]:
     )
     if not view["pictures"]:
         return
-    # the peak first
-    for kind, path in sorted(view["pictures"].items(), key=lambda item: item[0] != "peak"):
-        yield Image(folder / path, f"{kind} of {name}")
+    for kind in ("peak", "ejection"):
+        light, dark = (folder / view["pictures"][key] for key in (kind, f"{kind}-dark"))
+        yield Image(light, f"{kind} of {name}", dark)
     yield Caption(
         f"Condition {name}, elements of {1e3 * view['element_size_m']:g} mm, seen from the "
         f"platform. Above: the instant of the peak stress. Below: the ejection. The rails are drawn "
@@ -91,5 +91,5 @@ def _pictures(view: dict, folder: Path) -> Iterator[Part]:
 
 def _how(command: str) -> Caption:
     return Caption(
-        f"`{command}` adds files for ParaView; after `make pictures` it adds pictures too."
+        f"`{command}` adds files for ParaView; with pyvista installed it adds pictures too."
     )

@@ -2,7 +2,6 @@
 changed one at a time, as in Table 2 of the paper; Sobol' indices cover all inputs of a file of
 tolerances."""
 
-import importlib.util
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,13 +41,11 @@ def run(study: Study, options: Options = Options()) -> dict:
     quantity.
 
     Raises SceneError for bad input, before anything runs, and StudyError where too few cases
-    settle or SALib is not installed.
+    settle.
     """
     _require(study, options)
 
     def make() -> tuple[dict, list[Path]]:
-        if importlib.util.find_spec("SALib") is None:
-            raise StudyError("Sobol' indices need SALib: pip install 'tipoff[studies]'")
         sobol, model = _sobol(study, population.surrogate(study, options.model), options)
         found = {
             "asked": STAGE.plain(options),

@@ -57,8 +57,8 @@ def view(
       tipoff view --condition phi60 --frames 120
       tipoff view --scene my_launcher.toml --element-size 4 --exaggeration 500
 
-    Pictures (peak.png, ejection.webp) need pyvista, which `make pictures` installs. The files for
-    ParaView do not.
+    Pictures (peak.png, ejection.webp, and both for a dark page) need pyvista: pip install pyvista.
+    The files for ParaView do not.
     """
 
     def work() -> dict:

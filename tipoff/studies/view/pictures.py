@@ -1,5 +1,5 @@
 """Pictures of a series of frames, drawn off-screen with pyvista: a still at the peak stress, and an
-animation of the ejection.
+animation of the ejection. Each is drawn for a light page and for a dark one.
 
 Runs as a separate process (``python -m tipoff.studies.view.pictures``, with an order as JSON on
 standard input), since a graphics library that cannot draw may end its process. The rails are drawn
@@ -10,6 +10,7 @@ import json
 import os
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,32 +18,51 @@ from tipoff.files import replacing
 from tipoff.highfi.mesh.rail_mesh import boundary_facets
 from tipoff.studies.view.vtk_files import DISPLACEMENT, PAD, VON_MISES
 
-STILL, ANIMATION = "peak.png", "ejection.webp"
-LARGEST = 3_000_000  # bytes of an animation, which a report carries inside it
+LARGEST = 1_500_000  # bytes of an animation; a report carries two inside it
 _STILL_SIZE, _SIZE = (1500, 620), (840, 430)
 _MOST = 120  # frames of an animation
 _SECONDS = 6.0  # it lasts
-_INK, _BODY, _PADS, _EDGE = "#24292f", "#8a96a3", "#39434e", "#5b6570"
 _VIEW = (0.52, -0.80, 0.45)  # from where the eye looks, in platform axes
 # how far the closer eye looks along the rail, and half the height (m) it sees
 _ALONG, _REACH = 0.9, 0.030
 # Falling lightness, so that it reads in grey too, and a rail without stress looks like bare metal.
 _COLOURS = ("#e4e8ec", "#f6d78b", "#ee9b46", "#d1495b", "#7d2050", "#2c0d33")
-_MARK = "#1b6ca8"
 _NODE = "node"
 _LIFT = -8.0  # towards the eye, in steps of the depth buffer
+
+
+class Look(NamedTuple):
+    """Colours of a picture, and what the names of its files end with."""
+
+    suffix: str
+    paper: str
+    ink: str  # text
+    body: str  # payload
+    pads: str
+    edge: str  # of elements
+    mark: str  # of the worst node
+
+
+LIGHT = Look("", "#ffffff", "#24292f", "#8a96a3", "#39434e", "#5b6570", "#1b6ca8")
+DARK = Look("-dark", "#13181e", "#e6e8eb", "#8a96a3", "#78848f", "#5b6570", "#6db3ea")
 
 
 class Drawing:
     """One plotter that is moved from frame to frame. ``order`` is what ``studies.view.stage`` asks
     for."""
 
-    def __init__(self, order: dict, size: tuple[int, int], shape: tuple[int, int] = (1, 1)):
+    def __init__(
+        self,
+        order: dict,
+        size: tuple[int, int],
+        shape: tuple[int, int] = (1, 1),
+        look: Look = LIGHT,
+    ):
         import pyvista
 
-        self.order, self.folder = order, Path(order["folder"])
+        self.order, self.folder, self.look = order, Path(order["folder"]), look
         self.plotter = pyvista.Plotter(off_screen=True, window_size=size, shape=shape, border=False)
-        self.plotter.set_background("white")
+        self.plotter.set_background(look.paper)
         grid = pyvista.read(self.folder / order["frames"][0]["rails"])
         # Point ids that VTK keeps are wrong where it parts the facets of quadratic elements; a
         # field of its own is carried along.
@@ -101,7 +121,7 @@ class Drawing:
         colours = LinearSegmentedColormap.from_list("stress", _COLOURS)
         look = {
             "title": "von Mises stress (MPa), mean at nodes",
-            "color": _INK,
+            "color": self.look.ink,
             "vertical": False,
             "position_x": 0.24,
             "position_y": 0.04,
@@ -126,23 +146,29 @@ class Drawing:
             diffuse=0.5,
         )
         if close:
-            net = self.plotter.add_mesh(self.net, color=_EDGE, line_width=1, copy_mesh=False)
+            net = self.plotter.add_mesh(
+                self.net, color=self.look.edge, line_width=1, copy_mesh=False
+            )
             # The lines lie in the surface, which would hide every other bit of them.
             net.mapper.SetResolveCoincidentTopologyToPolygonOffset()
             net.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0.0, _LIFT)
-            self.plotter.add_mesh(self.corners, color=_MARK, line_width=2, copy_mesh=False)
+            self.plotter.add_mesh(self.corners, color=self.look.mark, line_width=2, copy_mesh=False)
         else:
-            self.plotter.add_mesh(self.pads, color=_PADS, copy_mesh=False)
-            self.plotter.add_mesh(self.outline, color=_EDGE, line_width=1.2, copy_mesh=False)
-            self.plotter.add_mesh(self.payload, color=_BODY, opacity=0.12, copy_mesh=False)
-            self.plotter.add_mesh(self.edges, color=_BODY, line_width=1.5, copy_mesh=False)
+            self.plotter.add_mesh(self.pads, color=self.look.pads, copy_mesh=False)
+            self.plotter.add_mesh(
+                self.outline, color=self.look.edge, line_width=1.2, copy_mesh=False
+            )
+            self.plotter.add_mesh(self.payload, color=self.look.body, opacity=0.12, copy_mesh=False)
+            self.plotter.add_mesh(self.edges, color=self.look.body, line_width=1.5, copy_mesh=False)
 
     def write(self, lines: list[str], name: str) -> None:
-        """Text in the upper left corner of the present panel, on white."""
+        """Text in the upper left corner of the present panel, on the paper."""
+        import pyvista
+
         text = self.plotter.add_text(
-            "\n".join(lines), position="upper_left", font_size=10, color=_INK, name=name
+            "\n".join(lines), position="upper_left", font_size=10, color=self.look.ink, name=name
         )
-        text.prop.SetBackgroundColor(1.0, 1.0, 1.0)
+        text.prop.SetBackgroundColor(pyvista.Color(self.look.paper).float_rgb)
         text.prop.SetBackgroundOpacity(0.85)
 
     def frame_all(self, bounds, zoom: float) -> None:
@@ -166,7 +192,7 @@ class Drawing:
             tuple(camera.position + shift),
             tuple(camera.focal_point + shift),
         )
-        self.plotter.add_axes(color=_INK, line_width=2, viewport=(0.0, 0.0, 0.16, 0.26))
+        self.plotter.add_axes(color=self.look.ink, line_width=2, viewport=(0.0, 0.0, 0.16, 0.26))
 
     def close_in(self, node: int) -> None:
         """Look at a node of the surface from outside the rail and from its open end."""
@@ -185,9 +211,9 @@ class Drawing:
         self.plotter.camera.parallel_scale = _REACH
 
 
-def still(order: dict) -> Path:
+def still(order: dict, look: Look = LIGHT) -> Path:
     """The worst moment: everything, and the elements around the worst node."""
-    drawing, peak = Drawing(order, _STILL_SIZE, (1, 2)), order["peak"]
+    drawing, peak = Drawing(order, _STILL_SIZE, (1, 2), look), order["peak"]
     drawing.show(peak["frame"])
     drawing.plotter.subplot(0, 0)
     drawing.fill(close=False, bar=True)
@@ -197,7 +223,10 @@ def still(order: dict) -> Path:
     drawing.fill(close=True, bar=False)
     node = np.linalg.norm(drawing._rest - peak["place_m"], axis=1).argmin()
     drawing.plotter.add_points(
-        drawing.surface.points[[node]], color=_MARK, point_size=18, render_points_as_spheres=True
+        drawing.surface.points[[node]],
+        color=look.mark,
+        point_size=18,
+        render_points_as_spheres=True,
     )
     place = ", ".join(f"{1e3 * value:.5g}" for value in peak["place_m"])
     drawing.write(
@@ -209,18 +238,18 @@ def still(order: dict) -> Path:
         "peak",
     )
     drawing.close_in(int(node))
-    path = drawing.folder / STILL
+    path = drawing.folder / f"peak{look.suffix}.png"
     with replacing(path) as temporary:
         drawing.plotter.screenshot(temporary)
     drawing.plotter.close()
     return path
 
 
-def animation(order: dict) -> Path:
+def animation(order: dict, look: Look = LIGHT) -> Path:
     """The whole ejection, as an animated WebP no larger than LARGEST."""
     from PIL import Image
 
-    drawing = Drawing(order, _SIZE)
+    drawing = Drawing(order, _SIZE, look=look)
     drawing.show(0)
     drawing.fill(close=False, bar=True)
     drawing.frame_all(order["bounds"], 1.05)
@@ -233,9 +262,10 @@ def animation(order: dict) -> Path:
         drawing.show(int(index))
         drawing.write(_words(order, int(index)), "words")
         images.append(Image.fromarray(drawing.plotter.screenshot(return_img=True)))
-        print(json.dumps({"done": len(images) / len(order["frames"])}), flush=True)
+        done = 0.5 * (len(images) / len(order["frames"]) + (look is DARK))
+        print(json.dumps({"done": done}), flush=True)
     drawing.plotter.close()
-    path = drawing.folder / ANIMATION
+    path = drawing.folder / f"ejection{look.suffix}.webp"
     for quality in (80, 60, 40, 20):
         with replacing(path) as temporary:
             images[0].save(
@@ -284,7 +314,7 @@ def main() -> None:
     order = json.load(sys.stdin)
     if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-    pictures = [still(order), animation(order)]
+    pictures = [draw(order, look) for look in (LIGHT, DARK) for draw in (still, animation)]
     print(json.dumps({"pictures": [path.name for path in pictures]}), flush=True)
 
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 FRAMES = 60
 _SHOWN = 8e-3  # m, the size of the largest deformation in a picture
-_HOW = "pictures need pyvista (0.6 GB): make pictures, or pip install 'tipoff[view]'"
+_HOW = "pictures need pyvista (0.6 GB): pip install pyvista; in a clone, make pictures"
 
 
 def run(
