@@ -4,7 +4,7 @@
 (``lowfi.modes``). The ensemble takes the fewest modes that are enough for half of them: a minority
 that needs modes does not make all cases expensive. On scene ``reference`` a third of the random
 ejections choose modes, and 1 um of clearance moves most of these by more than the modes do, while all
-modes make a case at a loose tolerance 36 times as expensive (docs/tails.md). A pilot case is
+modes make a case at a loose tolerance over 30 times as expensive (docs/tails.md). A pilot case is
 integrated at least as accurately as a single run at the default tolerance, because the forces of a
 coarse integration excite modes that the contact does not. All cases then run the same equations, and
 each can be run again by itself with this number. A store keeps the number with its reason, so that

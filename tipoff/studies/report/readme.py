@@ -254,7 +254,7 @@ def _ladder(found: dict) -> list[Part]:
             "reference" if value is None else scale * value
             for value, scale in ((point["error_deg_s"], 1.0), (point["curve_error"], 100.0))
         ]
-        time = f"{wall:.3g} s" if wall >= 1.0 else f"{1e3 * wall:.2g} ms"
+        time = f"{wall:.3g} s" if wall >= 0.1 else f"{1e3 * wall:.2g} ms"
         rows.append((point["model"], point["numerics"], time, *errors))
     heads = (
         "model",
