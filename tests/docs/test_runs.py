@@ -67,6 +67,8 @@ def folder(tmp_path_factory):
         (place / name).write_text(errors)
     key = "thrust_offset.misalignment.axial"
     (place / "cases.csv").write_text(f"{key}\ndeg\n0.1\n0.2\n")
+    (curve,) = pages.of_language("docs/howto/thrust_from_csv.md", "text")
+    (place / "thrust.csv").write_text(curve)
     logs = Path(droptest.__file__).parent / "logs"
     for number in (0, 1):
         shutil.copy(logs / f"simulated{number}.csv", place)
@@ -97,15 +99,18 @@ def _small(words: tuple[str, ...]) -> list[str]:
     if "--settled-from" in found:
         at = found.index("--settled-from")
         del found[at : at + 2]  # the curves here end with the settled window
-    if "--scene" not in found and words[0] not in ("scenes", "schema", "doctor", "bench"):
+    if "--scene" not in found and words[0] not in ("scenes", "schema", "doctor", "bench", "new"):
         found += ["--scene", "tiny"]
     return found
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("words", [words for words in COMMANDS if _is_run(words)], ids=" ".join)
-def test_a_command_runs(words, folder, monkeypatch):
+def test_a_command_runs(words, folder, monkeypatch, tmp_path):
     monkeypatch.chdir(folder)
+    if words[0] == "new":  # its file must not be there yet
+        shutil.copy("thrust.csv", tmp_path)
+        monkeypatch.chdir(tmp_path)
     said = CliRunner().invoke(app, _small(words))
     assert said.exit_code == 0, said.output
 
