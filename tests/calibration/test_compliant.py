@@ -21,7 +21,7 @@ from tipoff.scenes import Calibration, SceneError
 from tipoff.studies.cli import app
 from tipoff.studies.runs import disturbed
 
-CONDITIONS = ("phi15", "phi60")
+CONDITIONS = ("phi15", "phi35", "phi60")
 SCENE = scenes.load("reference").replace({"agreement.fitted": list(CONDITIONS)})
 TRUTH = {
     "contact.interface_stiffness": 4.1e12,
@@ -37,7 +37,12 @@ ON_JOINTS = {
 
 
 def curves(scene: scenes.Scene, compliance: RailCompliance) -> dict:
-    return {name: lowfi.run(scene.condition(name), compliance=compliance) for name in CONDITIONS}
+    """Without modes of the rails, as calibration has none."""
+    still = lowfi.Numerics(modes=0)
+    return {
+        name: lowfi.run(scene.condition(name), compliance=compliance, numerics=still)
+        for name in CONDITIONS
+    }
 
 
 @pytest.fixture(scope="module")
@@ -121,8 +126,8 @@ def test_constants_of_rigid_mounts_are_left_out(found):
 
 @pytest.mark.slow
 def test_a_hidden_stiffness_of_the_mounts_is_found():
-    """1.7 times the scene's. Mounts and interface are springs in series, so that only what both
-    give together is sure: both weak directions mix them."""
+    """1.7 times the scene's. Mounts and interface are springs in series, so that what both give
+    together is surer than each: the direction that the curves determine least mixes them."""
     scene = SCENE.replace(ON_JOINTS)
     compliance = highfi.condense(scene, 0.008)
     hidden = TRUTH | {"rail.mount_stiffness.factor": 1.7}
@@ -132,9 +137,9 @@ def test_a_hidden_stiffness_of_the_mounts_is_found():
     values = dict(zip(found.parameters, found.values))
     assert values["rail.mount_stiffness.factor"] == pytest.approx(1.7, rel=0.02)
     assert values["contact.clearance"] == pytest.approx(0.262e-3, rel=1e-5)
-    assert found.weak_directions
-    for weak in found.weak_directions:
-        assert "rail.mount_stiffness.factor" in weak and "contact.interface_stiffness" in weak
+    least = dict(zip(found.parameters, np.linalg.eigh(found.information)[1][:, 0]))
+    mounts, interface = least["rail.mount_stiffness.factor"], least["contact.interface_stiffness"]
+    assert min(abs(mounts), abs(interface)) > 0.3 and mounts * interface < 0.0
 
 
 def test_the_command_fits_curves_and_others_run_with_the_file(tmp_path, monkeypatch):
