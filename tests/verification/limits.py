@@ -17,8 +17,7 @@ How to read the tables of cases:
 - *error / tolerance* is |ours - answer| over what the test allows; 1 would fail. `error` stands where the test compares
   an error with a bound. `yes or no` stands where a test compares no numbers, such as equal bits or a refusal.
 - *order* is the observed order on the finest meshes or steps, where a test measures it.
-- *comparisons* says how many were recorded. Slow tests are not recorded, and some tests with their first parameters
-  alone.
+- *comparisons* says how many were recorded. Slow tests are not recorded.
 
 {tests} tests recorded {comparisons} comparisons. Those of a closed form with its tabulated value are not counted."""
 
