@@ -126,20 +126,20 @@ def test_constants_of_rigid_mounts_are_left_out(found):
 
 @pytest.mark.slow
 def test_a_hidden_stiffness_of_the_mounts_is_found():
-    """1.7 times the scene's. Mounts and interface are springs in series, so that what both give
-    together is surer than each: the direction that the curves determine least mixes them."""
-    scene = SCENE.replace(ON_JOINTS)
+    """1.7 times the scene's, from one curve. Mounts and interface are springs in series, so that only
+    what both give together is sure: every weak direction mixes them."""
+    scene = SCENE.replace(ON_JOINTS | {"agreement.fitted": ["phi60"]})
     compliance = highfi.condense(scene, 0.008)
     hidden = TRUTH | {"rail.mount_stiffness.factor": 1.7}
     plan = Plan(points=64, starts=2, evaluations=120, polish=20)
-    truth = curves(scene.replace(hidden), compliance)
+    truth = {"phi60": curves(scene.replace(hidden), compliance)["phi60"]}
     found = calibration.run(scene, truth, plan=plan, compliance=compliance)
     values = dict(zip(found.parameters, found.values))
     assert values["rail.mount_stiffness.factor"] == pytest.approx(1.7, rel=0.02)
     assert values["contact.clearance"] == pytest.approx(0.262e-3, rel=1e-5)
-    least = dict(zip(found.parameters, np.linalg.eigh(found.information)[1][:, 0]))
-    mounts, interface = least["rail.mount_stiffness.factor"], least["contact.interface_stiffness"]
-    assert min(abs(mounts), abs(interface)) > 0.3 and mounts * interface < 0.0
+    assert found.weak_directions
+    for weak in found.weak_directions:
+        assert "rail.mount_stiffness.factor" in weak and "contact.interface_stiffness" in weak
 
 
 def test_the_command_fits_curves_and_others_run_with_the_file(tmp_path, monkeypatch):

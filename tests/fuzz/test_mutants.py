@@ -1,12 +1,12 @@
-"""Some dozen mutants of each kind, and controls: the fuzzer reaches what lies behind the first check,
+"""Some hundred mutants of each kind, and controls: the fuzzer reaches what lies behind the first check,
 and sees a traceback."""
 
 import pytest
 
 from tests.fuzz import cases
 
-SHORT = {"curve": 20, "solid": 1}  # of the slower kinds
-COUNT = 40
+SHORT = {"curve": 40, "mesh": 40, "solid": 1}  # of the slower kinds
+COUNT = 80
 CODES = {0, 1, 2}
 
 

@@ -53,7 +53,7 @@ TURNING = tiny(
 )
 NUDGE = rotation.exponential((1e-9, 0.0, 0.0))
 TWO_STEPS = pytest.mark.parametrize("safety", [0.9, 0.7])
-WHOLE, PART = 40.0, 2.0  # s; a part is a sixth of a turn, and ends on the rail
+WHOLE, PART = 40.0, 3.0  # s; a part is a quarter of a turn, and ends on the rail
 BODIES = ("payload", "platform")
 
 
@@ -96,15 +96,15 @@ def assert_seen_alike(run, other, nudged):
     assert max(found.values()) <= 1e-8
     assert max(np.abs(theirs[name] - ours[name]).max() for name in found) <= 1e-9
     seen = turning.differences(run, nudged)
-    assert max(value for name, value in seen.items() if name != "pad_force") > 5e-8
+    assert max(value for name, value in seen.items() if name != "pad_force") > 1e-7
 
 
 @pytest.mark.case("X18")
 def test_part_of_a_turn_seen_from_the_platform():
-    """A sixth of a turn on the rail, in corner contact."""
+    """A quarter of a turn on the rail, in corner contact."""
     run, other = (ejected(0.9, turn, BODIES, PART) for turn in (None, turning.TURN))
     assert run.status == other.status == "time_limit"
-    assert 0.13 < turning.turns(run.platform_quaternion) < 0.2
+    assert 0.2 < turning.turns(run.platform_quaternion) < 0.3
     assert_seen_alike(run, other, ejected(0.9, NUDGE, BODIES[:1], PART))
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.written_names import ARRAYS
 from tipoff import lowfi
 from tipoff.lowfi import Numerics
 from tipoff.lowfi.dynamics import integrate
@@ -11,19 +12,6 @@ from tipoff.lowfi.run import Run
 from tipoff.scenes import load
 
 ASKED = load("sensitive").condition("phi35")
-ARRAYS = (
-    "time",
-    "position",
-    "velocity",
-    "quaternion",
-    "rate",
-    "platform_position",
-    "platform_velocity",
-    "platform_rate",
-    "pad_force",
-    "energy",
-    "transverse_energy",
-)
 
 
 def stopped_run(tolerance: float, last: int, path) -> Run:
