@@ -1,9 +1,11 @@
 """Threads that share one run: barrier and work queue.
 
 All threads take the same steps. The barrier spins, because a step lasts tens of microseconds; a
-thread that waits for long yields its processor.
+thread that waits for long sleeps until the last one wakes it. It must not call ``sched_yield``: beside
+another busy program, Linux then keeps it from its processor for a whole time slice at each barrier.
 """
 
+import ctypes
 import os
 from typing import NamedTuple
 
@@ -17,21 +19,31 @@ from tipoff.highfi.extruded.mesh import LANES
 from tipoff.kernels.jit import kernel
 from tipoff.kernels.memory import zeros
 
-_ROUND, _ARRIVED, _NEXT = 0, 8, 16  # a cache line apart
-_SPINS = 4000  # before a waiting thread yields its processor
+_ROUND, _ARRIVED, _NEXT, _ASLEEP, _MUTEX, _CONDITION = 0, 8, 16, 24, 32, 40  # cache lines
+_SPINS, _FEWER_SPINS = 100_000, 4_000  # before a waiting thread sleeps: about 0.2 ms
+_WORD = ir.IntType(64)
+_POSIX = os.name == "posix"  # elsewhere it only spins
 
 
 class Team(NamedTuple):
     """Threads of one run."""
 
     size: int
-    counters: np.ndarray  # of the barrier and of the work queue
+    spins: int  # of a waiting thread before it sleeps
+    counters: np.ndarray  # (48,) of the barrier and of the work queue; mutex, condition variable
     lanes: np.ndarray  # (size, 4, LANES) workspace of each thread; also the forces of one element
 
 
 def team_of(size: int) -> Team:
     """A team of ``size`` threads."""
-    return Team(size=size, counters=np.zeros(24, dtype=np.int64), lanes=zeros((size, 4, LANES)))
+    counters = np.zeros(48, dtype=np.int64)
+    if _POSIX:
+        library = ctypes.CDLL(None)
+        for name, place in (("mutex", _MUTEX), ("cond", _CONDITION)):
+            begin = getattr(library, f"pthread_{name}_init")
+            begin(ctypes.c_void_p(counters[place:].ctypes.data), None)
+    spins = _SPINS if size <= processors() else _FEWER_SPINS
+    return Team(size=size, spins=spins, counters=counters, lanes=zeros((size, 4, LANES)))
 
 
 def processors() -> int:
@@ -45,14 +57,14 @@ def _element(context, builder, signature, arguments):
 
 
 @intrinsic
-def _add_one(typing, counters, index):
-    """counters[index] += 1, atomic; returns the value before."""
+def _add(typing, counters, index, value):
+    """counters[index] += value, atomic; returns the value before."""
 
     def generate(context, builder, signature, arguments):
         place = _element(context, builder, signature, arguments)
-        return builder.atomic_rmw("add", place, ir.Constant(ir.IntType(64), 1), "seq_cst")
+        return builder.atomic_rmw("add", place, arguments[2], "seq_cst")
 
-    return types.int64(counters, types.intp), generate
+    return types.int64(counters, types.intp, types.int64), generate
 
 
 @intrinsic
@@ -78,37 +90,57 @@ def _write(typing, counters, index, value):
     return types.void(counters, types.intp, types.int64), generate
 
 
-@intrinsic
-def _yield_processor(typing):
-    """Let other threads run, where the system has a call for it."""
+def _of_threads(name: str, *places: int):
+    """Call of a function of POSIX threads with pointers to these places of the counters."""
 
-    def generate(context, builder, signature, arguments):
-        if os.name == "posix":
-            builder.call(
-                cgutils.get_or_insert_function(
-                    builder.module, ir.FunctionType(ir.IntType(32), []), "sched_yield"
-                ),
-                [],
-            )
-        return context.get_dummy_value()
+    @intrinsic
+    def call(typing, counters):
+        def generate(context, builder, signature, arguments):
+            if _POSIX:
+                pointers = [
+                    _element(context, builder, signature, (*arguments, ir.Constant(_WORD, place)))
+                    for place in places
+                ]
+                kind = ir.FunctionType(ir.IntType(32), [item.type for item in pointers])
+                function = cgutils.get_or_insert_function(builder.module, kind, f"pthread_{name}")
+                builder.call(function, pointers)
+            return context.get_dummy_value()
 
-    return types.void(), generate
+        return types.void(counters), generate
+
+    return call
+
+
+_lock = _of_threads("mutex_lock", _MUTEX)
+_unlock = _of_threads("mutex_unlock", _MUTEX)
+_sleep = _of_threads("cond_wait", _CONDITION, _MUTEX)
+_wake_all = _of_threads("cond_broadcast", _CONDITION)
 
 
 @kernel
 def barrier(team):
-    """Wait until every thread of the team is here."""
+    """Wait until every thread of the team is here. The last one either finds that another sleeps, or
+    ends the round before that one reads it a last time."""
     if team.size > 1:
         counters = team.counters
         now = _read(counters, _ROUND)
-        if _add_one(counters, _ARRIVED) == team.size - 1:
+        if _add(counters, _ARRIVED, 1) == team.size - 1:
             _write(counters, _ARRIVED, 0)
             _write(counters, _ROUND, now + 1)
+            if _read(counters, _ASLEEP) > 0:
+                _lock(counters)
+                _wake_all(counters)
+                _unlock(counters)
         spins = 0
-        while _read(counters, _ROUND) == now:
+        while _read(counters, _ROUND) == now and spins < team.spins:
             spins += 1
-            if spins > _SPINS:
-                _yield_processor()
+        if spins == team.spins:
+            _lock(counters)
+            _add(counters, _ASLEEP, 1)
+            while _read(counters, _ROUND) == now:
+                _sleep(counters)
+            _add(counters, _ASLEEP, -1)
+            _unlock(counters)
 
 
 @kernel
@@ -121,4 +153,4 @@ def reset_queue(team):
 @kernel
 def take(team):
     """Number of the next piece of work that no thread has taken yet."""
-    return _add_one(team.counters, _NEXT)
+    return _add(team.counters, _NEXT, 1)

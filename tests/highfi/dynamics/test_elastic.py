@@ -30,9 +30,11 @@ def begun(kernel: str, threads: int = 1, **overrides) -> Loop:
 
 
 @functools.cache
-def run(kernel: str, threads: int = 1):
-    """The result of such a run."""
+def run(kernel: str, threads: int = 1, spins: int | None = None):
+    """The result of such a run; ``spins`` of a thread that waits, in place of the usual number."""
     loop = begun(kernel, threads)
+    if spins is not None:
+        loop.team = loop.team._replace(spins=spins)
     loop.integrate(None)
     return loop.trajectory({}, NUMERICS)
 
@@ -53,3 +55,7 @@ def test_threads_do_not_change_a_bit(kernel):
     assert np.abs(alone.pad_force).max() > 0.0
     shared = run(kernel, threads=3)
     assert_same_bits(shared, alone)
+
+
+def test_threads_that_sleep_at_every_barrier_give_the_same_bits():
+    assert_same_bits(run("elements", threads=2, spins=0), run("elements"))
