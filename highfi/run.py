@@ -78,11 +78,12 @@ def run(
     scene's duration.
 
     ``progress`` is called with the fraction of the duration done. ``threads`` share the run (None:
-    as many as there are processors, and elements enough for them); the result does not depend on
-    their number. The run is written to the file ``checkpoint`` every ``checkpoint_every`` seconds
-    (wall clock), and the file stays. With ``resume`` the run continues from that file if there is
-    one, to the same bits, and its cost is that of all parts. ``observer`` is called with the loop
-    at every sample, the first one at ignition; it may read everything and must change nothing.
+    as many as there are processors, ``OMP_NUM_THREADS`` at most, and elements enough for them); the
+    result does not depend on their number. The run is written to the file ``checkpoint`` every
+    ``checkpoint_every`` seconds (wall clock), and the file stays. With ``resume`` the run continues
+    from that file if there is one, to the same bits, and its cost is that of all parts.
+    ``observer`` is called with the loop at every sample, the first one at ignition; it may read
+    everything and must change nothing.
 
     Raises SceneError, MeshError, StepError or CheckpointError before the first step. A later
     failure is the status of the result.

@@ -18,6 +18,8 @@ from threadpoolctl import threadpool_limits
 from tipoff.meshes import generator
 
 os.environ.setdefault("MPLBACKEND", "Agg")
+if "PYTEST_XDIST_WORKER" in os.environ:  # one on each core: threads of a run would only wait
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
 threadpool_limits(limits=1, user_api="blas")  # a worker on each core: more threads only wait
 gc.set_threshold(100_000, 50, 50)  # tests hold much and leave little: a tenth of their time
 settings.register_profile("repeatable", derandomize=True, deadline=None)

@@ -47,8 +47,10 @@ def team_of(size: int) -> Team:
 
 
 def processors() -> int:
-    """Processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    """Processors this process may use, and no more than ``OMP_NUM_THREADS`` says."""
+    here = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    most = os.environ.get("OMP_NUM_THREADS", "")
+    return min(here, int(most)) if most.isdecimal() and int(most) > 0 else here
 
 
 def _element(context, builder, signature, arguments):

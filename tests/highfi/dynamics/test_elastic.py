@@ -1,6 +1,7 @@
 """Both elastic kernels carry the same run, and any number of threads the same bits."""
 
 import functools
+import os
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from tipoff.highfi import Numerics
 from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import build, general_elements
 from tipoff.highfi.run import Loop
+from tipoff.highfi.state.threads import processors
 
 NUMERICS = Numerics(element_size=0.008)
 
@@ -59,3 +61,10 @@ def test_threads_do_not_change_a_bit(kernel):
 
 def test_threads_that_sleep_at_every_barrier_give_the_same_bits():
     assert_same_bits(run("elements", threads=2, spins=0), run("elements"))
+
+
+@pytest.mark.parametrize("most, expected", [("", 3), ("2", 2), ("9", 3), ("0", 3), ("2,1", 3)])
+def test_the_environment_limits_the_threads_of_a_run(most, expected, monkeypatch):
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1, 5}, raising=False)
+    monkeypatch.setenv("OMP_NUM_THREADS", most)
+    assert processors() == expected

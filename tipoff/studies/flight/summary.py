@@ -8,14 +8,13 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.stats import binomtest
 
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.flight import bodies
 from tipoff.studies.flight.flown import Flown
-from tipoff.studies.populations import answers, order_statistics
+from tipoff.studies.populations import answers, exceedance, order_statistics
 from tipoff.studies.populations.answers import Left
 from tipoff.studies.populations.population import Population
 
@@ -181,11 +180,7 @@ def _share(flags: np.ndarray, independent: bool) -> dict | None:
     if not len(flags):
         return None
     count = int(flags.sum())
-    ends = (
-        binomtest(count, len(flags)).proportion_ci(CONFIDENCE, "exact")
-        if independent
-        else (None, None)
-    )
+    ends = exceedance.bounds(count, len(flags), CONFIDENCE) if independent else (None, None)
     return {
         "count": count,
         "of": len(flags),

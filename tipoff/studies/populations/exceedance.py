@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import binomtest
+from scipy.special import betaincinv
 
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.units import to_si
@@ -79,15 +79,18 @@ def any_above(rates: np.ndarray, limits_: Sequence[Limit]) -> np.ndarray:
 
 def bounds(count: int, cases: int, confidence: float) -> tuple[float, float]:
     """Two-sided bounds of a probability from ``count`` of ``cases``."""
-    found = binomtest(count, cases).proportion_ci(confidence, method="exact")
-    return float(found.low), float(found.high)
+    tail = 0.5 * (1.0 - confidence)
+    return _at_least(count, cases, 1.0 - tail), at_most(count, cases, 1.0 - tail)
 
 
 def at_most(count: int, cases: int, confidence: float) -> float:
     """One-sided upper bound of a probability from ``count`` of ``cases``."""
-    return float(
-        binomtest(count, cases, alternative="less").proportion_ci(confidence, method="exact").high
-    )
+    return 1.0 if count == cases else float(betaincinv(count + 1, cases - count, confidence))
+
+
+def _at_least(count: int, cases: int, confidence: float) -> float:
+    """One-sided lower bound."""
+    return 0.0 if count == 0 else float(betaincinv(count, cases - count + 1, 1.0 - confidence))
 
 
 def allowed(cases: int, probability: float, confidence: float) -> int | None:
