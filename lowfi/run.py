@@ -133,7 +133,7 @@ def improved(first: "Run", progress: Callable[[float], None] | None = None) -> "
             first.numerics,
             first.compliance,
             numerics,
-            first.system.neglected is not None,
+            first.watches,
         )
         finer.reruns, finer.discarded = reruns, best.discarded + int(best.loop.counts.steps)
         finer.begin()
@@ -161,7 +161,7 @@ class Run:
         watches: bool = False,
     ):
         self.scene, self.numerics, self.compliance = scene, numerics, compliance
-        self.modes = count = numerics.count
+        self.watches, self.modes = watches, (count := numerics.count)
         self.promised = promises_of(numerics)
         self.used = used = finer or numerics
         self.model = model = models.build(scene)
@@ -175,7 +175,7 @@ class Run:
             model,
             compliance=compliance_record.under_pads(scene, model, compliance, count),
             thermal_offset=thermal_offset.under_pads(scene, model, compliance),
-            neglected=neglected.watched(scene, model, compliance, count) if watches else None,
+            neglected=neglected.watched(scene, model, compliance, count, watches),
         )
         self.loop = integrate.ready(self.system, state.initial(model), self.plan.first)
         self.rows, self.forces = (

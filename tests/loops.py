@@ -1,4 +1,7 @@
-"""Runs that compile the time loops which several test files share, each loop by one function."""
+"""Runs that compile the time loops which several test files share, each loop by one function.
+
+Loops of a family share most of their code, which a process compiles once.
+"""
 
 from tests.highfi.contact.test_deformed_wall import Pressed
 from tests.highfi.dynamics.test_mounts import DAMPED, SOFT
@@ -6,7 +9,6 @@ from tests.highfi.support import COARSE, begun, tiny
 from tests.lowfi.compliance import REFERENCE, reference_compliance
 from tests.lowfi.support import PAPER_PAD, scene
 from tipoff import highfi, lowfi
-from tipoff.lowfi.run import Run
 
 LINEAR = {"law": "linear", "clearance": 1e-5, "stiffness": 7e7, "damping": 0.0}
 HUNT_CROSSLEY = {
@@ -17,22 +19,20 @@ HUNT_CROSSLEY = {
     "dissipation": 1.0,
 }
 NO_THRUST = {"kind": "gaussian", "peak": 0.0, "width": 1e-3, "centre": 0.0}
+STICKING = {
+    "law": "sticking",
+    "static": 0.3,
+    "dynamic": 0.3,
+    "stiffness": 1e7,
+    "damping": 1e4,
+}
+FIXED = {"platform": None}
 FOUR = lowfi.Numerics(modes=4)
 
 
 def four_modes() -> None:
     """The surrogate on compliant rails that vibrate."""
     lowfi.run(REFERENCE, "compliant", compliance=reference_compliance(), numerics=FOUR)
-
-
-def four_modes_and_others_watched() -> None:
-    """The same, as the choice of modes makes it."""
-    Run(REFERENCE, FOUR, reference_compliance(), watches=True).begin()
-
-
-def modes_watched() -> None:
-    """The surrogate on compliant rails, its first run."""
-    lowfi.run(REFERENCE, "compliant", compliance=reference_compliance())
 
 
 def without_modes() -> None:
@@ -44,6 +44,17 @@ def without_modes() -> None:
 def finite_elements() -> None:
     """The reference on the small scene."""
     highfi.run(tiny(), COARSE)
+
+
+def fixed_rails() -> None:
+    """The reference on a fixed platform."""
+    begun(tiny(platform=None))
+
+
+def fixed_rails_under_a_curve() -> None:
+    """The same, with the curve of a thrust that has no offset."""
+    thrust = {"kind": "constant", "force": 1.0, "duration": 1.0}
+    begun(tiny(platform=None, thrust=thrust, thrust_offset=None))
 
 
 def damped_rails() -> None:
@@ -71,6 +82,11 @@ def springs() -> None:
     lowfi.run(REFERENCE, "springs")
 
 
+def springs_on_a_fixed_platform() -> None:
+    """The surrogate on springs, without a platform."""
+    lowfi.run(REFERENCE.replace(FIXED), "springs")
+
+
 def body_on_impact() -> None:
     """One body on the contact law of the paper."""
     lowfi.run(scene(1e-3, 1e-3, contact=PAPER_PAD), "springs")
@@ -86,6 +102,16 @@ def body_on_hunt_crossley() -> None:
     lowfi.run(scene(1e-3, 1e-3, contact=HUNT_CROSSLEY), "springs")
 
 
+def body_that_sticks() -> None:
+    """One body on a linear contact law with friction that sticks."""
+    lowfi.run(scene(1e-3, 1e-3, contact=LINEAR, friction=STICKING), "springs")
+
+
+def body_that_sticks_to_a_platform() -> None:
+    """The same on a platform."""
+    lowfi.run(scene(1e-3, 1e-3, contact=LINEAR, friction=STICKING, thrust=NO_THRUST), "springs")
+
+
 def free_body() -> None:
     """One body without contact."""
     lowfi.run(scene(1e-3, 1e-3), "springs")
@@ -96,20 +122,29 @@ def two_free_bodies() -> None:
     lowfi.run(scene(1e-3, 1e-3, thrust=NO_THRUST), "springs")
 
 
-LOOPS = (
-    four_modes_and_others_watched,
-    four_modes,
-    modes_watched,
-    without_modes,
+def free_payload() -> None:
+    """A payload without contact on a fixed platform."""
+    lowfi.run(REFERENCE.replace(FIXED | {"contact": None, "friction": None}), "springs")
+
+
+# Runs that watch modes, or choose them, have the same kernels.
+COMPLIANT = (four_modes, without_modes)
+FINITE_ELEMENTS = (
     finite_elements,
+    fixed_rails,
+    fixed_rails_under_a_curve,
     damped_rails,
     rails_on_joints,
     hexahedra,
     tetrahedra,
-    springs,
+)
+BODIES = (
     body_on_impact,
     body_on_linear,
     body_on_hunt_crossley,
+    body_that_sticks,
+    body_that_sticks_to_a_platform,
     free_body,
-    two_free_bodies,
 )
+PAYLOADS = (springs, springs_on_a_fixed_platform, free_payload, two_free_bodies)
+FAMILIES = (FINITE_ELEMENTS, COMPLIANT, BODIES, PAYLOADS)  # the longest first

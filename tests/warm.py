@@ -1,4 +1,4 @@
-"""Compiles the time loops that several test files share, each once, on all cores.
+"""Compiles the time loops that several test files share, each once.
 
     python -m tests.warm
 
@@ -6,6 +6,8 @@ Workers of pytest that meet the same kernel at the same time would each compile 
 beside the kernels says that all loops of this code are compiled: then nothing is done.
 """
 
+import os
+from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from importlib import import_module, metadata
 from multiprocessing import get_context
@@ -22,12 +24,21 @@ def stamp() -> Path:
     return sources.cache_folder() / "kernels" / name
 
 
+def run(loops: Sequence[Callable[[], None]]) -> None:
+    """Run one loop after the other."""
+    for loop in loops:
+        loop()
+
+
 def main() -> None:
-    """Compile what is not compiled yet."""
+    """Compile what is not compiled yet: by family on few cores, else each loop on its own."""
     if stamp().exists():
         return
+    families = import_module(LOOPS).FAMILIES
+    loops = [(loop,) for family in families for loop in family]
+    shares = families if (os.cpu_count() or 1) <= 2 * len(families) else loops
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
-        for done in [pool.submit(loop) for loop in import_module(LOOPS).LOOPS]:
+        for done in [pool.submit(run, share) for share in shares]:
             done.result()
     stamp().touch()
 

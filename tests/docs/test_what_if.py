@@ -73,9 +73,10 @@ def address(browser, tmp_path_factory):
         server.wait(timeout=30)
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def page(browser, address):
-    """The page after its first final run, and the errors of its console."""
+    """The page after its first final run, and the errors of its console; each test goes on where the
+    one before left it."""
     opened = browser.new_page(viewport={"width": 1500, "height": 1000})
     errors: list[str] = []
     opened.on("pageerror", lambda error: errors.append(str(error)))
@@ -111,7 +112,7 @@ def press(page, slider: int, key: str, count: int) -> list[float]:
 def test_sliders_give_the_rates_of_run(page, capsys):
     opened, errors = page
     begun = shown(opened)
-    assert begun == expected()
+    assert begun == expected()  # the first test of the page
     drawing = opened.locator(".ejection")
     drawing.evaluate(WATCH)
     sliders = opened.get_by_role("slider")

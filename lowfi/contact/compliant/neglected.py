@@ -60,12 +60,16 @@ class Neglected(NamedTuple):
 
 
 def watched(
-    scene: Scene, model: Model, found: RailCompliance | None, first: int
+    scene: Scene, model: Model, found: RailCompliance | None, first: int, watches: bool
 ) -> Neglected | None:
     """Record of the modes of the rail compliance ``found``, of which those from number ``first`` on
-    are neglected; None without contact and for rigid walls."""
+    are neglected; of no modes, for the same kernels, where no run ``watches`` them; None without
+    contact and for rigid walls."""
     if found is None or found.flexibility is None or model.contact is None:
         return None
+    if not watches:
+        none = zeros((0, 0))
+        return build(none, none, zeros((0, 0, 0, 0, 0)), 0)
     found = found.of(scene)
     square = found.frequency**2
     return build(square, drag_of(square, damping_of(scene)), found.shapes, first)

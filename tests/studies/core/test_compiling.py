@@ -71,9 +71,20 @@ def test_kernels_with_modes_of_the_rails_are_others(monkeypatch, tmp_path, capfd
     assert "once, and a minute more if modes" in announced("auto")
     # it began without modes, so those with modes are not there
     assert "with modes of the rails" in announced("auto", chosen=True)
-    assert "once\n" in announced(0) and "once\n" in announced(4)
-    assert [announced(modes) for modes in ("auto", 0, 20)] == ["", "", ""]
-    assert announced("auto", chosen=True) == ""
+    assert [announced(modes) for modes in ("auto", 0, 4, 20)] == [""] * 4
+
+
+def test_runs_of_given_modes_leave_kernels_for_those_that_choose(monkeypatch, tmp_path, capfd):
+    """And so for many cases alone, which may need those with modes and those without."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    for modes, expected in ((4, "with modes"), (0, "once\n"), ("auto", "")):
+        kernel_marks.announce(pressed(modes))
+        said = capfd.readouterr().err
+        assert expected in said and bool(expected) == bool(said)
+        kernel_marks.remember(pressed(modes))
+    kernel_marks.remember(pressed("auto"), many=True)
+    kernel_marks.announce(pressed(0), many=True)
+    assert "once\n" in capfd.readouterr().err
 
 
 def test_modes_that_are_there_are_not_announced_as_missing(monkeypatch, tmp_path, capfd):

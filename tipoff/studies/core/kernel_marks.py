@@ -58,14 +58,13 @@ def announce(run: "Run", chosen: bool = False, many: bool = False) -> None:
     if path.is_file() or path in _SAID:
         return
     _SAID.add(path)
-    modes = _modes(run)
-    vibrates = chosen or modes is True
-    may_vibrate = modes == AUTO and not chosen and not mark(run, True, many).is_file()
+    vibrates = _vibrates(run, chosen)
+    chooses = _modes(run) == AUTO and not chosen
     say(
         f"compiling the kernels of model {run.model}"
         + (" with modes of the rails" if vibrates else "")
         + f" for these effects: about {_TIMES[vibrates]}, once"
-        + (_WITH_MODES if may_vibrate else "")
+        + (_WITH_MODES if chooses and not mark(run, True, many).is_file() else "")
     )
 
 
@@ -84,15 +83,19 @@ def mark(run: "Run", chosen: bool = False, many: bool = False) -> Path:
         kernel_digest(f"tipoff.{run.fidelity}"),
         run.model,
         run.scene.absent_effects(),
-        _modes(run),
-        chosen,
+        _vibrates(run, chosen),
         many,
+        many and not chosen and _modes(run) == AUTO,  # of many cases, those with modes too
     )
     return sources.cache_folder() / "kernels" / f"compiled-{key[:16]}"
 
 
-def _modes(run: "Run") -> str | bool:
-    """What decides which kernels there are of rails: a number to be chosen, some modes, or none."""
+def _vibrates(run: "Run", chosen: bool) -> bool:
+    """Whether the kernels are those with modes of the rails, as where modes were ``chosen``."""
+    return chosen or _modes(run) not in (AUTO, 0)
+
+
+def _modes(run: "Run") -> str | int:
+    """Modes of the rails that ``run`` asks for, zero where nothing presses a rail."""
     pressed = run.model == COMPLIANT and run.compliance is not None
-    modes = getattr(run.numerics, "modes", 0) if pressed else 0
-    return AUTO if modes == AUTO else modes > 0
+    return getattr(run.numerics, "modes", 0) if pressed else 0
