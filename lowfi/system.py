@@ -80,7 +80,7 @@ class System(NamedTuple):
     sticking: Sticking | None  # stick-slip law
     body_force: BodyForce | None
     ledger: bool | None  # True where work, losses and impulses are integrated
-    neglected: "Neglected | None"  # modes of the rails that are watched, None in most ensembles
+    neglected: "Neglected | None"  # modes of the rails that are watched, None at rigid walls
 
 
 def build(

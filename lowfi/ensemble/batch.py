@@ -9,6 +9,7 @@ import numpy as np
 
 from tipoff.lowfi import state, system
 from tipoff.lowfi.contact import thermal_offset
+from tipoff.lowfi.contact.compliant import neglected
 from tipoff.lowfi.contact.compliant import record as compliance_record
 from tipoff.lowfi.dynamics import cases, integrate, local_error, plan
 from tipoff.lowfi.dynamics.loop import Plan, Sampling
@@ -180,12 +181,12 @@ class Family:
 
     def _kernel(self, group: _Group) -> Callable[[], np.ndarray]:
         scene, model = group.built.scene, group.built.model
+        modes, found = self.numerics.count, self.compliance
         common = system.build(
             model,
-            compliance=compliance_record.under_pads(
-                scene, model, self.compliance, self.numerics.count
-            ),
-            thermal_offset=thermal_offset.under_pads(scene, model, self.compliance),
+            compliance=compliance_record.under_pads(scene, model, found, modes),
+            thermal_offset=thermal_offset.under_pads(scene, model, found),
+            neglected=neglected.watched(scene, model, found, modes, watches=False),
         )
         loop = integrate.ready(common, state.initial(model), group.plan.first)
         allowed = local_error.tolerance(self.numerics, promises_of(self.numerics), 0.0)
