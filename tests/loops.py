@@ -26,6 +26,7 @@ STICKING = {
     "stiffness": 1e7,
     "damping": 1e4,
 }
+NO_FORCE = {"kind": "constant", "force": 0.0, "duration": 1e-3}
 FIXED = {"platform": None}
 FOUR = lowfi.Numerics(modes=4)
 
@@ -41,6 +42,14 @@ def without_modes() -> None:
     lowfi.run(REFERENCE, "compliant", compliance=reference_compliance(), numerics=none)
 
 
+def weight_without_modes() -> None:
+    """A payload without thrust or friction on compliant rails of a fixed platform."""
+    absent = FIXED | {"friction": None, "thrust_offset": None}
+    alone = REFERENCE.replace(absent | {"thrust": NO_FORCE, "gravity": {"z": -9.80665}})
+    none = lowfi.Numerics(modes=0)
+    lowfi.run(alone, "compliant", compliance=reference_compliance(), numerics=none)
+
+
 def finite_elements() -> None:
     """The reference on the small scene."""
     highfi.run(tiny(), COARSE)
@@ -53,8 +62,7 @@ def fixed_rails() -> None:
 
 def fixed_rails_under_a_curve() -> None:
     """The same, with the curve of a thrust that has no offset."""
-    thrust = {"kind": "constant", "force": 1.0, "duration": 1.0}
-    begun(tiny(platform=None, thrust=thrust, thrust_offset=None))
+    begun(tiny(platform=None, thrust=NO_FORCE, thrust_offset=None))
 
 
 def damped_rails() -> None:
@@ -128,7 +136,7 @@ def free_payload() -> None:
 
 
 # Runs that watch modes, or choose them, have the same kernels.
-COMPLIANT = (four_modes, without_modes)
+COMPLIANT = (four_modes, without_modes, weight_without_modes)
 FINITE_ELEMENTS = (
     finite_elements,
     fixed_rails,
