@@ -39,6 +39,7 @@ def forget():
     """Let digests be taken anew, as another process would."""
     sources.digest.cache_clear()
     sources.source.cache_clear()
+    sources.used_by.cache_clear()
 
 
 def edit(file: Path, old: str, new: str) -> None:

@@ -65,9 +65,10 @@ def closure(*modules: str) -> list[str]:
     return sorted(found)
 
 
-def used_by(module: str) -> set[str]:
+@functools.cache
+def used_by(module: str) -> frozenset[str]:
     """Dotted names of the modules of the project that ``module`` imports itself."""
-    return {used for used in map(_module, source(module).imports) if used}
+    return frozenset(used for used in map(_module, source(module).imports) if used)
 
 
 def path(module: str) -> Path | None:

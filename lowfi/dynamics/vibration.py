@@ -45,5 +45,5 @@ def reset_neglected(watched):
 @inlined
 def follow_neglected(watched, system, loop):
     """Drive the neglected modes that are ``watched`` through the step just taken."""
-    if watched is not None and watched.square.size > 0:
+    if watched is not None and watched.effect.size > 0:
         neglected.follow(watched, system, loop)

@@ -40,22 +40,30 @@ from tipoff.mechanics.model import Model
 from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance
 from tipoff.scenes.scene import Scene
 
+MODE = np.dtype(
+    [
+        ("square", float),  # 1/s2
+        ("drag", float),  # 1/s
+        ("amplitude", float),  # kg^0.5 m
+        ("rate", float),  # kg^0.5 m/s
+        ("force", float),  # kg^0.5 m/s2
+        ("before", float),  # J, energy as the contact began
+    ]
+)
+# The time (s) of the modes of a rail, and whether a contact goes on.
+RAIL = np.dtype([("time", float), ("pressed", np.bool_)])
+# Of the contact that goes on: impulse (N s) and the last speed (m/s) away from the wall.
+FACE = np.dtype([("impulse", float), ("leaving", float)])
+
 
 class Neglected(NamedTuple):
     """All n modes of each of r rails under f faces, and what those that a run neglects would do."""
 
     first: int  # number of the lowest that is neglected
-    square: np.ndarray  # (r, n) 1/s2
-    drag: np.ndarray  # (r, n) 1/s
     cubic: np.ndarray  # (s-1, f, n, 4, p) 1/kg^0.5, as in ``record.Modes``
-    amplitude: np.ndarray  # (r, n) kg^0.5 m
-    rate: np.ndarray  # (r, n) kg^0.5 m/s
-    force: np.ndarray  # (r, n) kg^0.5 m/s2
-    before: np.ndarray  # (r, n) J, energy as the contact began
-    time: np.ndarray  # (r,) s, of these
-    pressed: np.ndarray  # (r,) whether a contact goes on
-    impulse: np.ndarray  # (f,) N s, of the contact that goes on
-    leaving: np.ndarray  # (f,) m/s, last speed away from the wall
+    modes: np.ndarray  # (r, n) of MODE
+    rails: np.ndarray  # (r,) of RAIL
+    faces: np.ndarray  # (f,) of FACE
     effect: np.ndarray  # (n,) rad/s, of the mode of this number on all rails
 
 
@@ -77,20 +85,14 @@ def watched(
 
 def build(square: np.ndarray, drag: np.ndarray, cubic: np.ndarray, first: int) -> Neglected:
     """Record at rest."""
-    rails, faces = square.shape[0], cubic.shape[1]
+    modes = np.zeros(square.shape, MODE)
+    modes["square"], modes["drag"] = square, drag
     return Neglected(
         first=first,
-        square=square,
-        drag=drag,
         cubic=cubic,
-        amplitude=zeros(square.shape),
-        rate=zeros(square.shape),
-        force=zeros(square.shape),
-        before=zeros(square.shape),
-        time=zeros((rails,)),
-        pressed=np.zeros(rails, dtype=np.bool_),
-        impulse=zeros((faces,)),
-        leaving=zeros((faces,)),
+        modes=modes,
+        rails=np.zeros(square.shape[0], RAIL),
+        faces=np.zeros(cubic.shape[1], FACE),
         effect=zeros((square.shape[1],)),
     )
 
@@ -98,11 +100,16 @@ def build(square: np.ndarray, drag: np.ndarray, cubic: np.ndarray, first: int) -
 @inlined
 def reset(neglected):
     """Bring all rails to rest."""
-    for values in (neglected.amplitude, neglected.rate, neglected.force, neglected.before):
-        values[:] = 0.0
-    for numbers in (neglected.time, neglected.impulse, neglected.leaving, neglected.effect):
-        numbers[:] = 0.0
-    neglected.pressed[:] = False
+    for rail in range(neglected.rails.size):
+        neglected.rails[rail].time = 0.0
+        neglected.rails[rail].pressed = False
+        for i in range(neglected.effect.size):
+            mode = neglected.modes[rail, i]
+            mode.amplitude, mode.rate, mode.force, mode.before = 0.0, 0.0, 0.0, 0.0
+    for face in range(neglected.faces.size):
+        neglected.faces[face].impulse = 0.0
+        neglected.faces[face].leaving = 0.0
+    neglected.effect[:] = 0.0
 
 
 @kernel
@@ -111,35 +118,37 @@ def follow(neglected, system, loop):
     compliance, clock = system.compliance, loop.clock
     for rail in range(compliance.members.shape[0]):
         if is_pressed(compliance.members, rail, loop.touching):
-            if not neglected.pressed[rail]:
+            if not neglected.rails[rail].pressed:
                 _begin(neglected, compliance.members, rail, clock.began)
             _press(neglected, system, loop, rail)
-        elif neglected.pressed[rail]:
+        elif neglected.rails[rail].pressed:
             _leave(neglected, system, loop.start, rail)
 
 
 @kernel
 def _begin(neglected, members, rail, time):
     """Let the modes of a rail swing freely up to the ``time`` (s) at which a contact begins."""
-    neglected.pressed[rail] = True
-    for i in range(neglected.first, neglected.square.shape[1]):
-        neglected.force[rail, i] = 0.0
-        drive(neglected, rail, i, time - neglected.time[rail], 0.0)
-        neglected.before[rail, i] = energy(neglected, rail, i)
-    neglected.time[rail] = time
+    record = neglected.rails[rail]
+    record.pressed = True
+    for i in range(neglected.first, neglected.effect.size):
+        mode = neglected.modes[rail, i]
+        mode.force = 0.0
+        drive(mode, time - record.time, 0.0)
+        mode.before = energy(mode)
+    record.time = time
     for k in range(members.shape[1]):
         if members[rail, k] >= 0:
-            neglected.impulse[members[rail, k]] = 0.0
+            neglected.faces[members[rail, k]].impulse = 0.0
 
 
 @kernel
 def _press(neglected, system, loop, rail):
-    compliance, dt = system.compliance, loop.clock.now - neglected.time[rail]
+    compliance, dt = system.compliance, loop.clock.now - neglected.rails[rail].time
     payload = system.payload
     body = slot.motion(payload.mass, payload.inverse_inertia, loop.end, slot.PAYLOAD)
     place, _ = relative_pose(system.platform, body, slot.frame(system.platform, loop.end))
     station, way, _ = between_stations(compliance, place[0] + system.faces[0, 0])
-    for i in range(neglected.first, neglected.square.shape[1]):
+    for i in range(neglected.first, neglected.effect.size):
         total = 0.0
         for k in range(compliance.members.shape[1]):
             face = compliance.members[rail, k]
@@ -148,67 +157,67 @@ def _press(neglected, system, loop, rail):
                 for a in range(PATTERNS):
                     value = c[0, a] + way * (c[1, a] + way * (c[2, a] + way * c[3, a]))
                     total += value * pressure[a]
-        drive(neglected, rail, i, dt, total)
+        drive(neglected.modes[rail, i], dt, total)
     for k in range(compliance.members.shape[1]):
         face = compliance.members[rail, k]
         if face >= 0 and loop.touching[face]:
-            neglected.impulse[face] += dt * compliance.workspace.force[face, 0]
-            neglected.leaving[face] = -loop.after[face, CLOSING]
-    neglected.time[rail] = loop.clock.now
+            neglected.faces[face].impulse += dt * compliance.workspace.force[face, 0]
+            neglected.faces[face].leaving = -loop.after[face, CLOSING]
+    neglected.rails[rail].time = loop.clock.now
 
 
 @inlined
-def drive(neglected, rail, i, dt, force):
+def drive(mode, dt, force):
     """Move one mode by ``dt`` (s) under a force that changes linearly up to ``force``: the particular
     solution is linear too."""
-    square, drag = neglected.square[rail, i], neglected.drag[rail, i]
-    slope = (force - neglected.force[rail, i]) / dt if dt > 0.0 else 0.0
+    square, drag = mode.square, mode.drag
+    slope = (force - mode.force) / dt if dt > 0.0 else 0.0
     lag = drag * slope / square
     q, rate = oscillated(
         square,
         drag,
         dt,
-        neglected.amplitude[rail, i] - (neglected.force[rail, i] - lag) / square,
-        neglected.rate[rail, i] - slope / square,
+        mode.amplitude - (mode.force - lag) / square,
+        mode.rate - slope / square,
     )
-    neglected.amplitude[rail, i] = q + (force - lag) / square
-    neglected.rate[rail, i] = rate + slope / square
-    neglected.force[rail, i] = force
+    mode.amplitude = q + (force - lag) / square
+    mode.rate = rate + slope / square
+    mode.force = force
 
 
 @inlined
-def energy(neglected, rail, i):
+def energy(mode):
     """Energy (J) of one mode."""
-    q, rate = neglected.amplitude[rail, i], neglected.rate[rail, i]
-    return 0.5 * (rate * rate + neglected.square[rail, i] * q * q)
+    return 0.5 * (mode.rate * mode.rate + mode.square * mode.amplitude * mode.amplitude)
 
 
 @kernel
 def _leave(neglected, system, state, rail):
     """End the contact of a rail at ``state`` and add what each mode would do to the rates."""
     compliance, payload, platform = system.compliance, system.payload, system.platform
-    neglected.pressed[rail] = False
-    face = _most_pressed(compliance.members, neglected.impulse, rail)
+    neglected.rails[rail].pressed = False
+    number = _most_pressed(compliance.members, neglected.faces, rail)
+    face = system.faces[number]
     body = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD)
     base = slot.frame(platform, state)
-    point, n = pad_point(system.faces[face], body), outward(system.faces[face], base)
+    point, n = pad_point(face, body), outward(face, base)
     mass = 1.0 / inverse_mass(platform, payload, body, base, point, n)
-    p, speed = body.place, abs(neglected.leaving[face])
+    p, speed = body.place, abs(neglected.faces[number].leaving)
     arm = (point[0] - p[0], point[1] - p[1], point[2] - p[2])
     turned = rotation.angular_velocity(body.turn, payload.inverse_inertia, rotation.cross(arm, n))
     by_impulse = np.sqrt(rotation.dot(turned, turned))
-    for i in range(neglected.first, neglected.square.shape[1]):
-        gained = energy(neglected, rail, i) - neglected.before[rail, i]
-        left = np.sqrt(max(0.0, speed * speed - 2.0 * gained / mass))
+    for i in range(neglected.first, neglected.effect.size):
+        mode = neglected.modes[rail, i]
+        left = np.sqrt(max(0.0, speed * speed - 2.0 * (energy(mode) - mode.before) / mass))
         neglected.effect[i] += by_impulse * mass * abs(speed - left)
 
 
 @inlined
-def _most_pressed(members, impulse, rail):
+def _most_pressed(members, faces, rail):
     """The face on ``rail`` with the largest impulse."""
     most = members[rail, 0]
     for k in range(members.shape[1]):
         face = members[rail, k]
-        if face >= 0 and impulse[face] > impulse[most]:
+        if face >= 0 and faces[face].impulse > faces[most].impulse:
             most = face
     return most

@@ -15,8 +15,9 @@ OMEGA = 2.0 * np.pi * 3000.0  # 1/s
 @entry
 def drive(record, forces, dt, found):
     for i in range(forces.size):
-        neglected.drive(record, 0, 0, dt, forces[i])
-        found[i, 0], found[i, 1] = neglected.energy(record, 0, 0), record.amplitude[0, 0]
+        mode = record.modes[0, 0]
+        neglected.drive(mode, dt, forces[i])
+        found[i, 0], found[i, 1] = neglected.energy(mode), mode.amplitude
 
 
 def driven(record: neglected.Neglected, forces: np.ndarray, dt: float) -> np.ndarray:
