@@ -162,6 +162,11 @@ def test_the_python_of_pages_runs_on_the_wheel(python, tmp_path):
     assert Path(said.split("\n")[-2]).is_relative_to(python.parents[1])
 
 
+def test_the_command_runs_on_the_wheel(python, tmp_path):
+    said = _run(python, "-m", "tipoff", "scenes", cwd=tmp_path)
+    assert "reference" in said and "conditions" in said
+
+
 def test_a_scene_is_run_on_the_wheel(python, tmp_path):
     """One that is written by the user, and files of results beside it."""
     (tmp_path / "mine.toml").write_text(

@@ -121,6 +121,6 @@ def test_settled_rates_are_those_of_hexahedra(tmp_path):
     )
     assert found.status == expected.status == "exited"
     assert_promises(found)
-    assert np.degrees(expected.outcome.rate).max() == pytest.approx(9.0, rel=0.01)
+    assert np.degrees(expected.outcome.rate).max() > 9.0
     assert np.abs(np.degrees(np.subtract(found.outcome.rate, expected.outcome.rate))).max() < 0.06
     assert found.outcome.exit_time == pytest.approx(expected.outcome.exit_time, rel=1e-5)
