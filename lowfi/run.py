@@ -161,7 +161,7 @@ class Run:
         watches: bool = False,
     ):
         self.scene, self.numerics, self.compliance = scene, numerics, compliance
-        self.watches, self.modes = watches, (count := numerics.count)
+        self.watches, self.modes = watches, numerics.count
         self.promised = promises_of(numerics)
         self.used = used = finer or numerics
         self.model = model = models.build(scene)
@@ -173,9 +173,9 @@ class Run:
         self.tolerance = local_error.tolerance(used, self.promised, reach)
         self.system = system.build(
             model,
-            compliance=compliance_record.under_pads(scene, model, compliance, count),
+            compliance=compliance_record.under_pads(scene, model, compliance, self.modes),
             thermal_offset=thermal_offset.under_pads(scene, model, compliance),
-            neglected=neglected.watched(scene, model, compliance, count, watches),
+            neglected=neglected.watched(scene, model, compliance, self.modes, watches),
         )
         self.loop = integrate.ready(self.system, state.initial(model), self.plan.first)
         self.rows, self.forces = (

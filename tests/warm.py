@@ -1,4 +1,4 @@
-"""Compiles the time loops that several test files share, each once.
+"""Compile the time loops that several test files share, each once.
 
     python -m tests.warm
 
@@ -31,7 +31,8 @@ def run(loops: Sequence[Callable[[], None]]) -> None:
 
 
 def main() -> None:
-    """Compile what is not compiled yet: by family on few cores, else each loop on its own."""
+    """Compile the loops that are not compiled yet. On few cores, one process compiles a family, whose
+    loops share code; on many, each loop has its own."""
     if stamp().exists():
         return
     families = import_module(LOOPS).FAMILIES

@@ -1,8 +1,9 @@
 """Threads that share one run: barrier and work queue.
 
-All threads take the same steps. The barrier spins, because a step lasts tens of microseconds; a
-thread that waits for long sleeps until the last one wakes it. It must not call ``sched_yield``: beside
-another busy program, Linux then keeps it from its processor for a whole time slice at each barrier.
+All threads take the same steps. A step lasts tens of microseconds, so a thread that waits at a barrier
+spins first. After about 0.2 ms it sleeps on a condition variable, and the last thread to arrive wakes
+it. ``sched_yield`` does not replace the sleep: beside another busy program, Linux then keeps the thread
+from its processor for a whole time slice at each barrier.
 """
 
 import ctypes
@@ -20,7 +21,8 @@ from tipoff.kernels.jit import kernel
 from tipoff.kernels.memory import zeros
 
 _ROUND, _ARRIVED, _NEXT, _ASLEEP, _MUTEX, _CONDITION = 0, 8, 16, 24, 32, 40  # cache lines
-_SPINS, _FEWER_SPINS = 100_000, 4_000  # before a waiting thread sleeps: about 0.2 ms
+_SPINS = 100_000  # reads of the round before a waiting thread sleeps: about 0.2 ms
+_FEWER_SPINS = 4_000  # the same where threads outnumber processors
 _WORD = ir.IntType(64)
 _POSIX = os.name == "posix"  # elsewhere it only spins
 
@@ -29,8 +31,8 @@ class Team(NamedTuple):
     """Threads of one run."""
 
     size: int
-    spins: int  # of a waiting thread before it sleeps
-    counters: np.ndarray  # (48,) of the barrier and of the work queue; mutex, condition variable
+    spins: int  # reads of the round before a waiting thread sleeps
+    counters: np.ndarray  # (48,) barrier, work queue, mutex, condition variable
     lanes: np.ndarray  # (size, 4, LANES) workspace of each thread; also the forces of one element
 
 
@@ -47,7 +49,7 @@ def team_of(size: int) -> Team:
 
 
 def processors() -> int:
-    """Processors this process may use, and no more than ``OMP_NUM_THREADS`` says."""
+    """Processors this process may use, at most ``OMP_NUM_THREADS``."""
     here = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     most = os.environ.get("OMP_NUM_THREADS", "")
     return min(here, int(most)) if most.isdecimal() and int(most) > 0 else here
@@ -93,7 +95,8 @@ def _write(typing, counters, index, value):
 
 
 def _of_threads(name: str, *places: int):
-    """Call of a function of POSIX threads with pointers to these places of the counters."""
+    """A call of ``pthread_name`` with pointers to these ``places`` of the counters; nothing where
+    there are no POSIX threads."""
 
     @intrinsic
     def call(typing, counters):
@@ -121,8 +124,11 @@ _wake_all = _of_threads("cond_broadcast", _CONDITION)
 
 @kernel
 def barrier(team):
-    """Wait until every thread of the team is here. The last one either finds that another sleeps, or
-    ends the round before that one reads it a last time."""
+    """Wait until all threads of the team are here.
+
+    No wake-up is lost. A thread counts itself as asleep and then reads the round once more; the last
+    thread ends the round and then reads that count. One of the two sees what the other wrote.
+    """
     if team.size > 1:
         counters = team.counters
         now = _read(counters, _ROUND)

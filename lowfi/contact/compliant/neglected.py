@@ -70,9 +70,9 @@ class Neglected(NamedTuple):
 def watched(
     scene: Scene, model: Model, found: RailCompliance | None, first: int, watches: bool
 ) -> Neglected | None:
-    """Record of the modes of the rail compliance ``found``, of which those from number ``first`` on
-    are neglected; of no modes, for the same kernels, where no run ``watches`` them; None without
-    contact and for rigid walls."""
+    """Record of the modes of the rail compliance ``found``; those from number ``first`` on are
+    neglected. Where no run ``watches`` them it has no modes, so that the kernels are the same. None
+    without contact and for rigid walls."""
     if found is None or found.flexibility is None or model.contact is None:
         return None
     if not watches:

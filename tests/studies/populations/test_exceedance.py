@@ -55,6 +55,16 @@ def test_bounds_with_none_and_all_above_have_closed_forms():
     )
 
 
+@pytest.mark.parametrize("count, cases", [(1, 20), (7, 50), (3, 10_000), (990, 1000)])
+def test_bounds_leave_the_tails_of_the_binomial_distribution(count, cases):
+    """At the upper bound, ``count`` or fewer have the probability that the confidence leaves; at the
+    lower bound, ``count`` or more."""
+    low, high = exceedance.bounds(count, cases, 0.95)
+    assert low < count / cases < high
+    assert stats.binom.sf(count - 1, cases, low) == pytest.approx(0.025, rel=1e-9)
+    assert stats.binom.cdf(count, cases, high) == pytest.approx(0.025, rel=1e-9)
+
+
 @pytest.mark.case("O49")
 @pytest.mark.parametrize("probability", [0.95, 0.99, 0.9973])
 def test_the_first_allowed_number_of_cases_is_that_of_order_statistics(probability):

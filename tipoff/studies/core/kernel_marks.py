@@ -85,13 +85,15 @@ def mark(run: "Run", chosen: bool = False, many: bool = False) -> Path:
         run.scene.absent_effects(),
         _vibrates(run, chosen),
         many,
-        many and not chosen and _modes(run) == AUTO,  # of many cases, those with modes too
+        # many cases that choose their modes need the kernels without modes and those with
+        many and not chosen and _modes(run) == AUTO,
     )
     return sources.cache_folder() / "kernels" / f"compiled-{key[:16]}"
 
 
 def _vibrates(run: "Run", chosen: bool) -> bool:
-    """Whether the kernels are those with modes of the rails, as where modes were ``chosen``."""
+    """Whether the run needs the kernels with modes of the rails: it asks for some, or has ``chosen``
+    some."""
     return chosen or _modes(run) not in (AUTO, 0)
 
 
