@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import inlined, njit
+from tipoff.kernels.jit import kernel, njit
 from tipoff.lowfi.contact import thermal_offset
 from tipoff.lowfi.system import BACK, NUMBER, SIDE_MIDDLE, SIDE_REACH, System, build
 from tipoff.mechanics import model as models
@@ -150,7 +150,7 @@ def slope_of(system, inertia, platform_inertia, time, state):
     return out
 
 
-@inlined
+@kernel
 def slope(system, inertia, platform_inertia, time, state, out):
     """Time derivative ``out`` of ``state`` (26,)."""
     body, base = _motion(state, 0), _motion(state, _BODY)
@@ -176,13 +176,13 @@ def slope(system, inertia, platform_inertia, time, state, out):
     _platform(system.platform, platform_inertia, base, (F, M), fall, out[_BODY:])
 
 
-@inlined
+@kernel
 def _column(frame, turn, i):
     """Body axis ``i`` in platform axes."""
     return rotation.unrotate(frame, (turn[i], turn[3 + i], turn[6 + i]))
 
 
-@inlined
+@kernel
 def _platform(platform, inertia, motion, wrench, fall, out):
     if platform is None:
         for j in range(_BODY):
@@ -191,7 +191,7 @@ def _platform(platform, inertia, motion, wrench, fall, out):
         _newton_euler(platform, inertia, motion, wrench, fall, out)
 
 
-@inlined
+@kernel
 def _newton_euler(body, inertia, motion, wrench, fall, out):
     w, (force, moment) = motion.body_rate, wrench
     h = (
@@ -209,7 +209,7 @@ def _newton_euler(body, inertia, motion, wrench, fall, out):
         out[6 + i] = turning[i]
 
 
-@inlined
+@kernel
 def thrust(record, offset, time, turn):
     """Force (N) and moment about the payload's mass centre (N m), scene axes."""
     size = magnitude(record.pulses, record.curve, time)
@@ -221,7 +221,7 @@ def thrust(record, offset, time, turn):
     return force, moment
 
 
-@inlined
+@kernel
 def pad_contact(laws, system, face, place, axes, body, base):
     """Force (N) of one face on the payload and its arm from the payload's mass centre (m), scene
     axes.
@@ -266,7 +266,7 @@ def pad_contact(laws, system, face, place, axes, body, base):
     return force, arm
 
 
-@inlined
+@kernel
 def _thermal_offset(offset, face, x):
     """Thermal offset (m) of the wall at ``x`` (m), and its slope."""
     if offset is not None:
@@ -274,7 +274,7 @@ def _thermal_offset(offset, face, x):
     return 0.0, 0.0
 
 
-@inlined
+@kernel
 def _drag(friction, slip):
     value = 0.0
     if friction is not None:
@@ -282,19 +282,19 @@ def _drag(friction, slip):
     return value
 
 
-@inlined
+@kernel
 def _reversed(force, moment, r, R):
     """Moment about R of the opposite of ``force``, whose moment about r is ``moment``."""
     carried = rotation.cross((r[0] - R[0], r[1] - R[1], r[2] - R[2]), force)
     return (-moment[0] - carried[0], -moment[1] - carried[1], -moment[2] - carried[2])
 
 
-@inlined
+@kernel
 def _sum(a, b):
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
-@inlined
+@kernel
 def _motion(state, first):
     """Motion of the body whose slots begin at ``first``."""
     quaternion = (state[first + 6], state[first + 7], state[first + 8], state[first + 9])

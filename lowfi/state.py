@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import entry, inlined
+from tipoff.kernels.jit import entry, kernel
 from tipoff.mechanics import comoving
 from tipoff.mechanics.model import Model
 
@@ -53,7 +53,7 @@ class Motion(NamedTuple):
     rate: tuple  # rad/s, angular velocity
 
 
-@inlined
+@kernel
 def copy(source, target, size):
     """Copy the first ``size`` numbers. A loop, because a slice brings Numba's broadcasting and its
     error texts into each kernel."""
@@ -61,7 +61,7 @@ def copy(source, target, size):
         target[j] = source[j]
 
 
-@inlined
+@kernel
 def modal_size(compliance):
     """How many numbers the modes of ``compliance`` add to the state: all amplitudes q (kg^0.5 m),
     rail by rail, then all their rates."""
@@ -71,7 +71,7 @@ def modal_size(compliance):
     return size
 
 
-@inlined
+@kernel
 def _modal_size(modes):
     size = 0
     if modes is not None:
@@ -79,7 +79,7 @@ def _modal_size(modes):
     return size
 
 
-@inlined
+@kernel
 def copy_all(source, target, modal):
     """Copy a state with ``modal`` numbers of modes after it."""
     copy(source, target, STATE_SIZE)
@@ -87,20 +87,20 @@ def copy_all(source, target, modal):
         target[j] = source[j]
 
 
-@inlined
+@kernel
 def triple(values, first):
     """Three numbers from slot ``first`` on."""
     return (values[first], values[first + 1], values[first + 2])
 
 
-@inlined
+@kernel
 def quaternion(state, body):
     """Quaternion of the body whose slots begin at ``body``."""
     first = body + QUATERNION
     return (state[first], state[first + 1], state[first + 2], state[first + 3])
 
 
-@inlined
+@kernel
 def motion(mass, inverse_inertia, state, body):
     """Motion of the body whose slots begin at ``body``."""
     place, velocity = triple(state, body + PLACE), triple(state, body + VELOCITY)
@@ -110,7 +110,7 @@ def motion(mass, inverse_inertia, state, body):
     return Motion(place, velocity, turn, rotation.angular_velocity(turn, inverse_inertia, spin))
 
 
-@inlined
+@kernel
 def frame(platform, state):
     """Motion of the frame that carries the rails: the platform, or the scene axes at rest."""
     if platform is not None:
@@ -119,7 +119,7 @@ def frame(platform, state):
     return Motion(zero, zero, (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), zero)
 
 
-@inlined
+@kernel
 def velocity_at(body, point):
     """Velocity (m/s) of the point of a body that is now at ``point``."""
     arm = (point[0] - body.place[0], point[1] - body.place[1], point[2] - body.place[2])
@@ -127,7 +127,7 @@ def velocity_at(body, point):
     return (body.velocity[0] + swing[0], body.velocity[1] + swing[1], body.velocity[2] + swing[2])
 
 
-@inlined
+@kernel
 def normalise(state):
     """Bring both quaternions back to length one."""
     for body in (PAYLOAD, PLATFORM):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from tipoff.kernels.reference import by_reference
 from tipoff.mechanics.model import Model
 from tipoff.scenes.effects.body_force import BodyForce
 from tipoff.scenes.effects.contact import HuntCrossley, Impact, Linear
@@ -44,6 +45,7 @@ ROUNDED = 1e-6  # m: edges of pads and walls are no sharper, and no gap is more 
 LAST_STRIP = 0.01  # of half a face: what is still over a compliant wall when the face leaves it
 
 
+@by_reference
 class Body(NamedTuple):
     """A rigid body."""
 
@@ -51,6 +53,7 @@ class Body(NamedTuple):
     inverse_inertia: np.ndarray  # (3, 3) 1/(kg m2), about the mass centre, in body axes
 
 
+@by_reference
 class Contact(NamedTuple):
     """The one contact law of a scene; the other laws are None."""
 
@@ -60,6 +63,7 @@ class Contact(NamedTuple):
     thermal_offset: "ThermalOffset | None"  # of the walls, None where they are not warm
 
 
+@by_reference
 class System(NamedTuple):
     """All records of one run; None where an effect is absent."""
 

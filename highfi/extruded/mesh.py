@@ -23,6 +23,7 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 from tipoff.highfi.extruded.folding import Groups, fold
 from tipoff.highfi.statics.assembly import Operator
 from tipoff.kernels.memory import zeros
+from tipoff.kernels.reference import by_reference
 
 LANES = 16  # layers treated at once: two vectors of eight doubles
 CHUNK = 1024  # nodes: enough to be worth a function call, few enough for the second-level cache
@@ -30,6 +31,7 @@ _SAME = 1e-9  # m: two places closer than this are the same
 _ODD = 1e-9  # relative size of the blocks that the mirror symmetry forbids
 
 
+@by_reference
 class Columns(NamedTuple):
     """An extruded mesh of s columns in c chunks, and the stiffness between them."""
 

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.highfi.extruded.mesh import Columns
+from tipoff.kernels.reference import by_reference
 from tipoff.mechanics.ledger import BODY_FORCE, ENTRIES
 from tipoff.mechanics.model import Faces, Payload
 from tipoff.mechanics.outcome import Milestones
@@ -24,6 +25,7 @@ from tipoff.scenes.effects.thrust_law import Thrust
 from tipoff.scenes.effects.thrust_offset import ThrustOffset
 
 
+@by_reference
 class Elements(NamedTuple):
     """Elements of a mesh of any shape."""
 
@@ -34,6 +36,7 @@ class Elements(NamedTuple):
     slabs: np.ndarray
 
 
+@by_reference
 class Mounts(NamedTuple):
     """Stiffness of the joints under the mounts, between m nodes and their neighbours."""
 
@@ -44,6 +47,7 @@ class Mounts(NamedTuple):
     stiffness: np.ndarray  # (p,3,3) N/m
 
 
+@by_reference
 class Rail(NamedTuple):
     """Nodes of the rails and their elasticity, which is given by columns or by elements."""
 
@@ -59,6 +63,7 @@ class Rail(NamedTuple):
     mounts: Mounts | None  # None: rigid mounts
 
 
+@by_reference
 class Groups(NamedTuple):
     """Groups of pad faces: faces of different groups never touch the same node."""
 
@@ -69,6 +74,7 @@ class Groups(NamedTuple):
     first_node: np.ndarray  # (g,) where the part of a group begins in ``Active.node``
 
 
+@by_reference
 class Search(NamedTuple):
     """Equal rectangular bins over each of w walls, seen along its normal: a bins with the facets
     over them, and e straight pieces of the walls' borders."""
@@ -85,6 +91,7 @@ class Search(NamedTuple):
     ends: np.ndarray  # (e,4) m, X and place across of both ends of each piece
 
 
+@by_reference
 class Surface(NamedTuple):
     """Facets of the rail walls, and the cells into which the pad faces are divided."""
 
@@ -103,6 +110,7 @@ class Surface(NamedTuple):
     thickness: float  # m, of the walls
 
 
+@by_reference
 class Frame(NamedTuple):
     """Rigid part of the free platform."""
 
@@ -112,6 +120,7 @@ class Frame(NamedTuple):
     centre: np.ndarray  # (3,) m, its mass centre from the frame's origin
 
 
+@by_reference
 class Drive(NamedTuple):
     """How thrust acts on payload and platform."""
 
@@ -120,6 +129,7 @@ class Drive(NamedTuple):
     moving_mass: float  # kg, of the nodes that are stepped
 
 
+@by_reference
 class Exit(NamedTuple):
     """What the payload must pass."""
 
@@ -127,6 +137,7 @@ class Exit(NamedTuple):
     rail_end: float  # m, X of the rail end from the frame's origin
 
 
+@by_reference
 class Constants(NamedTuple):
     """All that is constant in a run; an effect that the scene lacks is None."""
 
@@ -146,6 +157,7 @@ class Constants(NamedTuple):
     dt: float  # s
 
 
+@by_reference
 class Body(NamedTuple):
     """A rigid body."""
 
@@ -155,6 +167,7 @@ class Body(NamedTuple):
     spin: np.ndarray  # (3,) kg m2/s at the half step, about the mass centre, inertial axes
 
 
+@by_reference
 class Motion(NamedTuple):
     """What nodes need of the frame in the next drift, in frame axes."""
 
@@ -164,6 +177,7 @@ class Motion(NamedTuple):
     acceleration: np.ndarray  # (3,) m/s2, of the body force
 
 
+@by_reference
 class History(NamedTuple):
     """What structural damping keeps from one step to the next."""
 
@@ -177,6 +191,7 @@ class History(NamedTuple):
     mounting: np.ndarray | None  # (b,6) N and N m, ``State.mounting`` one step ago
 
 
+@by_reference
 class Stepped(NamedTuple):
     """Blocks of the rails that do not rest."""
 
@@ -184,6 +199,7 @@ class Stepped(NamedTuple):
     in_use: np.ndarray  # (1,)
 
 
+@by_reference
 class State(NamedTuple):
     """Bodies, nodes and sums over them."""
 
@@ -209,6 +225,7 @@ class State(NamedTuple):
     history: History | None  # None without structural damping
 
 
+@by_reference
 class Active(NamedTuple):
     """Where contact is now."""
 

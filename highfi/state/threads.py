@@ -19,6 +19,7 @@ from numba.extending import intrinsic
 from tipoff.highfi.extruded.mesh import LANES
 from tipoff.kernels.jit import kernel
 from tipoff.kernels.memory import zeros
+from tipoff.kernels.reference import by_reference
 
 _ROUND, _ARRIVED, _NEXT, _ASLEEP, _MUTEX, _CONDITION = 0, 8, 16, 24, 32, 40  # cache lines
 _SPINS = 100_000  # reads of the round before a waiting thread sleeps: about 0.2 ms
@@ -27,6 +28,7 @@ _WORD = ir.IntType(64)
 _POSIX = os.name == "posix"  # elsewhere it only spins
 
 
+@by_reference
 class Team(NamedTuple):
     """Threads of one run."""
 

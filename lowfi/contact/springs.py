@@ -14,7 +14,7 @@ of the walls.
 from typing import NamedTuple
 
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import inlined
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi.contact.thermal_offset import offset_and_slope
 from tipoff.lowfi.state import velocity_at
 from tipoff.lowfi.system import NORMAL_Y, NORMAL_Z, NUMBER, WALL
@@ -34,7 +34,7 @@ class Load(NamedTuple):
     raw: float  # N, normal force before it is cut off at zero
 
 
-@inlined
+@kernel
 def relative_pose(platform, body, base):
     """Place (m) and rotation (nine numbers) of the payload in platform axes."""
     if platform is not None:
@@ -47,7 +47,7 @@ def relative_pose(platform, body, base):
     return body.place, body.turn
 
 
-@inlined
+@kernel
 def _relative_turn(a, b):
     """A' B of two matrices."""
     return (
@@ -63,7 +63,7 @@ def _relative_turn(a, b):
     )
 
 
-@inlined
+@kernel
 def relative_motion(platform, body, base, place, turn):
     """Rates of change of ``place`` (m/s) and ``turn`` (1/s), the payload's pose in platform
     axes."""
@@ -85,7 +85,7 @@ def relative_motion(platform, body, base, place, turn):
     return drift, swing
 
 
-@inlined
+@kernel
 def _seen_from_platform(body, base, place, spin):
     v, V = body.velocity, base.velocity
     own = rotation.unrotate(base.turn, base.rate)
@@ -100,7 +100,7 @@ def _seen_from_platform(body, base, place, spin):
     )
 
 
-@inlined
+@kernel
 def approach(offset, face, place, turn, drift, swing):
     """Rate (m/s) of the penetration of ``face``, from the rates of the pose; the pose itself is
     needed only with a thermal ``offset``."""
@@ -113,13 +113,13 @@ def approach(offset, face, place, turn, drift, swing):
     return rate
 
 
-@inlined
+@kernel
 def along(face, place, turn):
     """X (m) of the centre of ``face``, a row of the table of faces, in platform axes."""
     return place[0] + turn[0] * face[0] + turn[1] * face[1] + turn[2] * face[2]
 
 
-@inlined
+@kernel
 def penetration(offset, face, place, turn):
     """Penetration (m) of ``face`` into its wall, negative across the gap."""
     y = place[1] + turn[3] * face[0] + turn[4] * face[1] + turn[5] * face[2]
@@ -130,13 +130,13 @@ def penetration(offset, face, place, turn):
     return p
 
 
-@inlined
+@kernel
 def forward(face, drift, swing):
     """Rate (m/s) of ``along``, from the rates of the pose."""
     return drift[0] + swing[0] * face[0] + swing[1] * face[1] + swing[2] * face[2]
 
 
-@inlined
+@kernel
 def across(face, place, turn):
     """Place (m) of the centre of ``face`` on the axis across rail and normal, in platform axes."""
     if face[NORMAL_Y] == 0.0:
@@ -144,7 +144,7 @@ def across(face, place, turn):
     return place[2] + turn[6] * face[0] + turn[7] * face[1] + turn[8] * face[2]
 
 
-@inlined
+@kernel
 def sideways(face, drift, swing):
     """Rate (m/s) of ``across``, from the rates of the pose."""
     if face[NORMAL_Y] == 0.0:
@@ -152,13 +152,13 @@ def sideways(face, drift, swing):
     return drift[2] + swing[6] * face[0] + swing[7] * face[1] + swing[8] * face[2]
 
 
-@inlined
+@kernel
 def outward(face, base):
     """Outward normal of ``face`` in scene axes, the wall being straight."""
     return rotation.rotate(base.turn, (0.0, face[NORMAL_Y], face[NORMAL_Z]))
 
 
-@inlined
+@kernel
 def along_width(face, size):
     """Vector of ``size`` along the width of ``face``: in its plane, across the rail, in the axes of
     payload or platform."""
@@ -166,7 +166,7 @@ def along_width(face, size):
     return (0.0, aside, size - aside)
 
 
-@inlined
+@kernel
 def gradient(offset, face, base, point):
     """What a step of the pad's ``point`` (m, scene axes) adds to the penetration: the normal of the
     wall."""
@@ -175,7 +175,7 @@ def gradient(offset, face, base, point):
     return outward(face, base)
 
 
-@inlined
+@kernel
 def _gradient_with_offset(offset, face, base, point):
     place = rotation.unrotate(
         base.turn, (point[0] - base.place[0], point[1] - base.place[1], point[2] - base.place[2])
@@ -184,7 +184,7 @@ def _gradient_with_offset(offset, face, base, point):
     return rotation.rotate(base.turn, (-slope, face[NORMAL_Y], face[NORMAL_Z]))
 
 
-@inlined
+@kernel
 def slip_velocity(offset, u, closing, n):
     """The part of ``u`` (m/s) across ``n``, whose square is one where the wall is straight."""
     along = closing
@@ -193,14 +193,14 @@ def slip_velocity(offset, u, closing, n):
     return (u[0] - along * n[0], u[1] - along * n[1], u[2] - along * n[2])
 
 
-@inlined
+@kernel
 def pad_point(face, body):
     """Centre of ``face`` in scene axes (m)."""
     arm = rotation.rotate(body.turn, (face[0], face[1], face[2]))
     return (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
 
 
-@inlined
+@kernel
 def relative_velocity(platform, body, base, point):
     """Velocity (m/s) of the payload's point against the platform's point at the same place."""
     u = velocity_at(body, point)
@@ -210,7 +210,7 @@ def relative_velocity(platform, body, base, point):
     return u
 
 
-@inlined
+@kernel
 def friction_force(friction, normal_force, slip):
     """Friction on the payload (N) at slip velocity ``slip`` (m/s); zero where the effect is
     absent."""
@@ -220,7 +220,7 @@ def friction_force(friction, normal_force, slip):
     return (0.0, 0.0, 0.0)
 
 
-@inlined
+@kernel
 def load(laws, friction, platform, face, p, body, base):
     """Load of ``face`` at penetration ``p`` >= 0."""
     point = pad_point(face, body)

@@ -15,7 +15,7 @@ and damper in both tangents, a sliding one N mu_d/|g| across g (``lowfi.contact.
 import numpy as np
 
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import inlined
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.springs import gradient, load, outward, penetration, relative_pose
 from tipoff.lowfi.contact.stick_slip import STICKS, heading, row_of
@@ -27,7 +27,7 @@ from tipoff.scenes.effects.friction import coefficient_over_speed
 _NUDGE = 1e-6
 
 
-@inlined
+@kernel
 def fastest_rate(laws, system, touching, stick, state, ahead):
     """Bound S (1/s) of the eigenvalues of the ``touching`` faces (f,) at ``state``; 0 when none
     touches.
@@ -59,7 +59,7 @@ def fastest_rate(laws, system, touching, stick, state, ahead):
     return rate
 
 
-@inlined
+@kernel
 def _normal(laws, system, face, p, body, base):
     """Contribution of one face, with two-step friction, to K (1/s2) and C (1/s)."""
     friction, platform, payload = system.friction, system.platform, system.payload
@@ -73,7 +73,7 @@ def _normal(laws, system, face, p, body, base):
     return stiffness, damping
 
 
-@inlined
+@kernel
 def friction_damping(friction, now, platform, payload, body, base, n):
     """Contribution of a face's friction to C (1/s)."""
     damping = 0.0
@@ -95,7 +95,7 @@ def friction_damping(friction, now, platform, payload, body, base, n):
     return damping
 
 
-@inlined
+@kernel
 def _tangential(sticking, laws, system, row, face, p, body, base):
     """Contribution of friction that sticks to K (1/s2) and C (1/s)."""
     stiffness, damping = 0.0, 0.0
@@ -121,7 +121,7 @@ def _tangential(sticking, laws, system, row, face, p, body, base):
     return stiffness, damping
 
 
-@inlined
+@kernel
 def _tangent(n):
     """A unit vector across the unit vector ``n``."""
     t = (
@@ -133,7 +133,7 @@ def _tangent(n):
     return (t[0] / size, t[1] / size, t[2] / size)
 
 
-@inlined
+@kernel
 def inverse_mass(platform, payload, body, base, point, direction):
     """Inverse mass (1/kg) that a pair of forces along ``direction`` at ``point`` meets."""
     total = _own(payload.mass, payload.inverse_inertia, body, point, direction)
@@ -142,7 +142,7 @@ def inverse_mass(platform, payload, body, base, point, direction):
     return total
 
 
-@inlined
+@kernel
 def _own(mass, inverse_inertia, body, point, direction):
     p = body.place
     lever = rotation.cross((point[0] - p[0], point[1] - p[1], point[2] - p[2]), direction)

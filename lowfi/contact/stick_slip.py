@@ -21,7 +21,7 @@ end. It can give back only what was stored while the face stuck: friction is pas
 import numpy as np
 
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import inlined
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi.contact.springs import pad_point
 from tipoff.lowfi.system import NORMAL_Y, NORMAL_Z
 
@@ -34,7 +34,7 @@ STOPPED = 1e-3
 SLIPPED = -1e-7  # margin of a sticking face at which it slips: nearer to zero rounding decides
 
 
-@inlined
+@kernel
 def row_of(sticking, stick, number):
     """Row ``number`` of the table; None where the effect is absent."""
     if sticking is not None:
@@ -42,7 +42,7 @@ def row_of(sticking, stick, number):
     return None
 
 
-@inlined
+@kernel
 def traction(sticking, row, face, pad, base):
     """Friction on the payload (N, scene axes) of a ``face`` with the load ``pad``, and the power
     (W) it turns into heat."""
@@ -61,7 +61,7 @@ def traction(sticking, row, face, pad, base):
     return force, -rotation.dot(force, u)
 
 
-@inlined
+@kernel
 def heading(sticking, row, u, base):
     """g (m/s) of a slide at slip velocity ``u``, at least s_c long."""
     e = _mark(row, base)
@@ -70,7 +70,7 @@ def heading(sticking, row, u, base):
     return (u[0] + more * e[0], u[1] + more * e[1], u[2] + more * e[2])
 
 
-@inlined
+@kernel
 def margin(sticking, row, face, pad, base):
     """Distance of a touching face from slip or stop: (mu_s N - |F|)/(mu_s N + |F|) if it sticks,
     u.e/s_c if it slides."""
@@ -85,21 +85,21 @@ def margin(sticking, row, face, pad, base):
     return left
 
 
-@inlined
+@kernel
 def used_up(row, before, after):
     """Whether a face slipped or stopped in a step from margin ``before`` to ``after``. A face that
     has just slipped has hardly any margin yet, but it gains some."""
     return after <= 0.5 * SLIPPED if row[STICKS] != 0.0 else (after <= STOPPED and after < before)
 
 
-@inlined
+@kernel
 def last_margin(row, before):
     """Margin at which a step that begins with ``before`` must end: just within what ``used_up``
     needs."""
     return SLIPPED if row[STICKS] != 0.0 else 0.5 * min(before, STOPPED)
 
 
-@inlined
+@kernel
 def stored(sticking, row, face, point, base):
     """Energy (J) in the spring of a face whose centre is at ``point``."""
     stretch = row[STRETCH]
@@ -108,7 +108,7 @@ def stored(sticking, row, face, point, base):
     return 0.5 * sticking.stiffness * stretch * stretch
 
 
-@inlined
+@kernel
 def stored_in_all(sticking, stick, faces, body, base):
     """Energy (J) in the springs of all faces."""
     energy = 0.0
@@ -118,14 +118,14 @@ def stored_in_all(sticking, stick, faces, body, base):
     return energy
 
 
-@inlined
+@kernel
 def clear(row):
     """Reset the row of a face that does not touch."""
     row[:] = 0.0
     row[MARK] = 1.0
 
 
-@inlined
+@kernel
 def stop(sticking, row, pad, base):
     """Let a face stick that slid, or begins to touch, unless it still moves: then it slides where it
     moves. The energy (J) lost."""
@@ -151,7 +151,7 @@ def stop(sticking, row, pad, base):
     return lost
 
 
-@inlined
+@kernel
 def slip(sticking, row, face, pad, base):
     """Let a sticking face slide: where it moves, or, while it is slower than s_c, against the force
     of the spring."""
@@ -165,19 +165,19 @@ def slip(sticking, row, face, pad, base):
         _set_mark(row, force, -1.0 / _size(force), base)
 
 
-@inlined
+@kernel
 def _mark(row, base):
     return rotation.rotate(base.turn, (row[MARK], row[MARK + 1], row[MARK + 2]))
 
 
-@inlined
+@kernel
 def _set_mark(row, vector, factor, base):
     mark = rotation.unrotate(base.turn, vector)
     for i in range(3):
         row[MARK + i] = factor * mark[i]
 
 
-@inlined
+@kernel
 def _from_anchor(row, face, point, base):
     """xi (m) in scene axes: along the wall only, whose normal is that of the face."""
     anchor, n = _mark(row, base), rotation.rotate(base.turn, (0.0, face[NORMAL_Y], face[NORMAL_Z]))
@@ -190,6 +190,6 @@ def _from_anchor(row, face, point, base):
     return (d[0] - out * n[0], d[1] - out * n[1], d[2] - out * n[2])
 
 
-@inlined
+@kernel
 def _size(v):
     return np.sqrt(rotation.dot(v, v))

@@ -15,13 +15,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.kernels.jit import inlined
+from tipoff.kernels.jit import kernel
+from tipoff.kernels.reference import by_reference
 from tipoff.mechanics.model import Model
 from tipoff.mechanics.rail_compliance import GRAM, RailCompliance, cubic
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
 
+@by_reference
 class ThermalOffset(NamedTuple):
     """Thermal offset W of the walls under f faces, between s stations along the rail."""
 
@@ -63,7 +65,7 @@ def require(scene: Scene, compliance: RailCompliance | None) -> None:
     compliance.require(scene)
 
 
-@inlined
+@kernel
 def offset_and_slope(offset, number, x):
     """W (m) under face ``number`` with its centre at ``x`` (m), and its slope."""
     way = x - offset.origin[number]

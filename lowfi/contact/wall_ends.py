@@ -21,7 +21,7 @@ thickness) carries no load; when it comes back through p = thickness it strikes 
 
 import numpy as np
 
-from tipoff.kernels.jit import inlined
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi.system import BACK, HALF_LENGTH, OVERHANG, ROUND, SIDE_REACH
 from tipoff.mechanics import outcome
 
@@ -50,7 +50,7 @@ OPEN, PRESSING, CUT_OFF = 0.0, 1.0, 2.0  # modes
 NOWHERE = -1
 
 
-@inlined
+@kernel
 def stands_over(rail, face, row):
     """Whether ``face``, a row of the table of faces, stands over its wall, by its ``row`` of a
     survey; ``rail`` is start and end (m)."""
@@ -61,14 +61,14 @@ def stands_over(rail, face, row):
     )
 
 
-@inlined
+@kernel
 def strikes(face, row, left):
     """Whether a face that comes over its wall strikes an edge of it. ``left``: penetration (m) with
     which it left, zero once no part of it was over the wall."""
     return row[DEPTH] > face[ROUND] + left
 
 
-@inlined
+@kernel
 def depth_it_left_with(rail, face, row, left):
     """``left`` (m), or zero where no part of a face is over the wall any more."""
     half = face[HALF_LENGTH]
@@ -80,7 +80,7 @@ def depth_it_left_with(rail, face, row, left):
     )
 
 
-@inlined
+@kernel
 def turning_point(before, after, rise, fall):
     """Fraction at which a cubic with these values and slopes at 0 and 1 turns, and its value there;
     1 and ``after`` if its slopes have one sign."""
@@ -95,7 +95,7 @@ def turning_point(before, after, rise, fall):
     return theta, value
 
 
-@inlined
+@kernel
 def _interval(rail, face, kind):
     """What a face's quantity ``kind`` is while it stands over its wall and may touch (m)."""
     if kind == ALONG:
@@ -105,13 +105,13 @@ def _interval(rail, face, kind):
     return BEYOND, face[BACK]
 
 
-@inlined
+@kernel
 def _rate(kind):
     """Column of the rate of a quantity."""
     return FORWARD if kind == ALONG else SIDEWAYS if kind == SIDE else CLOSING
 
 
-@inlined
+@kernel
 def comes_over(rail, face, before, after, dt):
     """Where in a step of ``dt`` (s) a face that does not stand over its wall comes over it and may
     touch: the quantity whose interval it enters, the level (m) it passes then, and a fraction.
@@ -138,7 +138,7 @@ def comes_over(rail, face, before, after, dt):
     return entered, level, fraction
 
 
-@inlined
+@kernel
 def goes_and_returns(rail, face, before, after, dt):
     """Fraction of a step at which a face that stands over its wall when it begins and when it ends
     is farthest beyond an edge; 1 if it stays over the wall."""

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import entry, inlined
+from tipoff.kernels.jit import entry, kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip
 from tipoff.lowfi.contact.compliant.modes import energies
@@ -46,7 +46,7 @@ class Balances(NamedTuple):
     terms: float  # sum of the sizes of all terms
 
 
-@inlined
+@kernel
 def _balances(system, loop, surveyed, in_compliance, state):
     """Balances at a ``surveyed`` (f, SURVEY_SIZE) state, with the energy (J) in compliant
     contact."""
@@ -95,7 +95,7 @@ def _balances(system, loop, surveyed, in_compliance, state):
     )
 
 
-@inlined
+@kernel
 def _kinetic(mass, state, body):
     """Kinetic energy (J) of the body whose slots stand first in ``state``, and its axial part."""
     orbit, moment = rotation.cross(body.place, body.velocity), slot.triple(state, slot.MOMENT)
@@ -106,7 +106,7 @@ def _kinetic(mass, state, body):
     )
 
 
-@inlined
+@kernel
 def _kinetic_of_platform(platform, state, base):
     kinetic, axial = 0.0, 0.0
     if platform is not None:
@@ -114,7 +114,7 @@ def _kinetic_of_platform(platform, state, base):
     return kinetic, axial
 
 
-@inlined
+@kernel
 def _of_modes(compliance, state):
     kinetic, strain = 0.0, 0.0
     if compliance is not None:
@@ -122,7 +122,7 @@ def _of_modes(compliance, state):
     return kinetic, strain
 
 
-@inlined
+@kernel
 def _in_springs(laws, engaged, surveyed):
     energy = 0.0
     if laws is not None:
@@ -132,13 +132,13 @@ def _in_springs(laws, engaged, surveyed):
     return energy
 
 
-@inlined
+@kernel
 def dissipated(state):
     """Energy (J) that has left the contacts."""
     return state[slot.RELEASED] + state[slot.DAMPING]
 
 
-@inlined
+@kernel
 def open_books(ledger, is_compliant, system, loop):
     """Begin the ledgers where the first step does, with the energy that its faces store from the
     start."""
@@ -164,7 +164,7 @@ def open_books(ledger, is_compliant, system, loop):
         audit.terms, audit.dissipated = first.terms, dissipated(loop.start)
 
 
-@inlined
+@kernel
 def after_step(ledger, system, loop):
     """Balances at the end of the step just tried, or None where no ledger is kept."""
     found = None
@@ -173,7 +173,7 @@ def after_step(ledger, system, loop):
     return found
 
 
-@inlined
+@kernel
 def step_is_affordable(system, tolerance, loop, found):
     """Whether the step just tried may be kept. Between contacts the forces are smooth, and the
     estimated error is enough."""
@@ -187,7 +187,7 @@ def step_is_affordable(system, tolerance, loop, found):
     return affordable
 
 
-@inlined
+@kernel
 def _is_affordable(tolerance, mass, audit, found):
     slow = 0.5 * mass * tolerance.floor * tolerance.floor
     rounding = _ROUNDING * max(audit.terms, found.terms)
@@ -204,7 +204,7 @@ def _is_affordable(tolerance, mass, audit, found):
     )
 
 
-@inlined
+@kernel
 def _keeps_budget(promise, rounding, before, after):
     """Whether a ledger whose error goes from ``before`` to ``after`` (J) keeps to what one step may
     take of a ``promise`` (J)."""
@@ -212,7 +212,7 @@ def _keeps_budget(promise, rounding, before, after):
     return abs(after - before) <= max(_SHARE * (budget - abs(before)), _LEAST * budget, rounding)
 
 
-@inlined
+@kernel
 def record_step(system, tolerance, loop, found):
     """Record the step just taken; False when it lost a tenth of the energy."""
     kept = True
@@ -221,7 +221,7 @@ def record_step(system, tolerance, loop, found):
     return kept
 
 
-@inlined
+@kernel
 def _record(tolerance, mass, loop, found):
     audit = loop.audit
     audit.error = found.total - audit.first

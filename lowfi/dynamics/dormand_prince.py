@@ -12,7 +12,7 @@ below it.
 
 import numpy as np
 
-from tipoff.kernels.jit import inlined
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi.dynamics.equations import derivative
 from tipoff.lowfi.dynamics.vibration import advance_free_modes
 from tipoff.lowfi.state import DYNAMIC_SIZE, STATE_SIZE, copy, modal_size, normalise
@@ -46,7 +46,7 @@ DENSE = np.array(
 )
 
 
-@inlined
+@kernel
 def attempt(system, loop, stretch, time, dt, fresh):
     """From ``loop.start`` at ``time`` (s) to ``loop.end`` at ``time + dt``; unless ``fresh``,
     ``loop.stages`` holds k_1 already.
@@ -71,7 +71,7 @@ def attempt(system, loop, stretch, time, dt, fresh):
         )
 
 
-@inlined
+@kernel
 def _combine(stage, h, y, k, out):
     """out = y + h sum_j a_stage,j k_j, each sum in one pass over the slots; quadratures only where
     the step ends."""
@@ -116,7 +116,7 @@ def _combine(stage, h, y, k, out):
             )
 
 
-@inlined
+@kernel
 def _combine_modes(stage, h, y, k, modal, out):
     """The same for the ``modal`` numbers of the rails' modes."""
     for j in range(STATE_SIZE, STATE_SIZE + modal):
@@ -126,7 +126,7 @@ def _combine_modes(stage, h, y, k, modal, out):
         out[j] = y[j] + h * total
 
 
-@inlined
+@kernel
 def local_error(h, k, modal, out):
     """Difference of the two orders in every dynamic slot of ``out``, and in those of ``modal``
     numbers of modes."""
@@ -136,7 +136,7 @@ def local_error(h, k, modal, out):
         out[j] = _difference(h, k, j)
 
 
-@inlined
+@kernel
 def _difference(h, k, j):
     return h * (
         ERROR[0] * k[0, j]
@@ -148,7 +148,7 @@ def _difference(h, k, j):
     )
 
 
-@inlined
+@kernel
 def interpolate(system, loop, dt, theta, size, out):
     """The first ``size`` slots of the state, and the modes of the rails, at ``theta`` in 0..1 of the
     step of ``dt`` (s) that ``loop`` holds."""
@@ -183,7 +183,7 @@ def interpolate(system, loop, dt, theta, size, out):
     advance_free_modes(system.compliance, loop.touching, h, start, out, size == STATE_SIZE)
 
 
-@inlined
+@kernel
 def _polynomial(stage, theta):
     return DENSE[stage, 0] + theta * (
         DENSE[stage, 1] + theta * (DENSE[stage, 2] + theta * DENSE[stage, 3])

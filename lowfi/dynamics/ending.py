@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.dynamics.dormand_prince import interpolate
 from tipoff.lowfi.dynamics.sample import posture, rearmost_edge
@@ -50,7 +50,7 @@ class Step(NamedTuple):
     size: float  # s, before an event cut it
 
 
-@inlined
+@kernel
 def follow(system, marks, loop, step):
     """Bring the book of ``loop`` up to date with the ``step`` just taken."""
     book = loop.book
@@ -62,7 +62,7 @@ def follow(system, marks, loop, step):
         _count(system, loop, step)
 
 
-@inlined
+@kernel
 def _monitor(system, marks, loop, step):
     """Look for the exit and for a jam."""
     book = loop.book
@@ -95,14 +95,14 @@ def _monitor(system, marks, loop, step):
         begin = end
 
 
-@inlined
+@kernel
 def _leave(system, marks, loop, step, at):
     _fill(system, loop, step, at)
     slot.copy(loop.book[NOW:], loop.book[AT_EXIT:], ROW_SIZE)
     books.leave(loop.book, at, marks)
 
 
-@inlined
+@kernel
 def _look_at_speed(system, marks, loop, step, begin, end):
     """Look at the axial speed at the ``end`` (s) of a piece, and at its first moment if that is the
     first one to count."""
@@ -153,7 +153,7 @@ def _crossing(kind, system, marks, loop, step, between, values):
     return low if abs(f_low) < abs(f_high) else high
 
 
-@inlined
+@kernel
 def _quantity(kind, system, marks, loop, step, time):
     """At ``time`` (s): distance (m) of the rearmost trailing edge past the rail end, or the excess
     (m/s) of the axial speed."""
@@ -163,7 +163,7 @@ def _quantity(kind, system, marks, loop, step, time):
     return abs(books.axial_speed(loop.book[NOW:])) - marks.jam_speed
 
 
-@inlined
+@kernel
 def _fill(system, loop, step, time):
     """Motion at ``time`` (s) in the step into the book."""
     if time == step.ended:

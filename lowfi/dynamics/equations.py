@@ -10,7 +10,7 @@ mass centre of the body it acts on (``mechanics.ledger``).
 from typing import NamedTuple
 
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import inlined
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip
 from tipoff.lowfi.contact.compliant.loads import axial_force, wall_force
@@ -34,7 +34,7 @@ class Bodies(NamedTuple):
     ledger: bool | None  # None where no work, loss or impulse is integrated
 
 
-@inlined
+@kernel
 def derivative(system, touching, stick, time, state, out):
     """Fill ``out`` with the time derivative of ``state`` (both STATE_SIZE,). ``touching`` (f,) are
     the faces that carry load, ``stick`` (f, ROW_SIZE) or None their stick-slip states."""
@@ -55,7 +55,7 @@ def derivative(system, touching, stick, time, state, out):
     move_platform(platform, state, bodies.base, out)
 
 
-@inlined
+@kernel
 def move(mass, state, body, out):
     """Turn the force in the velocity slots into acceleration and add the kinematics."""
     turning = rotation.product(
@@ -68,14 +68,14 @@ def move(mass, state, body, out):
         out[QUATERNION + i] = turning[i]
 
 
-@inlined
+@kernel
 def move_platform(platform, state, base, out):
     """``move`` of the platform, if it is free."""
     if platform is not None:
         move(platform.mass, state[PLATFORM:], base, out[PLATFORM:])
 
 
-@inlined
+@kernel
 def push(out, force_slot, moment_slot, force, point, sign):
     """Add ``sign`` times a force at a point to a body, or to the impulse from outside."""
     moment = rotation.cross(point, force)
@@ -84,7 +84,7 @@ def push(out, force_slot, moment_slot, force, point, sign):
         out[moment_slot + i] += sign * moment[i]
 
 
-@inlined
+@kernel
 def add_thrust(thrust, offset, reacts, time, bodies, out):
     """Add the thrust and its reaction: on the platform if it ``reacts``, else outside."""
     size = magnitude(thrust.pulses, thrust.curve, time)
@@ -100,7 +100,7 @@ def add_thrust(thrust, offset, reacts, time, bodies, out):
     react(bodies.platform, reacts, bodies, force, point, out)
 
 
-@inlined
+@kernel
 def add_power(ledger, entry, axial_entry, force, velocity, axial_speed, sign, out):
     """Add ``sign`` times the power (W) of a force (N) on a point that moves at ``velocity`` (m/s),
     and its axial part, to two slots of ``out``; nothing without a ledger."""
@@ -109,7 +109,7 @@ def add_power(ledger, entry, axial_entry, force, velocity, axial_speed, sign, ou
         out[axial_entry] += sign * force[0] * axial_speed
 
 
-@inlined
+@kernel
 def add_outside_impulse(ledger, force, point, out):
     """Add a force (N) from outside, and its moment, to the rates of the impulses in ``out``; nothing
     without a ledger."""
@@ -117,7 +117,7 @@ def add_outside_impulse(ledger, force, point, out):
         push(out, IMPULSE, TURN, force, point, 1.0)
 
 
-@inlined
+@kernel
 def line_of_action(offset, size, body):
     """Thrust (N) and a point of its line (m) in scene axes; without an offset the line passes
     through the mass centre."""
@@ -126,14 +126,14 @@ def line_of_action(offset, size, body):
     return (size * body.turn[0], size * body.turn[3], size * body.turn[6]), body.place
 
 
-@inlined
+@kernel
 def _offset_line(offset, size, body):
     d, arm = offset.direction, rotation.rotate(body.turn, offset.arm)
     point = (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
     return rotation.rotate(body.turn, (size * d[0], size * d[1], size * d[2])), point
 
 
-@inlined
+@kernel
 def react(platform, reacts, bodies, force, point, out):
     """Add the reaction of the thrust: on a free platform, or outside (exhaust, fixed platform)."""
     if platform is None:
@@ -142,7 +142,7 @@ def react(platform, reacts, bodies, force, point, out):
         _react_on_free_platform(reacts, bodies, force, point, out)
 
 
-@inlined
+@kernel
 def _react_on_free_platform(reacts, bodies, force, point, out):
     if reacts:
         base = bodies.base
@@ -153,7 +153,7 @@ def _react_on_free_platform(reacts, bodies, force, point, out):
         add_outside_impulse(bodies.ledger, force, point, out)
 
 
-@inlined
+@kernel
 def add_body_force(force, mass, bodies, out):
     """Add the body force on the payload of ``mass`` (kg), and on the platform."""
     if force is not None:
@@ -161,13 +161,13 @@ def add_body_force(force, mass, bodies, out):
         _add_body_force_on_platform(force, bodies.platform, bodies, out)
 
 
-@inlined
+@kernel
 def _add_body_force_on_platform(force, platform, bodies, out):
     if platform is not None:
         _add_body_force(force, platform.mass, PLATFORM, bodies.ledger, bodies.base, out)
 
 
-@inlined
+@kernel
 def _add_body_force(force, mass, first, ledger, body, out):
     weight = (mass * force.x, mass * force.y, mass * force.z)
     push(out, first + VELOCITY, first + MOMENT, weight, body.place, 1.0)
@@ -184,7 +184,7 @@ def _add_body_force(force, mass, first, ledger, body, out):
     )
 
 
-@inlined
+@kernel
 def add_springs(laws, sticking, faces, touching, stick, bodies, out):
     """Add the contact springs of all ``touching`` faces."""
     if laws is not None:
@@ -200,7 +200,7 @@ def add_springs(laws, sticking, faces, touching, stick, bodies, out):
                     _add_traction(sticking, row, faces[i], pad, bodies, out)
 
 
-@inlined
+@kernel
 def add_compliant_contact(compliance, faces, touching, bodies, state, out):
     """Add compliant contact under all ``touching`` faces, and the modes of the rails."""
     if compliance is not None:
@@ -226,7 +226,7 @@ def add_compliant_contact(compliance, faces, touching, bodies, state, out):
             )
 
 
-@inlined
+@kernel
 def _add_modes(modes, workspace, pressed, ledger, state, out):
     """Add the vibration of a rail, ``pressed`` being its number and how many faces press it, and
     what damping takes from it. A rail that none presses vibrates freely, which a step knows
@@ -238,20 +238,20 @@ def _add_modes(modes, workspace, pressed, ledger, state, out):
             out[slot.STRUCTURAL] += loss
 
 
-@inlined
+@kernel
 def _add_wall_force(force, point, bodies, out):
     """Add a force of a wall along or across the rail; its work is the energy of the rail."""
     _pair(bodies.platform, bodies.ledger, force, point, out)
     _add_axial_power(bodies.ledger, force[0] * _axial_speed(bodies.platform, bodies), out)
 
 
-@inlined
+@kernel
 def _add_axial_power(ledger, power, out):
     if ledger is not None:
         out[slot.CONTACT_AXIAL] += power
 
 
-@inlined
+@kernel
 def _add_pad(pad, bodies, out):
     """Add the load of one touching face: a pair of forces at one point, and what its energy
     becomes."""
@@ -261,7 +261,7 @@ def _add_pad(pad, bodies, out):
     _add_friction(bodies.friction, pad, bodies, axial_speed, out)
 
 
-@inlined
+@kernel
 def _add_contact_power(ledger, pad, axial_speed, out):
     if ledger is not None:
         if pad.raw >= 0.0:
@@ -271,7 +271,7 @@ def _add_contact_power(ledger, pad, axial_speed, out):
         out[slot.CONTACT_AXIAL] += pad.normal[0] * axial_speed
 
 
-@inlined
+@kernel
 def _add_friction(friction, pad, bodies, axial_speed, out):
     if friction is not None:
         _pair(bodies.platform, bodies.ledger, pad.drag, pad.point, out)
@@ -287,7 +287,7 @@ def _add_friction(friction, pad, bodies, axial_speed, out):
         )
 
 
-@inlined
+@kernel
 def _add_traction(sticking, row, face, pad, bodies, out):
     """Add friction that sticks. Only the heat of its work is lost, the spring stores the rest. The
     axial part of all of it counts as friction, as the energy of the spring ends there too."""
@@ -298,14 +298,14 @@ def _add_traction(sticking, row, face, pad, bodies, out):
         _add_friction_power(bodies.ledger, heat, drag[0] * axial_speed, out)
 
 
-@inlined
+@kernel
 def _add_friction_power(ledger, heat, axial_power, out):
     if ledger is not None:
         out[slot.FRICTION] += heat
         out[slot.FRICTION_AXIAL] -= axial_power
 
 
-@inlined
+@kernel
 def _pair(platform, ledger, force, point, out):
     """A force on the payload and its opposite at the same point, on the platform or on the
     ground."""
@@ -316,7 +316,7 @@ def _pair(platform, ledger, force, point, out):
         push(out, PLATFORM + VELOCITY, PLATFORM + MOMENT, force, point, -1.0)
 
 
-@inlined
+@kernel
 def _axial_speed(platform, bodies):
     """X velocity (m/s) of the payload's mass centre, less the platform's."""
     if platform is not None:

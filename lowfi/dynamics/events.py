@@ -12,7 +12,7 @@ shorter than a step.
 
 import numpy as np
 
-from tipoff.kernels.jit import inlined
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip
 from tipoff.lowfi.contact.compliant.free_vibration import cannot_touch
@@ -42,7 +42,7 @@ from tipoff.lowfi.system import SIDE_MIDDLE, SIDE_REACH
 _NEAR = 1e-7  # pull that counts as zero
 
 
-@inlined
+@kernel
 def first_event(system, loop, dt, span):
     """Fraction (0..1] of the first ``span`` of a step of ``dt`` (s) at which it must end, and the
     face to blame. ``loop.before`` and ``loop.after`` survey the ends of that part."""
@@ -56,7 +56,7 @@ def first_event(system, loop, dt, span):
     return first, blamed
 
 
-@inlined
+@kernel
 def _event_on_springs(laws, system, loop, dt, span):
     first, blamed = 1.0, -1
     if laws is not None:
@@ -88,7 +88,7 @@ def _event_on_springs(laws, system, loop, dt, span):
     return first, blamed
 
 
-@inlined
+@kernel
 def _change_of_sticking(sticking, system, loop, dt, span):
     """Where a touching face slips or stops."""
     first, blamed = 1.0, -1
@@ -103,7 +103,7 @@ def _change_of_sticking(sticking, system, loop, dt, span):
     return first, blamed
 
 
-@inlined
+@kernel
 def _touch_on_compliance(is_compliant, system, loop, dt, span):
     """Where an open face begins to touch on compliant contact."""
     first, blamed = 1.0, -1
@@ -121,7 +121,7 @@ def _touch_on_compliance(is_compliant, system, loop, dt, span):
     return first, blamed
 
 
-@inlined
+@kernel
 def _entry(system, loop, dt, span):
     """Where a face comes over its wall and may touch. The fraction is never so small that the step
     would end where it began: a little later the face is over its wall still."""
@@ -143,7 +143,7 @@ def _entry(system, loop, dt, span):
     return first, blamed
 
 
-@inlined
+@kernel
 def _level(rail, face, engaged, kind, before, after):
     """Value that a face's quantity ``kind`` must reach for its mode to change in this step; NaN
     when it does not change. ``comes_over`` finds how a face comes over its wall."""
@@ -164,7 +164,7 @@ def _level(rail, face, engaged, kind, before, after):
     return level if (a - level) * (b - level) < 0.0 else np.nan
 
 
-@inlined
+@kernel
 def _edge(low, high, after):
     """Place (m) just beyond the edge of its wall that a face passes as it leaves; NaN when it
     passes none."""
@@ -173,7 +173,7 @@ def _edge(low, high, after):
     return high + BEYOND if after > high else low - BEYOND
 
 
-@inlined
+@kernel
 def _locate(system, loop, dt, span, face, kind, level):
     """Fraction of the first ``span`` of a step of ``dt`` (s) at which the quantity ``kind`` of a
     face, by number, passes ``level``."""
@@ -203,7 +203,7 @@ def _locate(system, loop, dt, span, face, kind, level):
     return high
 
 
-@inlined
+@kernel
 def _quantity(is_compliant, system, loop, number, kind):
     """Quantity ``kind`` of face ``number`` at the state ``loop.work``."""
     payload, state, face = system.payload, loop.work, system.faces[number]
@@ -225,7 +225,7 @@ def _quantity(is_compliant, system, loop, number, kind):
     )
 
 
-@inlined
+@kernel
 def _quantity_on_springs(laws, sticking, row, platform, face, kind, motions):
     value = 0.0 if kind == DEPTH else 1.0
     if laws is not None:
@@ -241,7 +241,7 @@ def _quantity_on_springs(laws, sticking, row, platform, face, kind, motions):
     return value
 
 
-@inlined
+@kernel
 def _cubic_root(f_low, f_high, rise, fall, guess):
     """A root in 0..1 of the cubic with these values and slopes at 0 and 1, by Newton's method;
     ``guess`` where it finds none."""
@@ -255,7 +255,7 @@ def _cubic_root(f_low, f_high, rise, fall, guess):
     return theta if 0.0 < theta < 1.0 else guess
 
 
-@inlined
+@kernel
 def _grazing(before, after, dt):
     """Fraction of ``dt`` (s) at which an open gap is narrowest, if it closes in between: maximum of
     the cubic through depths and their rates."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tipoff.kernels.jit import entry, inlined, kernel
+from tipoff.kernels.jit import entry, kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.stick_slip import clear
 from tipoff.lowfi.contact.wall_ends import DEPTH
@@ -62,20 +62,20 @@ def _begin(system, first_step, loop):
     stick_slip.update(system.sticking, system, loop)
 
 
-@inlined
+@kernel
 def _reset_clock(clock, first_step):
     clock.began = clock.now = clock.dt = clock.rate = clock.limit_used = 0.0
     clock.wanted, clock.limit, clock.kept = first_step, np.inf, 1.0
     clock.friction_power = clock.damping_power = -np.inf
 
 
-@inlined
+@kernel
 def _reset_counts(counts):
     counts.steps = counts.rejected = counts.events = counts.evaluations = counts.samples = 0
     counts.segment = counts.striking_face = -1
 
 
-@inlined
+@kernel
 def _reset_audit(audit):
     audit.first = audit.error = audit.peak_error = audit.scale = 0.0
     audit.first_transverse = audit.error_transverse = 0.0
@@ -84,7 +84,7 @@ def _reset_audit(audit):
     audit.failed = False
 
 
-@inlined
+@kernel
 def _reset_compliance(compliance):
     """Forget the displacement of the last run, and how it followed the pads."""
     if compliance is not None:
@@ -92,7 +92,7 @@ def _reset_compliance(compliance):
         compliance.workspace.yielding[:] = 0.0
 
 
-@inlined
+@kernel
 def _reset_stick(stick):
     if stick is not None:
         for i in range(stick.shape[0]):
@@ -203,7 +203,7 @@ def advance(system, plan, tolerance, marks, loop):
     return SAMPLED
 
 
-@inlined
+@kernel
 def _has_finite_energy(state, modal):
     """Whether the squares of all speeds, and everything else, are finite."""
     total = 0.0

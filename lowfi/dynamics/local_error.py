@@ -21,7 +21,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import inlined
+from tipoff.kernels.jit import kernel
+from tipoff.kernels.reference import by_reference
 from tipoff.lowfi.contact.compliant.modes import energies
 from tipoff.lowfi.dynamics.dormand_prince import local_error
 from tipoff.lowfi.numerics import Numerics
@@ -40,6 +41,7 @@ from tipoff.lowfi.state import (
 from tipoff.mechanics.promises import Promises
 
 
+@by_reference
 class Tolerance(NamedTuple):
     """Allowed errors of a run."""
 
@@ -61,7 +63,7 @@ def tolerance(numerics: Numerics, promised: Promises, reach: float) -> Tolerance
     )
 
 
-@inlined
+@kernel
 def with_reach(tolerance, reach):
     """``tolerance`` of a payload with another ``reach`` (m)."""
     return Tolerance(
@@ -73,7 +75,7 @@ def with_reach(tolerance, reach):
     )
 
 
-@inlined
+@kernel
 def error_ratio(tolerance, system, loop, dt):
     """Error of the step of ``dt`` (s) to ``loop.end`` over what is allowed; NaN where anything
     is."""
@@ -88,13 +90,13 @@ def error_ratio(tolerance, system, loop, dt):
     )
 
 
-@inlined
+@kernel
 def worse(a, b):
     """The larger of two numbers; NaN when either is NaN."""
     return a if not a <= b else b
 
 
-@inlined
+@kernel
 def _platform_ratio(tolerance, platform, dt, error, end):
     ratio = 0.0
     if platform is not None:
@@ -104,7 +106,7 @@ def _platform_ratio(tolerance, platform, dt, error, end):
     return ratio
 
 
-@inlined
+@kernel
 def _rail_ratio(tolerance, payload, compliance, error, end):
     ratio = 0.0
     if compliance is not None:
@@ -112,7 +114,7 @@ def _rail_ratio(tolerance, payload, compliance, error, end):
     return ratio
 
 
-@inlined
+@kernel
 def _modal_ratio(tolerance, payload, modes, error, end):
     ratio = 0.0
     if modes is not None:
@@ -127,7 +129,7 @@ def _modal_ratio(tolerance, payload, modes, error, end):
     return ratio
 
 
-@inlined
+@kernel
 def _body_ratio(tolerance, mass, inverse_inertia, dt, error, end):
     """Ratio of one body, whose slots stand first in ``error`` and ``end``."""
     place, velocity = triple(end, PLACE), triple(end, VELOCITY)

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.kernels.memory import zeros
+from tipoff.kernels.reference import by_reference
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant.record import states
 from tipoff.lowfi.contact.stick_slip import ROW_SIZE
@@ -60,6 +61,7 @@ AUDIT = np.dtype(
 )
 
 
+@by_reference
 class Plan(NamedTuple):
     """When steps must end, and how long they may be."""
 
@@ -69,6 +71,7 @@ class Plan(NamedTuple):
     first: float  # s, first step that is tried; error control corrects it in a few attempts
 
 
+@by_reference
 class Sampling(NamedTuple):
     """Which samples to take, and where to."""
 
@@ -80,6 +83,7 @@ class Sampling(NamedTuple):
     forces: np.ndarray  # (n, f, 3) N, of each pad face on the payload
 
 
+@by_reference
 class Loop(NamedTuple):
     """What evolves, for f faces and a state of n numbers (STATE_SIZE and those of the modes)."""
 

@@ -4,7 +4,7 @@ every pad face."""
 import numpy as np
 
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip
 from tipoff.lowfi.contact.compliant.loads import energy as energy_in_compliance
@@ -57,7 +57,7 @@ def observe(system, loop, row, forces):
     return finite
 
 
-@inlined
+@kernel
 def _is_finite(values):
     """Whether all ``values`` (n,) are finite; without a branch, which would cost more than the
     numbers."""
@@ -67,7 +67,7 @@ def _is_finite(values):
     return found
 
 
-@inlined
+@kernel
 def posture(system, state, row):
     """Fill only the motion of both bodies in ``row``."""
     _place(
@@ -78,13 +78,13 @@ def posture(system, state, row):
     )
 
 
-@inlined
+@kernel
 def _place(state, body, base, row):
     _copy(state[:PLATFORM], body, row[:PLATFORM])
     _copy(state[PLATFORM:], base, row[PLATFORM:])
 
 
-@inlined
+@kernel
 def rearmost_edge(faces, platform, row):
     """X (m) in platform axes of the rearmost trailing edge of the pads."""
     place, turn = slot.triple(row, PAYLOAD + PLACE), rotation.matrix(slot.quaternion(row, PAYLOAD))
@@ -102,7 +102,7 @@ def rearmost_edge(faces, platform, row):
     return rearmost
 
 
-@inlined
+@kernel
 def _copy(state, body, row):
     """Places and velocities of one body, whose slots stand first in ``state`` and ``row``."""
     slot.copy(state, row, slot.MOMENT)
@@ -131,7 +131,7 @@ def _body(mass, state, body, row):
         row[ANGULAR + i] += moment[i]
 
 
-@inlined
+@kernel
 def _observe_springs(laws, system, loop, body, base, forces):
     """Fill ``forces`` with those of contact springs; the energy (J) stored in all faces."""
     energy = 0.0
@@ -153,7 +153,7 @@ def _observe_springs(laws, system, loop, body, base, forces):
     return energy
 
 
-@inlined
+@kernel
 def _observe_compliance(compliance, system, loop, body, base, forces):
     """The same for compliant contact. The next step begins with the displacement that the last one
     left, whatever is sampled."""
@@ -191,7 +191,7 @@ def _observe_pressed(compliance, system, touching, state, body, base, forces):
     return energy
 
 
-@inlined
+@kernel
 def _rails(compliance, state, row):
     """Add the energies of the rails' modes."""
     if compliance is not None:
@@ -200,13 +200,13 @@ def _rails(compliance, state, row):
         row[STRAIN] = strain
 
 
-@inlined
+@kernel
 def _copy_rows(source, target):
     for i in range(source.shape[0]):
         slot.copy(source[i], target[i], source.shape[1])
 
 
-@inlined
+@kernel
 def _add_traction(sticking, row, face, pad, base, force):
     if sticking is not None:
         drag, _ = stick_slip.traction(sticking, row, face, pad, base)

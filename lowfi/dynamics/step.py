@@ -3,7 +3,7 @@ ledgers allow."""
 
 import numpy as np
 
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant.step_limit import stiffness_and_damping
 from tipoff.lowfi.contact.compliant.survey import energy as energy_in_compliance
@@ -100,7 +100,7 @@ def step(system, plan, tolerance, loop):
         return audit.record_step(system, tolerance, loop, balances)
 
 
-@inlined
+@kernel
 def _begin(system, plan, loop):
     """Make the end of the last step the start of the next; what jumps in between jumps here. True
     when the derivative jumps too."""
@@ -128,7 +128,7 @@ def _begin(system, plan, loop):
     return changed or left or fresh or clock.kept < 1.0
 
 
-@inlined
+@kernel
 def _release(is_compliant, system, loop, left, sign):
     """Count as released the energy in compliant contact that leaving faces take with them: called
     before they go with ``sign`` 1, and after with -1."""
@@ -144,7 +144,7 @@ def _release(is_compliant, system, loop, left, sign):
             )
 
 
-@inlined
+@kernel
 def _longest_at_ends(is_compliant, system, loop):
     longest = np.inf
     if is_compliant is not None:
@@ -159,7 +159,7 @@ def _longest_at_ends(is_compliant, system, loop):
     return longest
 
 
-@inlined
+@kernel
 def _within_reach_of_vibration(system, loop, dt):
     """``dt`` (s), or a shorter step before which no face comes within reach of a vibrating wall."""
     return shortened(
@@ -173,7 +173,7 @@ def _within_reach_of_vibration(system, loop, dt):
     )
 
 
-@inlined
+@kernel
 def _within_predicted_limit(system, loop, dt):
     """``dt`` (s), less where the proven limit of springs will have fallen below it by the end of
     such a step: a guess that saves attempts."""
@@ -189,7 +189,7 @@ def _within_predicted_limit(system, loop, dt):
     return dt
 
 
-@inlined
+@kernel
 def rate_bound(system, loop, state, solved):
     """Bound (1/s) of the eigenvalues of the contact at ``state``, for which compliant contact may
     be ``solved`` already."""
@@ -197,7 +197,7 @@ def rate_bound(system, loop, state, solved):
     return max(rate, _rate_on_compliance(system.is_compliant, system, loop, state, solved))
 
 
-@inlined
+@kernel
 def _rate_on_compliance(is_compliant, system, loop, state, solved):
     rate = 0.0
     if is_compliant is not None:
@@ -215,7 +215,7 @@ def _rate_on_compliance(is_compliant, system, loop, state, solved):
     return rate
 
 
-@inlined
+@kernel
 def _cut_at_event(system, loop, dt):
     """Cut the step at its first event: the fraction kept, with ``loop.end`` and its survey there,
     or a face that touches from the start."""

@@ -1,14 +1,14 @@
 """Between two steps: which faces stick from now on, which slide, and the energy that leaves their
 springs (law: ``lowfi.contact.stick_slip``)."""
 
-from tipoff.kernels.jit import inlined
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip as law
 from tipoff.lowfi.contact.springs import load, penetration, relative_pose
 from tipoff.lowfi.contact.wall_ends import MARGIN, MODE, OPEN
 
 
-@inlined
+@kernel
 def update(sticking, system, loop):
     """Update stick-slip states and surveyed margins as a step begins at ``loop.end``.
 
@@ -32,14 +32,14 @@ def update(sticking, system, loop):
     return changed, lost
 
 
-@inlined
+@kernel
 def begin_contact(sticking, system, loop, face):
     """Stick-slip state of one face, by number, that begins to touch at ``loop.start``."""
     if sticking is not None:
         _change(sticking, system, loop, face, False, True, loop.start)
 
 
-@inlined
+@kernel
 def _change(sticking, system, loop, number, touched, touches, state):
     """Change the state of a face that begins to touch, slips, stops, or ceases to touch; the energy
     (J) lost, and its new margin."""

@@ -1,7 +1,7 @@
 """Contact of every pad face at the ends of a step: which faces are over their walls, how deep they
 press, and which of them touch."""
 
-from tipoff.kernels.jit import inlined
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip
 from tipoff.lowfi.contact.compliant.survey import survey as survey_compliance
@@ -37,7 +37,7 @@ from tipoff.lowfi.system import BACK, SIDE_MIDDLE
 from tipoff.scenes.effects.contact import stored_energy
 
 
-@inlined
+@kernel
 def survey(system, loop, solved):
     """Fill ``loop.after`` at ``loop.end``, for which compliant contact may be ``solved`` already,
     and the energy (J) stored in it. A face off its wall gets the mode it would have there."""
@@ -48,7 +48,7 @@ def survey(system, loop, solved):
     )
 
 
-@inlined
+@kernel
 def _survey_compliance(compliance, faces, platform, payload, loop, solved):
     energy = 0.0
     if compliance is not None:
@@ -58,7 +58,7 @@ def _survey_compliance(compliance, faces, platform, payload, loop, solved):
     return energy
 
 
-@inlined
+@kernel
 def _survey_springs(laws, sticking, faces, platform, payload, loop):
     if laws is not None:
         out = loop.after
@@ -82,7 +82,7 @@ def _survey_springs(laws, sticking, faces, platform, payload, loop):
             out[i, MARGIN] = margin(laws, sticking, row, platform, faces[i], p, body, base)
 
 
-@inlined
+@kernel
 def pull(pad):
     """Raw force over the sum of the sizes of its elastic and damping parts: -1..1, negative where
     the law would pull."""
@@ -90,7 +90,7 @@ def pull(pad):
     return pad.raw / size if size > 0.0 else 1.0
 
 
-@inlined
+@kernel
 def margin(laws, sticking, row, platform, face, p, body, base):
     """Stick-slip margin of a face at penetration ``p`` (m); -1 for a face that sticks across a
     gap."""
@@ -105,7 +105,7 @@ def margin(laws, sticking, row, platform, face, p, body, base):
     return left
 
 
-@inlined
+@kernel
 def update_engaged(system, loop):
     """Update the faces that are over their walls and the depths with which others left.
 
@@ -118,7 +118,7 @@ def update_engaged(system, loop):
     return _update_engaged(system.contact, system.has_contact, rail, system.faces, loop)
 
 
-@inlined
+@kernel
 def _update_engaged(laws, has_contact, rail, faces, loop):
     changed, energy, returned, struck = False, 0.0, 0.0, -1
     if has_contact:
@@ -142,7 +142,7 @@ def _update_engaged(laws, has_contact, rail, faces, loop):
     return changed, energy, returned, struck
 
 
-@inlined
+@kernel
 def update_touching(loop):
     """Update the faces that touch as a step begins; True when any changed."""
     changed = False
@@ -153,7 +153,7 @@ def update_touching(loop):
     return changed
 
 
-@inlined
+@kernel
 def keeps_law(loop):
     """Whether every touching face has the same mode at both ends of the step: the right-hand side
     was smooth in between."""
@@ -163,7 +163,7 @@ def keeps_law(loop):
     return True
 
 
-@inlined
+@kernel
 def stored(laws, depth):
     """Elastic energy (J) of one face at penetration ``depth`` (m), zero across a gap."""
     energy = 0.0

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from tipoff.kernels.jit import inlined
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi.contact.compliant import free_vibration, neglected
 
 
-@inlined
+@kernel
 def advance_free_modes(compliance, touching, dt, start, end, with_work):
     """Fill the modes of rails without a ``touching`` (f,) face in ``end``, ``dt`` (s) after ``start``,
     and add what damping takes to its work if there is any."""
@@ -14,7 +14,7 @@ def advance_free_modes(compliance, touching, dt, start, end, with_work):
         free_vibration.advance(compliance, touching, dt, start, end, with_work)
 
 
-@inlined
+@kernel
 def longest_step(compliance, touching, engaged, before, state):
     """Longest step (s) from ``state`` at which vibration cannot hide a touch of an ``engaged`` (f,)
     face, by the survey ``before`` (f, SURVEY_SIZE): without bound where none is near."""
@@ -26,7 +26,7 @@ def longest_step(compliance, touching, engaged, before, state):
     return longest
 
 
-@inlined
+@kernel
 def shortened(compliance, touching, engaged, before, after, state, dt):
     """``dt`` (s), or the shorter step to try where a face comes near a vibrating wall in it."""
     if compliance is not None:
@@ -35,14 +35,14 @@ def shortened(compliance, touching, engaged, before, after, state, dt):
     return dt
 
 
-@inlined
+@kernel
 def reset_neglected(watched):
     """Bring the neglected modes that are ``watched`` to rest."""
     if watched is not None:
         neglected.reset(watched)
 
 
-@inlined
+@kernel
 def follow_neglected(watched, system, loop):
     """Drive the neglected modes that are ``watched`` through the step just taken."""
     if watched is not None and watched.effect.size > 0:

@@ -14,6 +14,7 @@ from types import CodeType, FunctionType, SimpleNamespace
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, overload
 
 import numba
+from llvmlite.binding import Linkage
 from numba.core import caching
 from numba.core.caching import _CacheLocator
 from numba.core.codegen import JITCodeLibrary
@@ -102,15 +103,27 @@ _settings.CACHE_DIR = str(sources.cache_folder() / "kernels")
 
 
 class _PartLibrary(JITCodeLibrary):
-    """LLVM code of a kernel that only kernels call, neither optimised nor made machine code."""
+    """LLVM code of a kernel that only kernels call, neither linked nor made machine code."""
+
+    def _optimize_functions(self, module) -> None:
+        _simplify(self._codegen, module)
 
     def finalize(self) -> None:
-        """Link the kernels that this one calls."""
-        for library in dict.fromkeys(self._linking_libraries):
+        """Note what the code needs; the kernel that Python calls links it."""
+        for library in self._linking_libraries:
             self._reload_init.update(library._reload_init)
-            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
         self._finalize_dynamic_globals()
         self._finalized = True
+
+    def _get_module_for_linking(self):
+        """The code with all that it calls, for a function that Numba links in its own way."""
+        if self._shared_module is None:
+            self._shared_module = self._final_module.clone()
+            _link(self._shared_module, self._linking_libraries)
+            for function in self._shared_module.functions:
+                if not function.is_declaration and function.linkage == Linkage.external:
+                    function.linkage = "linkonce_odr"
+        return self._shared_module
 
     def get_pointer_to_function(self, name: str) -> int:
         """Zero: there is no machine code."""
@@ -123,14 +136,83 @@ class _PartLibrary(JITCodeLibrary):
         return SimpleNamespace(set_env=lambda name, environment: None)
 
 
+class _EntryLibrary(JITCodeLibrary):
+    """Machine code of a kernel that Python calls, with all kernels that it calls.
+
+    Each of these is linked once. Numba would link it into each caller, and that into each of its own
+    callers. It would also optimise the whole twice, the first time to remove reference counts, which
+    kernels do not have.
+    """
+
+    def _optimize_functions(self, module) -> None:
+        _simplify(self._codegen, module)
+
+    def finalize(self) -> None:
+        """Link, optimise, and make the machine code."""
+        for library in self._linking_libraries:
+            self._reload_init.update(library._reload_init)
+        _link(self._final_module, self._linking_libraries)
+        self._linking_libraries = []
+        super().finalize()
+
+    def _optimize_final_module(self) -> None:
+        # level 3 takes a tenth more time to compile, and the result is not faster
+        passes, options = self._codegen._module_pass_manager(opt=2)
+        passes.run(self._final_module, options)
+
+
+def _simplify(codegen, module) -> None:
+    """Run light passes over each function of a ``module`` of LLVM: what is left for the passes over
+    the whole is a fraction of the code."""
+    module.data_layout = codegen._data_layout
+    for function in module.functions:
+        passes, options = codegen._function_pass_manager(opt=1)
+        passes.run(function, options)
+
+
+def _link(module, libraries: list) -> None:
+    """Link ``libraries`` and all that they call into a ``module`` of LLVM, each once. What it takes
+    in is internal to it, so that LLVM may drop and specialise it."""
+    own = {function.name for function in module.functions if not function.is_declaration}
+    linked: dict[JITCodeLibrary, None] = {}
+    while libraries:
+        new = dict.fromkeys(library for library in libraries if library not in linked)
+        parts = [library for library in new if isinstance(library, _PartLibrary)]
+        # at first as they are: a definition that nothing calls yet would be left out otherwise
+        for part in parts:
+            module.link_in(part._final_module, preserve=True)
+        linked |= new
+        libraries = [other for part in parts for other in part._linking_libraries]
+    for library in linked:
+        if not isinstance(library, _PartLibrary):
+            module.link_in(library._get_module_for_linking(), preserve=True)
+    for function in module.functions:
+        if not function.is_declaration and function.name not in own:
+            function.linkage = "internal"
+
+
 class _PartCompiler(Compiler):
     """Numba's compiler with libraries of parts."""
+
+    library: type[JITCodeLibrary] = _PartLibrary
 
     def define_pipelines(self) -> list:
         """Numba's passes, which lower to the library that is set here."""
         state = self.state
-        state.library = _PartLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library = self.library(state.targetctx.codegen(), state.func_id.func_qualname)
         return super().define_pipelines()
+
+
+class _EntryCompiler(_PartCompiler):
+    """The same with libraries of what Python calls."""
+
+    library = _EntryLibrary
+
+    def define_pipelines(self) -> list:
+        """The same, with machine code that the cache can keep."""
+        pipelines = super().define_pipelines()
+        self.state.library.enable_object_caching()
+        return pipelines
 
 
 class _Part(CPUDispatcher):
@@ -178,7 +260,9 @@ class _Entry(CPUDispatcher):
 
     def __init__(self, function: Callable, **options: Any):
         flags = {"nopython": True, "_nrt": False}
-        super().__init__(function, targetoptions=_OPTIONS | flags | options)
+        super().__init__(
+            function, targetoptions=_OPTIONS | flags | options, pipeline_class=_EntryCompiler
+        )
         self.enable_caching()
 
     def compile(self, signature):
@@ -214,8 +298,8 @@ else:
     # time to compile. ``entry`` is for those that Python calls, ``kernel`` for all others.
     entry = _entry
     kernel = _Part
-    # The same for what innermost loops call with whole records: each call would copy some hundred
-    # words of array headers.
+    # The same for what the loops of finite elements call, which LLVM would not always inline: 5 %
+    # of their time.
     inlined = functools.partial(_Part, forceinline=True)
 
 

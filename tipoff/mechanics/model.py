@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tipoff.kernels.reference import by_reference
 from tipoff.scenes.body import tensor
 from tipoff.scenes.effects import contact, registry, thrust, thrust_offset
 from tipoff.scenes.effects.body_force import BodyForce
@@ -34,6 +35,7 @@ _REUSED = (
 )
 
 
+@by_reference
 class Payload(NamedTuple):
     """Mass (kg), inertia about the mass centre (3,3), its inverse, and the mass centre at rest in
     scene axes (m)."""
@@ -44,6 +46,7 @@ class Payload(NamedTuple):
     mass_centre: tuple
 
 
+@by_reference
 class Faces(NamedTuple):
     """Pad faces, f of them, and the rail walls they may touch.
 

@@ -15,7 +15,7 @@ the rows.
 
 import numpy as np
 
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi.contact.compliant.record import (
     ASIDE,
     BY_ETA,
@@ -34,7 +34,7 @@ _NO_FORCE, _NO_MOMENTS = (0.0,) * 6, (0.0,) * 15
 _EASED = 0.1
 
 
-@inlined
+@kernel
 def take_lever(compliance, faces, face, place, turn):
     """Fill the face's lever for the payload's pose in platform axes."""
     lever, half = compliance.workspace.lever[face], compliance.half[face]
@@ -58,7 +58,7 @@ def take_lever(compliance, faces, face, place, turn):
     lever[ASIDE] = (across - compliance.across[face]) / half[1]
 
 
-@inlined
+@kernel
 def eased(over):
     """``over`` where above zero, else zero, with a rounded corner, and its slope, which a force along
     the rail contains."""
@@ -67,7 +67,7 @@ def eased(over):
     return 0.25 * (over + _EASED) ** 2 / _EASED, 0.5 * (over + _EASED) / _EASED
 
 
-@inlined
+@kernel
 def cover(compliance, half, middle, row):
     """Share of a row of cells that is over the wall, and its decrease per metre of travel."""
     behind_end, at_end = _behind(compliance, row, (compliance.end - middle) / half)
@@ -75,7 +75,7 @@ def cover(compliance, half, middle, row):
     return behind_end - behind_start, (at_end - at_start) / half
 
 
-@inlined
+@kernel
 def _behind(compliance, row, xi):
     """Share of a row of cells behind an end of the rail at ``xi``, and its slope. The sums of
     neighbouring rows change linearly from middle to middle, so the rate of lost energy does not
@@ -89,7 +89,7 @@ def _behind(compliance, row, xi):
     return 0.5 + part if away > 0.0 else 0.5 - part, 0.5 * compliance.node.size * slope
 
 
-@inlined
+@kernel
 def row_depth(compliance, face, xi, displacement):
     """Coefficients of 1, eta' and eta'^2 in p (m) along the row of cells at ``xi``, without the
     crown across it."""
@@ -139,7 +139,7 @@ def press(compliance, face):
     return slack
 
 
-@inlined
+@kernel
 def _with_force(force, weight, x, f0, f1, f2):
     """``force`` with that of one more row of cells."""
     return (
@@ -152,7 +152,7 @@ def _with_force(force, weight, x, f0, f1, f2):
     )
 
 
-@inlined
+@kernel
 def _with_moments(moments, weight, x, sums):
     """``moments`` with those of one more row of cells: sums over pressed cells of k dA xi'^i eta'^j
     with i + j up to 4, in the order of i, then j."""
@@ -178,7 +178,7 @@ def _with_moments(moments, weight, x, sums):
     )
 
 
-@inlined
+@kernel
 def _fill_stiffness(stiffness, moments):
     """K_ab from the moments; the patterns are 1, xi', eta', xi'^2, xi' eta' and eta'^2."""
     m00, m01, m02, m03, m04, m10, m11, m12, m13, m20, m21, m22, m30, m31, m40 = moments
@@ -190,12 +190,12 @@ def _fill_stiffness(stiffness, moments):
     _fill_row(stiffness[5], (m02, m12, m03, m22, m13, m04))
 
 
-@inlined
+@kernel
 def _fill_row(row, values):
     row[0], row[1], row[2], row[3], row[4], row[5] = values
 
 
-@inlined
+@kernel
 def largest_change(compliance, face, change):
     """Bound (m) of the change of p in any cell of a face by a ``change`` (p,) of the displacement of
     its wall."""

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi.contact.wall_ends import (
     BEYOND,
     CLOSING,
@@ -45,7 +45,7 @@ class Faces(NamedTuple):
     after: np.ndarray  # (f, SURVEY_SIZE) survey of the end
 
 
-@inlined
+@kernel
 def advance(compliance, touching, dt, start, end, with_work):
     """Fill the modes of rails without a ``touching`` (f,) face in ``end``, ``dt`` (s) after ``start``,
     and add what damping takes to its work if there is any."""
@@ -76,7 +76,7 @@ def _advance(modes, members, touching, dt, start, end):
     return lost
 
 
-@inlined
+@kernel
 def oscillated(square, drag, time, q, rate):
     """Amplitude and rate of a free oscillator after ``time`` (s); omega^2 is ``square`` (1/s2) and d
     is ``drag`` (1/s)."""
@@ -95,7 +95,7 @@ def oscillated(square, drag, time, q, rate):
     return q * c + (rate + half * q) * s, rate * c - (half * rate + square * q) * s
 
 
-@inlined
+@kernel
 def is_pressed(members, rail, touching):
     """Whether a ``touching`` (f,) face is on ``rail``."""
     for k in range(members.shape[1]):
@@ -105,7 +105,7 @@ def is_pressed(members, rail, touching):
     return False
 
 
-@inlined
+@kernel
 def note_reach(modes, rail, face, count, speed, state, row):
     """Fill in the ``row`` of a survey how deep (m) a face is at most while its rail swings freely, and
     the rate of that on a wall at rest, ``speed`` (m/s) of the wall being that of its modes; without
@@ -128,12 +128,12 @@ def _nearest(modes, rail, face, speed, state, row):
     return row[DEPTH] + 2.0 * swing, row[CLOSING] + speed
 
 
-@inlined
+@kernel
 def _amplitude(square, q, rate):
     return np.sqrt(q * q + rate * rate / square) if q != 0.0 or rate != 0.0 else 0.0
 
 
-@inlined
+@kernel
 def cannot_touch(modes, before, after, dt):
     """Whether free vibration of the rail cannot bring the wall to an open face in a step of ``dt`` (s)
     between two rows of a survey."""
@@ -156,7 +156,7 @@ def longest_step(modes, rail, touching, engaged, before, state):
     return longest
 
 
-@inlined
+@kernel
 def _resolved(modes, rail, face, state):
     """Step (s) whose cubic misses the wall under a face by ``_MISSED``."""
     number, total = modes.square.shape[1], 0.0

@@ -16,7 +16,7 @@ that xi' moves with the pad and cells leave the wall; and across, where the wall
 """
 
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi.contact.compliant import thermal_offset
 from tipoff.lowfi.contact.compliant.cells import stored
 from tipoff.lowfi.contact.compliant.modes import offset, slope
@@ -61,7 +61,7 @@ def load(compliance, friction, platform, faces, face, body, base):
     )
 
 
-@inlined
+@kernel
 def wall_force(compliance, faces, face, body, base):
     """Force (N) along the wall on the payload by a pressed face, by the slope of the wall and by its
     end, and where it acts (m), in scene axes."""

@@ -18,7 +18,7 @@ kg on a platform of 81 kg: a thousandth of the contact force, and 1e-5 m/s of th
 wall vibrates at 10 mm/s. So the momenta of payload and platform are conserved to rounding.
 """
 
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi.state import STATE_SIZE
 from tipoff.mechanics.rail_compliance import PATTERNS, POWERS
 
@@ -49,7 +49,7 @@ def evaluate(modes, rail, face, station, way, changes, state):
                 modes.speed[face, a] += state[rates + i] * value
 
 
-@inlined
+@kernel
 def offset(modes, face, a):
     """Displacement (m) of the wall in pattern a by its modes."""
     value = 0.0
@@ -58,7 +58,7 @@ def offset(modes, face, a):
     return value
 
 
-@inlined
+@kernel
 def slope(modes, face, a):
     """Derivative of that displacement along the rail."""
     value = 0.0
@@ -67,7 +67,7 @@ def slope(modes, face, a):
     return value
 
 
-@inlined
+@kernel
 def speed_at(modes, face, xi, eta):
     """Speed (m/s) at which the point (xi, eta) of the wall moves away by the modes."""
     value = 0.0
@@ -98,7 +98,7 @@ def vibrate(modes, workspace, rail, count, state, out):
     return loss
 
 
-@inlined
+@kernel
 def energies(modes, state):
     """Kinetic and strain energy (J) of all modes."""
     kinetic, strain = 0.0, 0.0
@@ -115,7 +115,7 @@ def energies(modes, state):
     return kinetic, strain
 
 
-@inlined
+@kernel
 def fastest(modes, rail, pressed):
     """Largest omega^2 (1/s2) and d (1/s) of the modes of a rail; zero while nothing presses it."""
     square, drag = 0.0, 0.0

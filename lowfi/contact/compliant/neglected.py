@@ -27,8 +27,9 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import kernel
 from tipoff.kernels.memory import zeros
+from tipoff.kernels.reference import by_reference
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant.free_vibration import is_pressed, oscillated
 from tipoff.lowfi.contact.compliant.record import damping_of, drag_of
@@ -56,6 +57,7 @@ RAIL = np.dtype([("time", float), ("pressed", np.bool_)])
 FACE = np.dtype([("impulse", float), ("leaving", float)])
 
 
+@by_reference
 class Neglected(NamedTuple):
     """All n modes of each of r rails under f faces, and what those that a run neglects would do."""
 
@@ -97,7 +99,7 @@ def build(square: np.ndarray, drag: np.ndarray, cubic: np.ndarray, first: int) -
     )
 
 
-@inlined
+@kernel
 def reset(neglected):
     """Bring all rails to rest."""
     for rail in range(neglected.rails.size):
@@ -166,7 +168,7 @@ def _press(neglected, system, loop, rail):
     neglected.rails[rail].time = loop.clock.now
 
 
-@inlined
+@kernel
 def drive(mode, dt, force):
     """Move one mode by ``dt`` (s) under a force that changes linearly up to ``force``: the particular
     solution is linear too."""
@@ -185,7 +187,7 @@ def drive(mode, dt, force):
     mode.force = force
 
 
-@inlined
+@kernel
 def energy(mode):
     """Energy (J) of one mode."""
     return 0.5 * (mode.rate * mode.rate + mode.square * mode.amplitude * mode.amplitude)
@@ -212,7 +214,7 @@ def _leave(neglected, system, state, rail):
         neglected.effect[i] += by_impulse * mass * abs(speed - left)
 
 
-@inlined
+@kernel
 def _most_pressed(members, faces, rail):
     """The face on ``rail`` with the largest impulse."""
     most = members[rail, 0]

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.kernels.memory import zeros
+from tipoff.kernels.reference import by_reference
 from tipoff.mechanics import rail_compliance as data
 from tipoff.mechanics.model import Model
 from tipoff.scenes.effects.friction import require_two_step
@@ -18,6 +19,7 @@ CELLS = 10  # along each edge of a pad face
 DEPTH, BY_XI, BY_ETA, SHIFT, DRIFT, MIDDLE, ASIDE, LEVER_SIZE = range(8)
 
 
+@by_reference
 class Workspace(NamedTuple):
     """Arrays that one run works in, for f faces, p patterns, at most m faces on a rail, w = m p, and
     n modes."""
@@ -38,6 +40,7 @@ class Workspace(NamedTuple):
     slack: np.ndarray  # (m,) m, smallest |p| of a cell of the faces in ``order``
 
 
+@by_reference
 class Modes(NamedTuple):
     """The n modes of each of r rails, and their displacement under each of f faces."""
 
@@ -53,6 +56,7 @@ class Modes(NamedTuple):
     speed: np.ndarray  # (f, p) m/s, workspace: its rate
 
 
+@by_reference
 class ThermalOffset(NamedTuple):
     """Displacement of warm walls without load."""
 
@@ -61,6 +65,7 @@ class ThermalOffset(NamedTuple):
     slope: np.ndarray  # (f, p) workspace: its derivative along the rail
 
 
+@by_reference
 class Compliance(NamedTuple):
     """Compliant contact of f faces on r rails, with its statics at s stations."""
 

@@ -14,7 +14,7 @@ displacement of the solution before, moved with the pad as at the end of the las
 
 import numpy as np
 
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi.contact.compliant import thermal_offset
 from tipoff.lowfi.contact.compliant.cells import eased, largest_change, press, take_lever
 from tipoff.lowfi.contact.compliant.modes import evaluate, offset
@@ -42,7 +42,7 @@ def solve(compliance, faces, rail, touching, place, turn, state):
     return count
 
 
-@inlined
+@kernel
 def _move(compliance, faces, face, place, turn):
     """Fill the lever of a face, and guess how its wall follows; a state that is not finite leaves
     nothing behind."""
@@ -57,7 +57,7 @@ def _move(compliance, faces, face, place, turn):
         displacement[a] = guess if abs(guess) < np.inf else 0.0
 
 
-@inlined
+@kernel
 def gather(compliance, rail, touching):
     """Fill ``order`` with the ``touching`` (f,) faces on ``rail``; their number."""
     count = 0
@@ -69,7 +69,7 @@ def gather(compliance, rail, touching):
     return count
 
 
-@inlined
+@kernel
 def solve_unless(solved, compliance, faces, rail, touching, place, turn, state):
     """``solve``, or its number of faces and their order where all rails are already ``solved`` at
     this ``state``."""
@@ -78,7 +78,7 @@ def solve_unless(solved, compliance, faces, rail, touching, place, turn, state):
     return solve(compliance, faces, rail, touching, place, turn, state)
 
 
-@inlined
+@kernel
 def between_stations(compliance, place):
     """Number of the station before X = ``place`` (m) of the first face, the way (m) from it, inside
     the table, and by how much that changes with the place: at the last station it stops as the

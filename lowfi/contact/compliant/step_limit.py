@@ -13,7 +13,7 @@ their spectra by the largest of each (Weyl), and the trace of contact on the mod
 """
 
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant.loads import load
 from tipoff.lowfi.contact.compliant.modes import fastest
@@ -94,7 +94,7 @@ def _tangent(compliance, count):
     return count * _RIGID
 
 
-@inlined
+@kernel
 def _add_modes(modes, workspace, count):
     """Fill the columns of the modes, whose number this is, before elimination."""
     number = 0
@@ -111,7 +111,7 @@ def _add_modes(modes, workspace, count):
     return number
 
 
-@inlined
+@kernel
 def _pressure(modes, workspace, face, a, i):
     """dP_a by a unit of mode i on an otherwise rigid wall."""
     value = 0.0
@@ -120,7 +120,7 @@ def _pressure(modes, workspace, face, a, i):
     return value
 
 
-@inlined
+@kernel
 def _trace_of_modes(modes, workspace, count, first):
     """Trace (1/s2) of W' T W; dU of the modes stands in ``right`` from the column ``first`` on."""
     total = 0.0
@@ -135,7 +135,7 @@ def _trace_of_modes(modes, workspace, count, first):
     return total
 
 
-@inlined
+@kernel
 def _reaction(workspace, face, a, rigid):
     """dP_a by a unit of a rigid motion on a wall at rest."""
     value = workspace.stiffness[face, a, rigid]
@@ -144,7 +144,7 @@ def _reaction(workspace, face, a, rigid):
     return value
 
 
-@inlined
+@kernel
 def _beyond(workspace, face, rigid):
     """How far the place on the wall is beyond that on the pad, along xi or eta."""
     return workspace.lever[face, SHIFT if rigid == 1 else ASIDE]
@@ -161,7 +161,7 @@ def _answer(workspace, i, rigid, column):
     return total
 
 
-@inlined
+@kernel
 def _own(workspace, face, rigid, other):
     value = _reaction(workspace, face, rigid, other)
     if rigid > 0:
@@ -190,12 +190,12 @@ def _trace(compliance, faces, platform, payload, count, body, base):
     return abs(total)
 
 
-@inlined
+@kernel
 def _dot(a, b):
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@inlined
+@kernel
 def _inverse_mass(platform):
     value = 0.0
     if platform is not None:
@@ -203,7 +203,7 @@ def _inverse_mass(platform):
     return value
 
 
-@inlined
+@kernel
 def _answer_of_body(inverse_inertia, body, wrench, out):
     """Force, moment about the mass centre, and the rate that it gives the body per second."""
     moment = _moment(body, wrench)
@@ -212,7 +212,7 @@ def _answer_of_body(inverse_inertia, body, wrench, out):
         out[_FORCE + i], out[_MOMENT + i], out[_RATE + i] = wrench[0][i], moment[i], rate[i]
 
 
-@inlined
+@kernel
 def _answer_of_platform(platform, base, wrench, out):
     if platform is None:
         out[:] = 0.0
@@ -220,7 +220,7 @@ def _answer_of_platform(platform, base, wrench, out):
         _answer_of_body(platform.inverse_inertia, base, wrench, out)
 
 
-@inlined
+@kernel
 def _wrench(compliance, faces, face, rigid, body, base):
     """Force, a point it acts at (m), and couple that belong to a rigid motion of the face."""
     n, half = outward(faces[face], base), compliance.half[face]
@@ -237,7 +237,7 @@ def _wrench(compliance, faces, face, rigid, body, base):
     return aside, pad_point(faces[face], body), rotation.cross(rotation.rotate(body.turn, edge), n)
 
 
-@inlined
+@kernel
 def _by_slope(workspace, face, rigid):
     """Slope of the wall across the rail under a rigid motion."""
     u, lever = workspace.displacement[face], workspace.lever[face]
@@ -246,7 +246,7 @@ def _by_slope(workspace, face, rigid):
     return u[4] if rigid == 1 else 2.0 * u[5]
 
 
-@inlined
+@kernel
 def _moment(body, wrench):
     p, q = wrench[1], body.place
     swing = rotation.cross((p[0] - q[0], p[1] - q[1], p[2] - q[2]), wrench[0])

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant import thermal_offset
 from tipoff.lowfi.contact.compliant.cells import deepest, deepest_at_rest, take_lever
@@ -58,7 +58,7 @@ def _deepest(compliance, faces, face, count, touching, place, turn, state):
     return deepest(compliance, face, displacement)
 
 
-@inlined
+@kernel
 def _approach(compliance, faces, face, xi, eta, drift, swing):
     """Rate (m/s) at which a point of the face approaches its wall, which modes do not move."""
     y, z, half = faces[face, NORMAL_Y], faces[face, NORMAL_Z], compliance.half[face]
@@ -70,14 +70,14 @@ def _approach(compliance, faces, face, xi, eta, drift, swing):
     return approach(None, faces[face], None, None, drift, swing) + turning - away
 
 
-@inlined
+@kernel
 def _on_wall(compliance, face, xi, eta):
     """xi' and eta' of the wall under a point of the face."""
     lever = compliance.workspace.lever[face]
     return xi + lever[SHIFT], eta + lever[ASIDE]
 
 
-@inlined
+@kernel
 def _speed_of_modes(compliance, face, xi, eta):
     """Rate (m/s) at which modes move the wall away from a point of the face."""
     along, across = _on_wall(compliance, face, xi, eta)

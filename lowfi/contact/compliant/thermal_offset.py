@@ -2,13 +2,13 @@
 (``mechanics.rail_compliance``). Without temperatures ``warm`` is None and every function does
 nothing."""
 
-from tipoff.kernels.jit import inlined
+from tipoff.kernels.jit import kernel
 from tipoff.mechanics.rail_compliance import PATTERNS, POWERS
 
 _XI, _ETA = POWERS.T.copy()
 
 
-@inlined
+@kernel
 def evaluate(warm, face, station, s, changes):
     """Fill T and its slope along the rail under ``face``, ``s`` (m) from a station, where that
     distance changes by ``changes`` with the place."""
@@ -16,7 +16,7 @@ def evaluate(warm, face, station, s, changes):
         fill(warm, face, station, s, changes)
 
 
-@inlined
+@kernel
 def fill(warm, face, station, s, changes):
     """The work of ``evaluate`` on rails that are warm."""
     c = warm.cubic[station, face]
@@ -25,7 +25,7 @@ def fill(warm, face, station, s, changes):
         warm.slope[face, a] = changes * (c[1, a] + s * (2.0 * c[2, a] + s * 3.0 * c[3, a]))
 
 
-@inlined
+@kernel
 def offset(warm, face, pattern):
     """T (m) of one pattern."""
     value = 0.0
@@ -34,7 +34,7 @@ def offset(warm, face, pattern):
     return value
 
 
-@inlined
+@kernel
 def axial_force(warm, face, force):
     """Force (N) along the rail of ``force`` (p,) N on a wall whose offset grows or shrinks ahead."""
     total = 0.0
@@ -44,7 +44,7 @@ def axial_force(warm, face, force):
     return total
 
 
-@inlined
+@kernel
 def slope(warm, face, xi, eta):
     """Slope of the wall at a point of the face."""
     total = 0.0

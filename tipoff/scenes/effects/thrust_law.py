@@ -9,12 +9,14 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.kernels.jit import njit
+from tipoff.kernels.reference import by_reference
 
 ROOT_TWO_PI = math.sqrt(2.0 * math.pi)
 # Widths around a pulse at which the thrust is looked at: of one alone, of one among others.
 _COARSE, _FINE = np.linspace(-8.0, 8.0, 17), np.linspace(-8.0, 8.0, 801)
 
 
+@by_reference
 class Pulses(NamedTuple):
     """Gaussians: peaks (N), centres (s), widths (s), each (n,), zero outside begin..end (s)."""
 
@@ -25,6 +27,7 @@ class Pulses(NamedTuple):
     end: float
 
 
+@by_reference
 class Curve(NamedTuple):
     """Piecewise linear curve: times (s, not decreasing; a repeated time is a jump) and forces
     (N)."""
@@ -33,6 +36,7 @@ class Curve(NamedTuple):
     forces: np.ndarray
 
 
+@by_reference
 class Thrust(NamedTuple):
     """Kernel record: exactly one of the two is not None."""
 
