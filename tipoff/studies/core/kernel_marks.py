@@ -20,8 +20,7 @@ from tipoff.studies.core.progress import say
 if TYPE_CHECKING:
     from tipoff.studies.core.store import Run
 
-_TIMES = {False: "20 s", True: "a minute"}  # without and with modes
-_WITH_MODES = ", and a minute more if modes of the rails turn out to matter"
+_WITH_MODES = ", and as long again if modes of the rails turn out to matter"
 _SAID: set[Path] = set()  # marks of kernels that this process has announced
 
 
@@ -63,7 +62,7 @@ def announce(run: "Run", chosen: bool = False, many: bool = False) -> None:
     say(
         f"compiling the kernels of model {run.model}"
         + (" with modes of the rails" if vibrates else "")
-        + f" for these effects: about {_TIMES[vibrates]}, once"
+        + " for these effects: about 20 s, once"
         + (_WITH_MODES if chooses and not mark(run, True, many).is_file() else "")
     )
 

@@ -99,16 +99,18 @@ class Board:
 def team(board: Board, workers: int) -> Iterator[ThreadPoolExecutor]:
     """Threads for the runs of ``board``.
 
-    An exception in the block, such as Ctrl-C, stops each run at its next progress report and
-    cancels those that have not begun. It does not wait for the threads, since one may be compiling
-    a kernel.
+    An exception in the block, such as Ctrl-C, cancels the runs that have not begun and stops each
+    other one at its next progress report. It does not wait for the threads, since one may be
+    compiling a kernel.
     """
     pool = ThreadPoolExecutor(workers)
     try:
         yield pool
     except BaseException:
-        board.stop()
-        pool.shutdown(wait=False, cancel_futures=True)
+        try:  # in this order: the thread of a stopped run would begin the next one
+            pool.shutdown(wait=False, cancel_futures=True)
+        finally:
+            board.stop()
         raise
     pool.shutdown()
 
