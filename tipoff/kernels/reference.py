@@ -22,6 +22,10 @@ _Record = TypeVar("_Record", bound=tuple)
 class Reference(types.NamedTuple):
     """Numba's type of a record that is passed by reference."""
 
+    def __init__(self, members: tuple, python: type):
+        super().__init__(members, python)
+        self.name = f"reference to {self.name}"  # Numba makes names of functions from it
+
 
 def by_reference(python: type[_Record]) -> type[_Record]:
     """Decorator of a named tuple class: Python hands its records to kernels by their address.
