@@ -8,14 +8,14 @@ SI only where the caller says so (overrides made by a program, resolved scenes r
 import math
 import re
 from collections.abc import Iterable
-from functools import lru_cache
+from functools import cache, lru_cache
 from numbers import Real
-from typing import Annotated, Any, TypedDict, Unpack
+from typing import TYPE_CHECKING, Annotated, Any, TypedDict, Unpack
 
-import pint
 from pydantic import BeforeValidator, Field, ValidationInfo
 
-registry: pint.UnitRegistry = pint.UnitRegistry()
+if TYPE_CHECKING:
+    import pint
 
 # The number is read by float, so that pint never evaluates arithmetic such as "9**9**9 m".
 _QUANTITY = re.compile(
@@ -30,6 +30,15 @@ _UNIT = re.compile(rf"(?:{_POWER}(?!\s*(?:\*\*|\^))|[^\W\d]\w*|1(?![\w.])|[%°()
 # Magnitudes (SI) beyond these are typing errors. Products of quantities would leave the range of
 # floating-point numbers, and a rail would be lost in the rounding of its place.
 _LARGEST, _LARGEST_LENGTH = 1e200, 1e9
+
+
+@cache
+def registry() -> "pint.UnitRegistry":
+    """All units of pint, which loads when the first unit is read: it takes 0.3 s, and the scenes that
+    worker processes get are in SI."""
+    import pint
+
+    return pint.UnitRegistry()
 
 
 def named(unit: str) -> str:
@@ -51,8 +60,11 @@ def to_si(text: str, unit: str, absolute: bool = False) -> float:
         raise ValueError(f"{named(unit)}, neither NaN nor infinite")
     if len(given_unit) > _LONGEST or not _UNIT.fullmatch(given_unit):
         raise ValueError(f"{named(unit)} ({given_unit[:_LONGEST]!r} is no unit)")
+    import pint
+
+    units = registry()
     try:
-        quantity = registry.Quantity(number, registry.parse_units(given_unit))
+        quantity = units.Quantity(number, units.parse_units(given_unit))
     except Exception as error:  # pint raises a wide family of exceptions on malformed text
         raise ValueError(f"{named(unit)} ({given_unit!r} is no unit)") from error
     if not quantity.is_compatible_with(unit):
@@ -63,16 +75,16 @@ def to_si(text: str, unit: str, absolute: bool = False) -> float:
         raise ValueError(f"{named(unit)} ({given_unit!r} is no such unit)") from error
 
 
-def _converted(quantity: pint.Quantity, unit: str, absolute: bool, given: str) -> float:
+def _converted(quantity: "pint.Quantity", unit: str, absolute: bool, given: str) -> float:
     """Magnitude in ``unit``. Raises ValueError for another power of the radian, and, unless it is
     ``absolute``, for a unit whose zero is elsewhere."""
-    if not absolute and registry.Quantity(0.0, quantity.units).to(unit).magnitude != 0.0:
+    if not absolute and registry().Quantity(0.0, quantity.units).to(unit).magnitude != 0.0:
         raise ValueError(
             f"{named(unit)} ({given!r} has its zero elsewhere: a difference is in K or delta_degC)"
         )
     # An angle has no dimension, so "0.1" would pass for 0.1 rad and "5 Hz" for 5 rad/s: ask for the
     # unit itself.
-    if _radians(quantity) != _radians(registry.Quantity(1.0, unit)):
+    if _radians(quantity) != _radians(registry().Quantity(1.0, unit)):
         raise ValueError(f"{named(unit)} (given unit {quantity.units})")
     return float(quantity.to(unit).magnitude)
 
@@ -83,7 +95,7 @@ def _finite(value: float, unit: str) -> float:
     return value
 
 
-def _radians(quantity: pint.Quantity) -> object:
+def _radians(quantity: "pint.Quantity") -> object:
     """Power of the radian in the unit of ``quantity``, of whatever type pint has it in."""
     return dict(quantity.to_root_units().unit_items()).get("radian", 0)
 

@@ -74,8 +74,8 @@ def readable(value: Any, unit: str) -> str:
     if unit == "rad/s":
         return f"{math.degrees(value):.6g} deg/s"
     if unit in _SCALED and value != 0.0:
-        return f"{registry.Quantity(value, unit).to_compact():.6g~P}"
-    symbol = "" if unit in ("", "dimensionless") else f" {registry.Unit(unit):~P}"
+        return f"{registry().Quantity(value, unit).to_compact():.6g~P}"
+    symbol = "" if unit in ("", "dimensionless") else f" {registry().Unit(unit):~P}"
     return number(value, ".6g") + symbol
 
 
