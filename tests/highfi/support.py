@@ -1,5 +1,6 @@
 """Scenes and meshes shared by the tests of the coupled solver."""
 
+import functools
 import math
 from contextlib import suppress
 
@@ -13,6 +14,7 @@ from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.mesh.rail_mesh import RailMesh, read
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.run import Loop
+from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import load
 
 COARSE = Numerics(element_size=0.008)
@@ -39,6 +41,12 @@ def tiny(**overrides):
         .condition("phi15")
         .replace({key.replace("__", "."): value for key, value in overrides.items()})
     )
+
+
+@functools.cache
+def whole() -> Trajectory:
+    """The run of the small scene that nothing interrupts, made once; nobody changes it."""
+    return highfi.run(tiny(), COARSE)
 
 
 def bar_mesh(length: float, width: float, layers: int, across: int = 1) -> RailMesh:
