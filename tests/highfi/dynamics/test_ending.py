@@ -8,7 +8,7 @@ import pytest
 import scipy.integrate
 import scipy.optimize
 
-from tests.highfi.support import COARSE, Stopped, begun, tiny
+from tests.highfi.support import COARSE, Stopped, begun, tiny, whole
 from tipoff import highfi
 from tipoff.highfi.dynamics.checkpoint import Checkpoint, restore
 from tipoff.highfi.numerics import Numerics
@@ -21,29 +21,41 @@ def assert_same(found, expected) -> None:
     assert found.cost["dt_s"] == expected.cost["dt_s"]
 
 
-def test_sampling_changes_no_bit():
-    """From one sample in 0.05 ms to one in the whole flight."""
-    fine, *others = (
-        highfi.run(tiny(output__interval=interval), COARSE)
-        for interval in ("0.05 ms", "7 ms", "25 ms")
-    )
+@functools.cache
+def sampled_once():
+    """The run that nothing interrupts, with one sample in the whole flight."""
+    return highfi.run(tiny(output__interval="25 ms"), COARSE)
+
+
+def assert_sampling_changes_no_bit(fine) -> None:
+    """From the samples of ``fine`` to one in the whole flight."""
+    seldom, once = highfi.run(tiny(output__interval="7 ms"), COARSE), sampled_once()
     assert fine.status == "exited" and np.abs(fine.pad_force).max() > 1.0
-    assert [other.time.size for other in others] == [4, 1]
-    for other in others:
+    assert [other.time.size for other in (seldom, once)] == [4, 1]
+    for other in (seldom, once):
         assert_same(other, fine)
+
+
+def test_sampling_changes_no_bit():
+    """One sample in 0.1 ms."""
+    assert_sampling_changes_no_bit(whole())
+
+
+@pytest.mark.slow
+def test_more_samples_change_no_bit():
+    """One in 0.05 ms."""
+    assert_sampling_changes_no_bit(highfi.run(tiny(output__interval="0.05 ms"), COARSE))
 
 
 def test_an_interval_that_divides_no_peak():
     """The step divides the interval, so another interval has another step. They differ by less than
     one in the number of steps in 50 us, so the outcomes differ by a small part of the error of the
     scheme. So do long steps, whose number of steps divides the interval."""
-    whole, other = (
-        highfi.run(tiny(output__interval=interval), COARSE) for interval in ("0.1 ms", "0.73 ms")
-    )
-    assert other.cost["dt_s"] != whole.cost["dt_s"]
-    assert other.outcome.exit_time == pytest.approx(whole.outcome.exit_time, abs=3e-10)
+    one, other = whole(), highfi.run(tiny(output__interval="0.73 ms"), COARSE)
+    assert other.cost["dt_s"] != one.cost["dt_s"]
+    assert other.outcome.exit_time == pytest.approx(one.outcome.exit_time, abs=3e-10)
     assert other.outcome.rate == pytest.approx(
-        whole.outcome.rate, abs=1e-5 * np.linalg.norm(whole.outcome.rate)
+        one.outcome.rate, abs=1e-5 * np.linalg.norm(one.outcome.rate)
     )
 
 
@@ -86,11 +98,12 @@ def straight(safety: float, step_everything: bool = True, **thrust) -> tuple[flo
     )
 
 
-def test_exit_and_means_of_a_straight_flight():
+@pytest.mark.parametrize("safety", [0.45, pytest.param(0.3, marks=pytest.mark.slow)])
+def test_exit_and_means_of_a_straight_flight(safety):
     """Errors fall with the square of the step, at the least; the interval is the whole flight.
     Control: an exit at the nearest step would be off by a quarter of a step on the average, 1e-7
     s."""
-    (exit_at, mean, dt), (finer_exit, finer_mean, finer_dt) = straight(0.9), straight(0.3)
+    (exit_at, mean, dt), (finer_exit, finer_mean, finer_dt) = straight(0.9), straight(safety)
     assert exit_at < 1e-11 and mean < 1e-8
     allowed = 1.5 * (finer_dt / dt) ** 2
     assert finer_exit < allowed * exit_at and finer_mean < allowed * mean
@@ -131,26 +144,31 @@ class _StopAt:
             raise Stopped
 
 
-@functools.cache
-def sampled_once():
-    """The run that nothing interrupts."""
-    return highfi.run(tiny(output__interval="25 ms"), COARSE)
+STOPS = [15_000, 33_250, 36_250]
 
 
-@pytest.mark.parametrize("steps", [15_000, 33_250, 36_250])
-def test_a_resume_between_samples_goes_on_to_the_same_bits(tmp_path, steps):
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    """What is read from the checkpoints of one run that stops again and again, by steps."""
+    loop, found = begun(tiny(output__interval="25 ms")), {}
+    kept = Checkpoint(tmp_path_factory.mktemp("ending") / "run", 0.0, loop, COARSE)
+    for steps in STOPS:
+        with pytest.raises(Stopped):
+            loop.integrate(None, _StopAt(steps))
+        assert len(loop.rows) == 1 and loop.steps >= steps and loop.book[DONE] == np.inf
+        kept.write(loop)
+        found[steps] = kept.read()
+    return found
+
+
+@pytest.mark.parametrize("steps", STOPS)
+def test_a_resume_between_samples_goes_on_to_the_same_bits(written, steps):
     """Before the exit, and twice in the settled window, whose sums are in the file. Control:
     without them the means are others."""
-    scene = tiny(output__interval="25 ms")
-    first, second, poor = (begun(scene) for _ in range(3))
-    with pytest.raises(Stopped):
-        first.integrate(None, _StopAt(steps))
-    assert len(first.rows) == 1 and first.steps >= steps and first.book[DONE] == np.inf
-    kept = Checkpoint(tmp_path / "run", 0.0, first, COARSE)
-    kept.write(first)
-    saved = kept.read()
-    restore(second, saved)
-    restore(poor, saved | {"book": begun(scene).book})
+    second, poor = (begun(tiny(output__interval="25 ms")) for _ in range(2))
+    fresh = {"book": poor.book.copy()}
+    restore(second, written[steps])
+    restore(poor, written[steps] | fresh)
     results = []
     for loop in (second, poor) if steps >= 33_250 else (second,):
         loop.integrate(None)
