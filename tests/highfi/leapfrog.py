@@ -72,12 +72,11 @@ def driven(operator, step, load, displacement, velocity):
     displacement after each step, without end.
     """
     inverse_mass = np.where(operator.free, 1.0 / operator.mass, 0.0)
+    cells, shape_class, stiffness = operator.cells, operator.shape_class, operator.stiffness
     resistance = np.empty_like(displacement)
     number = 0
     while True:
-        internal_force(
-            displacement, operator.cells, operator.shape_class, operator.stiffness, resistance
-        )
+        internal_force(displacement, cells, shape_class, stiffness, resistance)
         resistance -= load(number * step, displacement)
         kick_nodes(
             inverse_mass, velocity, resistance, (0.0, 0.0, 0.0), step if number else 0.5 * step

@@ -1,6 +1,5 @@
 """X20: a run that is stopped or killed goes on from its checkpoint and ends with the same bits."""
 
-import functools
 import os
 import random
 import signal
@@ -12,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.highfi.support import COARSE, Stopped, begun, stopped, tiny
+from tests.highfi.support import COARSE, Stopped, begun, stopped, tiny, whole
 from tests.written_names import ARRAYS_OF_REFERENCE
 from tipoff import highfi
 from tipoff.highfi import Numerics
@@ -23,12 +22,6 @@ from tipoff.mechanics.trajectory import Trajectory
 pytestmark = pytest.mark.case("X20")
 ROOT = Path(__file__).resolve().parents[3]
 TOUCHING = 115  # a sample at which pads of ``tiny`` touch
-
-
-@functools.cache
-def whole() -> Trajectory:
-    """The run that nothing interrupts."""
-    return highfi.run(tiny(), COARSE)
 
 
 def assert_same(found: Trajectory, expected: Trajectory) -> None:
