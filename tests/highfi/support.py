@@ -32,6 +32,12 @@ NEUTRAL = {
     "thrust": NO_THRUST,
     "thrust_offset": CENTRED,
 }
+# Changes to the tiny scene by which pads touch after half a millisecond.
+SOON = {
+    "duration": "1.5 ms",
+    "contact__clearance": "0.05 mm",
+    "initial": {"velocity": {"x": 1.0, "y": 0.1, "z": 0.02}},
+}
 
 
 def tiny(**overrides):
@@ -164,9 +170,14 @@ def begun(scene=None, numerics: Numerics = COARSE, threads: int = 1) -> Loop:
 def stopped(samples: int, scene=None, numerics: Numerics = COARSE) -> Loop:
     """A loop integrated for ``samples`` samples after the first one."""
     loop = begun(scene, numerics)
+    go_on(loop, samples)
+    return loop
+
+
+def go_on(loop: Loop, samples: int) -> None:
+    """Integrate until there are ``samples`` samples after the first one."""
     with suppress(Stopped):
         loop.integrate(None, _StopAt(samples))
-    return loop
 
 
 def spinning_bar_stretch(

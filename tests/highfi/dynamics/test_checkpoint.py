@@ -7,11 +7,12 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from tests.highfi.support import COARSE, Stopped, begun, stopped, tiny, whole
+from tests.highfi.support import COARSE, SOON, Stopped, begun, go_on, stopped, tiny, whole
 from tests.written_names import ARRAYS_OF_REFERENCE
 from tipoff import highfi
 from tipoff.highfi import Numerics
@@ -21,7 +22,7 @@ from tipoff.mechanics.trajectory import Trajectory
 
 pytestmark = pytest.mark.case("X20")
 ROOT = Path(__file__).resolve().parents[3]
-TOUCHING = 115  # a sample at which pads of ``tiny`` touch
+STOPS = [1, 115, 212]  # samples: at the start, while pads touch, and after the run has seen where it ends
 
 
 def assert_same(found: Trajectory, expected: Trajectory) -> None:
@@ -52,27 +53,57 @@ def test_run_stopped_at_37_percent_goes_on_to_the_same_bits(tmp_path):
     assert_same(resumed, whole())
 
 
-@pytest.mark.parametrize("samples", [pytest.param(1, marks=pytest.mark.slow), TOUCHING, 212])
-def test_any_sample_is_a_place_to_stop(tmp_path, samples):
-    """At the start, while pads touch, and after the run has seen where it ends; resumed by another
-    number of threads."""
-    first, second = stopped(samples), begun(threads=2)
-    kept = Checkpoint(tmp_path / "run", 0.0, first, COARSE)
-    kept.write(first)
-    restore(second, kept.read())
-    assert len(second.rows) == samples + 1 and second.wall == first.wall
+def left_out(loop) -> tuple:
+    """What a checkpoint leaves out, arrays by their digest."""
+    # not records, and no kernel is given them
+    system = loop.system._replace(mesh=None, operator=None)
+    constant = digest(arrays({"system": system, "exit": loop.exit}))
+    return constant, loop.milestones, loop.stepping, loop.last, loop.most
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """One run to its end: what is read from its checkpoints, and its wall clock (s) there, by
+    samples; what they leave out, before and after."""
+    loop, saved, wall = begun(), {}, {}
+    before = left_out(loop)
+    kept = Checkpoint(tmp_path_factory.mktemp("made") / "run", 0.0, loop, COARSE)
+    for samples in STOPS:
+        go_on(loop, samples)
+        kept.write(loop)
+        saved[samples], wall[samples] = kept.read(), loop.wall
+    loop.integrate(None)
+    return SimpleNamespace(saved=saved, wall=wall, before=before, after=left_out(loop))
+
+
+@pytest.mark.parametrize("samples", [pytest.param(1, marks=pytest.mark.slow), *STOPS[1:]])
+def test_any_sample_is_a_place_to_stop(made, samples):
+    """Resumed by another number of threads."""
+    second = begun(threads=2)
+    restore(second, made.saved[samples])
+    assert len(second.rows) == samples + 1 and second.wall == made.wall[samples]
     second.integrate(None)
     assert_same(second.trajectory({"steps": second.steps}, COARSE), whole())
 
 
-def test_columns_go_on_to_the_same_bits(tmp_path):
-    """The finer mesh is extruded and uses the other elastic kernel. Its arrays also hold nodes
-    between the rails that belong to no element."""
-    scene, numerics = (
-        tiny(duration="9 ms", contact__clearance="0.05 mm"),
-        Numerics(element_size=0.004),
-    )
-    first, second = stopped(45, scene, numerics), begun(scene, numerics)
+@pytest.mark.parametrize(
+    "numerics, change, samples",
+    [
+        (Numerics(element_size=0.016), SOON, 9),
+        pytest.param(
+            Numerics(element_size=0.004),
+            {"duration": "9 ms", "contact__clearance": "0.05 mm"},
+            45,
+            marks=pytest.mark.slow,
+        ),
+    ],
+    ids=["elements", "fine"],
+)
+def test_other_meshes_go_on_to_the_same_bits(tmp_path, numerics, change, samples):
+    """The coarser mesh is no even extrusion and uses the other elastic kernel. The arrays of the
+    finer one also hold nodes between the rails that belong to no element."""
+    scene = tiny(**change)
+    first, second = stopped(samples, scene, numerics), begun(scene, numerics)
     kept = Checkpoint(tmp_path / "run", 0.0, first, numerics)
     kept.write(first)
     restore(second, kept.read())
@@ -80,13 +111,14 @@ def test_columns_go_on_to_the_same_bits(tmp_path):
     for loop in (first, second):
         loop.integrate(None)
         results.append(loop.trajectory({"steps": loop.steps}, numerics))
-    assert first.system.rail.columns is not None and np.abs(results[0].pad_force).max() > 1.0
+    assert (first.system.rail.columns is None) == (numerics.element_size > COARSE.element_size)
+    assert np.abs(results[0].pad_force).max() > 1.0
     assert_same(*results)
 
 
 def test_every_evolving_array_is_in_the_file(tmp_path):
     """The names are those of the records, so a field that is added and not saved fails here."""
-    loop = stopped(TOUCHING)
+    loop = stopped(9, tiny(**SOON))
     kept = Checkpoint(tmp_path / "run", 0.0, loop, COARSE)
     kept.write(loop)
     saved = kept.read()
@@ -115,17 +147,8 @@ def test_every_evolving_array_is_in_the_file(tmp_path):
     assert loop.active.node_count.max() > 0
 
 
-def test_what_is_left_out_does_not_change():
-    loop = begun()
-    # not records, and no kernel is given them
-    system = {"system": loop.system._replace(mesh=None, operator=None)}
-    before, others = (
-        digest(arrays(system | {"exit": loop.exit})),
-        (loop.milestones, loop.stepping, loop.last, loop.most),
-    )
-    loop.integrate(None)
-    assert digest(arrays(system | {"exit": loop.exit})) == before
-    assert (loop.milestones, loop.stepping, loop.last, loop.most) == others
+def test_what_is_left_out_does_not_change(made):
+    assert made.after == made.before
     # A scene is frozen; a team and a pool of threads are not of the run.
     assert set(CONSTANT) == {
         "scene",
