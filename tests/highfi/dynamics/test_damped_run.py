@@ -1,16 +1,23 @@
 """Runs with structural damping of the rails: ledgers, momenta, the same bits by any threads and
 after a resume, the compiled code."""
 
+import functools
+import tempfile
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from tests.highfi.dynamics import test_elastic as test_kernels
 from tests.highfi.dynamics.test_damping import scene
+from tests.highfi.dynamics.test_elastic import TWO_SCENES
 from tests.highfi.support import (
     COARSE,
+    SOON,
     assert_same_bits,
     bar_mesh,
     begun,
+    go_on,
     loop_on,
     spinning_bar_stretch,
     tiny,
@@ -33,13 +40,20 @@ def finished(loop):
 
 @pytest.mark.parametrize(
     "change",
-    [{}, pytest.param({"platform": None, "gravity__z": "-9.81 m/s**2"}, marks=pytest.mark.slow)],
+    [
+        SOON,
+        pytest.param(EARLY, marks=pytest.mark.slow),
+        pytest.param(
+            EARLY | {"platform": None, "gravity__z": "-9.81 m/s**2"}, marks=pytest.mark.slow
+        ),
+    ],
+    ids=["soon", "early", "weight"],
 )
 def test_ledgers_close_and_momenta_are_kept(change):
     """Controls: without its entry the transverse ledger is open by what the entry holds; without
     the force and moment on the frame, momentum would change in one sample by far more than it does
     in all."""
-    loop = begun(tiny(**EARLY, **DAMPED, **change))
+    loop = begun(tiny(**DAMPED, **change))
     found = finished(loop)
     assert np.abs(found.pad_force).max() > 1.0
     lost = found.energy[:, ENTRY]
@@ -106,37 +120,46 @@ def test_a_rail_that_turns_with_its_frame_is_not_damped():
     assert found.platform_rate[-1, 2] == pytest.approx(rate, rel=1e-6)
 
 
+@functools.cache
+def whole(kernel: str, named: str):
+    """The result of a run of ``test_elastic`` with damping that nothing interrupts."""
+    return finished(test_kernels.begun(kernel, named, **DAMPED))
+
+
+@functools.cache
+def halted(kernel: str, named: str) -> dict:
+    """What is read from a checkpoint at three fifths of that run."""
+    half = test_kernels.begun(kernel, named, **DAMPED)
+    go_on(half, 3 * half.last // 5)
+    with tempfile.TemporaryDirectory() as folder:
+        kept = Checkpoint(Path(folder) / "run", 0.0, half, test_kernels.NUMERICS)
+        kept.write(half)
+        return kept.read()
+
+
 @pytest.mark.case("X20")
+@TWO_SCENES
 @pytest.mark.parametrize("kernel", ["columns", pytest.param("elements", marks=pytest.mark.slow)])
-def test_threads_and_a_resume_do_not_change_a_bit(tmp_path, kernel):
+def test_threads_and_a_resume_do_not_change_a_bit(kernel, scene):
     """One thread makes the whole run; the run that is resumed ends with three."""
-    whole, half, second = (test_kernels.begun(kernel, threads, **DAMPED) for threads in (1, 1, 3))
-    expected = finished(whole)
+    expected, saved = whole(kernel, scene), halted(kernel, scene)
     assert np.abs(expected.pad_force).max() > 1.0 and expected.energy[-1, ENTRY] > 0.0
-    for _ in range(30):
-        half.advance_one_sample()
-    kept = Checkpoint(tmp_path / "run", 0.0, half, test_kernels.NUMERICS)
-    kept.write(half)
-    saved = kept.read()
     assert np.abs(saved["state.history.force"]).max() > 0.0
+    second = test_kernels.begun(kernel, scene, 3, **DAMPED)
     restore(second, saved)
     result = finished(second)
     assert_same_bits(result, expected)
 
 
 @pytest.mark.case("X20")
-def test_a_resume_that_forgets_the_step_before_is_seen(tmp_path):
+@TWO_SCENES
+def test_a_resume_that_forgets_the_step_before_is_seen(scene):
     """Control: with the history left as a run begins, the resumed run goes another way."""
-    expected = finished(test_kernels.begun("columns", **DAMPED))
-    half, second = (test_kernels.begun("columns", **DAMPED) for _ in range(2))
-    for _ in range(30):
-        half.advance_one_sample()
-    kept = Checkpoint(tmp_path / "run", 0.0, half, test_kernels.NUMERICS)
-    kept.write(half)
-    saved = kept.read()
+    second = test_kernels.begun("columns", scene, **DAMPED)
     blank = dict(arrays({"state.history": second.state.history}))
-    restore(second, saved | {name: np.zeros_like(value) for name, value in blank.items()})
-    assert (finished(second).rate[-1] != expected.rate[-1]).any()
+    poor = {name: np.zeros_like(value) for name, value in blank.items()}
+    restore(second, halted("columns", scene) | poor)
+    assert (finished(second).rate[-1] != whole("columns", scene).rate[-1]).any()
 
 
 def test_damping_is_compiled_only_where_the_scene_has_it():
@@ -145,12 +168,15 @@ def test_damping_is_compiled_only_where_the_scene_has_it():
     assert {**present, "rail.damping": False} == without
 
 
-def test_no_damping_is_the_limit_of_little():
+@pytest.mark.parametrize(
+    "scene", [SOON, pytest.param(EARLY, marks=pytest.mark.slow)], ids=["soon", "early"]
+)
+def test_no_damping_is_the_limit_of_little(scene):
     """At the same step small damping changes the rates in proportion, and the limit is the run
     without damping."""
     step = Numerics(element_size=0.008, step=5e-7)
     rates = [
-        highfi.run(tiny(**EARLY, **change), step).rate
+        highfi.run(tiny(**scene, **change), step).rate
         for change in (
             {},
             DAMPED | {"rail__damping__ratios": [1e-5, 1e-5]},

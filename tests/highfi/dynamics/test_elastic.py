@@ -6,7 +6,7 @@ import os
 import numpy as np
 import pytest
 
-from tests.highfi.support import assert_same_bits, tiny
+from tests.highfi.support import SOON, assert_same_bits, tiny
 from tipoff import highfi
 from tipoff.highfi import Numerics
 from tipoff.highfi.dynamics.step_size import choose
@@ -15,12 +15,14 @@ from tipoff.highfi.run import Loop
 from tipoff.highfi.state.threads import processors
 
 NUMERICS = Numerics(element_size=0.008)
+SCENES = {"soon": SOON, "early": {"duration": "5 ms", "contact__clearance": "0.01 mm"}}
+TWO_SCENES = pytest.mark.parametrize("scene", ["soon", pytest.param("early", marks=pytest.mark.slow)])
 
 
-def begun(kernel: str, threads: int = 1, **overrides) -> Loop:
+def begun(kernel: str, named: str, threads: int = 1, **overrides) -> Loop:
     """A run on the extruded rails of ``tiny`` at its first sample; "elements" makes the loop forget
     that they are extruded."""
-    scene = tiny(duration="5 ms", contact__clearance="0.01 mm", **overrides)
+    scene = tiny(**SCENES[named], **overrides)
     system = build(scene, NUMERICS, highfi.prepare(scene, NUMERICS))
     assert system.rail.columns is not None
     if kernel == "elements":
@@ -32,35 +34,38 @@ def begun(kernel: str, threads: int = 1, **overrides) -> Loop:
 
 
 @functools.cache
-def run(kernel: str, threads: int = 1, spins: int | None = None):
+def run(kernel: str, named: str, threads: int = 1, spins: int | None = None):
     """The result of such a run; ``spins`` of a thread that waits, in place of the usual number."""
-    loop = begun(kernel, threads)
+    loop = begun(kernel, named, threads)
     if spins is not None:
         loop.team = loop.team._replace(spins=spins)
     loop.integrate(None)
     return loop.trajectory({}, NUMERICS)
 
 
-def test_columns_and_elements_carry_the_same_run():
-    columns, elements = run("columns"), run("elements")
+@TWO_SCENES
+def test_columns_and_elements_carry_the_same_run(scene):
+    columns, elements = run("columns", scene), run("elements", scene)
     assert np.abs(columns.pad_force).max() > 1.0
     assert np.abs(columns.rate - elements.rate).max() <= 1e-9 * np.abs(elements.rate).max()
     assert columns.checks["transverse_energy_error"] <= 1e-3
 
 
 @pytest.mark.case("X20")
+@TWO_SCENES
 @pytest.mark.parametrize("kernel", [pytest.param("columns", marks=pytest.mark.slow), "elements"])
-def test_threads_do_not_change_a_bit(kernel):
+def test_threads_do_not_change_a_bit(kernel, scene):
     """Three threads divide the four rails inside a rail, so that their shares depend on each
     other."""
-    alone = run(kernel)
+    alone = run(kernel, scene)
     assert np.abs(alone.pad_force).max() > 0.0
-    shared = run(kernel, threads=3)
+    shared = run(kernel, scene, threads=3)
     assert_same_bits(shared, alone)
 
 
-def test_threads_that_sleep_at_every_barrier_give_the_same_bits():
-    assert_same_bits(run("elements", threads=2, spins=0), run("elements"))
+@TWO_SCENES
+def test_threads_that_sleep_at_every_barrier_give_the_same_bits(scene):
+    assert_same_bits(run("elements", scene, threads=2, spins=0), run("elements", scene))
 
 
 @pytest.mark.parametrize("most, expected", [("", 3), ("2", 2), ("9", 3), ("0", 3), ("2,1", 3)])
