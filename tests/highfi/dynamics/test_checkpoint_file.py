@@ -1,6 +1,7 @@
 """X20: only a whole checkpoint of the same run is resumed, and a reader never finds an incomplete
 file."""
 
+import copy
 import os
 import random
 import threading
@@ -9,20 +10,26 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.highfi.support import COARSE, begun, stopped, tiny
+from tests.highfi.support import COARSE, SOON, begun, stopped, tiny
 from tipoff import highfi
 from tipoff.files import discard
 from tipoff.highfi import CheckpointError, Numerics
 from tipoff.highfi.dynamics import checkpoint
 from tipoff.highfi.dynamics.checkpoint import FORMAT, Checkpoint
+from tipoff.highfi.run import Loop
 
 pytestmark = pytest.mark.case("X20")
 
 
+@pytest.fixture(scope="module")
+def loop() -> Loop:
+    """A run that has just begun and goes no further."""
+    return begun()
+
+
 @pytest.fixture
-def kept(tmp_path) -> Checkpoint:
-    """The checkpoint of a run that has just begun."""
-    loop = begun()
+def kept(tmp_path, loop) -> Checkpoint:
+    """Its checkpoint."""
     kept = Checkpoint(tmp_path / "run.checkpoint", 0.0, loop, COARSE)
     kept.write(loop)
     return kept
@@ -75,22 +82,21 @@ def test_checkpoint_of_another_run_is_refused(kept, change, words):
     )
 
 
-def test_checkpoint_of_another_program_mesh_or_format_is_refused(kept, monkeypatch):
-    loop = begun()
-    loop.stepping = replace(loop.stepping, dt_s=np.nextafter(loop.stepping.dt_s, 0.0))
+def test_checkpoint_of_another_program_mesh_or_format_is_refused(kept, loop, monkeypatch):
+    other = copy.copy(loop)
+    other.stepping = replace(loop.stepping, dt_s=np.nextafter(loop.stepping.dt_s, 0.0))
     with pytest.raises(CheckpointError, match="another mesh or with another step"):
-        Checkpoint(kept.path, 0.0, loop, COARSE).read()
+        Checkpoint(kept.path, 0.0, other, COARSE).read()
     monkeypatch.setattr(checkpoint.sources, "digest", lambda *modules: "another program")
     with pytest.raises(CheckpointError, match="another version of the program"):
-        Checkpoint(kept.path, 0.0, begun(), COARSE).read()
+        Checkpoint(kept.path, 0.0, loop, COARSE).read()
     line = f"tipoff checkpoint {FORMAT} ".encode()
     kept.path.write_bytes(kept.path.read_bytes().replace(line, b"tipoff checkpoint 99 ", 1))
     with pytest.raises(CheckpointError, match=f"has format 99, this program reads {FORMAT};"):
         kept.read()
 
 
-def test_no_file_is_a_run_from_the_beginning_and_a_folder_is_none(tmp_path):
-    loop = begun()
+def test_no_file_is_a_run_from_the_beginning_and_a_folder_is_none(tmp_path, loop):
     assert Checkpoint(tmp_path / "none", 0.0, loop, COARSE).read() is None
     with pytest.raises(CheckpointError, match="cannot be read"):
         Checkpoint(tmp_path, 0.0, loop, COARSE).read()
@@ -104,9 +110,11 @@ def test_bad_arguments_are_refused(tmp_path):
             highfi.run(tiny(), COARSE, checkpoint=tmp_path / "run", checkpoint_every=every)
 
 
-def test_nothing_is_written_before_it_is_time(tmp_path):
-    loop = begun()
+@pytest.mark.parametrize("change", [SOON, pytest.param({}, marks=pytest.mark.slow)])
+def test_nothing_is_written_before_it_is_time(tmp_path, change):
+    loop = begun(tiny(**change))
     loop.integrate(None, Checkpoint(tmp_path / "run", 3600.0, loop, COARSE))
+    assert len(loop.rows) > 10
     assert not list(tmp_path.iterdir())
 
 
