@@ -4,14 +4,17 @@ error in them would be found."""
 import numpy as np
 import pytest
 
-from tests.highfi.support import COARSE, loop_on, tiny
+from tests.highfi.support import COARSE, SOON, loop_on, tiny, whole
 from tipoff import highfi
 from tipoff.mechanics import ledger
 
 
+EARLY = {"duration": "9 ms", "contact__clearance": "0.05 mm"}
+
+
 @pytest.fixture(scope="module")
 def result():
-    return highfi.run(tiny(), COARSE)
+    return whole()
 
 
 def test_run_exits_with_settled_rates(result):
@@ -60,7 +63,7 @@ def test_promises_hold_with_other_effects(change):
     assert found.checks["angular_momentum_error"] <= 1e-8
 
 
-def test_spurious_contact_energy_is_seen():
+def test_spurious_contact_energy_is_seen(result):
     """Contact that is stiffened by 1 % while pressed creates 1 % of its stored energy; the ledger
     must show that amount."""
     loop = loop_on(tiny(), highfi.prepare(tiny(), COARSE), COARSE)
@@ -81,38 +84,44 @@ def test_spurious_contact_energy_is_seen():
     lost = found.checks["transverse_energy_error"] * loop.scale
     assert lost == pytest.approx(created, rel=0.2)
     assert (
-        found.checks["transverse_energy_error"]
-        > 10.0 * highfi.run(tiny(), COARSE).checks["transverse_energy_error"]
+        found.checks["transverse_energy_error"] > 10.0 * result.checks["transverse_energy_error"]
     )
 
 
-@pytest.mark.parametrize("relief", ["flat", "crowned"])
-def test_energy_of_sliding_pads_is_kept(relief):
+@pytest.mark.parametrize(
+    "relief, change",
+    [
+        ("flat", EARLY | {"duration": "14 ms"}),
+        ("crowned", SOON),
+        pytest.param("crowned", EARLY | {"duration": "14 ms"}, marks=pytest.mark.slow),
+    ],
+    ids=["flat", "crowned-soon", "crowned"],
+)
+def test_energy_of_sliding_pads_is_kept(relief, change):
     """Pads without a crown are pressed up to their edge, tilt and slide. No energy is released."""
-    early = {"duration": "14 ms", "contact__clearance": "0.05 mm"}
-    if relief == "flat":
-        early["pads"] = [pad.model_dump() | {"relief": 0.0} for pad in tiny().pads]
-    found = highfi.run(tiny(**early), COARSE)
+    flat = [pad.model_dump() | {"relief": 0.0} for pad in tiny().pads]
+    found = highfi.run(tiny(**change, **({"pads": flat} if relief == "flat" else {})), COARSE)
     assert np.abs(found.pad_force).max() > 100.0 and found.status == "time_limit"
     assert (found.energy[:, ledger.ENTRIES.index("released")] == 0.0).all()
     assert found.checks["transverse_energy_error"] <= 1e-4
 
 
-def test_mirror_image():
+def test_mirror_image(result):
     """Mirroring the scene in y mirrors the motion: rates are axial vectors, so x and z components
     change sign."""
-    left = highfi.run(tiny(), COARSE)
     right = highfi.run(
         tiny(thrust_offset__misalignment__radial="165 deg", payload__inertia__xy="-0.004 kg*m**2"),
         COARSE,
     )
     mirrored = np.array(right.outcome.rate) * [-1.0, 1.0, -1.0]
-    assert mirrored == pytest.approx(left.outcome.rate, rel=1e-6, abs=1e-9)
+    assert mirrored == pytest.approx(result.outcome.rate, rel=1e-6, abs=1e-9)
 
 
-def test_same_input_same_bits():
-    short = tiny(duration="9 ms", contact__clearance="0.05 mm")
-    first, second = (highfi.run(short, COARSE) for _ in range(2))
+@pytest.mark.parametrize(
+    "change", [SOON, pytest.param(EARLY, marks=pytest.mark.slow)], ids=["soon", "early"]
+)
+def test_same_input_same_bits(change):
+    first, second = (highfi.run(tiny(**change), COARSE) for _ in range(2))
     assert np.abs(first.pad_force).max() > 0.0
     assert (first.velocity == second.velocity).all() and (first.energy == second.energy).all()
 

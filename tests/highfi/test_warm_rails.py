@@ -4,7 +4,7 @@ contact is with the bowed walls, the ledgers close."""
 import numpy as np
 import pytest
 
-from tests.highfi.support import COARSE, begun, reachable, stopped, tiny
+from tests.highfi.support import COARSE, begun, reachable, stopped, tiny, whole
 from tipoff import highfi
 from tipoff.highfi import compliance
 from tipoff.highfi.elements import hexahedral_recovery
@@ -18,7 +18,7 @@ EXPANSION = 23.6e-6
 
 @pytest.fixture(scope="module")
 def cold():
-    return highfi.run(tiny(), COARSE)
+    return whole()
 
 
 @pytest.fixture(scope="module")
