@@ -65,7 +65,9 @@ def without_bubbles(mesh, operator, youngs_modulus, poisson_ratio):
     strain = hexahedron.kinematics(hexahedron.basis(mesh.points[mesh.cells[representatives]]))
     law = hexahedron.elasticity(youngs_modulus, poisson_ratio)
     return operator._replace(
-        stiffness=np.einsum("cq,cqsi,st,cqtj->cij", strain.volume, strain.nodal, law, strain.nodal)
+        stiffness=np.einsum(
+            "cq,cqsi,st,cqtj->cij", strain.volume, strain.nodal, law, strain.nodal, optimize=True
+        )
     )
 
 

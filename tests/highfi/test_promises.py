@@ -83,9 +83,7 @@ def test_spurious_contact_energy_is_seen(result):
     found = loop.trajectory({}, COARSE)
     lost = found.checks["transverse_energy_error"] * loop.scale
     assert lost == pytest.approx(created, rel=0.2)
-    assert (
-        found.checks["transverse_energy_error"] > 10.0 * result.checks["transverse_energy_error"]
-    )
+    assert found.checks["transverse_energy_error"] > 10.0 * result.checks["transverse_energy_error"]
 
 
 @pytest.mark.parametrize(

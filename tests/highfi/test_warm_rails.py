@@ -26,9 +26,21 @@ def warm():
     return highfi.run(tiny(**WARM), COARSE)
 
 
-def test_no_difference_of_temperature_leaves_contact_where_it_was():
+@pytest.fixture(scope="module")
+def start():
+    """A warm run that has just begun and goes no further."""
+    return begun(tiny(**WARM))
+
+
+@pytest.fixture(scope="module")
+def cold_start():
+    """The same without temperature."""
+    return begun()
+
+
+def test_no_difference_of_temperature_leaves_contact_where_it_was(cold_start):
     """The time loop depends on temperature in no other way, so a run has the same bits."""
-    zero, plain = (begun(scene).system.surface for scene in (tiny(thermal__mean=0.0), tiny()))
+    zero, plain = begun(tiny(thermal__mean=0.0)).system.surface, cold_start.system.surface
     assert all(
         np.array_equal(getattr(zero, name), getattr(plain, name))
         for name in ("places", "map", "border", "share")
@@ -63,17 +75,15 @@ def test_rails_do_not_ring():
     assert np.abs(loop.deformed()).max() > 1e3 * np.abs(plain.deformed()).max()
 
 
-def test_contact_meets_the_bowed_walls():
+def test_contact_meets_the_bowed_walls(start, cold_start):
     """The nodes that contact uses, and no others, are displaced as in the static solution."""
-    scene = tiny(**WARM)
-    loop = begun(scene)
-    system = loop.system
-    moved = thermal.displacement(system.mesh, scene.rail.material, system.model.thermal)
+    system = start.system
+    moved = thermal.displacement(system.mesh, start.scene.rail.material, system.model.thermal)
     number, points = system.number, system.mesh.points - system.origin
     assert np.array_equal(system.surface.places[number], points + moved) and np.array_equal(
         system.rail.points[number], points
     )
-    assert begun(tiny()).system.surface.places is not None and begun(tiny()).system.warm is None
+    assert cold_start.system.surface.places is not None and cold_start.system.warm is None
 
 
 @pytest.mark.slow
@@ -115,11 +125,10 @@ def test_a_bow_that_closes_the_clearance_is_warned_about():
     )
 
 
-def test_warm_walls_of_the_surrogate_are_those_of_the_reference():
+def test_warm_walls_of_the_surrogate_are_those_of_the_reference(start):
     """The six patterns of a pad face at ignition against the nodes under it, within a sixth of what
     the wall moves over its length."""
-    scene = tiny(**WARM)
-    rails, system = compliance.condense(scene, COARSE.element_size), begun(scene).system
+    rails, system = compliance.condense(start.scene, COARSE.element_size), start.system
     found, faces, surface = (
         rails.moved(system.model.thermal.amounts),
         system.faces,

@@ -22,7 +22,11 @@ from tipoff.mechanics.trajectory import Trajectory
 
 pytestmark = pytest.mark.case("X20")
 ROOT = Path(__file__).resolve().parents[3]
-STOPS = [1, 115, 212]  # samples: at the start, while pads touch, and after the run has seen where it ends
+STOPS = [
+    1,
+    115,
+    212,
+]  # samples: at the start, while pads touch, and after the run has seen where it ends
 
 
 def assert_same(found: Trajectory, expected: Trajectory) -> None:

@@ -144,7 +144,7 @@ def test_different_ratios_at_the_two_frequencies(found):
 
 
 @pytest.mark.case("X17")
-@TWO_STEPS
+@pytest.mark.parametrize("safety", [0.9, pytest.param(0.45, marks=pytest.mark.slow)])
 def test_faint_damping_over_a_hundred_thousand_cycles(safety):
     """Ratio 1e-5 in the highest mode of two elements, three to seven steps a cycle: exp(-2 pi) =
     0.00186744 is left, and at no time more than before. Control: the classical Runge-Kutta method,

@@ -16,7 +16,9 @@ from tipoff.highfi.state.threads import processors
 
 NUMERICS = Numerics(element_size=0.008)
 SCENES = {"soon": SOON, "early": {"duration": "5 ms", "contact__clearance": "0.01 mm"}}
-TWO_SCENES = pytest.mark.parametrize("scene", ["soon", pytest.param("early", marks=pytest.mark.slow)])
+TWO_SCENES = pytest.mark.parametrize(
+    "scene", ["soon", pytest.param("early", marks=pytest.mark.slow)]
+)
 
 
 def begun(kernel: str, named: str, threads: int = 1, **overrides) -> Loop:

@@ -61,7 +61,10 @@ def midspan(elements, ratio, fraction, bubbles=True):
 @pytest.mark.case("O16")
 @pytest.mark.parametrize(
     "elements, fraction",
-    [(40, 0.9), *(pytest.param(*finer, marks=pytest.mark.slow) for finer in ((40, 0.45), (80, 0.9)))],
+    [
+        (40, 0.9),
+        *(pytest.param(*finer, marks=pytest.mark.slow) for finer in ((40, 0.45), (80, 0.9))),
+    ],
 )
 @pytest.mark.parametrize("ratio, factor, place", [(0.5, 1.70545, 0.6667), (0.25, 1.25761, 0.4021)])
 def test_moving_force(elements, fraction, ratio, factor, place):
