@@ -8,7 +8,6 @@ from tests.highfi.support import COARSE, SOON, loop_on, tiny, whole
 from tipoff import highfi
 from tipoff.mechanics import ledger
 
-
 EARLY = {"duration": "9 ms", "contact__clearance": "0.05 mm"}
 
 
