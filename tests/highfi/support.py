@@ -9,8 +9,9 @@ import numpy as np
 
 from tipoff import highfi
 from tipoff.highfi.dynamics import resting
-from tipoff.highfi.dynamics.step_size import choose
-from tipoff.highfi.dynamics.system import build
+from tipoff.highfi.dynamics.resting import Rails
+from tipoff.highfi.dynamics.step_size import Stepping, choose
+from tipoff.highfi.dynamics.system import System, build
 from tipoff.highfi.mesh.rail_mesh import RailMesh, read
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.run import Loop
@@ -156,12 +157,24 @@ class _StopAt:
             raise Stopped
 
 
+_SET_UP: dict = {}  # what ``set_up`` made, which no run changes
+
+
+def set_up(scene, numerics: Numerics = COARSE) -> tuple[System, Stepping, Rails | None]:
+    """What loops of a scene are made of, as by ``highfi.run``, made once."""
+    key = scene.hash, numerics
+    if key not in _SET_UP:
+        system = build(scene, numerics, highfi.prepare(scene, numerics))
+        stepping = choose(system, scene, numerics)
+        rails = None if numerics.step_everything else resting.build(scene, system, stepping)
+        _SET_UP[key] = system, stepping, rails
+    return _SET_UP[key]
+
+
 def begun(scene=None, numerics: Numerics = COARSE, threads: int = 1) -> Loop:
     """A loop at its first sample, as ``highfi.run`` makes it."""
     scene = scene or tiny()
-    system = build(scene, numerics, highfi.prepare(scene, numerics))
-    stepping = choose(system, scene, numerics)
-    rails = None if numerics.step_everything else resting.build(scene, system, stepping)
+    system, stepping, rails = set_up(scene, numerics)
     loop = Loop(scene, system, stepping, threads, rails)
     loop.begin()
     return loop

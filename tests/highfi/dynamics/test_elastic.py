@@ -6,11 +6,10 @@ import os
 import numpy as np
 import pytest
 
-from tests.highfi.support import SOON, assert_same_bits, tiny
-from tipoff import highfi
+from tests.highfi.support import SOON, assert_same_bits, set_up, tiny
 from tipoff.highfi import Numerics
 from tipoff.highfi.dynamics.step_size import choose
-from tipoff.highfi.dynamics.system import build, general_elements
+from tipoff.highfi.dynamics.system import general_elements
 from tipoff.highfi.run import Loop
 from tipoff.highfi.state.threads import processors
 
@@ -25,7 +24,7 @@ def begun(kernel: str, named: str, threads: int = 1, **overrides) -> Loop:
     """A run on the extruded rails of ``tiny`` at its first sample; "elements" makes the loop forget
     that they are extruded."""
     scene = tiny(**SCENES[named], **overrides)
-    system = build(scene, NUMERICS, highfi.prepare(scene, NUMERICS))
+    system = set_up(scene, NUMERICS)[0]
     assert system.rail.columns is not None
     if kernel == "elements":
         elements = general_elements(system.mesh.points, system.operator, system.number)

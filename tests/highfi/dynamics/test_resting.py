@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.highfi.support import COARSE, tiny
+from tests.highfi.support import COARSE, set_up, tiny
 from tipoff import highfi
 from tipoff.highfi import Numerics
 from tipoff.highfi.dynamics import jolts, observe, resting
@@ -43,9 +43,8 @@ def numerics(request) -> Numerics:
 
 def loop_of(scene, numerics=FINE, rests=True, **changes) -> Loop:
     """A loop that has begun, whose ``Rails`` have ``changes``."""
-    system = build(scene, numerics, highfi.prepare(scene, numerics))
-    stepping = choose(system, scene, numerics)
-    rails = resting.build(scene, system, stepping) if rests else None
+    system, stepping, found = set_up(scene, numerics)
+    rails = found if rests else None
     loop = Loop(scene, system, stepping, 1, rails and rails._replace(**changes))
     loop.begin()
     return loop
