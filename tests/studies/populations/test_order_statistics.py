@@ -30,6 +30,15 @@ def test_bounds_exist_from_the_needed_number_of_runs_on():
     assert bounds(np.arange(3.0), 0.05)[0] is None
 
 
+@pytest.mark.parametrize("count", [1, 2, 71, 72, 500])
+def test_bounds_are_those_of_the_test_of_a_quantile(count):
+    values = np.random.default_rng(3).normal(size=count)
+    for share in (0.0027, 0.05, 0.5, 0.95, 0.9973):
+        expected = stats.quantile_test(values, p=share).confidence_interval(0.95)
+        found = [np.nan if end is None else end for end in bounds(values, share)]
+        np.testing.assert_array_equal(found, expected)
+
+
 def test_bounds_have_their_coverage():
     random, held, tries = np.random.default_rng(2), 0, 1000
     for _ in range(tries):

@@ -113,7 +113,13 @@ def chooses(run) -> bool:
 def study(tmp_path, monkeypatch):
     monkeypatch.setattr(Study, "rail_compliance", lambda *_, **__: WALLS)
     monkeypatch.setattr(draws, "announce", lambda *_: None)
-    monkeypatch.setattr(chart, "to_files", lambda *_: [])  # drawing takes longer than the tests
+    # drawing and writing take longer than the tests
+    monkeypatch.setattr(chart, "to_files", lambda *_: [])
+    kept = {}
+    monkeypatch.setattr(within.results, "load", kept.get)
+    monkeypatch.setattr(
+        within.results, "save", lambda path, values, *_: kept.update({path: values})
+    )
     return Study(REFERENCE, tmp_path, Settings(workers=1))
 
 

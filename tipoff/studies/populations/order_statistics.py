@@ -6,6 +6,7 @@ confidence ``1 - p^n``; the smallest and the largest enclose a share p of the di
 confidence ``1 - n p^(n-1) + (n-1) p^n`` (Wilks, Ann. Math. Statist. 12, 1941).
 """
 
+import functools
 import math
 
 import numpy as np
@@ -31,8 +32,18 @@ def bounds(
 ) -> tuple[float | None, float | None]:
     """Two-sided bounds of the quantile ``share`` from independent draws (n,); a bound is None where
     n is too small for it."""
-    from scipy.stats import quantile_test  # slow to load
+    low, high = _places(len(values), share, confidence)
+    ordered = np.sort(values)
+    return (
+        float(ordered[low]) if low >= 0 else None,
+        float(ordered[high]) if high < len(ordered) else None,
+    )
 
-    found = quantile_test(values, q=0.0, p=share).confidence_interval(confidence)
-    low, high = (None if math.isnan(value) else float(value) for value in found)
-    return low, high
+
+@functools.cache
+def _places(count: int, share: float, confidence: float) -> tuple[int, int]:
+    """Places of both bounds among ``count`` ordered draws, -1 and ``count`` where there is none."""
+    from scipy.stats import binom  # slow to load
+
+    below, tail = binom(count, share), 0.5 * (1.0 - confidence)
+    return int(below.ppf(tail)) - 1, int(below.isf(tail))
