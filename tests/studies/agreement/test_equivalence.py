@@ -10,6 +10,9 @@ from tipoff.studies.agreement.distributions import FURTHER
 from tipoff.studies.agreement.equivalence import AGREES, MARGIN_SHARE, MISSES, SHARES, UNKNOWN
 
 TRIALS, LIMIT, SD = 60, 0.1, 4.0  # the last two in deg/s
+# With as many trials a power of 0.95 is seen as less than 80 % once in 400, one of 0.6 nineteen times
+# in twenty; of a size of 1 % more than 5 % are seen once in sixty, of one of 20 % in 93 of 100.
+FEWER = 20
 MARGIN = MARGIN_SHARE * 2.0 * norm.ppf(0.9) * SD
 SPREADS = {"normal": lambda draw: draw, "skewed": lambda draw: np.exp(0.5 * draw) / 0.604}
 
@@ -37,23 +40,36 @@ def trials(draws, correlation, shift=0.0, law="normal", stretch=1.0, count=TRIAL
 
 
 @pytest.mark.parametrize(
-    "draws, correlation, law", [(32, 0.98, "normal"), (144, 0.0, "normal"), (48, 0.98, "skewed")]
+    "draws, correlation, law, count",
+    [
+        (32, 0.98, "normal", TRIALS),
+        (144, 0.0, "normal", FEWER),
+        pytest.param(144, 0.0, "normal", TRIALS, marks=pytest.mark.slow),
+        (48, 0.98, "skewed", TRIALS),
+    ],
 )
-def test_power_and_size(draws, correlation, law):
+def test_power_and_size(draws, correlation, law, count):
     """Equal distributions agree in at least 80 % of the trials; shifted by 1.5 margins in at most 5 %.
     With 32 draws models must follow each other, where they do not 144 are needed. Control: a quarter of
     the draws shows nothing, and accuses nobody."""
-    equal = trials(draws, correlation, law=law)
+    equal = trials(draws, correlation, law=law, count=count)
     assert equal[AGREES] >= 0.8 and equal[MISSES] <= 0.1
-    assert trials(draws, correlation, 1.5 * MARGIN, law)[AGREES] <= 0.05
-    few = trials(draws // 4, 0.0, law=law)
+    assert trials(draws, correlation, 1.5 * MARGIN, law, count=count)[AGREES] <= 0.05
+    few = trials(draws // 4, 0.0, law=law, count=count)
     assert few[AGREES] <= 0.2 and few[UNKNOWN] >= 0.8
 
 
-def test_size_at_the_margin():
+@pytest.mark.parametrize(
+    "draws, correlation, count",
+    [
+        (32, 0.98, TRIALS),
+        (144, 0.0, FEWER),
+        pytest.param(144, 0.0, TRIALS, marks=pytest.mark.slow),
+    ],
+)
+def test_size_at_the_margin(draws, correlation, count):
     """Shifted by one margin, the nearest difference that is none of agreement: at most 5 %."""
-    assert trials(32, 0.98, MARGIN)[AGREES] <= 0.05
-    assert trials(144, 0.0, MARGIN)[AGREES] <= 0.05
+    assert trials(draws, correlation, MARGIN, count=count)[AGREES] <= 0.05
 
 
 def test_a_shift_of_three_margins_is_shown():
@@ -61,11 +77,12 @@ def test_a_shift_of_three_margins_is_shown():
     assert trials(32, 0.0, 3.0 * MARGIN)[MISSES] >= 0.8
 
 
-def test_an_equal_median_is_not_enough():
+@pytest.mark.parametrize("count", [FEWER, pytest.param(TRIALS, marks=pytest.mark.slow)])
+def test_an_equal_median_is_not_enough(count):
     """A distribution about the same median with tails beyond the margin: of 10-90 % distance 2.56 SD, a
     stretch by s moves each end by 1.28 (s - 1) SD, and the margin is 0.64 SD."""
-    wider = trials(144, 0.9, stretch=1.0 + 1.5 * 0.5)
-    assert wider[AGREES] <= 0.05 and trials(144, 0.9)[AGREES] >= 0.8
+    wider = trials(144, 0.9, stretch=1.0 + 1.5 * 0.5, count=count)
+    assert wider[AGREES] <= 0.05 and trials(144, 0.9, count=count)[AGREES] >= 0.8
 
 
 def test_bounds_cover_the_known_difference():

@@ -28,9 +28,9 @@ OPTIONS = Options(("6 deg/s",), probability=0.7, cases=200, certify=20)
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
-    return Study(
-        free_flight.scene(), tmp_path_factory.mktemp("out"), Settings(element_size=0.016, workers=1)
-    )
+    scene = free_flight.scene().replace(free_flight.BRIEF)
+    settings = Settings(element_size=0.016, workers=1)
+    return Study(scene, tmp_path_factory.mktemp("out"), settings)
 
 
 def within(study, arm: float) -> Within:

@@ -10,6 +10,7 @@ from scipy import stats
 from typer.testing import CliRunner
 
 from tests.studies import free_flight
+from tests.studies.limits import in_memory
 from tests.studies.shown import html
 from tipoff.lowfi.ensemble.rows import numbers
 from tipoff.scenes import load
@@ -25,7 +26,7 @@ from tipoff.studies.limits.inputs import Options
 from tipoff.studies.limits.within import ADVISED
 from tipoff.studies.populations import answers, exceedance
 from tipoff.studies.populations.population import Surrogate
-from tipoff.studies.render import document
+from tipoff.studies.render import chart, document
 from tipoff.studies.render import table as tables
 
 LIMIT, PROBABILITY = 6.0, 0.9
@@ -48,6 +49,7 @@ def found(study):
     """Two draws of the constants make the arm 10 % longer and shorter, and the model is off by 1
     deg/s."""
     with pytest.MonkeyPatch.context() as patch:
+        in_memory.keep(patch, written=30)
         patch.setattr(
             limits.population, "surrogate", lambda study, *_: Surrogate(study.scene, FITTED, None)
         )
@@ -176,9 +178,8 @@ def test_limits_that_no_tolerance_or_every_tolerance_keeps_are_reported(study, m
     """0.3 mm of thrust eccentricity alone give 3.1 deg/s: no misalignment keeps 2 deg/s unless that
     error is zero."""
     monkeypatch.setattr(limits, "RAYS", 1)
-    monkeypatch.setattr(
-        "tipoff.studies.render.chart.to_files", lambda *_: []
-    )  # drawn in another test
+    monkeypatch.setattr(chart, "to_files", lambda *_: [])  # drawn in another test
+    in_memory.keep(monkeypatch)
     offset = Study(
         study.scene.replace({"thrust_offset.eccentricity.axial": 0.3e-3}),
         study.folder,

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from tests.lowfi.compliance import REFERENCE, handmade
+from tests.studies.limits import in_memory
 from tests.studies.shown import html
 from tipoff.lowfi.ensemble import fill, pilot, store
 from tipoff.lowfi.ensemble.batch import Case
@@ -113,13 +114,8 @@ def chooses(run) -> bool:
 def study(tmp_path, monkeypatch):
     monkeypatch.setattr(Study, "rail_compliance", lambda *_, **__: WALLS)
     monkeypatch.setattr(draws, "announce", lambda *_: None)
-    # drawing and writing take longer than the tests
-    monkeypatch.setattr(chart, "to_files", lambda *_: [])
-    kept = {}
-    monkeypatch.setattr(within.results, "load", kept.get)
-    monkeypatch.setattr(
-        within.results, "save", lambda path, values, *_: kept.update({path: values})
-    )
+    monkeypatch.setattr(chart, "to_files", lambda *_: [])  # drawing takes longer than the tests
+    in_memory.keep(monkeypatch)
     return Study(REFERENCE, tmp_path, Settings(workers=1))
 
 
