@@ -51,20 +51,24 @@ def test_free_flight_sees_thrust_line_minus_mass_centre_alone():
     )
 
 
-def test_the_interval_of_the_line_contains_what_acts_as_the_line():
-    """Line and mass centre are hidden, and the line alone is fitted: it takes both, e - c. Twenty
-    draws with 2 % of noise. Control: the hidden line itself."""
+@pytest.mark.parametrize(
+    ("draws", "least"), [(6, 5), pytest.param(20, 17, marks=pytest.mark.slow)]
+)
+def test_the_interval_of_the_line_contains_what_acts_as_the_line(draws, least):
+    """Line and mass centre are hidden, and the line alone is fitted: it takes both, e - c. Draws
+    have 2 % of noise; intervals that hold 95 % miss more of 20 once in 60, and more of 6 once in 30.
+    Control: the hidden line itself."""
     generator, hits = np.random.default_rng(8), np.zeros(2)
     exact = {
         name: Curves.from_trajectory(run)
         for name, run in flown({LINE: 6e-5, CENTRE: -4e-5}).items()
     }
-    for _ in range(20):
+    for _ in range(draws):
         curves = {name: noisy(item, 0.02, generator) for name, item in exact.items()}
         found = calibration.run(FREE, curves, plan=LOCAL, fit=[LINE])
         ((low, high),) = found.intervals
         hits += [low <= 1e-4 <= high, low <= 6e-5 <= high]
-    assert hits[0] >= 17 and hits[1] == 0, hits
+    assert hits[0] >= least and hits[1] == 0, hits
 
 
 @pytest.mark.case("O73")

@@ -64,10 +64,16 @@ def test_intervals_cover_in_17_of_20_draws():
     assert (errors < 0.02).all(), errors
 
 
-def test_hidden_values_are_covered_and_held_out_rates_agree():
-    """Four draws. Control: the scene's own values miss the held-out rates."""
-    hits, _, errors = drawn(4)
-    assert hits.sum() >= 13 and (hits >= 2).all(), hits
+@pytest.mark.parametrize(
+    ("draws", "least"), [(1, 3), pytest.param(4, 13, marks=pytest.mark.slow)]
+)
+def test_hidden_values_are_covered_and_held_out_rates_agree(draws, least):
+    """Of 16 values of four draws at most three are missed, of 4 values of one draw at most one: of
+    intervals that hold 95 % more are missed once in 140 and in 70 times. Controls: intervals of 0.3
+    times the width miss two values of the first draw, and the scene's own values miss the held-out
+    rates."""
+    hits, _, errors = drawn(draws)
+    assert hits.sum() >= least and (hits >= draws - 2).all(), hits
     assert (errors < 0.02).all(), errors
     own = dataclasses.replace(CALIBRATION, constants={})
     assert np.abs(rates(own) - rates(HIDDEN)).max() > 0.5

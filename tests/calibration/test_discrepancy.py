@@ -75,17 +75,21 @@ def test_the_size_of_a_known_error_is_found_and_noise_is_no_error():
 
 
 @pytest.mark.case("O74")
-def test_intervals_with_model_error_cover_and_those_of_scatter_do_not():
-    """100 fits of two constants. The deviations of curves that are independent are added too, so
-    that more than 95 % are covered. Control: intervals of the scatter alone cover less than half."""
+@pytest.mark.parametrize(
+    ("fits", "least"), [(40, 37), pytest.param(100, 93, marks=pytest.mark.slow)]
+)
+def test_intervals_with_model_error_cover_and_those_of_scatter_do_not(fits, least):
+    """Fits of two constants. The deviations of curves that are independent are added too, so that
+    more than 95 % are covered: 95 % itself is below 37 of 40, and below 93 of 100, once in seven.
+    Control: intervals of the scatter alone cover less than half."""
     generator, hits = np.random.default_rng(6), np.zeros((2, 2))
-    for _ in range(100):
+    for _ in range(fits):
         curves, error = lines(generator, DEVIATION)
         errors = discrepancy.likeliest(curves)
         for row, deviation in zip(hits, discrepancy.deviations(curves, errors, np.eye(2))):
             row += np.abs(error) <= 1.96 * deviation
     scatter, whole = hits
-    assert (whole >= 93).all() and (scatter < 50).all(), hits
+    assert (whole >= least).all() and (scatter < 0.5 * fits).all(), hits
 
 
 def test_the_deviation_is_the_likeliest_of_what_no_parameter_moves():
