@@ -51,9 +51,7 @@ def test_free_flight_sees_thrust_line_minus_mass_centre_alone():
     )
 
 
-@pytest.mark.parametrize(
-    ("draws", "least"), [(6, 5), pytest.param(20, 17, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize(("draws", "least"), [(6, 5), pytest.param(20, 17, marks=pytest.mark.slow)])
 def test_the_interval_of_the_line_contains_what_acts_as_the_line(draws, least):
     """Line and mass centre are hidden, and the line alone is fitted: it takes both, e - c. Draws
     have 2 % of noise; intervals that hold 95 % miss more of 20 once in 60, and more of 6 once in 30.

@@ -64,9 +64,7 @@ def test_intervals_cover_in_17_of_20_draws():
     assert (errors < 0.02).all(), errors
 
 
-@pytest.mark.parametrize(
-    ("draws", "least"), [(1, 3), pytest.param(4, 13, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize(("draws", "least"), [(1, 3), pytest.param(4, 13, marks=pytest.mark.slow)])
 def test_hidden_values_are_covered_and_held_out_rates_agree(draws, least):
     """Of 16 values of four draws at most three are missed, of 4 values of one draw at most one: of
     intervals that hold 95 % more are missed once in 140 and in 70 times. Controls: intervals of 0.3

@@ -49,8 +49,9 @@ import json, sys, pytest
 from tests.verification.recorder import Recorder
 found = Recorder()
 sys.pycache_prefix = sys.argv[1]
-code = pytest.main(["-q", "-n0", "-o", "enable_assertion_pass_hook=true", "--rootdir", sys.argv[2],
-                    "-c", sys.argv[2] + "/pyproject.toml", sys.argv[3]], plugins=[found])
+code = pytest.main(["-q", "-n0", "-p", "no:hypothesispytest", "-o", "enable_assertion_pass_hook=true",
+                    "--rootdir", sys.argv[2], "-c", sys.argv[2] + "/pyproject.toml", sys.argv[3]],
+                   plugins=[found])
 print("KEPT", json.dumps(found.kept))
 sys.exit(int(code))
 """

@@ -18,6 +18,7 @@ from tipoff.studies.core.study import Study
 
 # The walls of the catalogue's channel are 4 mm thick, in one element.
 FILE_SIZE, SLOPE = 0.004, 50.0  # m; deg/s per m: error of a rate by the mesh
+READ_ONCE = functools.cache(refinement.read)  # one file for all conditions
 
 
 @pytest.fixture
@@ -37,6 +38,7 @@ def study(monkeypatch):
         return found
 
     monkeypatch.setattr(type(made.store), "fill", fill)
+    monkeypatch.setattr(refinement, "read", READ_ONCE)
     return made
 
 

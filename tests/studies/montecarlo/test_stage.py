@@ -21,6 +21,7 @@ from tipoff.studies.montecarlo import stage as montecarlo
 from tipoff.studies.montecarlo.stage import Options
 from tipoff.studies.populations import answers, population, spread
 from tipoff.studies.populations.population import Population, Surrogate
+from tipoff.studies.render import chart
 from tipoff.studies.render import table as tables
 from tipoff.studies.render.document import terminal
 
@@ -111,9 +112,15 @@ def test_a_part_of_the_cases_is_their_first_whether_they_settled_or_not():
     ]
 
 
-def test_cases_that_do_not_settle_elsewhere_are_reported_and_stop_nothing(study, monkeypatch):
+@pytest.mark.parametrize("drawn", [False, pytest.param(True, marks=pytest.mark.slow)])
+def test_cases_that_do_not_settle_elsewhere_are_reported_and_stop_nothing(
+    tmp_path, monkeypatch, drawn
+):
     """Neither in another reading nor on the other surrogate. The study itself needs settled
-    cases."""
+    cases. Drawing its charts takes longer than all else."""
+    study = Study(free_flight.scene(), tmp_path, Settings(workers=2))
+    if not drawn:
+        monkeypatch.setattr(chart, "to_files", lambda *_: [])
     run, seen = population.run, []
 
     def spoilt(*arguments):
