@@ -79,9 +79,17 @@ def test_more_clearance_keeps_the_modes_of_the_draw(study, found, rate):
     assert np.abs(np.subtract(wider, same)).max() > 1e-6
 
 
-def test_runs_of_the_population_are_not_made_again(study, compliance):
+@pytest.fixture
+def untimed(monkeypatch):
+    """No case runs for its time alone."""
+    monkeypatch.setattr(draws, "seconds_per_case", lambda *_: 1e-3)
+    return monkeypatch
+
+
+def test_runs_of_the_population_are_not_made_again(study, compliance, untimed):
     """A number between none and all has a series of its own, whose runs are those beside the
     reference."""
+    untimed.setattr(own_modes, "execute", lambda _: SimpleNamespace(cost={"cpu_s": 1e-3}))
     model = Surrogate(study.scene, None, compliance, 7)
     _, _, beside = draws.requests(study, model, ROWS, 1)
     assert not any(study.store.path(run).is_file() for run in beside)
@@ -103,7 +111,7 @@ def test_rails_without_modes_have_no_such_runs(study, compliance, monkeypatch):
         own_modes.run(study, Surrogate(study.scene, None, compliance, 0), ROWS)
 
 
-def test_the_shorter_of_two_times_counts(study, compliance, monkeypatch):
+def test_the_shorter_of_two_times_counts(study, compliance, untimed):
     """The first run of each contains the loading of kernels."""
     made = []
 
@@ -112,7 +120,7 @@ def test_the_shorter_of_two_times_counts(study, compliance, monkeypatch):
         first = made.count(run.label) == 1
         return SimpleNamespace(cost={"cpu_s": 9.0 if first else 1e-3 * len(run.label)})
 
-    monkeypatch.setattr(own_modes, "execute", execute)
+    untimed.setattr(own_modes, "execute", execute)
     found = own_modes.run(study, Surrogate(study.scene, None, compliance, 0), ROWS)
     labels = [f"nominal-draw{place}-compliant-own-modes" for place in range(2)]
     assert found.own.cpu_s == pytest.approx(1e-3 * len(labels[0]))
