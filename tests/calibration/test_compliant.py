@@ -37,24 +37,24 @@ ON_JOINTS = {
 
 
 def curves(scene: scenes.Scene, compliance: RailCompliance) -> dict:
-    """Without modes of the rails, as calibration has none."""
+    """Of the fitted conditions, without modes of the rails, as calibration has none."""
     still = lowfi.Numerics(modes=0)
     return {
         name: lowfi.run(scene.condition(name), compliance=compliance, numerics=still)
-        for name in CONDITIONS
+        for name in scene.agreement.fitted
     }
 
 
-def fitted(plan: Plan) -> Calibration:
+def fitted(scene: scenes.Scene, plan: Plan) -> Calibration:
     compliance = reference_compliance()
-    truth = curves(SCENE.replace(TRUTH), compliance)
-    return calibration.run(SCENE, truth, plan=plan, compliance=compliance)
+    truth = curves(scene.replace(TRUTH), compliance)
+    return calibration.run(scene, truth, plan=plan, compliance=compliance)
 
 
 @pytest.fixture(scope="module")
 def found():
-    """By least squares from the scene's values."""
-    return fitted(LOCAL)
+    """By least squares from the scene's values, of one condition."""
+    return fitted(SCENE.replace({"agreement.fitted": ["phi60"]}), LOCAL)
 
 
 def test_hidden_values_are_found(found):
@@ -65,7 +65,7 @@ def test_hidden_values_are_found(found):
 
 @pytest.mark.slow
 def test_hidden_values_are_found_by_a_search_of_all_values():
-    require_hidden_values(fitted(SMALL))
+    require_hidden_values(fitted(SCENE, SMALL))
 
 
 def require_hidden_values(found: Calibration) -> None:
@@ -146,7 +146,7 @@ def test_a_hidden_stiffness_of_the_mounts_is_found():
     compliance = highfi.condense(scene, 0.008)
     hidden = TRUTH | {"rail.mount_stiffness.factor": 1.7}
     plan = Plan(points=64, starts=2, evaluations=120, polish=20)
-    truth = {"phi60": curves(scene.replace(hidden), compliance)["phi60"]}
+    truth = curves(scene.replace(hidden), compliance)
     found = calibration.run(scene, truth, plan=plan, compliance=compliance)
     values = dict(zip(found.parameters, found.values))
     assert values["rail.mount_stiffness.factor"] == pytest.approx(1.7, rel=0.02)
