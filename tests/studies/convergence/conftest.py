@@ -5,6 +5,7 @@ from typing import ClassVar
 import pytest
 
 from tests.studies.convergence import stub
+from tests.studies.synthetic import kept_in_memory
 from tipoff import scenes
 from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.core import store as store_module
@@ -39,13 +40,14 @@ def _stubbed(monkeypatch) -> Labels:
 
 @pytest.fixture
 def asked(monkeypatch):
-    """``Labels`` of the stubbed runs."""
+    """``Labels`` of the stubbed runs, which are kept in memory."""
+    kept_in_memory(monkeypatch)
     return _stubbed(monkeypatch)
 
 
 @pytest.fixture(scope="session")
 def finished(tmp_path_factory):
-    """A study and what it found, which no test changes."""
+    """A study with all its files, and what it found, which no test changes."""
     with pytest.MonkeyPatch.context() as patch:
         _stubbed(patch)
         made = Study(scenes.load("tiny"), tmp_path_factory.mktemp("tiny"), defaults("tiny"))

@@ -7,6 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from tests.studies.convergence import stub
+from tests.studies.synthetic import undrawn
 from tipoff import scenes
 from tipoff.scenes.faults import SceneError
 from tipoff.studies import registry
@@ -16,7 +17,7 @@ from tipoff.studies.convergence import summary
 from tipoff.studies.convergence.page import draw
 from tipoff.studies.core.settings import Settings, defaults
 from tipoff.studies.core.study import Study, StudyError
-from tipoff.studies.render import chart, document
+from tipoff.studies.render import document
 from tipoff.studies.render.table import inline
 from tipoff.studies.report import stage as report
 from tipoff.studies.report.page import Page
@@ -233,7 +234,7 @@ def test_command_refuses_an_unknown_condition(tmp_path, asked):
 def test_report_takes_up_a_study_that_is_there(study, monkeypatch):
     shown = [item for item in registry.results() if item.stored is not None]
     monkeypatch.setattr(report, "results", lambda: shown)
-    monkeypatch.setattr(chart, "to_files", lambda *_: [])  # drawn in another test
+    undrawn(monkeypatch)
     page = study.path("report.html")
     report.run(study)
     assert 'id="convergence"' not in page.read_text()
