@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.studies.shown import html
+from tests.studies.synthetic import undrawn
 from tipoff import scenes
 from tipoff.studies import published
 from tipoff.studies.core.settings import Settings
@@ -48,15 +49,16 @@ def stub(admissible: tuple[int, ...] = (2, 0)):
 
 
 def studied(folder: Path, run, options: paper.Options) -> dict:
-    """Result of the stage in ``folder``, with ``run`` in place of a search."""
+    """Result of the stage in ``folder``, with ``run`` in place of a search and figures that are not
+    drawn."""
     with pytest.MonkeyPatch.context() as patch:
+        undrawn(patch)
         patch.setattr(solutions, "run", run)
         return paper.run(Study(BASE, folder, Settings(workers=1)), options)
 
 
 def copied(made: tuple[Path, dict], folder: Path) -> tuple[Study, dict]:
-    """A study in ``folder`` with the files and the result of another one; drawing its figures takes
-    a second."""
+    """A study in ``folder`` with the files and the result of another one."""
     shutil.copytree(made[0], folder, dirs_exist_ok=True)
     return Study(BASE, folder, Settings(workers=1)), copy.deepcopy(made[1])
 

@@ -9,6 +9,7 @@ import pytest
 import xarray
 
 from tests.studies.paper.searched import BASE, COUNT, SMALL, copied, page, shown, stub, studied
+from tests.studies.synthetic import undrawn
 from tipoff import lowfi
 from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.batch import Case
@@ -37,6 +38,7 @@ def made(tmp_path_factory):
 @pytest.fixture
 def quick(made, tmp_path, monkeypatch):
     """A copy of it: the study and its result."""
+    undrawn(monkeypatch)
     monkeypatch.setattr(solutions, "run", stub(admissible=(3, 1)))
     return copied(made, tmp_path)
 
@@ -169,11 +171,9 @@ def test_data_explain_themselves(quick):
     assert data.radial_misalignment.values.tolist() == [0.0, 15.0, 35.0, 60.0, 90.0]
 
 
-def test_no_admissible_point_is_none_in_the_data(tmp_path, monkeypatch):
-    monkeypatch.setattr(solutions, "run", stub(admissible=(0, 0)))
-    study = Study(BASE, tmp_path, Settings(workers=1))
-    paper.run(study, SMALL)
-    data = _opened(study)
+def test_no_admissible_point_is_none_in_the_data(tmp_path):
+    studied(tmp_path, stub(admissible=(0, 0)), SMALL)
+    data = _opened(Study(BASE, tmp_path, Settings(workers=1)))
     assert (
         data.sizes["point"] == 0 and data.sizes["search"] == 2 and np.isfinite(data.end_mass).all()
     )

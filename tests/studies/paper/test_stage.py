@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tests.studies.paper.searched import BASE, COUNT, SMALL, copied, page, shown, stub, studied
+from tests.studies.synthetic import undrawn
 from tipoff import lowfi, scenes
 from tipoff.files import write_json
 from tipoff.lowfi.numerics import Numerics
@@ -39,6 +40,7 @@ def test_stage_keeps_searches_and_is_skipped(tmp_path, monkeypatch):
     monkeypatch.setattr(solutions, "run", lambda *_: pytest.fail("searched again"))
     assert paper.run(study, SMALL) == found
     (tmp_path / "paper.json").unlink()
+    undrawn(monkeypatch)
     assert paper.run(study, SMALL)["searches"] == found["searches"]
 
 
@@ -102,6 +104,7 @@ def made(tmp_path_factory):
 @pytest.fixture
 def quick(made, tmp_path, monkeypatch):
     """A copy of it: the study and its result."""
+    undrawn(monkeypatch)
     monkeypatch.setattr(solutions, "run", stub())
     return copied(made, tmp_path)
 
@@ -154,7 +157,7 @@ def test_printed_deviations_stand_beside_ours(quick):
     assert not np.allclose(ours, printed.largest_relative(), rtol=0.01)
 
 
-def test_ranges_say_how_few_searches_they_come_from(quick, tmp_path, monkeypatch):
+def test_ranges_say_how_few_searches_they_come_from(quick, tmp_path):
     _study, found = quick
     counts = "2 from 1 of 2 searches, at most 2 from one search"
     assert found["admissible"] == {"points": 2, "searches": 1, "most_of_one": 2}
@@ -164,8 +167,7 @@ def test_ranges_say_how_few_searches_they_come_from(quick, tmp_path, monkeypatch
         "admissible_deg_s": 0.5 * found["searches"][found["best"]]["largest_deviation_error_deg_s"]
     }
     assert "not among them" in page(far) and "not among them" not in page(found)
-    monkeypatch.setattr(solutions, "run", stub(admissible=(0, 0)))
-    none = paper.run(Study(BASE, tmp_path / "none", Settings(workers=1)), SMALL)
+    none = studied(tmp_path / "none", stub(admissible=(0, 0)), SMALL)
     for text in (page(none), shown(none)):
         assert "None of 2 searches found an admissible set" in text and "no range is known" in text
     assert {row[5] for row in section.table_of_inputs(none).rows} == {None}
