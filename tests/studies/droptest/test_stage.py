@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 from tests.studies.droptest.test_log import SHEET, TABLE
 from tests.studies.shown import html
+from tests.studies.synthetic import undrawn
 from tipoff.scenes import load
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import SceneError
@@ -21,7 +22,7 @@ from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.droptest import page, stage
 from tipoff.studies.droptest.sheet import SAMPLES
 from tipoff.studies.populations import answers
-from tipoff.studies.render import chart, document
+from tipoff.studies.render import document
 
 xarray = pytest.importorskip("xarray")
 
@@ -39,7 +40,8 @@ def call(*arguments):
     )
 
 
-def test_shipped_logs_from_command_to_page(tmp_path, fitted):
+def test_shipped_logs_from_command_to_page(tmp_path, fitted, monkeypatch):
+    undrawn(monkeypatch, laid_out=True)
     result = call("--cases", 200, "--out", tmp_path)
     assert result.exit_code == 0, result.output
     for words in (
@@ -141,7 +143,7 @@ def _tests_in(folder, *names):
 def test_a_result_is_current_as_long_as_its_logs_are(tmp_path, fitted, monkeypatch):
     """An edited table, a sheet that moved, a file that is gone: no longer. Control: the files as
     they were, read in this order between all changes, are current again."""
-    monkeypatch.setattr(chart, "to_files", lambda *_: [])
+    undrawn(monkeypatch)
     monday, tuesday = _tests_in(tmp_path, "monday", "tuesday")
     study = Study(load("reference"), tmp_path / "reference", Settings())
     found = stage.run(study, stage.Options((monday, tuesday), cases=60, model="springs"))
@@ -170,7 +172,7 @@ def test_tests_are_judged_by_the_errors_condition_and_seed_that_are_asked_for(
 ):
     """Each changes the cases, and an edited file of errors makes a result old. Control: as the file
     was it is current again."""
-    monkeypatch.setattr(chart, "to_files", lambda *_: [])
+    undrawn(monkeypatch)
     errors = tmp_path / "errors.toml"
     lines = (
         'cases = 9\nseed = 4\n[vary."thrust_offset.misalignment.axial"]\ndistribution = "uniform"\n'

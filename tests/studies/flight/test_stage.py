@@ -8,6 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from tests.studies.shown import html
+from tests.studies.synthetic import undrawn
 from tipoff.files import write_json
 from tipoff.scenes import load
 from tipoff.studies.cli import app
@@ -18,7 +19,6 @@ from tipoff.studies.flight import stage as flight
 from tipoff.studies.flight import summary
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Surrogate
-from tipoff.studies.render import chart
 from tipoff.studies.render.table import Noted
 
 xarray = pytest.importorskip("xarray")
@@ -40,6 +40,7 @@ def call(*arguments):
 
 def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, monkeypatch):
     asked = ("--condition", "phi35", "--condition", "phi60", "--cases", 60, "--out", tmp_path)
+    undrawn(monkeypatch, laid_out=True)
     first = call(*asked)
     assert first.exit_code == 0, first.output
     assert "60 cases: 60 ok, 0 refused, 0 failed" in first.stdout and "flight.nc" in first.stdout
@@ -90,7 +91,7 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, monkeyp
     stamp = (folder / "flight.json").stat().st_mtime_ns
     # nothing changed
     assert call(*asked).exit_code == 0 and (folder / "flight.json").stat().st_mtime_ns == stamp
-    monkeypatch.setattr(chart, "to_files", lambda *_: [])  # drawn once is enough
+    undrawn(monkeypatch)  # laid out once is enough
     further = json.loads(call(*asked, "--range", "1 km", "--json").stdout)
     assert (
         further["flight"]["range_m"] == 1000.0

@@ -26,6 +26,7 @@ from tipoff.studies.paper import stage as paper
 
 def test_stage_keeps_searches_and_is_skipped(tmp_path, monkeypatch):
     study = Study(BASE, tmp_path, Settings(workers=1))
+    undrawn(monkeypatch, laid_out=True)
     found = paper.run(study, SMALL)
     assert (
         len(found["searches"]) == 2
