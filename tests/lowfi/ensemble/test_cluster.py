@@ -35,16 +35,23 @@ def ensemble(cases: int = CASES) -> Ensemble:
     )
 
 
-def local_cluster(workers: int):
+def worker_in_this_process():
+    """A cluster of one worker that starts in no time, and is lost like others."""
     return distributed.LocalCluster(
-        n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None
+        n_workers=1,
+        threads_per_worker=1,
+        processes=False,
+        protocol="tcp://",
+        dashboard_address=None,
     )
 
 
 @pytest.fixture(scope="module")
 def two_workers():
     """A cluster whose workers come back when they die."""
-    with local_cluster(2) as workers:
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+    ) as workers:
         yield workers
 
 
@@ -80,7 +87,7 @@ def test_a_worker_that_is_killed_changes_no_bit(tmp_path, two_workers):
 def test_a_lost_scheduler_ends_with_a_message_and_a_store_that_resumes(tmp_path):
     asked = ensemble()
     store = asked.store(tmp_path / "store")
-    workers = local_cluster(1)
+    workers = worker_in_this_process()
 
     def lose(stored: int) -> None:
         if stored == 3 * CHUNK:
@@ -101,17 +108,17 @@ def test_a_lost_scheduler_ends_with_a_message_and_a_store_that_resumes(tmp_path)
 
 def test_a_last_worker_that_dies_ends_with_a_message(tmp_path, monkeypatch):
     """Dask would wait for another one for ever."""
-    monkeypatch.setattr(cluster, "PATIENCE", 3.0)
     asked = ensemble()
     store = asked.store(tmp_path / "store")
-    with local_cluster(1) as workers:
+    with worker_in_this_process() as workers:
 
         def dismiss(stored: int) -> None:
             if stored == 3 * CHUNK:
-                for nanny in list(workers.workers.values()):
-                    workers.sync(nanny.close)
+                monkeypatch.setattr(cluster, "PATIENCE", 0.5)  # it answered long ago
+                for worker in list(workers.workers.values()):
+                    workers.sync(worker.close)
 
-        with pytest.raises(StoreError, match=r"no worker at .* for 3 s; .* are stored"):
+        with pytest.raises(StoreError, match=r"no worker at .* for 0.5 s; .* are stored"):
             fill(asked, store, scheduler=workers.scheduler_address, progress=dismiss)
     assert 0 < len(store.pending()) <= CASES // CHUNK - 3
 
