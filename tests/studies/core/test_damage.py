@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from tests.scenes.test_calibration import CALIBRATION
-from tests.studies.synthetic import flight
+from tests.studies.synthetic import flight, kept_in_memory
 from tipoff import scenes
 from tipoff.calibration import rail_compliance as calibrated
 from tipoff.files import write_json
@@ -91,18 +91,15 @@ def test_a_stage_is_never_made_again_from_a_damaged_trajectory(engine, study, ca
 
 
 @pytest.mark.case("X25")
-@pytest.mark.parametrize("share", np.linspace(0.0, 1.0, 12))
-def test_a_flipped_bit_anywhere_in_a_stored_run_has_it_made_again(engine, study, capsys, share):
+def test_a_flipped_bit_anywhere_in_a_stored_run_has_it_made_again(engine, study, capsys):
     run = study.highfi("phi15")
     first, path = study.store.get(run), study.store.path(run)
-    flip(path, round(share * (path.stat().st_size - 1)))
-    again = study.store.get(run)
-    assert (
-        engine == ["phi15", "phi15"]
-        and again.outcome == first.outcome
-        and np.array_equal(again.rate, first.rate)
-    )
-    assert f"{path} is damaged" in capsys.readouterr().err
+    for number, share in enumerate(np.linspace(0.0, 1.0, 12)):
+        flip(path, round(share * (path.stat().st_size - 1)))
+        again = study.store.get(run)
+        assert engine == ["phi15"] * (number + 2), share
+        assert again.outcome == first.outcome and np.array_equal(again.rate, first.rate)
+        assert f"{path} is damaged" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -116,7 +113,8 @@ def test_a_flipped_bit_anywhere_in_a_stored_run_has_it_made_again(engine, study,
         lambda text: text.replace('"sha256"', '"sha255"'),
     ],
 )
-def test_an_edited_result_file_is_made_again(engine, study, capsys, change):
+def test_an_edited_result_file_is_made_again(engine, study, capsys, monkeypatch, change):
+    kept_in_memory(monkeypatch)
     first, path = runs.run(study, "highfi"), study.path("highfi.json")
     text = path.read_text()
     assert change(text) != text

@@ -43,10 +43,11 @@ def study(tmp_path):
 
 
 def test_second_call_runs_nothing(engine, study):
-    runs = [study.highfi(name) for name in study.conditions]
+    names = list(study.conditions)[:4]
+    runs = [study.highfi(name) for name in names]
     first = study.store.fill("highfi", runs)
     second = study.store.fill("highfi", runs)
-    assert sorted(engine) == sorted(study.conditions)
+    assert sorted(engine) == sorted(names)
     assert all(np.array_equal(a.rate, b.rate) for a, b in zip(first, second))
 
 
@@ -170,13 +171,13 @@ def test_settings_and_roles_change_a_stage_key_and_workers_do_not(study):
     assert key(scene=study.scene.replace({"payload.mass": "9 kg"})) != key()
 
 
-MOMENTS = (0.0, 0.003, 0.007, 0.012, 0.017, 0.023, 0.031, 0.043)  # s after a file was written
+MOMENTS = (0.0, 0.001, 0.002, 0.003, 0.005, 0.007, 0.009, 0.012)  # s after a file was written
 # The bytes are made once, so that the loop hardly does anything but write.
 KILLED = """
 import os, sys
 import xarray
 from tests.studies.synthetic import flight
-run = flight(samples=40001)
+run = flight(samples=10001)
 content = run.to_xarray().to_netcdf(engine="h5netcdf")
 xarray.Dataset.to_netcdf = lambda *_, **__: content
 for path in sys.argv[1:]:  # a process each
@@ -204,4 +205,4 @@ def test_kill_while_writing_leaves_no_half_file(tmp_path):
     finally:
         writer.kill()
         writer.communicate()
-    assert [Trajectory.load(path).time.size for path in moments] == [40001] * len(moments)
+    assert [Trajectory.load(path).time.size for path in moments] == [10001] * len(moments)
