@@ -37,6 +37,11 @@ def two_bricks() -> RailMesh:
     return RailMesh(points, cells, {"all": boundary_facets(cells)})
 
 
+@pytest.fixture(scope="module")
+def quadratic_bar() -> quadratic.Bar:
+    return quadratic.bar(4e-3)
+
+
 @pytest.mark.parametrize("kind", [calculix.LINEAR, calculix.QUADRATIC])
 def test_sides_of_elements_are_the_facets_of_the_mesh(two_bricks, kind):
     of = calculix.solid(two_bricks, kind)
@@ -174,10 +179,10 @@ def test_the_block_of_calculix_has_the_mass_and_inertia_of_the_case():
     assert read(impact_problem.bar(4e-3)).surfaces["contact_z"].shape == (108, 4)
 
 
-def test_the_quadratic_bar_has_its_mass_and_bends_as_a_beam_with_shear():
+def test_the_quadratic_bar_has_its_mass_and_bends_as_a_beam_with_shear(quadratic_bar):
     """Simpson's weights sum to the mass between the clamps; Timoshenko between two clamps under a load
     at the middle: F L^3 / (192 E I) + F L / (4 kappa G A), and what the clamps of a solid add."""
-    bar = quadratic.bar(4e-3)
+    bar = quadratic_bar
     length, width, depth = impact_problem.LENGTH, impact_problem.WIDTH, impact_problem.DEPTH
     held = 4e-3 / 6.0 / length  # half of Simpson's end weight on either side
     mass = impact_problem.DENSITY * length * width * depth * (1.0 - 2.0 * held)
@@ -203,12 +208,12 @@ def test_the_quadratic_bar_has_its_mass_and_bends_as_a_beam_with_shear():
     assert not force.any() and not load.any()
 
 
-def test_the_quadratic_pad_keeps_momentum_and_has_the_force_of_its_crown():
+def test_the_quadratic_pad_keeps_momentum_and_has_the_force_of_its_crown(quadratic_bar):
     """Force of a crowned pad pressed by d into a flat wall: k times the integral of d - relief
     (xi^4 + eta^4) where that is positive, by scipy."""
     from scipy.integrate import dblquad
 
-    bar = quadratic.bar(4e-3)
+    bar = quadratic_bar
     stiffness, depth = impact_problem.STIFFNESS, 5e-6
     still = np.zeros(bar.inverse_mass.size)
     pad = quadratic.Pad(bar, stiffness)
