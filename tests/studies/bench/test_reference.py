@@ -1,6 +1,7 @@
 """The benchmark: the baseline does the same work as the solver, and what is written is what was
 measured."""
 
+import functools
 import json
 
 import numpy as np
@@ -8,13 +9,14 @@ import pytest
 from typer.testing import CliRunner
 
 import tipoff
+from tests.studies.synthetic import undrawn
 from tipoff import highfi, lowfi
 from tipoff.highfi import Numerics
 from tipoff.highfi.statics import assembly
 from tipoff.lowfi.dynamics import cases
 from tipoff.mechanics.models import COMPLIANT
 from tipoff.scenes import load
-from tipoff.studies.bench import reference
+from tipoff.studies.bench import reference, surrogate
 from tipoff.studies.bench.csr_loop import CsrLoop
 from tipoff.studies.bench.methods import (
     PlainRungeKutta,
@@ -46,7 +48,14 @@ def test_baseline_is_central_differences_on_the_assembled_matrix():
     )
 
 
-def test_bench_writes_one_row_per_size(tmp_path):
+@pytest.mark.parametrize(
+    "few, errors",
+    [(5, (1.0, 0.5)), pytest.param(20, surrogate.REQUESTED, marks=pytest.mark.slow)],
+)
+def test_bench_writes_one_row_per_size(tmp_path, monkeypatch, few, errors):
+    monkeypatch.setattr(surrogate, "run", functools.partial(surrogate.run, few=few))
+    monkeypatch.setattr(surrogate, "REQUESTED", errors)
+    undrawn(monkeypatch, laid_out=True)
     arguments = [
         "bench",
         "--element-size",
@@ -76,16 +85,17 @@ def test_bench_writes_one_row_per_size(tmp_path):
     ).render()
     assert 'id="bench"' in page and f"{row['elements']:,}" in page
     assert reference.stored(tmp_path / "elsewhere") is None
-    surrogate = json.loads((tmp_path / "bench" / "lowfi.json").read_text())
-    methods = [row["method"] for row in surrogate["single"] if row["error_percent"] == 1.0]
-    assert methods == ["compliant contact", "springs", PlainRungeKutta.name, SolveIvp.name]
-    for row in surrogate["single"]:
+    found = json.loads((tmp_path / "bench" / "lowfi.json").read_text())
+    for error in errors:
+        methods = [row["method"] for row in found["single"] if row["error_percent"] == error]
+        assert methods == ["compliant contact", "springs", PlainRungeKutta.name, SolveIvp.name]
+    for row in found["single"]:
         assert row["measured_percent"] <= row["error_percent"] and row["cpu_ms"] > 0.0
         assert f"{row['cpu_ms']:.3f}" in page
         compliant = row["method"] == "compliant contact"
         assert (row["run_auto_cpu_ms"] is not None) == compliant
-    assert "pilot cases" in surrogate["modes_why"]
-    for ensemble in surrogate["ensembles"]:
+    assert "pilot cases" in found["modes_why"]
+    for ensemble in found["ensembles"]:
         assert (
             ensemble["cases"] == ensemble["ok"] == 40
             and ensemble["cpu_ms_per_case"] > 0.0 < ensemble["wall_s"]
