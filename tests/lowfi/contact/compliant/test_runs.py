@@ -193,7 +193,10 @@ def test_a_wall_pulled_into_touch(monkeypatch):
     )
 
 
-@pytest.mark.parametrize("condition", ["phi35", "h4", "h7", "h8", "h9"])
+@pytest.mark.parametrize(
+    "condition",
+    ["phi35", "h4", *(pytest.param(name, marks=pytest.mark.slow) for name in ("h7", "h8")), "h9"],
+)
 def test_ledgers_and_momentum(condition):
     """With default numerics, and pads that leave the rail's end under load (h7 to h9); residuals
     fall with the tolerance."""
@@ -281,8 +284,8 @@ def test_order_of_the_pads():
     """Pads in reverse order, and their compliance found again."""
     asked = REFERENCE.condition("phi35")
     backwards = asked.model_copy(update={"pads": asked.pads[::-1]})
-    found = compliance.condense(backwards, 4e-3)
-    assert rates(backwards, found) == pytest.approx(rates(asked, reference_compliance()), abs=1e-6)
+    there, back = (rates(each, compliance.condense(each, 8e-3)) for each in (asked, backwards))
+    assert back == pytest.approx(there, abs=1e-6)
     assert models.build(backwards).faces.sign[0] != models.build(asked).faces.sign[0]
 
 
