@@ -80,7 +80,7 @@ def test_a_scene_with_many_conditions_fits_the_file(tmp_path):
     """HDF5 attributes are limited to 64 KiB unless they are stored apart from the object header."""
     scene = (
         load("reference")
-        .replace({f"conditions.{'c' * 100}{i}": {"duration": "50 ms"} for i in range(600)})
+        .replace({f"conditions.{'c' * 60}{i}": {"duration": "50 ms"} for i in range(900)})
         .resolved()
     )
     assert len(json.dumps(scene)) > 2**16

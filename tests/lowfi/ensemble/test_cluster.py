@@ -42,7 +42,7 @@ def worker_in_this_process():
         threads_per_worker=1,
         processes=False,
         protocol="tcp://",
-        dashboard_address=None,
+        dashboard_address=":0",
     )
 
 
@@ -50,7 +50,7 @@ def worker_in_this_process():
 def two_workers():
     """A cluster whose workers come back when they die."""
     with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
     ) as workers:
         yield workers
 
