@@ -38,7 +38,7 @@ TOLERANCE = NUDGE = 1e-9  # relative; m/s
 LEAST, REACH = 1e-2, 0.1
 KINETIC = ledger.ENTRIES.index("kinetic")
 BODIES = (state.PAYLOAD, state.PLATFORM)
-FEW = settings(max_examples=25, suppress_health_check=list(HealthCheck))
+FEW = settings(max_examples=12, suppress_health_check=list(HealthCheck))
 MANY = settings(max_examples=420, suppress_health_check=list(HealthCheck))
 
 

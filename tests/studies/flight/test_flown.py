@@ -179,11 +179,12 @@ def test_cone_of_an_asymmetric_body(rate):
     assert found.coning[0] == pytest.approx((way[-1] - way[0]) / time[0, -1], rel=1e-6)
 
 
-def test_no_instant_is_closer_than_the_least():
+@pytest.mark.parametrize("many", [16, pytest.param(40, marks=pytest.mark.slow)])
+def test_no_instant_is_closer_than_the_least(many):
     """Of random exits from a body flush with its pads, 4,000 instants each; later there is none
     either."""
     rng = np.random.default_rng(7)
-    scene, many = SCENE.replace({"flight.body": None}), 40
+    scene = SCENE.replace({"flight.body": None})
     exits = start()._replace(
         velocity=np.array([6.0, 0.0, 0.0]) + 0.02 * rng.normal(size=(many, 3)),
         rate=0.1 * rng.normal(size=(many, 3)),

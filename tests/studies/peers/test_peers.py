@@ -37,9 +37,9 @@ def two_bricks() -> RailMesh:
     return RailMesh(points, cells, {"all": boundary_facets(cells)})
 
 
-@pytest.fixture(scope="module")
-def quadratic_bar() -> quadratic.Bar:
-    return quadratic.bar(4e-3)
+@pytest.fixture(scope="module", params=[8e-3, pytest.param(4e-3, marks=pytest.mark.slow)])
+def size_and_bar(request) -> tuple[float, quadratic.Bar]:
+    return request.param, quadratic.bar(request.param)
 
 
 @pytest.mark.parametrize("kind", [calculix.LINEAR, calculix.QUADRATIC])
@@ -179,12 +179,12 @@ def test_the_block_of_calculix_has_the_mass_and_inertia_of_the_case():
     assert read(impact_problem.bar(4e-3)).surfaces["contact_z"].shape == (108, 4)
 
 
-def test_the_quadratic_bar_has_its_mass_and_bends_as_a_beam_with_shear(quadratic_bar):
+def test_the_quadratic_bar_has_its_mass_and_bends_as_a_beam_with_shear(size_and_bar):
     """Simpson's weights sum to the mass between the clamps; Timoshenko between two clamps under a load
     at the middle: F L^3 / (192 E I) + F L / (4 kappa G A), and what the clamps of a solid add."""
-    bar = quadratic_bar
+    size, bar = size_and_bar
     length, width, depth = impact_problem.LENGTH, impact_problem.WIDTH, impact_problem.DEPTH
-    held = 4e-3 / 6.0 / length  # half of Simpson's end weight on either side
+    held = size / 6.0 / length  # half of Simpson's end weight on either side
     mass = impact_problem.DENSITY * length * width * depth * (1.0 - 2.0 * held)
     assert (1.0 / bar.inverse_mass).sum() == pytest.approx(3.0 * mass, rel=1e-12)
     from scipy.sparse.linalg import spsolve
@@ -208,12 +208,12 @@ def test_the_quadratic_bar_has_its_mass_and_bends_as_a_beam_with_shear(quadratic
     assert not force.any() and not load.any()
 
 
-def test_the_quadratic_pad_keeps_momentum_and_has_the_force_of_its_crown(quadratic_bar):
+def test_the_quadratic_pad_keeps_momentum_and_has_the_force_of_its_crown(size_and_bar):
     """Force of a crowned pad pressed by d into a flat wall: k times the integral of d - relief
     (xi^4 + eta^4) where that is positive, by scipy."""
     from scipy.integrate import dblquad
 
-    bar = quadratic_bar
+    _, bar = size_and_bar
     stiffness, depth = impact_problem.STIFFNESS, 5e-6
     still = np.zeros(bar.inverse_mass.size)
     pad = quadratic.Pad(bar, stiffness)
