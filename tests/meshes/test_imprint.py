@@ -1,6 +1,7 @@
 """Boxes that end within a face of a solid: their borders become borders of elements, and the areas are
 those of the drawing."""
 
+import functools
 import math
 from dataclasses import replace
 
@@ -17,6 +18,7 @@ from tests.meshes.test_solid import (
     flat,
     l_sections,
     l_surfaces,
+    mesh_here,
     scene_of,
     tilted_plate,
 )
@@ -51,14 +53,25 @@ def area_of(mesh, name):
 def unbordered(tmp_path_factory):
     """The block on one box that holds all of the face below."""
     below = [flat(2, 0.0, [(0, 0), (0.04, 0.02)])]
-    return make_mesh(block(tmp_path_factory.mktemp("whole"), below), 0.002)
+    return mesh_here(block(tmp_path_factory.mktemp("whole"), below), 0.002)
+
+
+@pytest.fixture(scope="module")
+def bordered(tmp_path_factory):
+    """Scene and mesh of the block on both boxes, by the kind of its elements."""
+
+    @functools.cache
+    def made(elements):
+        scene = block(tmp_path_factory.mktemp(elements), [BESIDE, ACROSS], elements=elements)
+        return scene, mesh_here(scene, 0.002)
+
+    return made
 
 
 @pytest.mark.parametrize("elements", ["hex8", "tet10"])
-def test_a_box_that_cuts_through_a_face_keeps_all_of_its_area(tmp_path, unbordered, elements):
+def test_a_box_that_cuts_through_a_face_keeps_all_of_its_area(bordered, unbordered, elements):
     """Control: facets that lie wholly in the boxes of a mesh without their borders cover less."""
-    scene = block(tmp_path, [BESIDE, ACROSS], elements=elements)
-    mesh = make_mesh(scene, 0.002)
+    _, mesh = bordered(elements)
     area = 0.0082 * 0.0144 + 0.02 * 0.0073 - math.pi * 0.005**2 / 4.0
     assert mesh.drawn["mount"] == pytest.approx(area, rel=1e-6)
     assert area_of(mesh, "mount") == pytest.approx(area, rel=5e-3)
@@ -105,12 +118,11 @@ def test_every_box_on_no_face_is_named(tmp_path):
     """Others of the same surface lie on faces."""
     high = flat(2, 0.001, [(0.0, 0.0), (0.04, 0.02)])
     with pytest.raises(MeshError, match="lies in box 2 of mount, .0, 0, 0.001"):
-        make_mesh(block(tmp_path, [BESIDE, high]), 0.004)
+        mesh_here(block(tmp_path, [BESIDE, high]), 0.004)
 
 
-def test_a_surface_of_another_area_than_drawn_is_refused(tmp_path):
-    scene = block(tmp_path, [BESIDE, ACROSS], elements="tet10")
-    mesh = make_mesh(scene, 0.004)
+def test_a_surface_of_another_area_than_drawn_is_refused(bordered):
+    scene, mesh = bordered("tet10")
     lost = mesh.surfaces | {"mount": mesh.surfaces["mount"][::2]}
     with pytest.raises(MeshError, match="'mount': .* mm2 of facets .* has 244.445 mm2"):
         check_areas(scene.rail, mesh.__class__(mesh.points, mesh.cells, lost, (), mesh.drawn))
@@ -121,7 +133,7 @@ def test_a_drawing_without_units_in_millimetres_is_named_before_it_is_meshed(tmp
     surfaces = {"contact_top": [TOP], "mount": [BESIDE]}
     scene = scene_of(drawn(tmp_path / "block.brep", drilled), surfaces, 0.0, 0.04)
     with pytest.raises(MeshError, match="x 0 to 40, .* seems to be in millimetres"):
-        make_mesh(scene, 0.002)
+        mesh_here(scene, 0.002)
 
 
 @pytest.mark.slow
