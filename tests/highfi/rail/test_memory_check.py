@@ -7,7 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from tests.highfi.support import tiny
-from tests.meshes.test_solid import drawn, drilled, flat, scene_of
+from tests.meshes.test_solid import drawn, drilled, flat, mesh_here, scene_of
 from tipoff import highfi
 from tipoff.highfi import Numerics
 from tipoff.highfi.mesh import split
@@ -139,8 +139,10 @@ def test_a_file_is_not_split_where_its_parts_do_not_fit(monkeypatch):
 
 
 @pytest.mark.gmsh
-@pytest.mark.parametrize("elements", ["hex8", "tet10"])
-def test_a_solid_is_not_filled_where_its_elements_do_not_fit(tmp_path, monkeypatch, elements):
+@pytest.mark.parametrize("elements, mesh_of", [("hex8", make_mesh), ("tet10", mesh_here)])
+def test_a_solid_is_not_filled_where_its_elements_do_not_fit(
+    tmp_path, monkeypatch, elements, mesh_of
+):
     """40 x 20 x 8 mm less a hole of 10 mm through it, in elements of 10 um."""
     monkeypatch.setattr(memory_estimate, "available", lambda: 8_000_000_000)
     top, below = (flat(2, z, [(0, 0), (0.04, 0.02)]) for z in (0.008, 0.0))
@@ -150,7 +152,7 @@ def test_a_solid_is_not_filled_where_its_elements_do_not_fit(tmp_path, monkeypat
     with pytest.raises(
         SceneError, match=r"[56],\d{3},\d{3},\d{3} elements take about .* of memory"
     ):
-        make_mesh(scene, 1e-5)
+        mesh_of(scene, 1e-5)
 
 
 @pytest.mark.parametrize("command", ["highfi", "bench"])

@@ -51,8 +51,10 @@ def assert_promises(found):
     assert found.checks["friction_power_max"] <= 0.0
 
 
-def test_promises_hold_on_a_rail_that_is_no_extrusion():
-    found = highfi.run(channels(duration="12 ms"))
+@pytest.mark.parametrize("duration", ["6.5 ms", pytest.param("12 ms", marks=pytest.mark.slow)])
+def test_promises_hold_on_a_rail_that_is_no_extrusion(duration):
+    """Through the first contact, and through several."""
+    found = highfi.run(channels(duration=duration))
     assert np.abs(found.pad_force).max() > 100.0
     assert_promises(found)
     assert found.cost["dt_s"] <= found.cost["dt_limit_s"] * found.cost["safety"]
@@ -78,11 +80,21 @@ def test_the_surrogate_runs_it_too():
     assert found.checks["energy_error"] <= 1e-5 and found.checks["linear_momentum_error"] <= 1e-12
 
 
-def test_the_built_in_rails_from_a_file_give_the_same_run(tmp_path):
+@pytest.fixture(scope="module")
+def wide(tmp_path_factory):
+    """A scene on built-in rails, its run, and the same rails in a file."""
+    scene = tiny(
+        duration="8 ms", thrust_offset__misalignment__axial="1 deg", contact__clearance="0.25 mm"
+    )
+    path = tmp_path_factory.mktemp("wide") / "rails.msh"
+    file = saved(l_rail.build(geometry(scene), COARSE.element_size), path)
+    return scene, highfi.run(scene, COARSE), from_file(scene, file)
+
+
+def test_the_built_in_rails_from_a_file_give_the_same_run(wide):
     """Up to rounding: elements of a file are numbered again, so sums are added in another order."""
-    built = tiny(duration="8 ms", thrust_offset__misalignment__axial="1 deg")
-    path = saved(l_rail.build(geometry(built), COARSE.element_size), tmp_path / "rails.msh")
-    first, second = highfi.run(built, COARSE), highfi.run(from_file(built, path), COARSE)
+    _, first, file = wide
+    second = highfi.run(file, COARSE)
     assert np.abs(first.pad_force).max() > 100.0
     assert np.abs(second.rate - first.rate).max() <= 1e-9 * np.abs(first.rate).max()
     assert np.abs(second.velocity - first.velocity).max() <= 1e-12 * np.abs(first.velocity).max()
@@ -103,20 +115,14 @@ def test_walls_that_the_scene_places_elsewhere_are_all_named():
     assert "-0.088 m" in faults["rail.start"] and "0.00025 m" in faults["rail.clearance"]
 
 
-def test_another_clearance_moves_the_pads(tmp_path):
+def test_another_clearance_moves_the_pads(wide):
     """Moving the pads out by 0.05 mm has the effect of moving the walls in. Control: without it the
     difference would be twenty times larger."""
-    wide = tiny(
-        duration="8 ms", thrust_offset__misalignment__axial="1 deg", contact__clearance="0.25 mm"
-    )
-    path = saved(l_rail.build(geometry(wide), COARSE.element_size), tmp_path / "rails.msh")
-    drawn_wide = from_file(wide, path).replace({"rail.clearance": "0.25 mm"})
+    scene, before, file = wide
     narrow = {"contact.clearance": "0.2 mm"}
-    wall, shim, before = (
-        highfi.run(scene, COARSE).rate
-        for scene in (wide.replace(narrow), drawn_wide.replace(narrow), wide)
-    )
-    assert np.abs(shim - wall).max() < 0.05 * np.abs(before - wall).max()
+    drawn_wide = file.replace({"rail.clearance": "0.25 mm"})
+    wall, shim = (highfi.run(each.replace(narrow), COARSE).rate for each in (scene, drawn_wide))
+    assert np.abs(shim - wall).max() < 0.05 * np.abs(before.rate - wall).max()
 
 
 def test_a_pad_over_no_wall_is_named():
@@ -240,9 +246,10 @@ def test_slivers_are_warned_about_with_the_step_they_force(tmp_path):
 
 
 @pytest.mark.gmsh
-def test_the_built_in_rails_from_cad_give_the_same_run(tmp_path):
+@pytest.mark.parametrize("duration", ["6 ms", pytest.param("8 ms", marks=pytest.mark.slow)])
+def test_the_built_in_rails_from_cad_give_the_same_run(tmp_path, duration):
     built = tiny(
-        duration="8 ms",
+        duration=duration,
         thrust_offset__misalignment__axial="1 deg",
         rail=load("reference").rail.model_dump(),
     )
