@@ -10,6 +10,7 @@ import tarfile
 import tomllib
 import venv
 import zipfile
+from collections.abc import Iterator
 from importlib.metadata import packages_distributions
 from pathlib import Path
 
@@ -20,6 +21,18 @@ from tests.docs import pages
 ROOT = Path(__file__).resolve().parent.parent
 # Pages whose programs run on the wheel, with the scene that each names.
 PAGES = {"README.md": "reference", "docs/tutorials/surrogate_and_reference.md": "tiny"}
+MARK = "-----"
+# The command ``tipoff scenes``, with marks before and after what it prints.
+SCENES = f"""
+import runpy, sys
+print({MARK!r})
+sys.argv = ["tipoff", "scenes"]
+try:
+    runpy.run_module("tipoff", run_name="__main__", alter_sys=True)
+except SystemExit as end:
+    assert not end.code, end.code
+print({MARK!r})
+"""
 # Every module by its file: one that was loaded under two names stands there twice.
 LOADED = """
 import os, sys
@@ -38,11 +51,30 @@ BROUGHT = {"llvmlite": "numba", "PIL": "matplotlib", "pydantic_core": "pydantic"
 OPTIONAL = {"distributed", "exudyn", "mujoco", "pyvista"}
 
 
+# One process for both, each of a copy, for setuptools leaves its work beside what it packs.
+BUILD = """
+import os, sys
+from setuptools import build_meta
+folder, *copies = sys.argv[1:]
+for copy, build in zip(copies, (build_meta.build_wheel, build_meta.build_sdist)):
+    os.chdir(copy)
+    build(folder)
+"""
+
+
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory):
-    """Built from a copy, for setuptools leaves its work beside what it packs."""
-    folder = tmp_path_factory.mktemp("wheel")
-    return _wheel(_copy(folder / "copy"), folder)
+def built(tmp_path_factory):
+    """Folder with a wheel and a source distribution."""
+    folder = tmp_path_factory.mktemp("built")
+    copies = [_copy(folder / name) for name in ("for wheel", "for source")]
+    _run(sys.executable, "-c", BUILD, folder, *copies)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def wheel(built):
+    (found,) = built.glob("*.whl")
+    return found
 
 
 def _copy(folder: Path) -> Path:
@@ -52,16 +84,6 @@ def _copy(folder: Path) -> Path:
     for name in ("pyproject.toml", "MANIFEST.in", "README.md", "LICENSE", "CITATION.cff"):
         shutil.copy(ROOT / name, folder)
     return folder
-
-
-def _wheel(source: Path, folder: Path) -> Path:
-    """The wheel of a folder or of a source distribution."""
-    _run(
-        *(sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation"),
-        *("--wheel-dir", folder, source),
-    )
-    (found,) = folder.glob("*.whl")
-    return found
 
 
 @pytest.fixture(scope="module")
@@ -96,10 +118,18 @@ def test_a_wheel_puts_one_name_into_an_environment(wheel):
 def _imported() -> set[str]:
     """Names of the libraries that any module of the package imports, at its top or later."""
     trees = [ast.parse(path.read_text()) for path in _modules()]
-    nodes = [node for tree in trees for node in ast.walk(tree)]
+    nodes = [node for tree in trees for node in _statements(tree)]
     names = {name.name for node in nodes if isinstance(node, ast.Import) for name in node.names}
     names |= {node.module for node in nodes if isinstance(node, ast.ImportFrom) and not node.level}
     return {name.partition(".")[0] for name in names} - set(sys.stdlib_module_names) - {"tipoff"}
+
+
+def _statements(node: ast.AST) -> Iterator[ast.AST]:
+    """Every statement of a module, those in functions and branches too: imports are statements."""
+    for field in ("body", "orelse", "finalbody", "handlers", "cases"):
+        for inner in getattr(node, field, ()):
+            yield inner
+            yield from _statements(inner)
 
 
 def _modules() -> list[Path]:
@@ -130,41 +160,47 @@ def test_the_citation_is_of_this_version():
     assert all(author["name"] in cited for author in metadata["authors"])
 
 
-def test_a_source_distribution_gives_the_same_wheel(wheel, tmp_path):
-    copy = _copy(tmp_path / "copy")
-    build = "import sys; from setuptools import build_meta; build_meta.build_sdist(sys.argv[1])"
-    _run(sys.executable, "-c", build, tmp_path, cwd=copy)
-    (source,) = tmp_path.glob("*.tar.gz")
+def test_a_source_distribution_gives_the_same_wheel(built, wheel, tmp_path):
+    (source,) = built.glob("*.tar.gz")
     with tarfile.open(source) as archive:
         held = {name.split("/", 1)[1] for name in archive.getnames() if "/" in name}
     assert {"CITATION.cff", "docs/index.md", "docs/ejection.png"} <= held
-    (tmp_path / "again").mkdir()
-    with (
-        zipfile.ZipFile(_wheel(source, tmp_path / "again")) as again,
-        zipfile.ZipFile(wheel) as own,
-    ):
-        assert sorted(again.namelist()) == sorted(own.namelist())
+    _run(
+        *(sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation"),
+        *("--wheel-dir", tmp_path, source),
+    )
+    (again,) = tmp_path.glob("*.whl")
+    with zipfile.ZipFile(again) as one, zipfile.ZipFile(wheel) as other:
+        assert sorted(one.namelist()) == sorted(other.namelist())
 
 
-def test_the_python_of_pages_runs_on_the_wheel(python, tmp_path):
-    """On the small scene, which has the same conditions, and with fewer cases. One process runs
-    one page after the other."""
+@pytest.fixture(scope="module")
+def said(python, tmp_path_factory):
+    """What one process prints on the wheel: the Python of pages, the command that lists scenes, and
+    the place of the package. The pages are on the small scene, which has the same conditions, and with
+    fewer cases."""
     programs = []
     for page, scene in PAGES.items():
         programs.append("\n".join(pages.of_language(page, "python")) + "\n")
         assert programs[-1].startswith("import tipoff\n")
         assert programs[-1].count(f'"{scene}"') == 1
-    said = _run(
-        *(python, "-c", "".join(map(pages.smaller, programs)) + LOADED),
-        cwd=tmp_path,
+    text = _run(
+        *(python, "-c", "".join(map(pages.smaller, programs)) + SCENES + LOADED),
+        cwd=tmp_path_factory.mktemp("elsewhere"),
         env={"PATH": "", "HOME": str(Path.home()), "MPLBACKEND": "Agg"},
     )
-    assert Path(said.split("\n")[-2]).is_relative_to(python.parents[1])
+    return text.split(MARK)
 
 
-def test_the_command_runs_on_the_wheel(python, tmp_path):
-    said = _run(python, "-m", "tipoff", "scenes", cwd=tmp_path)
-    assert "reference" in said and "conditions" in said
+def test_the_python_of_pages_runs_on_the_wheel(python, said):
+    of_pages, _, place = said
+    assert "time_limit" in of_pages or "exited" in of_pages
+    assert Path(place.strip()).is_relative_to(python.parents[1])
+
+
+def test_the_command_runs_on_the_wheel(said):
+    _, listed, _ = said
+    assert "reference" in listed and "conditions" in listed
 
 
 def test_a_scene_is_run_on_the_wheel(python, tmp_path):

@@ -58,7 +58,7 @@ def smaller(python: str) -> str:
     """The same program on the small scene, with coarse elements and few cases."""
     for large, small in (
         ('"reference"', '"tiny"'),
-        ("count=1000", "count=40"),
+        ("count=1000", "count=8"),
         ("2e-3", "8e-3"),
     ):
         python = python.replace(large, small)
