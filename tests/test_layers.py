@@ -90,7 +90,7 @@ def imported(tree: ast.AST) -> set[str]:
     """Packages that the source imports, wherever the statement stands: ``numpy``, and those of the
     project as ``tipoff.scenes``."""
     names = set()
-    for node in ast.walk(tree):
+    for node in _nodes(tree):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.level == 0:
@@ -106,11 +106,18 @@ def imported(tree: ast.AST) -> set[str]:
     }
 
 
+@functools.cache
+def _nodes(tree: ast.AST) -> list[ast.AST]:
+    """The nodes that a rule looks at: a source has many times as many others."""
+    kinds = (ast.Import, ast.ImportFrom, ast.Call, ast.keyword, ast.Attribute, ast.FunctionDef)
+    return [node for node in ast.walk(tree) if isinstance(node, kinds)]
+
+
 def breaches(tree: ast.AST) -> list[str]:
     """What a source may not hold: fast maths, code from data, compilation outside `kernels.jit`,
     output in a kernel."""
     found = [f"imports {name}" for name in sorted(imported(tree) & SERIALISERS)]
-    for node in ast.walk(tree):
+    for node in _nodes(tree):
         if (
             isinstance(node, ast.keyword)
             and node.arg in ("fastmath", "allow_pickle")

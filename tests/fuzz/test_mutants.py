@@ -1,26 +1,30 @@
-"""Some hundred mutants of each kind, and controls: the fuzzer reaches what lies behind the first check,
+"""Some tens of mutants of each kind, and controls: the fuzzer reaches what lies behind the first check,
 and sees a traceback."""
 
 import pytest
 
 from tests.fuzz import cases
 
-SHORT = {"curve": 40, "mesh": 40, "solid": 1}  # of the slower kinds
-COUNT = 80
+SHORT = {"solid": 1}
+COUNT, ALL = 40, 80
 CODES = {0, 1, 2}
 
 
-@pytest.mark.parametrize(
-    "kind",
-    [
-        pytest.param(kind, marks=[pytest.mark.gmsh] if kind == "solid" else [])
-        for kind in cases.KINDS
-        if kind != "step"  # which needs compiled kernels
-    ],
-)
-def test_mutants_end_with_an_exit_code(kind, tmp_path, capfd):
+def _mutants():
+    """Each kind with a count, and a larger count for the slow tests."""
+    for kind in cases.KINDS:
+        if kind == "step":  # which needs compiled kernels
+            continue
+        marks = [pytest.mark.gmsh] if kind == "solid" else []
+        yield pytest.param(kind, SHORT.get(kind, COUNT), marks=marks, id=kind)
+        if kind not in (*SHORT, "curve", "mesh"):
+            yield pytest.param(kind, ALL, marks=[*marks, pytest.mark.slow], id=f"more of {kind}")
+
+
+@pytest.mark.parametrize("kind, count", list(_mutants()))
+def test_mutants_end_with_an_exit_code(kind, count, tmp_path, capfd):
     found = []
-    for seed in range(SHORT.get(kind, COUNT)):
+    for seed in range(count):
         folder = tmp_path / str(seed)
         folder.mkdir()
         found.append(cases.outcome(kind, seed, folder))
