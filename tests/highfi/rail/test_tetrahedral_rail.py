@@ -119,9 +119,9 @@ def test_the_compliance_of_the_wall_is_that_of_hexahedra():
 
 @pytest.mark.slow
 def test_settled_rates_are_those_of_hexahedra(tmp_path):
-    """9 deg/s at the most, and within 0.06 of each other on the same coarse grid. Of hexahedra of 2
-    mm tetrahedra of the 8 mm grid are 0.13 deg/s away, of the 4 mm grid 0.034; hexahedra of these
-    grids 0.075 and 0.040."""
+    """The largest rate is 9 deg/s within 1 %, and both agree within 0.06 deg/s on the same coarse
+    grid. Of hexahedra of 2 mm tetrahedra of the 8 mm grid are 0.13 deg/s away, of the 4 mm grid
+    0.034; hexahedra of these grids 0.075 and 0.040."""
     scene = tiny()
     expected, found = (
         highfi.run(scene, COARSE),
@@ -129,6 +129,6 @@ def test_settled_rates_are_those_of_hexahedra(tmp_path):
     )
     assert found.status == expected.status == "exited"
     assert_promises(found)
-    assert np.degrees(expected.outcome.rate).max() > 9.0
+    assert np.degrees(expected.outcome.rate).max() == pytest.approx(9.0, rel=0.01)
     assert np.abs(np.degrees(np.subtract(found.outcome.rate, expected.outcome.rate))).max() < 0.06
     assert found.outcome.exit_time == pytest.approx(expected.outcome.exit_time, rel=1e-5)
