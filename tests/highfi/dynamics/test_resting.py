@@ -271,6 +271,7 @@ def test_step_everything_is_the_loop_without_rest(numerics):
     """The switch gives the bits of a loop that knows no rest."""
     asked = replace(numerics, step_everything=True)
     found = highfi.run(tiny(platform=None, **EARLY), asked)
+    assert found.cost["stepped_share"] == 1.0
     expected = fixed(numerics, False).trajectory({}, asked)
     np.testing.assert_array_equal(found.rate, expected.rate)
     np.testing.assert_array_equal(found.energy, expected.energy)
