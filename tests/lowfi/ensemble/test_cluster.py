@@ -35,12 +35,17 @@ def ensemble(cases: int = CASES) -> Ensemble:
     )
 
 
-def worker_in_this_process():
-    """A cluster of one worker that starts in no time, and is lost like others."""
+IN_THIS_PROCESS = pytest.mark.parametrize(
+    "processes", [False, pytest.param(True, marks=pytest.mark.slow)]
+)
+
+
+def one_worker(processes: bool):
+    """A cluster of one worker, which starts in no time in this process, and is lost like others."""
     return distributed.LocalCluster(
         n_workers=1,
         threads_per_worker=1,
-        processes=False,
+        processes=processes,
         protocol="tcp://",
         dashboard_address=":0",
     )
@@ -84,10 +89,11 @@ def test_a_worker_that_is_killed_changes_no_bit(tmp_path, two_workers):
     assert there.pending() == [] and there.digest() == here.digest()
 
 
-def test_a_lost_scheduler_ends_with_a_message_and_a_store_that_resumes(tmp_path):
+@IN_THIS_PROCESS
+def test_a_lost_scheduler_ends_with_a_message_and_a_store_that_resumes(tmp_path, processes):
     asked = ensemble()
     store = asked.store(tmp_path / "store")
-    workers = worker_in_this_process()
+    workers = one_worker(processes)
 
     def lose(stored: int) -> None:
         if stored == 3 * CHUNK:
@@ -106,11 +112,12 @@ def test_a_lost_scheduler_ends_with_a_message_and_a_store_that_resumes(tmp_path)
     assert store.digest() == one.digest()
 
 
-def test_a_last_worker_that_dies_ends_with_a_message(tmp_path, monkeypatch):
+@IN_THIS_PROCESS
+def test_a_last_worker_that_dies_ends_with_a_message(tmp_path, monkeypatch, processes):
     """Dask would wait for another one for ever."""
     asked = ensemble()
     store = asked.store(tmp_path / "store")
-    with worker_in_this_process() as workers:
+    with one_worker(processes) as workers:
 
         def dismiss(stored: int) -> None:
             if stored == 3 * CHUNK:

@@ -131,14 +131,17 @@ def test_command_line_hands_its_choice_on(tmp_path, asked):
     assert [call["checkpoint_every"] for call in asked] == [120.0, 120.0]
 
 
-def test_command_killed_and_given_again_ends_with_the_same_bits(tmp_path):
+@pytest.mark.parametrize(
+    "density", ["45 g/cm**3", pytest.param("2.81 g/cm**3", marks=pytest.mark.slow)]
+)
+def test_command_killed_and_given_again_ends_with_the_same_bits(tmp_path, density):
     """The first life is killed once there is a checkpoint; the second one says that it continues from
     there. Heavy rails let steps be long."""
-    heavy = (*RUN, "--set", "rail.material.density=45 g/cm**3")
-    assert CliRunner().invoke(app, [*heavy, "--out", str(tmp_path / "whole")]).exit_code == 0
+    asked = (*RUN, "--set", f"rail.material.density={density}")
+    assert CliRunner().invoke(app, [*asked, "--out", str(tmp_path / "whole")]).exit_code == 0
     killed = ("--out", str(tmp_path / "killed"))
     child = subprocess.Popen(
-        [sys.executable, "-m", "tipoff.studies.cli", *heavy, *killed, "--checkpoint-every", "0s"],
+        [sys.executable, "-m", "tipoff.studies.cli", *asked, *killed, "--checkpoint-every", "0s"],
         cwd=ROOT,
         stderr=subprocess.DEVNULL,
     )
@@ -151,7 +154,7 @@ def test_command_killed_and_given_again_ends_with_the_same_bits(tmp_path):
     os.kill(child.pid, signal.SIGKILL)
     assert child.wait() == -signal.SIGKILL
     assert not list(tmp_path.glob("killed/tiny/highfi/*.nc"))
-    again = CliRunner().invoke(app, [*heavy, *killed])
+    again = CliRunner().invoke(app, [*asked, *killed])
     assert again.exit_code == 0 and (
         "phi15 continues from" in again.stderr and "starts from the beginning" not in again.stderr
     )
