@@ -23,7 +23,7 @@ from tipoff.scenes import plausibility, reading, uncertainty
 from tipoff.scenes.faults import InputError
 from tipoff.scenes.rail import SectionTable
 from tipoff.studies.calibration.files import constants
-from tipoff.studies.commands.running import guarded, study_of
+from tipoff.studies.commands.running import Output, guarded, study_of
 from tipoff.studies.droptest import analysis, sheet
 
 SCENES = ("reference", "tiny", "channel", "paper_like", "sensitive", "thin", "titanium")
@@ -59,7 +59,7 @@ def outcome(kind: str, seed: int, folder: Path) -> int:
     else a command would end with is raised."""
     rng = random.Random(f"{kind} {seed}")
     try:
-        guarded(lambda: KINDS[kind](rng, folder) or {}, as_json=False)
+        guarded(lambda: Output(KINDS[kind](rng, folder) or {}), as_json=False)
     except typer.Exit as ended:
         return ended.exit_code
     return 0

@@ -44,29 +44,17 @@ def draw(found):
     return [f"It weighs {found['mass_kg']:g} kg."]
 """
 COMMAND = '''
-from pathlib import Path
-
-from tipoff.studies.commands.running import guarded, study_of
-from tipoff.studies.commands.options import Json, Out, SceneName, Set
+from tipoff.studies.commands.request import scene_command
+from tipoff.studies.commands.running import Output
 
 
-def add(app):
-    @app.command()
-    def heavier(
-        scene: SceneName = "reference",
-        out: Out = Path("out"),
-        set_: Set = None,
-        times: int = 2,
-        json_: Json = False,
-    ):
-        """A payload that is heavier."""
+@scene_command()
+def heavier(request, times: int = 2):
+    """A payload that is heavier."""
+    from heavier import stage
 
-        def work():
-            from heavier import stage
-
-            return stage.run(study_of(scene, out, set_), stage.Options(times))
-
-        guarded(work, json_, lambda found: [f"{found['mass_kg']:g} kg"])
+    found = stage.run(request.study(), stage.Options(times))
+    return Output(found, lambda found: [f"{found['mass_kg']:g} kg"])
 '''
 ENTRY = """
 from heavier import command
@@ -79,7 +67,7 @@ def _load():
     return Parts(stage.run, stage.STAGE.stored, page.draw)
 
 
-QUESTION = Question("heavier", "A heavier payload", "Heavier", command.add, _load)
+QUESTION = Question("heavier", "A heavier payload", "Heavier", command.heavier, _load)
 """
 
 
@@ -104,7 +92,8 @@ def study(tmp_path):
 def call(entry, study, *arguments):
     app = typer.Typer()
     app.callback()(lambda: None)
-    entry.add_command(app)
+    for command in entry.commands:
+        app.command()(command)
     place = ["--scene", "tiny", "--out", str(study.folder.parent)]
     return CliRunner().invoke(app, ["heavier", *place, *arguments], catch_exceptions=False)
 

@@ -5,18 +5,19 @@ memory; 2 bad input, every fault listed, nothing written. Each command imports t
 that it needs, so that ``--help`` is fast.
 """
 
+import inspect
+from collections.abc import Callable
 from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.groups import group
-from tipoff.studies.commands.helptext import flow
+from tipoff.studies.commands.helptext import flowed
 from tipoff.studies.commands.options import Json
-from tipoff.studies.commands.running import guarded
-from tipoff.studies.commands.strict import add_strict
-from tipoff.studies.new_scene import command as new_scene
+from tipoff.studies.commands.running import Output, guarded
+from tipoff.studies.new_scene.command import new, schema
+from tipoff.studies.question import Entry
 from tipoff.studies.registry import BENCHMARKS, COMPARISON, ON_DEMAND, QUESTIONS
-from tipoff.studies.report import command as report
+from tipoff.studies.report.command import report
 
 SUMMARY = "Predict the velocity and the angular rates of a payload when it leaves its rail."
 EXAMPLES = """Examples:
@@ -57,11 +58,7 @@ def main(
     """Predict the velocity and the angular rates of a payload when it leaves its rail."""
 
 
-new_scene.add(app)
-
-
-@app.command("scenes")
-def list_scenes(
+def scenes(
     show: Annotated[
         str | None,
         typer.Option(
@@ -75,35 +72,33 @@ def list_scenes(
     tipoff scenes --show reference > my_launcher.toml
     """
 
-    def work() -> dict:
-        from tipoff import scenes
+    def work() -> Output:
+        from tipoff.scenes import catalog, load
         from tipoff.scenes.faults import Fault, SceneError, close
         from tipoff.scenes.scene import CATALOG
 
         if show is not None:
-            if show not in scenes.catalog():
-                known = scenes.catalog()
+            if show not in catalog():
+                known = catalog()
                 words = f"one of {', '.join(known)}{close(show, known)}"
                 raise SceneError([Fault("--show", "scene", show, words)])
             text = (CATALOG / f"{show}.toml").read_text(encoding="utf-8")
             if not json_:
                 print(text, end="")
-            return {"scene": show, "file": text}
-        found = {name: scenes.load(name) for name in scenes.catalog()}
+            return Output({"scene": show, "file": text})
+        found = {name: load(name) for name in catalog()}
         if not json_:
             for name, item in found.items():
                 print(f"{name:12} {len(item.conditions):3} conditions   {item.description}")
-        return {
-            "scenes": {
-                name: {"description": item.description, "conditions": list(item.conditions)}
-                for name, item in found.items()
-            }
+        described = {
+            name: {"description": item.description, "conditions": list(item.conditions)}
+            for name, item in found.items()
         }
+        return Output({"scenes": described})
 
     guarded(work, json_)
 
 
-@app.command()
 def doctor() -> None:
     """Check whether this machine has everything that tipoff needs, and print how to repair it."""
     from tipoff.studies import doctor as check
@@ -111,22 +106,21 @@ def doctor() -> None:
     raise typer.Exit(check.main())
 
 
-group(app, "Scenes and this machine")
-for entry in ON_DEMAND:
-    entry.add_command(app)
-report.add(app)
-group(app, "Answers")
-for entry in COMPARISON:
-    entry.add_command(app)
-group(app, "Surrogate against finite elements")
-for entry in QUESTIONS:
-    entry.add_command(app)
-group(app, "Studies")
-for entry in BENCHMARKS:
-    entry.add_command(app)
-group(app, "Benchmarks")
-add_strict(app)
-flow(app)
+def _commands(entries: tuple[Entry, ...]) -> list[Callable[..., None]]:
+    return [command for entry in entries for command in entry.commands]
+
+
+_GROUPS: dict[str, list[Callable[..., None]]] = {
+    "Scenes and this machine": [new, schema, scenes, doctor],
+    "Answers": [*_commands(ON_DEMAND), report],
+    "Surrogate against finite elements": _commands(COMPARISON),
+    "Studies": _commands(QUESTIONS),
+    "Benchmarks": _commands(BENCHMARKS),
+}
+for _title, _members in _GROUPS.items():
+    for _command in _members:
+        _help = flowed(inspect.getdoc(_command) or "")
+        app.command(help=_help, rich_help_panel=_title)(_command)
 
 if __name__ == "__main__":
     app()

@@ -4,8 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import typer
-
 if TYPE_CHECKING:
     from tipoff.studies.core.study import Study
     from tipoff.studies.render.document import Part
@@ -47,10 +45,10 @@ class Contents(NamedTuple):
 
 @dataclass(frozen=True)
 class Entry:
-    """One study in the registry. ``add_command`` adds its commands to the application. ``load``
-    imports the modules that do the work; ``--help`` does not call it."""
+    """One study in the registry: its ``commands``, named as their functions. ``load`` imports the
+    modules that do the work; ``--help`` does not call it."""
 
-    add_command: Callable[[typer.Typer], None]
+    commands: tuple[Callable[..., None], ...]
     load: Callable[[], Contents] = Contents
 
 
@@ -74,7 +72,7 @@ class Question(Entry):
         name: str,
         title: str,
         link: str,
-        add_command: Callable[[typer.Typer], None],
+        command: Callable[..., None],
         load: Callable[[], Parts],
     ):
         def contents() -> Contents:
@@ -85,4 +83,4 @@ class Question(Entry):
 
             return Contents((Result(name, run, stored),), (Section(name, link, section, title),))
 
-        super().__init__(add_command, contents)
+        super().__init__((command,), contents)

@@ -30,4 +30,4 @@ def _load() -> Contents:
     )
 
 
-ENTRY = Entry(command.add, _load)
+ENTRY = Entry((command.compare,), _load)

@@ -5,20 +5,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tipoff.studies.commands.options import (
-    Json,
-    Out,
-    in_millimetres,
-)
-from tipoff.studies.commands.running import guarded
+from tipoff.studies.commands.options import Json, Out, in_millimetres
+from tipoff.studies.commands.running import Output, guarded
 
 if TYPE_CHECKING:
     from tipoff.studies.render.document import Part
-
-
-def add(app: typer.Typer) -> None:
-    """Add the command to ``app``."""
-    app.command()(bench)
 
 
 def bench(
@@ -52,19 +43,18 @@ def bench(
     compliant contact and on springs, with plain Runge-Kutta and solve_ivp at the same error.
     """
 
-    def work() -> dict:
-        from tipoff.studies.bench import reference, surrogate
+    def work() -> Output:
+        from tipoff.studies.bench import page, reference, surrogate
+
+        def shown(found: dict) -> "list[Part]":
+            files = [f"  {out / 'bench' / name}" for name in ("highfi.json", "lowfi.json")]
+            return [*page.terminal(found), "\n".join(files)]
 
         sizes = tuple(1e-3 * size for size in element_size) if element_size else reference.SIZES
-        return {
+        found = {
             **reference.run(out, sizes, repeats, steps),
             "surrogate": surrogate.run(out, cases=cases, repeats=repeats),
         }
+        return Output(found, shown)
 
-    def shown(found: dict) -> list["Part"]:
-        from tipoff.studies.bench import page
-
-        files = [f"  {Path(out) / 'bench' / name}" for name in ("highfi.json", "lowfi.json")]
-        return [*page.terminal(found), "\n".join(files)]
-
-    guarded(work, json_, shown)
+    guarded(work, json_)

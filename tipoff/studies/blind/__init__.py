@@ -10,4 +10,4 @@ def _load() -> Parts:
     return Parts(stage.run, stage.STAGE.stored, page.draw)
 
 
-QUESTION = Question("blind", "Agreement on blind conditions", "Blind", command.add, _load)
+QUESTION = Question("blind", "Agreement on blind conditions", "Blind", command.blind, _load)

@@ -1,34 +1,17 @@
 """``tipoff blind``."""
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import (
-    ElementSize,
-    Json,
-    Neighbours,
-    Out,
-    SceneName,
-    Set,
-    Workers,
-)
-from tipoff.studies.commands.running import guarded, study_of
-
-if TYPE_CHECKING:
-    from tipoff.studies.render.document import Part
+from tipoff.studies.commands.options import Neighbours
+from tipoff.studies.commands.request import Request, scene_command
+from tipoff.studies.commands.running import Output
 
 
-def add(app: typer.Typer) -> None:
-    """Put the command under ``app``."""
-    app.command()(blind)
-
-
+@scene_command()
 def blind(
-    scene: SceneName = "reference",
-    out: Out = Path("out"),
-    set_: Set = None,
+    request: Request,
     cases: Annotated[
         int,
         typer.Option(
@@ -57,24 +40,10 @@ def blind(
         ),
     ] = None,
     neighbours: Neighbours = None,
-    element_size: ElementSize = None,
-    workers: Workers = None,
-    json_: Json = False,
-) -> None:
+) -> Output:
     """Agreement of the surrogates on conditions drawn at random after all constants are fixed;
     writes blind.json."""
+    from tipoff.studies.blind import page, stage
 
-    def work() -> dict:
-        from tipoff.studies.blind import stage
-
-        return stage.run(
-            study_of(scene, out, set_, element_size=element_size, workers=workers),
-            stage.Options(cases, vary, seed, neighbours),
-        )
-
-    def shown(found: dict) -> list["Part"]:
-        from tipoff.studies.blind import page
-
-        return page.verdicts(found)
-
-    guarded(work, json_, shown, out)
+    options = stage.Options(cases, vary, seed, neighbours)
+    return Output(stage.run(request.study(), options), page.verdicts, request.out)

@@ -19,4 +19,4 @@ def _load() -> Contents:
     )
 
 
-ENTRY = Entry(command.add, _load)
+ENTRY = Entry((command.calibrate,), _load)

@@ -1,35 +1,20 @@
 """``tipoff calibrate``."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tipoff.studies.commands.options import (
-    ElementSize,
-    Json,
-    Out,
-    SceneName,
-    Set,
-    SurrogateName,
-    Workers,
-    condition_names,
-)
-from tipoff.studies.commands.running import guarded, quantity, study_of
+from tipoff.studies.commands.options import SurrogateName, condition_names
+from tipoff.studies.commands.request import Request, scene_command
+from tipoff.studies.commands.running import Output, quantity
 
 if TYPE_CHECKING:
     from tipoff.studies.render.document import Part
 
 
-def add(app: typer.Typer) -> None:
-    """Add the command to ``app``."""
-    app.command()(calibrate)
-
-
+@scene_command()
 def calibrate(
-    scene: SceneName = "reference",
-    out: Out = Path("out"),
-    set_: Set = None,
+    request: Request,
     reference: Annotated[
         list[str] | None,
         typer.Option(
@@ -72,10 +57,7 @@ def calibrate(
             "several with commas; all: whatever the curves determine.",
         ),
     ] = None,
-    element_size: ElementSize = None,
-    workers: Workers = None,
-    json_: Json = False,
-) -> None:
+) -> Output:
     """Find the contact of the surrogate from the finite elements; writes compliance.json,
     calibration.json and calibration.toml.
 
@@ -102,25 +84,21 @@ def calibrate(
     rail), rate_x, rate_y and rate_z (inertial, in payload body axes). Units are in the header,
     rate_x \\[deg/s], or in the second line. Other columns are ignored.
     """
+    from tipoff.mechanics.models import COMPLIANT, SPRINGS
+    from tipoff.studies.calibration import page, stage
 
-    def work() -> dict:
-        from tipoff.mechanics.models import COMPLIANT, SPRINGS
-        from tipoff.studies.calibration import stage
+    def shown(found: dict) -> "list[Part]":
+        return page.terminal(found, request.out / found["scene"])
 
-        start = quantity("--settled-from", settled_from, "s", "44 ms")
-        files = stage.named(reference or [], condition, start)
-        study = study_of(scene, out, set_, element_size=element_size, workers=workers)
-        chosen = None if fit is None else [name.strip() for one in fit for name in one.split(",")]
-        default = SPRINGS if chosen is None else COMPLIANT
-        if files:
-            return stage.from_files(study, files, start, model.value if model else default, chosen)
-        if chosen is not None:
-            return stage.on_reference(study, model.value if model else default, chosen)
-        return stage.of_models(study, model and model.value)
-
-    def shown(found: dict) -> list["Part"]:
-        from tipoff.studies.calibration import page
-
-        return page.terminal(found, Path(out) / found["scene"])
-
-    guarded(work, json_, shown)
+    start = quantity("--settled-from", settled_from, "s", "44 ms")
+    files = stage.named(reference or [], condition, start)
+    study = request.study()
+    chosen = None if fit is None else [name.strip() for one in fit for name in one.split(",")]
+    default = SPRINGS if chosen is None else COMPLIANT
+    if files:
+        found = stage.from_files(study, files, start, model.value if model else default, chosen)
+    elif chosen is not None:
+        found = stage.on_reference(study, model.value if model else default, chosen)
+    else:
+        found = stage.of_models(study, model and model.value)
+    return Output(found, shown)

@@ -2,14 +2,6 @@
 
 import inspect
 
-import typer
-
-
-def flow(app: typer.Typer) -> None:
-    """Reflow the help, or the docstring, of every command of ``app``."""
-    for command in app.registered_commands:
-        command.help = flowed(command.help or inspect.getdoc(command.callback) or "")
-
 
 def flowed(text: str) -> str:
     """``text`` with each paragraph on one line; indented paragraphs are unchanged."""

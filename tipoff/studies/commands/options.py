@@ -163,6 +163,10 @@ CalibrationFile = Annotated[
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON on standard output.")]
+Strict = Annotated[
+    bool,
+    typer.Option("--strict", help="Refuse implausible values of the scene, instead of a warning."),
+]
 ElementSize = Annotated[
     float | None,
     typer.Option(

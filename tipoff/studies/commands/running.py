@@ -6,17 +6,24 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, NoReturn, TypeVar
 
 import typer
-
-from tipoff.studies.commands.strict import is_strict
 
 if TYPE_CHECKING:
     from tipoff.studies.render.document import Part
 
 
 _T = TypeVar("_T")
+
+
+class Output(NamedTuple):
+    """What a command prints: its ``result`` as JSON, or the parts that ``shown`` makes of it for the
+    terminal, and below them the files of the stage in the folder ``out``."""
+
+    result: dict
+    shown: "Callable[[dict], Sequence[Part]] | None" = None
+    out: Path | None = None
 
 
 def study_of(
@@ -27,14 +34,15 @@ def study_of(
     element_size=None,
     workers=None,
     checkpoint_every=None,
-    resume=True,
+    strict=False,
     **settings,
 ):
     """The study of a scene with the options of a command.
 
     ``overrides`` are texts "KEY=VALUE", ``conditions`` names, also several with commas between
-    them; ``element_size`` is in mm; ``checkpoint_every`` is a time with its unit; further ``settings``
-    are fields of ``Settings``. Raises SceneError, every fault listed.
+    them; ``element_size`` is in mm; ``checkpoint_every`` is a time with its unit; ``strict`` refuses
+    implausible values; further ``settings`` are fields of ``Settings``. Raises SceneError, every
+    fault listed.
     """
     from tipoff import scenes
     from tipoff.scenes import plausibility, reading
@@ -51,7 +59,7 @@ def study_of(
     loaded = _of_option(named, lambda: scenes.load(scene))
     changes = {key.strip(): value.strip() for key, _, value in pairs}
     found = _of_option({"source": "--set"}, lambda: loaded.replace(changes))
-    chosen = replace(defaults(found.name), resume=resume, **settings)
+    chosen = replace(defaults(found.name), **settings)
     if element_size is not None:
         chosen = replace(chosen, element_size=1e-3 * element_size)
     if workers is not None:
@@ -65,7 +73,7 @@ def study_of(
     asked = {"source": "--condition", "key": "name"} if names else {}
     _of_option(asked, lambda: study.conditions)
     doubtful = plausibility.of_all_conditions(found)
-    if doubtful and is_strict():
+    if doubtful and strict:
         raise SceneError(
             [
                 Fault(found.name, key, given, "a plausible value with --strict")
@@ -128,17 +136,11 @@ def quantity(option: str, text: str | None, unit: str, example: str) -> float | 
     return value
 
 
-def guarded(
-    work: Callable[[], dict],
-    as_json: bool = False,
-    shown: "Callable[[dict], Sequence[Part]] | None" = None,
-    out: Path | None = None,
-) -> dict:
-    """Run ``work``, print its result as JSON or as text, and return it.
+def guarded(work: Callable[[], Output], as_json: bool = False) -> None:
+    """Run ``work`` and print its result as JSON or as text.
 
-    ``shown`` makes the text from the result; below it stand the files of the stage in the folder
-    ``out``. Errors become a message on standard error and an exit code: 1 for a failed run and for
-    what this machine refuses, 2 for bad input, 130 for Ctrl-C.
+    Errors become a message on standard error and an exit code: 1 for a failed run and for what this
+    machine refuses, 2 for bad input, 130 for Ctrl-C.
     """
     from tipoff.files import remove_temporaries
     from tipoff.meshes.generator import GmshUnavailable
@@ -146,7 +148,7 @@ def guarded(
     from tipoff.studies.core.study import StudyError
 
     try:
-        result = work()
+        output = work()
     except SceneError as fault:
         stop(str(fault), 2)
     except (StudyError, GmshUnavailable) as fault:
@@ -171,17 +173,15 @@ def guarded(
     if as_json:
         from tipoff.studies.core import words
 
-        print(json.dumps({"quantities": words.QUANTITIES, **result}, indent=1))
+        print(json.dumps({"quantities": words.QUANTITIES, **output.result}, indent=1))
     else:
-        _print(result, shown, out)
-    if failed := result.get("failed"):
+        _print(output)
+    if failed := output.result.get("failed"):
         stop("failed:\n  " + "\n  ".join(failed), 1)
-    return result
 
 
-def _print(
-    result: dict, shown: "Callable[[dict], Sequence[Part]] | None", out: Path | None
-) -> None:
+def _print(output: Output) -> None:
+    result, shown, out = output
     if shown is not None:
         from tipoff.studies.render import document
 

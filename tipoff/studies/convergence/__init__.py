@@ -13,4 +13,4 @@ def _load() -> Contents:
     )
 
 
-ENTRY = Entry(command.add, _load)
+ENTRY = Entry((command.convergence,), _load)

@@ -10,4 +10,4 @@ def _load() -> Parts:
     return Parts(stage.run, stage.STAGE.stored, page.draw)
 
 
-QUESTION = Question("droptest", "Drop tests", "Drop tests", command.add, _load)
+QUESTION = Question("droptest", "Drop tests", "Drop tests", command.droptest, _load)

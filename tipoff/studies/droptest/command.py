@@ -1,32 +1,18 @@
 """``tipoff droptest``: logs of drop tests compared with simulated cases."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import (
-    ElementSize,
-    Json,
-    Out,
-    SceneName,
-    Set,
-    Surrogate,
-    Workers,
-    condition_names,
-)
-from tipoff.studies.commands.running import guarded, study_of
-
-if TYPE_CHECKING:
-    from tipoff.studies.render.document import Part
+from tipoff.studies.commands.options import Surrogate, condition_names
+from tipoff.studies.commands.request import Request, scene_command
+from tipoff.studies.commands.running import Output
 
 
-def add(app: typer.Typer) -> None:
-    """Put the command under ``tipoff``."""
-    app.command("droptest")(droptest)
-
-
+@scene_command()
 def droptest(
+    request: Request,
     logs: Annotated[
         list[Path] | None,
         typer.Argument(
@@ -34,9 +20,6 @@ def droptest(
             help="Sheets of logs; default: the three simulated ones that come with the package.",
         ),
     ] = None,
-    scene: SceneName = "reference",
-    out: Out = Path("out"),
-    set_: Set = None,
     condition: Annotated[
         str | None,
         typer.Option(
@@ -59,10 +42,7 @@ def droptest(
         ),
     ] = None,
     model: Surrogate = None,
-    element_size: ElementSize = None,
-    workers: Workers = None,
-    json_: Json = False,
-) -> None:
+) -> Output:
     """Change of rate in drop tests with its uncertainty, and its rank among simulated cases.
 
     Writes droptest.json, all signals to droptest.nc, and figures.
@@ -79,20 +59,9 @@ def droptest(
 
     The logs of the package are simulated by a sensor model and are marked so in all results.
     """
+    from tipoff.studies.droptest import page, stage
 
-    def work() -> dict:
-        from tipoff.studies.droptest import stage
-
-        return stage.run(
-            study_of(scene, out, set_, element_size=element_size, workers=workers),
-            stage.Options(
-                tuple(logs) if logs else None, vary, cases, seed, condition, model and model.value
-            ),
-        )
-
-    def shown(found: dict) -> list["Part"]:
-        from tipoff.studies.droptest import page
-
-        return page.terminal(found)
-
-    guarded(work, json_, shown, out)
+    options = stage.Options(
+        tuple(logs) if logs else None, vary, cases, seed, condition, model and model.value
+    )
+    return Output(stage.run(request.study(), options), page.terminal, request.out)

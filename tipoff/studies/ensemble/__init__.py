@@ -3,4 +3,4 @@
 from tipoff.studies.ensemble import command
 from tipoff.studies.question import Entry
 
-ENTRY = Entry(command.add)
+ENTRY = Entry((command.ensemble,))

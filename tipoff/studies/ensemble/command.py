@@ -1,37 +1,18 @@
 """``tipoff ensemble``."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import (
-    CalibrationFile,
-    ElementSize,
-    Json,
-    Modes,
-    Out,
-    Sampling,
-    SceneName,
-    Set,
-    Surrogate,
-    Workers,
-)
-from tipoff.studies.commands.running import guarded, study_of
-
-if TYPE_CHECKING:
-    from tipoff.studies.render.document import Part
+from tipoff.studies.commands.options import CalibrationFile, Modes, Sampling, Surrogate
+from tipoff.studies.commands.request import Request, scene_command
+from tipoff.studies.commands.running import Output
 
 
-def add(app: typer.Typer) -> None:
-    """Put the command under ``app``."""
-    app.command()(ensemble)
-
-
+@scene_command()
 def ensemble(
-    scene: SceneName = "reference",
-    out: Out = Path("out"),
-    set_: Set = None,
+    request: Request,
     vary: Annotated[
         str,
         typer.Option(
@@ -103,10 +84,7 @@ def ensemble(
             help="Dask scheduler whose workers run the cases, such as tcp://node1:8786.",
         ),
     ] = None,
-    element_size: ElementSize = None,
-    workers: Workers = None,
-    json_: Json = False,
-) -> None:
+) -> Output:
     """Run the surrogate on thousands to millions of varied cases; writes ensemble.json and a store
     in zarr.
 
@@ -134,32 +112,25 @@ def ensemble(
     rate_change_by_clearance and rate_change_by_tolerance (rad/s), also to a store that is there;
     NaN where a case or its disturbed run does not settle, 0 by clearance without contact.
     """
+    from tipoff.studies.core import models
+    from tipoff.studies.ensemble import page, stage
 
-    def work() -> dict:
-        from tipoff.studies.core import models
-        from tipoff.studies.ensemble import stage
-
-        chosen = models.Options(model and model.value, calibration, modes)
-        models.require(chosen)
-        options = stage.Options(
-            vary,
-            table,
-            cases,
-            seed,
-            sampling and sampling.value,
-            store,
-            tolerance,
-            scheduler,
-            workers,
-            chosen,
-            sensitivity,
-        )
-        study = study_of(scene, out, set_, element_size=element_size)
-        return stage.run(study, options) if case is None else stage.case(study, options, case)
-
-    def shown(found: dict) -> list["Part"]:
-        from tipoff.studies.ensemble import page
-
-        return page.summary(found) if case is None else page.case(found)
-
-    guarded(work, json_, shown, out if case is None else None)
+    chosen = models.Options(model and model.value, calibration, modes)
+    models.require(chosen)
+    options = stage.Options(
+        vary,
+        table,
+        cases,
+        seed,
+        sampling and sampling.value,
+        store,
+        tolerance,
+        scheduler,
+        request.workers,
+        chosen,
+        sensitivity,
+    )
+    study = request.study()
+    if case is None:
+        return Output(stage.run(study, options), page.summary, request.out)
+    return Output(stage.case(study, options, case), page.case)

@@ -10,4 +10,4 @@ def _load() -> Parts:
     return Parts(stage.run, stage.STAGE.stored, page.draw)
 
 
-QUESTION = Question("flight", "After separation", "Flight", command.add, _load)
+QUESTION = Question("flight", "After separation", "Flight", command.flight, _load)

@@ -1,36 +1,18 @@
 """``tipoff flight``: the payload after its exit."""
 
 from functools import partial
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import (
-    Conditions,
-    ElementSize,
-    Json,
-    Out,
-    SceneName,
-    Set,
-    Surrogate,
-    Workers,
-)
-from tipoff.studies.commands.running import guarded, quantity, study_of
-
-if TYPE_CHECKING:
-    from tipoff.studies.render.document import Part
+from tipoff.studies.commands.options import Conditions, Surrogate
+from tipoff.studies.commands.request import Request, scene_command
+from tipoff.studies.commands.running import Output, quantity
 
 
-def add(app: typer.Typer) -> None:
-    """Put the command under ``app``."""
-    app.command()(flight)
-
-
+@scene_command()
 def flight(
-    scene: SceneName = "reference",
-    out: Out = Path("out"),
-    set_: Set = None,
+    request: Request,
     condition: Conditions = None,
     range_: Annotated[
         str | None,
@@ -58,10 +40,7 @@ def flight(
         typer.Option(metavar="N", min=0, help="Seed of all draws; default: that of the file."),
     ] = None,
     model: Surrogate = None,
-    element_size: ElementSize = None,
-    workers: Workers = None,
-    json_: Json = False,
-) -> None:
+) -> Output:
     """Flight of the payload in orbit: miss distance of a target, pointing error, coning, and
     clearance to the platform.
 
@@ -78,28 +57,20 @@ def flight(
       tipoff flight --range "1 km" --cases 10000
       tipoff flight --scene my_launcher.toml --altitude "600 km" --range "200 m" --set flight.elevation="90 deg"
     """
+    from tipoff.studies.core.checked import together
+    from tipoff.studies.flight import page, stage
 
-    def work() -> dict:
-        from tipoff.studies.core.checked import together
-        from tipoff.studies.flight import stage
-
-        given = {"range": range_, "altitude": altitude, "duration": duration}
-        kinds = {
-            "range": ("m", "500 m"),
-            "altitude": ("m", "500 km"),
-            "duration": ("s", "2 hour"),
-        }
-        together(*(partial(_require, name, given[name], *kind) for name, kind in kinds.items()))
-        table = [f"flight.{key}={value}" for key, value in given.items() if value is not None]
-        study = study_of(scene, out, [*(set_ or []), *table], condition, element_size, workers)
-        return stage.run(study, stage.Options(vary, cases, seed, model and model.value))
-
-    def shown(found: dict) -> list["Part"]:
-        from tipoff.studies.flight import page
-
-        return page.terminal(found)
-
-    guarded(work, json_, shown, out)
+    given = {"range": range_, "altitude": altitude, "duration": duration}
+    kinds = {
+        "range": ("m", "500 m"),
+        "altitude": ("m", "500 km"),
+        "duration": ("s", "2 hour"),
+    }
+    together(*(partial(_require, name, given[name], *kind) for name, kind in kinds.items()))
+    table = [f"flight.{key}={value}" for key, value in given.items() if value is not None]
+    study = request.study(condition, table)
+    options = stage.Options(vary, cases, seed, model and model.value)
+    return Output(stage.run(study, options), page.terminal, request.out)
 
 
 def _require(name: str, text: str | None, unit: str, example: str) -> None:

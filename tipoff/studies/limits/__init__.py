@@ -10,4 +10,4 @@ def _load() -> Parts:
     return Parts(stage.run, stage.STAGE.stored, page.draw)
 
 
-QUESTION = Question("limits", "Tolerances that keep limits", "Tolerances", command.add, _load)
+QUESTION = Question("limits", "Tolerances that keep limits", "Tolerances", command.limits, _load)

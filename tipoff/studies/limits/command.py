@@ -1,25 +1,13 @@
 """``tipoff limits``: the tolerances that keep rates below limits."""
 
 from enum import StrEnum
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import (
-    ElementSize,
-    Json,
-    Out,
-    SceneName,
-    Set,
-    Surrogate,
-    Workers,
-    condition_names,
-)
-from tipoff.studies.commands.running import guarded, study_of
-
-if TYPE_CHECKING:
-    from tipoff.studies.render.document import Part
+from tipoff.studies.commands.options import Surrogate, condition_names
+from tipoff.studies.commands.request import Request, scene_command
+from tipoff.studies.commands.running import Output
 
 
 class Tolerances(StrEnum):
@@ -102,63 +90,45 @@ Certify = Annotated[
 Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of all draws.")]
 
 
-def add(app: typer.Typer) -> None:
-    """Put the command under ``app``."""
+@scene_command()
+def limits(
+    request: Request,
+    limit: Limit = None,
+    probability: Probability = 0.99,
+    confidence: Confidence = 0.95,
+    cases: Cases = None,
+    tolerances: Scaled = Tolerances.advised,
+    others: Fixed = Others.scene,
+    draws: Draws = None,
+    condition: Condition = None,
+    certify: Certify = None,
+    seed: Seed = 1,
+    model: Surrogate = None,
+) -> Output:
+    """The largest tolerances of thrust, mass, clearance and friction that keep the rates below
+    limits with a probability; writes limits.json.
 
-    @app.command()
-    def limits(
-        scene: SceneName = "reference",
-        out: Out = Path("out"),
-        set_: Set = None,
-        limit: Limit = None,
-        probability: Probability = 0.99,
-        confidence: Confidence = 0.95,
-        cases: Cases = None,
-        tolerances: Scaled = Tolerances.advised,
-        others: Fixed = Others.scene,
-        draws: Draws = None,
-        condition: Condition = None,
-        certify: Certify = None,
-        seed: Seed = 1,
-        model: Surrogate = None,
-        element_size: ElementSize = None,
-        workers: Workers = None,
-        json_: Json = False,
-    ) -> None:
-        """The largest tolerances of thrust, mass, clearance and friction that keep the rates below
-        limits with a probability; writes limits.json.
+    The result has each tolerance alone, all together, pairs of misalignment and mass
+    eccentricity, and the uncertainty of the constants and of the model.
 
-        The result has each tolerance alone, all together, pairs of misalignment and mass
-        eccentricity, and the uncertainty of the constants and of the model.
+      tipoff limits --limit "x=2 deg/s" --limit "5 deg/s" --probability 0.99
+      tipoff limits --limit "10 deg/s" --others zero --tolerances table3
+      tipoff limits --limit "10 deg/s" --probability 0.95 --certify 200
+    """
+    from tipoff.studies.limits import page, stage
+    from tipoff.studies.limits.inputs import Options
 
-          tipoff limits --limit "x=2 deg/s" --limit "5 deg/s" --probability 0.99
-          tipoff limits --limit "10 deg/s" --others zero --tolerances table3
-          tipoff limits --limit "10 deg/s" --probability 0.95 --certify 200
-        """
-
-        def work() -> dict:
-            from tipoff.studies.limits import stage
-            from tipoff.studies.limits.inputs import Options
-
-            options = Options(
-                tuple(limit or Options.limits),
-                probability,
-                confidence,
-                cases,
-                seed,
-                tolerances.value,
-                others.value,
-                draws,
-                model and model.value,
-                condition,
-                certify,
-            )
-            study = study_of(scene, out, set_, element_size=element_size, workers=workers)
-            return stage.run(study, options)
-
-        def shown(found: dict) -> list["Part"]:
-            from tipoff.studies.limits import page
-
-            return page.summary(found)
-
-        guarded(work, json_, shown, out)
+    options = Options(
+        tuple(limit or Options.limits),
+        probability,
+        confidence,
+        cases,
+        seed,
+        tolerances.value,
+        others.value,
+        draws,
+        model and model.value,
+        condition,
+        certify,
+    )
+    return Output(stage.run(request.study(), options), page.summary, request.out)

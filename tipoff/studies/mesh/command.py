@@ -1,45 +1,12 @@
 """``tipoff mesh``."""
 
-from pathlib import Path
-from typing import TYPE_CHECKING
-
-import typer
-
-from tipoff.studies.commands.options import (
-    ElementSize,
-    Json,
-    Out,
-    SceneName,
-    Set,
-)
-from tipoff.studies.commands.running import guarded, study_of
-
-if TYPE_CHECKING:
-    from tipoff.studies.render.document import Part
+from tipoff.studies.commands.request import Request, scene_command
+from tipoff.studies.commands.running import Output
 
 
-def add(app: typer.Typer) -> None:
-    """Add the command to ``app``."""
-    app.command()(mesh)
-
-
-def mesh(
-    scene: SceneName = "reference",
-    out: Out = Path("out"),
-    set_: Set = None,
-    element_size: ElementSize = None,
-    json_: Json = False,
-) -> None:
+@scene_command(without=["workers"])
+def mesh(request: Request) -> Output:
     """Mesh the rails for the reference; writes mesh.json (size, surfaces, quality) and mesh.vtu."""
+    from tipoff.studies.mesh import page, stage
 
-    def work() -> dict:
-        from tipoff.studies.mesh import stage
-
-        return stage.run(study_of(scene, out, set_, element_size=element_size))
-
-    def shown(found: dict) -> list["Part"]:
-        from tipoff.studies.mesh import page
-
-        return [page.surfaces(found)]
-
-    guarded(work, json_, shown, out)
+    return Output(stage.run(request.study()), lambda found: [page.surfaces(found)], request.out)

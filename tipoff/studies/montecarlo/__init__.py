@@ -31,4 +31,4 @@ def _load() -> Contents:
     )
 
 
-ENTRY = Entry(command.add, _load)
+ENTRY = Entry((command.montecarlo,), _load)

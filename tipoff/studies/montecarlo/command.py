@@ -1,21 +1,13 @@
 """``tipoff montecarlo``: the paper's random errors."""
 
 from enum import StrEnum
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tipoff.studies.commands.options import (
-    ElementSize,
-    Json,
-    Out,
-    SceneName,
-    Set,
-    Surrogate,
-    Workers,
-)
-from tipoff.studies.commands.running import guarded, study_of
+from tipoff.studies.commands.options import Surrogate
+from tipoff.studies.commands.request import Request, scene_command
+from tipoff.studies.commands.running import Output
 
 if TYPE_CHECKING:
     from tipoff.studies.render.document import Part
@@ -97,60 +89,46 @@ Finer = Annotated[
 ]
 
 
-def add(app: typer.Typer) -> None:
-    """Put the command under ``app``."""
+@scene_command()
+def montecarlo(
+    request: Request,
+    cases: Cases = 1_000_000,
+    seed: Seed = 1,
+    reading: Meaning = Values.signed,
+    angles: Direction = Angles.independent,
+    rule: Rule = Rules.redraw,
+    initial: Initial = False,
+    interface: Interface = False,
+    limit: Limit = None,
+    reference: Reference = None,
+    finer: Finer = None,
+    model: Surrogate = None,
+) -> Output:
+    """Random errors of thrust and mass as in the paper's Table 3: quantiles of the rates and
+    probabilities above limits, with bounds; writes montecarlo.json.
 
-    @app.command()
-    def montecarlo(
-        scene: SceneName = "reference",
-        out: Out = Path("out"),
-        set_: Set = None,
-        cases: Cases = 1_000_000,
-        seed: Seed = 1,
-        reading: Meaning = Values.signed,
-        angles: Direction = Angles.independent,
-        rule: Rule = Rules.redraw,
-        initial: Initial = False,
-        interface: Interface = False,
-        limit: Limit = None,
-        reference: Reference = None,
-        finer: Finer = None,
-        model: Surrogate = None,
-        element_size: ElementSize = None,
-        workers: Workers = None,
-        json_: Json = False,
-    ) -> None:
-        """Random errors of thrust and mass as in the paper's Table 3: quantiles of the rates and
-        probabilities above limits, with bounds; writes montecarlo.json.
+    The paper has 1,000 cases. All readings of its Table 3 are compared, and both surrogates on
+    the same cases. With --reference the first cases run through the finite elements, which
+    corrects rates, quantiles and probabilities; this writes tails.json.
 
-        The paper has 1,000 cases. All readings of its Table 3 are compared, and both surrogates on
-        the same cases. With --reference the first cases run through the finite elements, which
-        corrects rates, quantiles and probabilities; this writes tails.json.
+      tipoff montecarlo --cases 1000000 --limit "x=2 deg/s" --limit "8 deg/s"
+      tipoff montecarlo --reading half --angles shared --initial
+      tipoff montecarlo --reference 200
+    """
+    from tipoff.studies.montecarlo import page, stage, tails, tails_page
+    from tipoff.studies.populations.random_factors import Reading
 
-          tipoff montecarlo --cases 1000000 --limit "x=2 deg/s" --limit "8 deg/s"
-          tipoff montecarlo --reading half --angles shared --initial
-          tipoff montecarlo --reference 200
-        """
+    def shown(found: dict) -> "list[Part]":
+        return page.summary(found) + tails_page.summary(found["reference"])
 
-        def work() -> dict:
-            from tipoff.studies.montecarlo import stage, tails
-            from tipoff.studies.populations.random_factors import Reading
-
-            how = Reading(reading.value, angles.value, rule.value, initial, interface)
-            options = stage.Options(
-                cases, seed, how, tuple(limit or stage.Options.limits), model and model.value
-            )
-            study = study_of(scene, out, set_, element_size=element_size, workers=workers)
-            if reference is None:
-                return stage.run(study, options)
-            draws = tails.Options(reference, finer, options)
-            tails.checked(study, draws)
-            return {**stage.run(study, options), "reference": tails.run(study, draws)}
-
-        def shown(found: dict) -> list["Part"]:
-            from tipoff.studies.montecarlo import page, tails_page
-
-            parts = page.summary(found)
-            return parts if reference is None else parts + tails_page.summary(found["reference"])
-
-        guarded(work, json_, shown, out)
+    how = Reading(reading.value, angles.value, rule.value, initial, interface)
+    options = stage.Options(
+        cases, seed, how, tuple(limit or stage.Options.limits), model and model.value
+    )
+    study = request.study()
+    if reference is None:
+        return Output(stage.run(study, options), page.summary, request.out)
+    draws = tails.Options(reference, finer, options)
+    tails.checked(study, draws)
+    found = {**stage.run(study, options), "reference": tails.run(study, draws)}
+    return Output(found, shown, request.out)

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from tipoff.studies.commands.options import Json
-from tipoff.studies.commands.running import guarded, quantity
+from tipoff.studies.commands.running import Output, guarded, quantity
 
 # option, unit, question, answer if none is given
 _ASKED = {
@@ -19,12 +19,6 @@ _ASKED = {
     "thrust": ("N", "Peak of the thrust", "6 kN"),
     "burn_time": ("s", "Time in which it rises and falls", "24 ms"),
 }
-
-
-def add(app: typer.Typer) -> None:
-    """Add the commands to ``app``."""
-    app.command()(new)
-    app.command()(schema)
 
 
 def _option(name: str) -> typer.models.OptionInfo:
@@ -89,7 +83,7 @@ def new(
             for name, (_, question, default) in _ASKED.items()
         }
 
-    def work() -> dict:
+    def work() -> Output:
         from tipoff.files import write_text
         from tipoff.studies.core.checked import together
         from tipoff.studies.new_scene import template
@@ -100,9 +94,9 @@ def new(
         )
         _require_scene(text, file)
         write_text(file, text)
-        return {"scene": file.stem, "file": str(file), "text": text}
+        return Output({"scene": file.stem, "file": str(file), "text": text}, _next)
 
-    guarded(work, json_, _next)
+    guarded(work, json_)
 
 
 def _require_scene(text: str, file: Path) -> None:
@@ -207,11 +201,9 @@ def schema() -> None:
     #:schema ./tipoff.schema.json
     """
 
-    def work() -> dict:
+    def work() -> Output:
         from tipoff.scenes.schema import schema
 
-        return schema()
+        return Output({"schema": schema()}, lambda found: [json.dumps(found["schema"], indent=1)])
 
-    guarded(
-        lambda: {"schema": work()}, False, lambda found: [json.dumps(found["schema"], indent=1)]
-    )
+    guarded(work)

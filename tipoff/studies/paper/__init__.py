@@ -10,4 +10,4 @@ def _load() -> Parts:
     return Parts(stage.run, stage.stored, page.draw)
 
 
-QUESTION = Question("paper", "Comparison with the paper", "Paper", command.add, _load)
+QUESTION = Question("paper", "Comparison with the paper", "Paper", command.paper, _load)

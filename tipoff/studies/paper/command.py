@@ -1,26 +1,16 @@
 """``tipoff paper``."""
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import Json, Out, SceneName, Set, Workers
-from tipoff.studies.commands.running import guarded, study_of
-
-if TYPE_CHECKING:
-    from tipoff.studies.render.document import Part
+from tipoff.studies.commands.request import Request, scene_command
+from tipoff.studies.commands.running import Output
 
 
-def add(app: typer.Typer) -> None:
-    """Put the command under ``app``."""
-    app.command()(paper)
-
-
+@scene_command(without=["element_size"])
 def paper(
-    scene: SceneName = "reference",
-    out: Out = Path("out"),
-    set_: Set = None,
+    request: Request,
     starts: Annotated[
         int,
         typer.Option(
@@ -31,9 +21,7 @@ def paper(
             "some minutes.",
         ),
     ] = 3,
-    workers: Workers = None,
-    json_: Json = False,
-) -> None:
+) -> Output:
     """Infer inputs that the paper does not print from its rates, and compare its tables with ours.
 
     Writes paper.json, paper.nc with the end of every search and all admissible points, and the best
@@ -42,15 +30,7 @@ def paper(
     The size of the pads and the platform are those of the scene. After an interruption the same
     command continues with the next search.
     """
+    from tipoff.studies.paper import page, stage
 
-    def work() -> dict:
-        from tipoff.studies.paper import stage
-
-        return stage.run(study_of(scene, out, set_, workers=workers), stage.Options(starts))
-
-    def shown(found: dict) -> list["Part"]:
-        from tipoff.studies.paper import page
-
-        return page.terminal(found)
-
-    guarded(work, json_, shown, out)
+    found = stage.run(request.study(), stage.Options(starts))
+    return Output(found, page.terminal, request.out)

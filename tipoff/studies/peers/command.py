@@ -6,15 +6,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tipoff.studies.commands.options import Json, Out
-from tipoff.studies.commands.running import guarded
+from tipoff.studies.commands.running import Output, guarded
 
 if TYPE_CHECKING:
     from tipoff.studies.render.document import Part
-
-
-def add(app: typer.Typer) -> None:
-    """Add the command to ``app``."""
-    app.command()(peers)
 
 
 def peers(
@@ -39,19 +34,17 @@ def peers(
     index. Takes half an hour.
     """
 
-    def work() -> dict:
-        from tipoff.studies.peers import document, stage
+    def work() -> Output:
+        from tipoff.studies.peers import document, page, stage
+
+        def shown(found: dict) -> "list[Part]":
+            folder = out / "peers"
+            written = [f"  {folder}/"] if folder.is_dir() else []
+            return [*page.parts(found["peers"]), *written]
 
         found = stage.run(out, names or ())
         if keep:
             document.keep(out)
-        return found
+        return Output(found, shown)
 
-    def shown(found: dict) -> list["Part"]:
-        from tipoff.studies.peers import page
-
-        folder = Path(out) / "peers"
-        written = [f"  {folder}/"] if folder.is_dir() else []
-        return [*page.parts(found["peers"]), *written]
-
-    guarded(work, json_, shown)
+    guarded(work, json_)

@@ -12,5 +12,5 @@ def _load() -> Parts:
 
 
 QUESTION = Question(
-    "recovery", "Whether calibration finds hidden values", "Recovery", command.add, _load
+    "recovery", "Whether calibration finds hidden values", "Recovery", command.recovery, _load
 )

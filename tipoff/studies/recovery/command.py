@@ -1,37 +1,13 @@
 """``tipoff recovery``."""
 
-from typing import TYPE_CHECKING
-
-import typer
-
-from tipoff.studies.commands import common
-
-if TYPE_CHECKING:
-    from tipoff.studies.core.study import Study
-    from tipoff.studies.render.document import Part
+from tipoff.studies.commands.request import Request, scene_command
+from tipoff.studies.commands.running import Output
 
 
-def add(app: typer.Typer) -> None:
-    """Add the command to ``app``."""
-    common.add(
-        app,
-        "recovery",
-        "Whether calibration finds hidden values: 20 draws with 2 % of noise, and a reference with "
-        "hidden clearance and friction; writes recovery.json.",
-        run,
-        shown,
-    )
+@scene_command()
+def recovery(request: Request) -> Output:
+    """Whether calibration finds hidden values: 20 draws with 2 % of noise, and a reference
+    with hidden clearance and friction; writes recovery.json."""
+    from tipoff.studies.recovery import page, stage
 
-
-def run(study: "Study") -> dict:
-    """The result of the stage."""
-    from tipoff.studies.recovery import stage
-
-    return stage.run(study)
-
-
-def shown(found: dict) -> "list[Part]":
-    """What the terminal shows of it."""
-    from tipoff.studies.recovery import page
-
-    return page.draw(found)
+    return Output(stage.run(request.study()), page.draw, request.out)

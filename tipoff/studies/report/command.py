@@ -1,30 +1,16 @@
 """``tipoff report``."""
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import (
-    ElementSize,
-    Json,
-    Out,
-    SceneName,
-    Set,
-    Workers,
-)
-from tipoff.studies.commands.running import guarded, study_of
+from tipoff.studies.commands.request import Request, scene_command
+from tipoff.studies.commands.running import Output
 
 
-def add(app: typer.Typer) -> None:
-    """Add the command to ``app``."""
-    app.command()(report)
-
-
+@scene_command()
 def report(
-    scene: SceneName = "reference",
-    out: Out = Path("out"),
-    set_: Set = None,
+    request: Request,
     every: Annotated[
         bool,
         typer.Option(
@@ -42,26 +28,18 @@ def report(
             "judges; repeatable.",
         ),
     ] = None,
-    element_size: ElementSize = None,
-    workers: Workers = None,
-    json_: Json = False,
-) -> None:
+) -> Output:
     """Show all results on one self-contained page; writes report.html and figures/.
 
     Makes mesh, highfi, lowfi, calibrate, compare, cost, stability and ablation where they are out
     of date (half an hour the first time). The page shows every other study that has a result;
     --every makes them all.
     """
-
-    def work() -> dict:
-        from tipoff.studies.populations import exceedance
-        from tipoff.studies.report import stage
-
-        limits = exceedance.limits(limit or [])
-        study = study_of(scene, out, set_, element_size=element_size, workers=workers)
-        return stage.run(study, every, limits)
+    from tipoff.studies.populations import exceedance
+    from tipoff.studies.report import stage
 
     def shown(found: dict) -> list[str]:
         return [found["verdict"]] if found["verdict"] else []
 
-    guarded(work, json_, shown, out)
+    limits = exceedance.limits(limit or [])
+    return Output(stage.run(request.study(), every, limits), shown, request.out)

@@ -22,5 +22,5 @@ def _load() -> Contents:
     )
 
 
-ENTRY = Entry(command.add, _load)
-SINGLE = Entry(command.add_run)
+ENTRY = Entry((command.highfi, command.lowfi), _load)
+SINGLE = Entry((command.run,))

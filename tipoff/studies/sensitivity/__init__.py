@@ -11,5 +11,5 @@ def _load() -> Parts:
 
 
 QUESTION = Question(
-    "sensitivity", "Sensitivity to uncertain inputs", "Sensitivity", command.add, _load
+    "sensitivity", "Sensitivity to uncertain inputs", "Sensitivity", command.sensitivity, _load
 )

@@ -1,34 +1,18 @@
 """``tipoff sensitivity``."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import (
-    ElementSize,
-    Json,
-    Out,
-    SceneName,
-    Set,
-    Surrogate,
-    Workers,
-)
-from tipoff.studies.commands.running import guarded, study_of
-
-if TYPE_CHECKING:
-    from tipoff.studies.render.document import Part
+from tipoff.studies.commands.options import Surrogate
+from tipoff.studies.commands.request import Request, scene_command
+from tipoff.studies.commands.running import Output
 
 
-def add(app: typer.Typer) -> None:
-    """Put the command under ``app``."""
-    app.command()(sensitivity)
-
-
+@scene_command()
 def sensitivity(
-    scene: SceneName = "reference",
-    out: Out = Path("out"),
-    set_: Set = None,
+    request: Request,
     vary: Annotated[
         Path | None,
         typer.Option(
@@ -51,10 +35,7 @@ def sensitivity(
         int, typer.Option("--seed", metavar="N", help="Seed of the points and of the bootstrap.")
     ] = 1,
     model: Surrogate = None,
-    element_size: ElementSize = None,
-    workers: Workers = None,
-    json_: Json = False,
-) -> None:
+) -> Output:
     """Sensitivity of the result to uncertain inputs: contact constants as in the paper's Table 2,
     and Sobol' indices; writes sensitivity.json.
 
@@ -71,17 +52,9 @@ def sensitivity(
       mean = "0 deg"
       sd = "0.1 deg"
     """
+    from tipoff.studies.sensitivity import page, stage
 
-    def work() -> dict:
-        from tipoff.studies.sensitivity import stage
-
-        study = study_of(scene, out, set_, element_size=element_size, workers=workers)
-        tolerances = None if vary is None else str(vary)
-        return stage.run(study, stage.Options(tolerances, points, seed, model and model.value))
-
-    def shown(found: dict) -> list["Part"]:
-        from tipoff.studies.sensitivity import page
-
-        return page.summary(found)
-
-    guarded(work, json_, shown, out)
+    study = request.study()
+    tolerances = None if vary is None else str(vary)
+    options = stage.Options(tolerances, points, seed, model and model.value)
+    return Output(stage.run(study, options), page.summary, request.out)

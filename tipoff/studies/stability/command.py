@@ -1,36 +1,12 @@
 """``tipoff stability``."""
 
-from typing import TYPE_CHECKING
-
-import typer
-
-from tipoff.studies.commands import common
-
-if TYPE_CHECKING:
-    from tipoff.studies.core.study import Study
-    from tipoff.studies.render.document import Part
+from tipoff.studies.commands.request import Request, scene_command
+from tipoff.studies.commands.running import Output
 
 
-def add(app: typer.Typer) -> None:
-    """Add the command to ``app``."""
-    common.add(
-        app,
-        "stability",
-        "Hard cases, each with a simpler method that fails on it; writes stability.json.",
-        run,
-        shown,
-    )
+@scene_command()
+def stability(request: Request) -> Output:
+    """Hard cases, each with a simpler method that fails on it; writes stability.json."""
+    from tipoff.studies.stability import page, stage
 
-
-def run(study: "Study") -> dict:
-    """The result of the stage."""
-    from tipoff.studies.stability import stage
-
-    return stage.run(study)
-
-
-def shown(found: dict) -> "list[Part]":
-    """What the terminal shows of it."""
-    from tipoff.studies.stability import page
-
-    return page.terminal(found)
+    return Output(stage.run(request.study()), page.terminal, request.out)

@@ -11,4 +11,4 @@ def _load() -> Parts:
     return Parts(stage.run, stage.STAGE.stored, page.draw)
 
 
-QUESTION = Question("sweeps", "How large an error may be", "Sweeps", command.add, _load)
+QUESTION = Question("sweeps", "How large an error may be", "Sweeps", command.sweeps, _load)

@@ -1,42 +1,22 @@
 """``tipoff sweeps``."""
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import (
-    ElementSize,
-    Json,
-    Out,
-    SceneName,
-    Set,
-    Surrogate,
-    Workers,
-)
-from tipoff.studies.commands.running import guarded, study_of
-
-if TYPE_CHECKING:
-    from tipoff.studies.render.document import Part
+from tipoff.studies.commands.options import Surrogate
+from tipoff.studies.commands.request import Request, scene_command
+from tipoff.studies.commands.running import Output
 
 
-def add(app: typer.Typer) -> None:
-    """Put the command under ``app``."""
-    app.command()(sweeps)
-
-
+@scene_command()
 def sweeps(
-    scene: SceneName = "reference",
-    out: Out = Path("out"),
-    set_: Set = None,
+    request: Request,
     angles: Annotated[
         int, typer.Option("--angles", metavar="N", help="Number of directions for each size.")
     ] = 120,
     model: Surrogate = None,
-    element_size: ElementSize = None,
-    workers: Workers = None,
-    json_: Json = False,
-) -> None:
+) -> Output:
     """Rates by size and direction of misalignment, thrust eccentricity and mass eccentricity, up to
     1 deg and 1 mm; writes sweeps.json.
 
@@ -44,16 +24,7 @@ def sweeps(
     it does, with its interval. The launcher is also run with a thrust that continues after the
     exit, or that ends before it.
     """
+    from tipoff.studies.sweeps import page, stage
 
-    def work() -> dict:
-        from tipoff.studies.sweeps import stage
-
-        study = study_of(scene, out, set_, element_size=element_size, workers=workers)
-        return stage.run(study, stage.Options(angles, model and model.value))
-
-    def shown(found: dict) -> list["Part"]:
-        from tipoff.studies.sweeps import page
-
-        return page.summary(found)
-
-    guarded(work, json_, shown, out)
+    options = stage.Options(angles, model and model.value)
+    return Output(stage.run(request.study(), options), page.summary, request.out)

@@ -12,4 +12,4 @@ def _load() -> Contents:
     )
 
 
-ENTRY = Entry(command.add, _load)
+ENTRY = Entry((command.view,), _load)

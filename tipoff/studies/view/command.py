@@ -1,33 +1,20 @@
 """``tipoff view``."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tipoff.studies.commands.options import (
-    ElementSize,
-    Json,
-    Out,
-    RefinedCondition,
-    SceneName,
-    Set,
-)
-from tipoff.studies.commands.running import guarded, study_of
+from tipoff.studies.commands.options import RefinedCondition
+from tipoff.studies.commands.request import Request, scene_command
+from tipoff.studies.commands.running import Output
 
 if TYPE_CHECKING:
     from tipoff.studies.render.document import Part
 
 
-def add(app: typer.Typer) -> None:
-    """Add the command to ``app``."""
-    app.command()(view)
-
-
+@scene_command(without=["workers"])
 def view(
-    scene: SceneName = "reference",
-    out: Out = Path("out"),
-    set_: Set = None,
+    request: Request,
     condition: RefinedCondition = None,
     frames: Annotated[
         int,
@@ -44,9 +31,7 @@ def view(
             help="Factor of the deformation of the rail in pictures; default: chosen by its size.",
         ),
     ] = None,
-    element_size: ElementSize = None,
-    json_: Json = False,
-) -> None:
+) -> Output:
     """Show stress and motion of one condition; writes view/CONDITION/ with run.pvd, and pictures
     where pyvista is installed.
 
@@ -60,19 +45,11 @@ def view(
     Pictures (peak.png, ejection.webp, and both for a dark page) need pyvista: pip install pyvista.
     The files for ParaView do not.
     """
+    from tipoff.studies.view import page, stage
 
-    def work() -> dict:
-        from tipoff.studies.view import stage
-
-        return stage.run(
-            study_of(scene, out, set_, element_size=element_size), condition, frames, exaggeration
-        )
-
-    def shown(found: dict) -> list["Part"]:
-        from tipoff.studies.view import page
-
-        folder = Path(out) / found["scene"]
+    def shown(found: dict) -> "list[Part]":
         files = [found["collection"], *found["pictures"].values()]
-        return [page.peak(found), "\n".join(f"  {folder / path}" for path in files)]
+        lines = [f"  {request.out / found['scene'] / path}" for path in files]
+        return [page.peak(found), "\n".join(lines)]
 
-    guarded(work, json_, shown)
+    return Output(stage.run(request.study(), condition, frames, exaggeration), shown)
