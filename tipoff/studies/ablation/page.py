@@ -3,10 +3,19 @@
 from typing import TYPE_CHECKING
 
 from tipoff.studies.render.document import Part
-from tipoff.studies.render.table import Column, Table
+from tipoff.studies.render.table import Cells, Column, Table
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
+
+_COLUMNS: Cells = (
+    ("model", "fidelity"),
+    ("variant", "variant"),
+    ("status", "status"),
+    (Column("time", "s"), "time_s"),
+    (Column("time ratio", form=".2f"), "time_ratio"),
+)
+_CHANGE = "settled_rate_change_deg_s"
 
 
 def draw(page: "Page") -> list[Part]:
@@ -16,31 +25,13 @@ def draw(page: "Page") -> list[Part]:
 
 def ablation(document: dict) -> Table:
     """Time and settled rates of both fidelities without each effect."""
-    columns = (
-        "model",
-        "variant",
-        "status",
-        Column("time", "s"),
-        Column("time ratio", form=".2f"),
-        Column("time per step", "ns", ",.0f"),
-        Column("settled x, y, z", "deg/s"),
-        Column("change x, y, z", "deg/s", "+.3g"),
-        "effects in the compiled kernel",
+    columns: Cells = (
+        *_COLUMNS,
+        (Column("time per step", "ns", ",.0f"), "ns_per_step"),
+        (Column("settled x, y, z", "deg/s"), "settled_rate_deg_s"),
+        (Column("change x, y, z", "deg/s", "+.3g"), _CHANGE),
+        ("effects in the compiled kernel", lambda row: ", ".join(row["compiled"]) or "none"),
     )
-    rows = [
-        (
-            row["fidelity"],
-            row["variant"],
-            row["status"],
-            row["time_s"],
-            row["time_ratio"],
-            row["ns_per_step"],
-            row["settled_rate_deg_s"],
-            row["settled_rate_change_deg_s"],
-            ", ".join(row["compiled"]) or "none",
-        )
-        for row in document["rows"]
-    ]
     note = (
         f"Condition {document['condition']}. The first line of each model has all effects; effects "
         "that the scene lacks have small values. Each further line lacks one effect; the last line of the "
@@ -49,22 +40,14 @@ def ablation(document: dict) -> Table:
         f"{1e3 * document['element_size_m']:g} mm, the time loop alone of the surrogate on "
         "compliant contact."
     )
-    return Table(columns, rows, (note,))
+    return Table.of(document["rows"], columns, notes=(note,))
 
 
 def terminal(document: dict) -> list[Part]:
     """What each effect changes and costs."""
-    columns = (
-        "model",
-        "variant",
-        "status",
-        Column("time", "s"),
-        Column("time ratio", form=".2f"),
-        Column("change of the settled rates x, y, z", "deg/s", "+.3g"),
+    columns: Cells = (
+        *_COLUMNS,
+        (Column("change of the settled rates x, y, z", "deg/s", "+.3g"), _CHANGE),
     )
-    keys = (
-        *("fidelity", "variant", "status", "time_s", "time_ratio"),
-        "settled_rate_change_deg_s",
-    )
-    rows = [[row[key] for key in keys] for row in document["rows"]]
-    return [Table(columns, rows, title=f"Without each effect, condition {document['condition']}:")]
+    title = f"Without each effect, condition {document['condition']}:"
+    return [Table.of(document["rows"], columns, title=title)]

@@ -6,7 +6,7 @@ from tipoff.studies.agreement.equivalence import AXES, CONFIDENCE, MARGIN_SHARE
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Fold, Part
 from tipoff.studies.render.palette import AMBER, NAVY, VERMILION
-from tipoff.studies.render.table import Column, Table
+from tipoff.studies.render.table import Cells, Column, Table
 
 _SHOWN = {"compliant": (VERMILION, 1.6, "-"), "calibrated": (AMBER, 1.6, "--")}
 _CAPTION = (
@@ -138,33 +138,22 @@ def _bound(item: dict) -> float:
 
 def quantiles(found: list[dict]) -> Table:
     """All quantiles of all models."""
-    heads = (
-        "condition",
-        "model",
-        "rate",
-        Column("quantile", "%", "g", 100.0),
-        Column("reference", "deg/s"),
-        Column("surrogate", "deg/s"),
-        Column("difference, lower bound", "margins", "+.2g"),
-        Column("upper bound", "margins", "+.2g"),
-        Column("reference known within", "margins", ".2g"),
-        Column("weight of pairs", form=".2f"),
+    columns: Cells = (
+        ("condition", "condition"),
+        ("model", "title"),
+        ("rate", "axis"),
+        (Column("quantile", "%", "g", 100.0), "share"),
+        (Column("reference", "deg/s"), "reference_deg_s"),
+        (Column("surrogate", "deg/s"), "surrogate_deg_s"),
+        (Column("difference, lower bound", "margins", "+.2g"), "low"),
+        (Column("upper bound", "margins", "+.2g"), "high"),
+        (Column("reference known within", "margins", ".2g"), "width"),
+        (Column("weight of pairs", form=".2f"), "weight"),
     )
     rows = [
-        (
-            item["condition"],
-            own["title"],
-            one["axis"],
-            one["share"],
-            one["reference_deg_s"],
-            one["surrogate_deg_s"],
-            one["low"],
-            one["high"],
-            one["width"],
-            one["weight"],
-        )
+        {"condition": item["condition"], "title": own["title"], **one}
         for item in found
         for own in item["models"].values()
         for one in own["comparisons"]
     ]
-    return Table(heads, rows, dense=True)
+    return Table.of(rows, columns, dense=True)

@@ -8,7 +8,7 @@ from tipoff.studies.agreement import growth
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Part
 from tipoff.studies.render.palette import NAVY, VERMILION
-from tipoff.studies.render.table import Column, Table
+from tipoff.studies.render.table import Cells, Column, Table
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
@@ -91,35 +91,27 @@ def _lines(item: dict, look: tuple[str, float, str, float], marker: str) -> list
 
 def tables(found: list[dict]) -> list[Part]:
     """Up to when curves can be compared, and the growth over the contacts."""
-    heads = (
-        "condition",
-        "model",
-        "contacts",
-        Column("difference after each", "deg/s", ".2g"),
-        "factor, first to last",
-        Column("exponent", "1/s"),
-        Column("settled", "deg/s per µm"),
-        "horizon (ms)",
-        "verdict",
-    )
-    rows = [
+    columns: Cells = (
+        ("condition", "condition"),
+        ("model", "model"),
+        ("contacts", lambda item: len(item["contacts"])),
         (
-            item["condition"],
-            item["model"],
-            len(item["contacts"]),
-            [contact["separation_deg_s"] for contact in item["contacts"]] or None,
-            item["factor"],
-            item["exponent_per_s"],
-            item["settled_growth_deg_s_um"],
-            _horizon(item),
-            growth.verdict(item["sensitive"], item["chaotic"]),
-        )
-        for item in found
-    ]
+            Column("difference after each", "deg/s", ".2g"),
+            lambda item: [contact["separation_deg_s"] for contact in item["contacts"]] or None,
+        ),
+        ("factor, first to last", "factor"),
+        (Column("exponent", "1/s"), "exponent_per_s"),
+        (Column("settled", "deg/s per µm"), "settled_growth_deg_s_um"),
+        ("horizon (ms)", _horizon),
+        ("verdict", lambda item: growth.verdict(item["sensitive"], item["chaotic"])),
+    )
     kinds = ["good" if item["sensitive"] is False else "doubt" for item in found]
     notes = tuple(note.format(gate=found[0]["gate_deg_s"]) for note in _NOTES)
     own = [item for item in found if item["model"] == FINITE_ELEMENTS]
-    return [Bullets(_sentences(own)), Table(heads, rows, notes, "", "growth", kinds, dense=True)]
+    return [
+        Bullets(_sentences(own)),
+        Table.of(found, columns, notes=notes, name="growth", kinds=kinds, dense=True),
+    ]
 
 
 def _sentences(found: list[dict]) -> list[str]:

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from tipoff.studies.agreement import distribution_page, verdicts
 from tipoff.studies.render.document import Fold, Part
-from tipoff.studies.render.table import Column, Table, percent
+from tipoff.studies.render.table import Cells, Column, Table, percent
 from tipoff.studies.render.uncertain import LEAST, Measured, number, rounded
 
 if TYPE_CHECKING:
@@ -61,28 +61,18 @@ def agreement(document: dict) -> list[Part]:
 
 def terminal(document: dict) -> list[Part]:
     """Verdicts on compliant contact, and at other values of the interface stiffness."""
-    heads = (
-        "condition",
-        _percent("rate L2"),
-        Column("settled error", "deg/s", ".2g"),
-        Column("reference ±", "deg/s", ".2g"),
-        "judged as",
-        "verdict",
+    columns: Cells = (
+        ("condition", "condition"),
+        (_percent("rate L2"), "rate_relative_l2"),
+        (Column("settled error", "deg/s", ".2g"), "settled_rate_error_deg_s"),
+        (Column("reference ±", "deg/s", ".2g"), "reference_uncertainty_deg_s"),
+        ("judged as", "judged_as"),
+        ("verdict", "verdict"),
     )
-    keys = ("condition", "rate_relative_l2", "settled_rate_error_deg_s")
-    rows = [
-        [
-            *(row[key] for key in keys),
-            row["reference_uncertainty_deg_s"],
-            row["judged_as"],
-            row["verdict"],
-        ]
-        for row in document["compliant"]
-    ]
     title = f"Compliant contact: {summary(document['compliant'])}."
     alike = document["distributions"]
     return [
-        Table(heads, rows, title=title),
+        Table.of(document["compliant"], columns, title=title),
         *([distribution_page.verdicts_of(alike)] if alike else []),
         *by_factor(document["interface"]),
     ]
@@ -147,29 +137,16 @@ def interface(found: list[dict]) -> list[Part]:
     """Both models at other values of the interface stiffness; nothing without contact."""
     if not found:
         return []
-    heads: tuple[Column | str, ...] = (
-        "condition",
-        Column("factor", form="g"),
-        Column("interface stiffness", "N/m³", ".3g"),
-        Column("change of the reference", "deg/s", ".2g"),
-        Column("change of the surrogate", "deg/s", ".2g"),
-        _percent("rate L2"),
-        Column("settled error", "deg/s", ".2g"),
-        "verdict",
+    columns: Cells = (
+        ("condition", "condition"),
+        (Column("factor", form="g"), "factor"),
+        (Column("interface stiffness", "N/m³", ".3g"), "interface_stiffness_n_m3"),
+        (Column("change of the reference", "deg/s", ".2g"), "reference_change_deg_s"),
+        (Column("change of the surrogate", "deg/s", ".2g"), "surrogate_change_deg_s"),
+        (_percent("rate L2"), "rate_relative_l2"),
+        (Column("settled error", "deg/s", ".2g"), "settled_rate_error_deg_s"),
+        ("verdict", "verdict"),
     )
-    rows = [
-        (
-            item["condition"],
-            item["factor"],
-            item["interface_stiffness_n_m3"],
-            item["reference_change_deg_s"],
-            item["surrogate_change_deg_s"],
-            item["rate_relative_l2"],
-            item["settled_rate_error_deg_s"],
-            item["verdict"],
-        )
-        for item in found
-    ]
     kinds = [distribution_page.kind(item["judgement"]) for item in found]
     note = (
         "Both models on the coarse mesh; changes of the largest settled rate from factor 1. The "
@@ -180,7 +157,7 @@ def interface(found: list[dict]) -> list[Part]:
         f"Other values of the interface stiffness: {stiffnesses(found)}.",
         Fold(
             "Agreement at a quarter, once and four times the interface stiffness",
-            [Table(heads, rows, (note,), "", "interface", kinds, dense=True)],
+            [Table.of(found, columns, notes=(note,), name="interface", kinds=kinds, dense=True)],
         ),
     ]
 
@@ -318,27 +295,24 @@ def _further(rows: list[dict]) -> Fold:
 
 
 def _evidence(document: dict) -> Fold:
-    metrics: tuple[Column | str, ...] = (_percent("rate L2"), Column("settled rates", "deg/s"))
-    keys = ("condition", "model", "cause", "rate_relative_l2", "settled_rate_change_deg_s")
-    floors = [[item[key] for key in keys] for item in document["floor"]]
-    estimated = ("uncertainty_deg_s", "order", "method")
-    refined = [[item[key] for key in (*keys, *estimated)] for item in document["refinement"]]
+    run: Cells = (("condition", "condition"), ("model", "model"))
+    metrics: Cells = (
+        (_percent("rate L2"), "rate_relative_l2"),
+        (Column("settled rates", "deg/s"), "settled_rate_change_deg_s"),
+    )
+    estimated: Cells = (
+        (Column("uncertainty", "deg/s", ".2g"), "uncertainty_deg_s"),
+        (Column("order", form=".2g"), "order"),
+        ("method", "method"),
+    )
     return Fold(
         "Measured floor and uncertainty of the reference",
         [
-            Table(["condition", "model", "changed input", *metrics], floors),
-            Table(
-                [
-                    "condition",
-                    "model",
-                    "refined",
-                    *metrics,
-                    Column("uncertainty", "deg/s", ".2g"),
-                    Column("order", form=".2g"),
-                    "method",
-                ],
-                refined,
-                ("Changes are those of the last refinement.",),
+            Table.of(document["floor"], (*run, ("changed input", "cause"), *metrics)),
+            Table.of(
+                document["refinement"],
+                (*run, ("refined", "cause"), *metrics, *estimated),
+                notes=("Changes are those of the last refinement.",),
                 dense=True,
             ),
         ],

@@ -3,30 +3,30 @@
 from typing import TYPE_CHECKING
 
 from tipoff.studies.render.document import Part
-from tipoff.studies.render.table import Column, Table
+from tipoff.studies.render.table import Cells, Column, Table
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
-_REFERENCE: dict[str, Column | str] = {
-    "elements": "elements",
-    "ns_per_element_step": Column("pads pressed", "ns", ".2f"),
-    "ns_free": Column("free", "ns", ".2f"),
-    "ns_one_thread": Column("one thread", "ns", ".2f"),
-    "baseline_ns_per_element_step": Column("SciPy and NumPy", "ns", ".0f"),
-    "ratio": Column("ratio", form=".1f"),
-    "bytes_per_element": Column("bytes per element", form=".0f"),
-    "set_up_s": Column("set-up", "s", ".1f"),
-    "projected_40_ms_s": Column("projected run of 40 ms", "h", ".2g", 1.0 / 3600.0),
-}
-_SURROGATE: dict[str, Column | str] = {
-    "error_percent": Column("error of the settled rate", "%", "g"),
-    "method": "method",
-    "cpu_ms": Column("time per case", "ms", ".3f"),
-    "run_cpu_ms": Column("with curves", "ms", ".2f"),
-    "run_auto_cpu_ms": Column("with curves and modes chosen", "ms", ".2f"),
-    "setting": Column("tolerance, or step in s", form=".3g"),
-}
+_REFERENCE: Cells = (
+    ("elements", "elements"),
+    (Column("pads pressed", "ns", ".2f"), "ns_per_element_step"),
+    (Column("free", "ns", ".2f"), "ns_free"),
+    (Column("one thread", "ns", ".2f"), "ns_one_thread"),
+    (Column("SciPy and NumPy", "ns", ".0f"), "baseline_ns_per_element_step"),
+    (Column("ratio", form=".1f"), "ratio"),
+    (Column("bytes per element", form=".0f"), "bytes_per_element"),
+    (Column("set-up", "s", ".1f"), "set_up_s"),
+    (Column("projected run of 40 ms", "h", ".2g", 1.0 / 3600.0), "projected_40_ms_s"),
+)
+_SURROGATE: Cells = (
+    (Column("error of the settled rate", "%", "g"), "error_percent"),
+    ("method", "method"),
+    (Column("time per case", "ms", ".3f"), "cpu_ms"),
+    (Column("with curves", "ms", ".2f"), "run_cpu_ms"),
+    (Column("with curves and modes chosen", "ms", ".2f"), "run_auto_cpu_ms"),
+    (Column("tolerance, or step in s", form=".3g"), "setting"),
+)
 
 
 def draw(page: "Page") -> list[Part]:
@@ -51,9 +51,7 @@ def _reference(rows: list[dict]) -> Table:
         "repeats without compilation. Baseline: central differences with an assembled SciPy matrix "
         f"and NumPy, without contact. Machine: {machine['cores']} cores of {machine['processor']}."
     )
-    return Table(
-        list(_REFERENCE.values()), [[row[key] for key in _REFERENCE] for row in rows], (note,)
-    )
+    return Table.of(rows, _REFERENCE, notes=(note,))
 
 
 def _surrogate(found: dict) -> Table:
@@ -73,5 +71,4 @@ def _surrogate(found: dict) -> Table:
         f"contact: {found['modes_why']}; under 'modes chosen' each run has its own. Machine: "
         f"{found['hardware']['processor']}."
     )
-    rows = [[row[key] for key in _SURROGATE] for row in found["single"]]
-    return Table(list(_SURROGATE.values()), rows, (note,))
+    return Table.of(found["single"], _SURROGATE, notes=(note,))

@@ -5,7 +5,7 @@ import math
 from tipoff.studies.agreement import distribution_page
 from tipoff.studies.agreement.page import judged, summary
 from tipoff.studies.render.document import Fold, Part
-from tipoff.studies.render.table import Column, Table
+from tipoff.studies.render.table import Cells, Column, Table
 
 
 def draw(found: dict) -> list[Part]:
@@ -34,32 +34,22 @@ def draw(found: dict) -> list[Part]:
 
 def verdicts(found: dict) -> list[Part]:
     """The verdicts for the terminal."""
-    heads = (
-        "model",
-        "condition",
-        Column("rate L2", "%", scale=100.0),
-        Column("settled error", "deg/s"),
-        Column("reference ±", "deg/s"),
-        "judged as",
-        "verdict",
+    columns: Cells = (
+        ("model", "model"),
+        ("condition", "condition"),
+        (Column("rate L2", "%", scale=100.0), "rate_relative_l2"),
+        (Column("settled error", "deg/s"), "settled_rate_error_deg_s"),
+        (Column("reference ±", "deg/s"), "reference_uncertainty_deg_s"),
+        ("judged as", "judged_as"),
+        ("verdict", "verdict"),
     )
     rows = [
-        (
-            model,
-            row["condition"],
-            row["rate_relative_l2"],
-            row["settled_rate_error_deg_s"],
-            row["reference_uncertainty_deg_s"],
-            row["judged_as"],
-            row["verdict"],
-        )
-        for model in ("calibrated", "compliant")
-        for row in found[model]
+        {**row, "model": model} for model in ("calibrated", "compliant") for row in found[model]
     ]
     count = len(found["conditions"])
     alike = found["distributions"]
     return [
-        Table(heads, rows, title=f"{count} conditions drawn with seed {found['seed']}"),
+        Table.of(rows, columns, title=f"{count} conditions drawn with seed {found['seed']}"),
         *([distribution_page.verdicts_of(alike)] if alike else []),
     ]
 

@@ -7,7 +7,7 @@ from tipoff.studies.convergence import summary
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Part
 from tipoff.studies.render.palette import AXIS_COLOURS, GREY
-from tipoff.studies.render.table import Column, Table
+from tipoff.studies.render.table import Cells, Column, Table
 from tipoff.studies.render.uncertain import Measured
 
 if TYPE_CHECKING:
@@ -130,32 +130,32 @@ def _changes(document: dict) -> list[Part]:
     """Ripple, interface stiffness and contact cells; nothing without contact."""
     if not document["interface_stiffness"]:
         return []
-    slides = {
-        "element_size_m": Column("element size", "mm", "g", 1e3),
-        "cells_per_edge": Column("contact cells along each edge of a pad"),
-        "frequency": Column("facet frequency", "Hz", ".4g"),
-        "facets": Column("facets"),
-        "ripple": Column("ripple", "%", ".2g", 100.0),
-        "background": Column("between multiples", "%", ".2g", 100.0),
-    }
-    settled = {
-        "settled_rate_deg_s": Column("settled x, y, z", "deg/s", ".3f"),
-        "settled_rate_change_deg_s": Column("largest change", "deg/s", ".2g"),
-        "status": Column("status"),
-    }
-    stiffness = {
-        "factor": Column("factor", form="g"),
-        "interface_stiffness_n_m3": Column("interface stiffness", "N/m³"),
-    } | settled
-    faces = {"cells_per_edge": Column("contact cells along each edge of a pad")} | settled
+    cells = ("contact cells along each edge of a pad", "cells_per_edge")
+    slides: Cells = (
+        (Column("element size", "mm", "g", 1e3), "element_size_m"),
+        cells,
+        (Column("facet frequency", "Hz", ".4g"), "frequency"),
+        ("facets", "facets"),
+        (Column("ripple", "%", ".2g", 100.0), "ripple"),
+        (Column("between multiples", "%", ".2g", 100.0), "background"),
+    )
+    settled: Cells = (
+        (Column("settled x, y, z", "deg/s", ".3f"), "settled_rate_deg_s"),
+        (Column("largest change", "deg/s", ".2g"), "settled_rate_change_deg_s"),
+        ("status", "status"),
+    )
+    stiffness: Cells = (
+        (Column("factor", form="g"), "factor"),
+        (Column("interface stiffness", "N/m³"), "interface_stiffness_n_m3"),
+        *settled,
+    )
     size = f"{1e3 * document['coarse_size_m']:g} mm"
 
-    def fold(title: str, columns: dict[str, Column], rows: list[dict], *notes: str) -> list[Part]:
-        cells = [[row[name] for name in columns] for row in rows]
-        return [Fold(title, [Table(list(columns.values()), cells, notes)])] if rows else []
+    def fold(title: str, columns: Cells, rows: list[dict], *notes: str) -> list[Part]:
+        return [Fold(title, [Table.of(rows, columns, notes=notes)])] if rows else []
 
     return [
         *fold("Ripple of a constant contact force", slides, document["ripple"], _RIPPLE),
         *fold(f"Interface stiffness, {size} elements", stiffness, document["interface_stiffness"]),
-        *fold(f"Contact cells, {size} elements", faces, document["contact_cells"]),
+        *fold(f"Contact cells, {size} elements", (cells, *settled), document["contact_cells"]),
     ]

@@ -1,6 +1,7 @@
 """Error over wall time, and its growth, on the page."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.studies.agreement import verdicts
@@ -8,7 +9,7 @@ from tipoff.studies.cost import choice, scaling_page
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Heading, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
-from tipoff.studies.render.table import Column, Table
+from tipoff.studies.render.table import Cells, Column, Table
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
@@ -37,77 +38,56 @@ def draw(page: "Page") -> list[Part]:
     return page.shown("cost_study", body, "cost")
 
 
+def _or_reference(key: str) -> Callable[[dict], Any]:
+    """A cell with an error, None for the reference itself."""
+    return lambda point: "reference" if point[key] is None else point[key]
+
+
+_ERROR = Column("error", "deg/s", ".2g")
+_POINTS: Cells = (
+    ("model", "model"),
+    ("numerics", "numerics"),
+    (Column("wall time", "s"), "wall_s"),
+    (_ERROR, _or_reference("error_deg_s")),
+    (Column("rate L2", "%", ".2g", 100.0), _or_reference("curve_error")),
+)
+
+
 def terminal(document: dict) -> list[Part]:
     """The points of the Pareto front: each the fastest with its accuracy."""
-    columns = (
-        "model",
-        "numerics",
-        Column("wall time", "s"),
-        Column("error", "deg/s", ".2g"),
-        Column("rate L2", "%", ".2g", 100.0),
-    )
-    keys = ("model", "numerics", "wall_s", "error_deg_s", "curve_error")
     best = sorted(
         (point for point in document["points"] if point["pareto"]), key=lambda item: item["wall_s"]
     )
-    rows = [["reference" if point[key] is None else point[key] for key in keys] for point in best]
     title = (
         f"The fastest model of each accuracy, condition {document['condition']}, "
-        f"{len(rows)} of {len(document['points'])} measured points:"
+        f"{len(best)} of {len(document['points'])} measured points:"
     )
-    return [Table(columns, rows, title=title)]
+    return [Table.of(best, _POINTS, title=title)]
 
 
 def tables(document: dict) -> list[Part]:
     """Errors and wall times of all points, and meshes with the error of each surrogate."""
-    error = Column("error", "deg/s", ".2g")
-    points = [
-        (
-            point["model"],
-            point["numerics"],
-            point["wall_s"],
-            "reference" if point["error_deg_s"] is None else point["error_deg_s"],
-            "reference" if point["curve_error"] is None else point["curve_error"],
-            point["integration_error_deg_s"],
-        )
-        for point in document["points"]
-    ]
-    heads = (
-        "model",
-        "numerics",
-        Column("wall time", "s"),
-        error,
-        Column("rate L2", "%", ".2g", 100.0),
-        Column("error of time integration", "deg/s"),
+    points: Cells = (
+        *_POINTS,
+        (Column("error of time integration", "deg/s"), "integration_error_deg_s"),
     )
     kinds = ["best" if point["pareto"] else "" for point in document["points"]]
-    matched = [
-        (
-            row["model"],
-            row["numerics"],
-            row["wall_s"],
-            row["error_deg_s"],
-            row["mesh"],
-            row["mesh_wall_s"],
-            "reference" if row["mesh_error_deg_s"] is None else row["mesh_error_deg_s"],
-            row["ratio"],
-        )
-        for row in document["matched"]
-    ]
-    columns = (
-        "surrogate",
-        "numerics",
-        Column("wall time", "ms", scale=1e3),
-        error,
-        "mesh",
-        Column("wall time", "s"),
-        error,
-        Column("ratio of wall times", form=",.0f"),
+    matched: Cells = (
+        ("surrogate", "model"),
+        ("numerics", "numerics"),
+        (Column("wall time", "ms", scale=1e3), "wall_s"),
+        (_ERROR, "error_deg_s"),
+        ("mesh", "mesh"),
+        (Column("wall time", "s"), "mesh_wall_s"),
+        (_ERROR, _or_reference("mesh_error_deg_s")),
+        (Column("ratio of wall times", form=",.0f"), "ratio"),
     )
     return [
-        Table(heads, points, kinds=kinds, notes=("Bold: points of the Pareto front.",)),
-        Table(
-            columns,
+        Table.of(
+            document["points"], points, kinds=kinds, notes=("Bold: points of the Pareto front.",)
+        ),
+        Table.of(
+            document["matched"],
             matched,
             title="Each surrogate, and the fastest finite-element mesh whose error is not larger:",
         ),

@@ -7,7 +7,7 @@ from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Part
 from tipoff.studies.render.palette import AMBER, NAVY, VERMILION
-from tipoff.studies.render.table import Column, Noted, Table, number
+from tipoff.studies.render.table import Cells, Column, Noted, Table, number
 
 CAPTION = (
     "Processor time on {condition}: of a whole run of the reference, of the time loop of the "
@@ -137,16 +137,15 @@ def _step(law: dict) -> str:
 
 
 def _meshes(law: dict) -> Table:
-    columns = {
-        "element_size_m": Column("element size", "mm", "g", 1e3),
-        "n": Column("elements"),
-        "steps": Column("steps", form=",.0f"),
-        "time_s": Column("time of a run", "s"),
-        "step_s": Column("time of a step", "µs", scale=1e6),
-        "repeats": Column("runs"),
-    }
-    rows = [[point[name] for name in columns] for point in law["points"]]
-    return Table(list(columns.values()), rows)
+    columns: Cells = (
+        (Column("element size", "mm", "g", 1e3), "element_size_m"),
+        ("elements", "n"),
+        (Column("steps", form=",.0f"), "steps"),
+        (Column("time of a run", "s"), "time_s"),
+        (Column("time of a step", "µs", scale=1e6), "step_s"),
+        ("runs", "repeats"),
+    )
+    return Table.of(law["points"], columns)
 
 
 def _pads(laws: list[dict]) -> Table:

@@ -3,7 +3,7 @@
 from tipoff.lowfi.numerics import AUTO
 from tipoff.studies.core.words import counted
 from tipoff.studies.render.document import Part
-from tipoff.studies.render.table import Column, Table, number, percent
+from tipoff.studies.render.table import Cells, Column, Table, number, percent
 
 _NOTE = (
     "Errors are those of single runs on the mesh of the reference, the largest of the three axes. Times "
@@ -16,26 +16,21 @@ def table(found: dict) -> list[Part]:
     """Agreement and cost by rail modes; nothing where the rails have none."""
     if not (own := found.get("own_modes")):
         return []
-    rows = [
+    columns: Cells = (
+        ("modes of each rail", lambda row: _words(row["modes"], own["held"], found["modes"])),
         (
-            _words(row["modes"], own["held"], found["modes"]),
-            percent(row["within_gate"], ".1f"),
-            row["median"],
-            row["most"],
-            1e3 * row["cpu_s"],
-            None if row["case_s"] is None else 1e3 * row["case_s"],
-        )
-        for row in own["rows"]
-    ]
-    heads: tuple[Column | str, ...] = (
-        "modes of each rail",
-        f"within {found['gate_deg_s']:g} deg/s (%)",
-        Column("median error", "deg/s", ".2g"),
-        Column("largest", "deg/s", ".2g"),
-        Column("single run", "ms", ".2g"),
-        Column("case of a population", "ms", ".2g"),
+            f"within {found['gate_deg_s']:g} deg/s (%)",
+            lambda row: percent(row["within_gate"], ".1f"),
+        ),
+        (Column("median error", "deg/s", ".2g"), "median"),
+        (Column("largest", "deg/s", ".2g"), "most"),
+        (Column("single run", "ms", ".2g"), lambda row: 1e3 * row["cpu_s"]),
+        (
+            Column("case of a population", "ms", ".2g"),
+            lambda row: None if row["case_s"] is None else 1e3 * row["case_s"],
+        ),
     )
-    return [Table(heads, rows, (_NOTE,))]
+    return [Table.of(own["rows"], columns, notes=(_NOTE,))]
 
 
 def sentences(found: dict) -> list[str]:

@@ -7,7 +7,7 @@ from tipoff.studies.populations import population
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
-from tipoff.studies.render.table import Column, Table, estimate, percent, span
+from tipoff.studies.render.table import Cells, Column, Table, estimate, percent, span
 from tipoff.studies.render.uncertain import LEAST, number, uncertain
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
@@ -271,18 +271,14 @@ def _quantiles(found: dict) -> Table:
 
 def table_of_tails(found: dict) -> Table:
     """Probability above each limit, with bounds."""
-    rows = [
-        (
-            row["limit"],
-            f"{row['above']:,} of {row['cases']:,}",
-            row["share"],
-            span(row["low"], row["high"]),
-        )
-        for row in found["tails"]
-    ]
-    heads = ("limit", "cases above", "probability above", "95 % bounds (Clopper and Pearson)")
+    columns: Cells = (
+        ("limit", "limit"),
+        ("cases above", lambda row: f"{row['above']:,} of {row['cases']:,}"),
+        ("probability above", "share"),
+        ("95 % bounds (Clopper and Pearson)", lambda row: span(row["low"], row["high"])),
+    )
     note = "The magnitude of a rate is compared. A case that did not settle counts as above."
-    return Table(heads, rows, (note,))
+    return Table.of(found["tails"], columns, notes=(note,))
 
 
 def _readings(found: dict) -> Table:

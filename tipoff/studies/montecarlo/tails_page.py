@@ -6,7 +6,7 @@ from tipoff.studies.populations import population
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
-from tipoff.studies.render.table import Column, Table, estimate, number, percent, span
+from tipoff.studies.render.table import Cells, Column, Table, estimate, number, percent, span
 
 _NAMES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
 _TOTAL, _MEDIAN = "rate_deg_s", 0.5
@@ -212,26 +212,18 @@ def _diagonal(x: list[float], y: list[float]) -> Line:
 
 def by_contacts(found: dict) -> Table:
     """Errors by the number of contacts."""
-    rows = [
+    columns: Cells = (
+        ("contacts", "contacts"),
+        ("draws", "draws"),
+        (Column("median error", "deg/s", ".2g"), "median"),
+        (Column("largest", "deg/s", ".2g"), "most"),
         (
-            row["contacts"],
-            row["draws"],
-            row["median"],
-            row["most"],
-            percent(row["within_gate"], ".0f"),
-            _percents(row["low"], row["high"]),
-        )
-        for row in found["contacts"]
-    ]
-    heads: tuple[Column | str, ...] = (
-        "contacts",
-        "draws",
-        Column("median error", "deg/s", ".2g"),
-        Column("largest", "deg/s", ".2g"),
-        f"within {found['gate_deg_s']:g} deg/s (%)",
-        "95 % bounds",
+            f"within {found['gate_deg_s']:g} deg/s (%)",
+            lambda row: percent(row["within_gate"], ".0f"),
+        ),
+        ("95 % bounds", lambda row: _percents(row["low"], row["high"])),
     )
-    return Table(heads, rows, (_CONTACTS,))
+    return Table.of(found["contacts"], columns, notes=(_CONTACTS,))
 
 
 def _percents(low: float | None, high: float | None) -> str:

@@ -10,7 +10,7 @@ from tipoff.studies.populations import answers
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
-from tipoff.studies.render.table import Column, Table
+from tipoff.studies.render.table import Cells, Column, Table
 
 _AXES = tuple(zip("xyz", (NAVY, VERMILION, AMBER), ("o", "s", "^")))
 _NINE = ("largest_error_deg_s", "largest error of nine rates, deg/s")
@@ -331,30 +331,17 @@ def _headline(found: dict) -> list[Part]:
 
 def table_of_inputs(found: dict) -> Table:
     """One row for each input of the search."""
-    rows = [
-        (
-            item["name"].replace("_", " "),
-            item["unit"],
-            item["low"],
-            item["high"],
-            item["best"],
-            item["from"],
-            item["to"],
-            item["share"],
-        )
-        for item in found["inputs"]
-    ]
-    heads: tuple[Column | str, ...] = (
-        "input",
-        "unit",
-        "lower bound",
-        "upper bound",
-        Column("best", form=".4g"),
-        "admissible from",
-        "admissible to",
-        Column("share of the bounds", "%", ".0f", 100.0),
+    columns: Cells = (
+        ("input", lambda item: item["name"].replace("_", " ")),
+        ("unit", "unit"),
+        ("lower bound", "low"),
+        ("upper bound", "high"),
+        (Column("best", form=".4g"), "best"),
+        ("admissible from", "from"),
+        ("admissible to", "to"),
+        (Column("share of the bounds", "%", ".0f", 100.0), "share"),
     )
-    return Table(heads, rows, tuple(_admissible(found)), dense=True)
+    return Table.of(found["inputs"], columns, notes=tuple(_admissible(found)), dense=True)
 
 
 def _reasons(found: list[dict]) -> Table:

@@ -10,7 +10,7 @@ from tipoff.studies.peers.case import OURS
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Heading, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
-from tipoff.studies.render.table import Column, Table
+from tipoff.studies.render.table import Cells, Column, Table
 from tipoff.studies.render.uncertain import number
 
 if TYPE_CHECKING:
@@ -83,27 +83,23 @@ def equal_error(peers: list[dict]) -> Table:
 
 
 def _versions(peers: list[dict]) -> Table:
-    rows = [
+    columns: Cells = (
+        ("code", "peer"),
+        ("kind", lambda peer: peer.get("what", "")),
+        ("version", lambda peer: peer.get("version") or f"missing: {peer['missing']}"),
         (
-            peer["peer"],
-            peer.get("what", ""),
-            peer.get("version") or f"missing: {peer['missing']}",
-            max((abs(value) for value in _tightest(peer)), default=None),
-        )
-        for peer in peers
-    ]
-    columns = (
-        "code",
-        "kind",
-        "version",
-        Column("largest difference with equal models", form=".2g"),
+            Column("largest difference with equal models", form=".2g"),
+            lambda peer: max((abs(value) for value in _tightest(peer)), default=None),
+        ),
     )
     machines = {peer["hardware"]["processor"] for peer in peers if "hardware" in peer}
     note = (
         "A difference is relative to the largest value of its quantity in the table. Equal models: "
         f"the rows whose limit is {_EQUAL:g} or less."
     )
-    return Table(columns, rows, (note, f"Machine: {', '.join(sorted(machines)) or 'none'}."))
+    return Table.of(
+        peers, columns, notes=(note, f"Machine: {', '.join(sorted(machines)) or 'none'}.")
+    )
 
 
 def _tightest(peer: dict) -> list[float]:
@@ -117,29 +113,19 @@ def _tightest(peer: dict) -> list[float]:
 
 
 def _table(peer: dict, case: dict) -> Table:
-    columns = (
-        "setting",
-        "quantity",
-        "unit",
-        Column("tipoff", form=".7g"),
-        Column(peer["peer"], form=".7g"),
-        Column("difference", form=".1e"),
-        Column("limit", form=".0e"),
-        Column("tipoff", "CPU s", form=".3g"),
-        Column(peer["peer"], "CPU s", form=".3g"),
+    columns: Cells = (
+        ("setting", "setting"),
+        ("quantity", "quantity"),
+        ("unit", "unit"),
+        (Column("tipoff", form=".7g"), "ours"),
+        (Column(peer["peer"], form=".7g"), "theirs"),
+        (Column("difference", form=".1e"), "difference"),
+        (Column("limit", form=".0e"), "within"),
+        (Column("tipoff", "CPU s", form=".3g"), "ours_cpu_s"),
+        (Column(peer["peer"], "CPU s", form=".3g"), "theirs_cpu_s"),
     )
     rows = [
-        (
-            row["setting"],
-            row["quantity"],
-            row["unit"],
-            row["ours"],
-            row["theirs"],
-            difference,
-            row["within"],
-            row["ours_cpu_s"],
-            row["theirs_cpu_s"],
-        )
+        {**row, "difference": difference}
         for row, difference in zip(case["rows"], stage.differences(case["rows"]))
     ]
     notes = (
@@ -147,7 +133,7 @@ def _table(peer: dict, case: dict) -> Table:
         f"Not matched: {case['unmatched']}.",
         f"Inputs: {', '.join(f'{name} {value}' for name, value in case['inputs'].items())}.",
     )
-    return Table(columns, rows, notes)
+    return Table.of(rows, columns, notes=notes)
 
 
 def picture(peers: list[dict]) -> Chart:

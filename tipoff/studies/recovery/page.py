@@ -11,27 +11,17 @@ def draw(found: dict) -> list[Part]:
     draws = asked["draws"]
     role = "fitted too" if held["condition"] in found["conditions"] else "held out"
     return [
-        Table(
+        Table.of(
+            found["rows"],
             (
-                "hidden parameter",
-                f"inside the 95 % interval, of {draws}",
-                f"inside with model error, of {draws}",
-                "not determined",
-                Column("median half width", form=".3g"),
-                "unit",
+                ("hidden parameter", lambda row: f"`{row['parameter']}`"),
+                (f"inside the 95 % interval, of {draws}", "covered"),
+                (f"inside with model error, of {draws}", "covered_with_model_error"),
+                ("not determined", "undetermined"),
+                (Column("median half width", form=".3g"), "half_width"),
+                ("unit", "unit"),
             ),
-            [
-                (
-                    f"`{row['parameter']}`",
-                    row["covered"],
-                    row["covered_with_model_error"],
-                    row["undetermined"],
-                    row["half_width"],
-                    row["unit"],
-                )
-                for row in found["rows"]
-            ],
-            (
+            notes=(
                 f"Curves of the surrogate on {', '.join(found['conditions'])} with "
                 f"{100.0 * asked['noise']:g} % of noise, fitted from the scene's values. Settled "
                 f"rates of {held['condition']}, which is {role}, are within "
@@ -40,25 +30,16 @@ def draw(found: dict) -> list[Part]:
                 "deg/s.",
             ),
         ),
-        Table(
+        Table.of(
+            reference["rows"],
             (
-                "hidden in the reference",
-                Column("hidden", form=".4g"),
-                Column("found", form=".4g"),
-                "95 % interval with model error",
-                "unit",
+                ("hidden in the reference", lambda row: f"`{row['parameter']}`"),
+                (Column("hidden", form=".4g"), "hidden"),
+                (Column("found", form=".4g"), lambda row: constant(row["found"], row["interval"])),
+                ("95 % interval with model error", lambda row: interval(row["interval"])),
+                ("unit", "unit"),
             ),
-            [
-                (
-                    f"`{row['parameter']}`",
-                    row["hidden"],
-                    constant(row["found"], row["interval"]),
-                    interval(row["interval"]),
-                    row["unit"],
-                )
-                for row in reference["rows"]
-            ],
-            (
+            notes=(
                 f"One run of the finite elements, {reference['condition']}, in elements of "
                 f"{1e3 * reference['element_size_m']:g} mm.",
             ),

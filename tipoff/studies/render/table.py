@@ -3,7 +3,7 @@
 import io
 import re
 import shutil
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from numbers import Integral, Real
 from typing import Any
@@ -93,6 +93,10 @@ class Noted:
     remark: str
 
 
+Cells = Sequence[tuple[Column | str, str | Callable[[Any], Any]]]
+"""Columns with their cells: the key of the cell in a record, or what makes the cell of the record."""
+
+
 @dataclass(frozen=True)
 class Table:
     """``columns`` by title or as records, and ``rows`` of cells.
@@ -111,6 +115,15 @@ class Table:
     name: str = ""
     kinds: Sequence[str] = ()
     dense: bool = False
+
+    @classmethod
+    def of(cls, records: Iterable[Any], columns: Cells, **others: Any) -> "Table":
+        """The table with a row for each of the ``records``; ``others`` are further fields."""
+        rows = [
+            tuple(cell(record) if callable(cell) else record[cell] for _, cell in columns)
+            for record in records
+        ]
+        return cls([column for column, _ in columns], rows, **others)
 
     @property
     def heads(self) -> list[str]:

@@ -9,7 +9,7 @@ from tipoff.studies.convergence import summary
 from tipoff.studies.core.study import read
 from tipoff.studies.cost import scaling_page
 from tipoff.studies.render.document import Bullets, Part, markdown
-from tipoff.studies.render.table import Column, Table, number
+from tipoff.studies.render.table import Cells, Column, Table, number
 
 
 def details(folder: Path) -> str:
@@ -42,30 +42,21 @@ def distributions(found: list[dict]) -> list[Part]:
 
 
 def _cost(found: dict) -> Table:
-    rows = [
+    columns: Cells = (
+        ("model", lambda row: f"{row['model']}, {row['numerics']}"),
+        (Column("error, deg/s", form=".2g"), "error_deg_s"),
+        (Column("wall time, ms", form=".2g", scale=1e3), "wall_s"),
+        ("mesh", "mesh"),
         (
-            f"{row['model']}, {row['numerics']}",
-            row["error_deg_s"],
-            row["wall_s"],
-            row["mesh"],
-            "reference" if row["mesh_error_deg_s"] is None else row["mesh_error_deg_s"],
-            row["mesh_wall_s"],
-            row["ratio"],
-        )
-        for row in found["matched"]
-    ]
-    heads = (
-        "model",
-        Column("error, deg/s", form=".2g"),
-        Column("wall time, ms", form=".2g", scale=1e3),
-        "mesh",
-        Column("its error, deg/s", form=".2g"),
-        "wall time, s",
-        Column("times as long", form=",.0f"),
+            Column("its error, deg/s", form=".2g"),
+            lambda row: "reference" if row["mesh_error_deg_s"] is None else row["mesh_error_deg_s"],
+        ),
+        ("wall time, s", "mesh_wall_s"),
+        (Column("times as long", form=",.0f"), "ratio"),
     )
-    return Table(
-        heads,
-        rows,
+    return Table.of(
+        found["matched"],
+        columns,
         title=f"What the same accuracy costs (`make cost`, {found['condition']}): each surrogate, "
         "and the coarsest mesh that is no less exact.",
     )
@@ -151,19 +142,19 @@ def _changes(found: dict) -> Table:
 
 def _bench(rows: list[dict]) -> Table:
     first = rows[0]
-    columns: dict[str, Column | str] = {
-        "elements": "elements",
-        "ns_per_element_step": Column("this solver", form=".2f"),
-        "ns_free": Column("without contact", form=".2f"),
-        "ns_one_thread": Column("one thread", form=".2f"),
-        "baseline_ns_per_element_step": Column("SciPy matrix and NumPy", form=".0f"),
-        "ratio": Column("ratio", form=".0f"),
-        "bytes_per_element": Column("bytes per element", form=".0f"),
-        "projected_40_ms_s": Column("40 ms would take, h", form=".2g", scale=1.0 / 3600.0),
-    }
-    return Table(
-        list(columns.values()),
-        [[row[name] for name in columns] for row in rows],
+    columns: Cells = (
+        ("elements", "elements"),
+        (Column("this solver", form=".2f"), "ns_per_element_step"),
+        (Column("without contact", form=".2f"), "ns_free"),
+        (Column("one thread", form=".2f"), "ns_one_thread"),
+        (Column("SciPy matrix and NumPy", form=".0f"), "baseline_ns_per_element_step"),
+        (Column("ratio", form=".0f"), "ratio"),
+        (Column("bytes per element", form=".0f"), "bytes_per_element"),
+        (Column("40 ms would take, h", form=".2g", scale=1.0 / 3600.0), "projected_40_ms_s"),
+    )
+    return Table.of(
+        rows,
+        columns,
         title=f"Speed of the reference solver (`make bench`, {first['threads']} threads on "
         f"{first['hardware']['processor']}), wall ns per element and step with "
         f"{first['faces_in_contact']} pad faces pressed:",
@@ -174,16 +165,16 @@ def _surrogate(found: dict) -> Table:
     many = " and ".join(
         f"{row['cpu_ms_per_case']:.3f} ms on {row['method']}" for row in found["ensembles"]
     )
-    columns: dict[str, Column | str] = {
-        "error_percent": Column("error, %", form="g"),
-        "method": "method",
-        "cpu_ms": Column("time", form=".3f"),
-        "run_cpu_ms": Column("with curves", form=".2f"),
-        "run_auto_cpu_ms": Column("with curves and modes chosen", form=".2f"),
-    }
-    return Table(
-        list(columns.values()),
-        [[row[name] for name in columns] for row in found["single"]],
+    columns: Cells = (
+        (Column("error, %", form="g"), "error_percent"),
+        ("method", "method"),
+        (Column("time", form=".3f"), "cpu_ms"),
+        (Column("with curves", form=".2f"), "run_cpu_ms"),
+        (Column("with curves and modes chosen", form=".2f"), "run_auto_cpu_ms"),
+    )
+    return Table.of(
+        found["single"],
+        columns,
         title="Speed of the surrogate (`make bench`), processor ms per case on one core at the "
         f"same error of the settled rate (95th percentile of {found['varied_cases']} varied "
         f"cases); an ensemble of {found['ensembles'][0]['cases']:,} takes {many} per case at "

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from tipoff.studies.core.words import counted
 from tipoff.studies.render.document import Caption, Image, Notice, Part
-from tipoff.studies.render.table import Column, Table
+from tipoff.studies.render.table import Cells, Column, Table
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
@@ -37,36 +37,34 @@ def shown(rows: list[dict], views: list[dict], folder: Path, command: str) -> li
         "convergence study uses means over patches of 4 mm. Rails are elastic; strains and "
         "rotations are small."
     )
-    columns = (
-        "condition",
-        Column("peak von Mises", "MPa", ".3g", 1e-6),
-        Column("of yield", "%", scale=100.0),
-        "x, y, z (mm)",
-        "rail",
-        Column("at", "ms", ".4g", 1e3),
-        Column("largest strain", "%", ".2g", 100.0),
-        Column("largest rotation", "deg", ".2g"),
+    columns: Cells = (
+        ("condition", "condition"),
+        (Column("peak von Mises", "MPa", ".3g", 1e-6), "peak_stress_pa"),
+        (Column("of yield", "%", scale=100.0), _of_yield),
+        ("x, y, z (mm)", _place),
+        ("rail", "peak_stress_rail"),
+        (Column("at", "ms", ".4g", 1e3), "peak_stress_time_s"),
+        (Column("largest strain", "%", ".2g", 100.0), "largest_strain"),
+        (
+            Column("largest rotation", "deg", ".2g"),
+            lambda row: math.degrees(row["largest_rotation_rad"]),
+        ),
     )
     return [
         *map(Notice, warnings),
-        Table(columns, [_row(row) for row in measured], (note,), dense=True),
+        Table.of(measured, columns, notes=(note,), dense=True),
         *(part for view in views for part in _pictures(view, folder)),
         *([] if views else [_how(command)]),
     ]
 
 
-def _row(row: dict) -> tuple:
+def _of_yield(row: dict) -> float | None:
     strength = row["yield_strength_pa"]
-    return (
-        row["condition"],
-        row["peak_stress_pa"],
-        None if strength is None else row["peak_stress_pa"] / strength,
-        ", ".join(f"{1e3 * value:.5g}" for value in row["peak_stress_place_m"]),
-        row["peak_stress_rail"],
-        row["peak_stress_time_s"],
-        row["largest_strain"],
-        math.degrees(row["largest_rotation_rad"]),
-    )
+    return None if strength is None else row["peak_stress_pa"] / strength
+
+
+def _place(row: dict) -> str:
+    return ", ".join(f"{1e3 * value:.5g}" for value in row["peak_stress_place_m"])
 
 
 def _pictures(view: dict, folder: Path) -> Iterator[Part]:

@@ -12,7 +12,7 @@ from tipoff.studies.populations import answers, population
 from tipoff.studies.render.chart import Chart, Line, Panel, Picture
 from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
-from tipoff.studies.render.table import Column, Table, span
+from tipoff.studies.render.table import Cells, Column, Table, span
 from tipoff.studies.render.uncertain import Measured
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s", "rate_deg_s")
@@ -233,21 +233,20 @@ def _moved(row: dict) -> tuple:
 
 def _inputs(sobol: dict) -> Fold:
     """The inputs that vary with their distributions and provenance, and those that do not."""
-    rows = [
-        (
-            name_of(item["key"]),
-            item["distribution"] + (" factor" if item["factor"] else ""),
-            item["nominal"],
-            span(item["low"], item["high"], ".4g"),
-            item["unit"] or "SI",
-            item["provenance"],
-        )
-        for item in sobol["inputs"]
-    ]
+    columns: Cells = (
+        ("input", lambda item: name_of(item["key"])),
+        ("distribution", lambda item: item["distribution"] + (" factor" if item["factor"] else "")),
+        (Column("nominal", form=".4g"), "nominal"),
+        ("95 % within", lambda item: span(item["low"], item["high"], ".4g")),
+        ("unit", lambda item: item["unit"] or "SI"),
+        ("provenance", "provenance"),
+    )
     left = [f"{name_of(key)}: {reason}" for key, reason in sobol["left_out"].items()]
-    nominal = Column("nominal", form=".4g")
-    heads = ("input", "distribution", nominal, "95 % within", "unit", "provenance")
-    parts = [Table(heads, rows, dense=True), "Left out:" if left else "", Bullets(left)]
+    parts = [
+        Table.of(sobol["inputs"], columns, dense=True),
+        "Left out:" if left else "",
+        Bullets(left),
+    ]
     return Fold("Inputs and their distributions", parts)
 
 

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from tipoff.studies.render.document import Part
-from tipoff.studies.render.table import Column, Noted, Table
+from tipoff.studies.render.table import Cells, Column, Noted, Table
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
@@ -24,39 +24,29 @@ def draw(page: "Page") -> list[Part]:
 
 def stability(document: dict) -> Table:
     """Hard cases, held or not, each with a simpler method that fails."""
-    columns = (
-        "case",
-        "model",
-        "measured",
-        "limit",
-        Column("largest step", "µs", scale=1e6),
-        Column("critical step", "µs", scale=1e6),
-        Column("energy drift", form=".2g"),
-        "simpler method",
-        "its figure",
-        "verdict",
-    )
-    rows = [
+    columns: Cells = (
         (
-            Noted(c["name"], f"{c['measure']}; {c['note']}" if c["note"] else c["measure"]),
-            c["fidelity"],
-            _figure(c["figure"]),
-            c["limit"],
-            c["largest_step_s"],
-            c["critical_step_s"],
-            c["energy_drift"],
-            c["control"],
-            _figure(c["control_figure"]),
-            _verdict(c),
-        )
-        for c in document["cases"]
-    ]
+            "case",
+            lambda c: Noted(
+                c["name"], f"{c['measure']}; {c['note']}" if c["note"] else c["measure"]
+            ),
+        ),
+        ("model", "fidelity"),
+        ("measured", lambda c: _figure(c["figure"])),
+        ("limit", "limit"),
+        (Column("largest step", "µs", scale=1e6), "largest_step_s"),
+        (Column("critical step", "µs", scale=1e6), "critical_step_s"),
+        (Column("energy drift", form=".2g"), "energy_drift"),
+        ("simpler method", "control"),
+        ("its figure", lambda c: _figure(c["control_figure"])),
+        ("verdict", _verdict),
+    )
     kinds = ["good" if c["held"] and c["control_failed"] else "bad" for c in document["cases"]]
-    return Table(
+    return Table.of(
+        document["cases"],
         columns,
-        rows,
-        (_NOTE,),
-        "For each case, a simpler method must fail: otherwise the case proves nothing.",
+        notes=(_NOTE,),
+        title="For each case, a simpler method must fail: otherwise the case proves nothing.",
         kinds=kinds,
         dense=True,
     )
@@ -64,14 +54,17 @@ def stability(document: dict) -> Table:
 
 def terminal(document: dict) -> list[Part]:
     """Each hard case with its verdict."""
-    columns = ("case", "model", "measured", "limit", "simpler method", "verdict")
-    rows = [
-        [c["name"], c["fidelity"], _figure(c["figure"]), c["limit"], c["control"], _verdict(c)]
-        for c in document["cases"]
-    ]
+    columns: Cells = (
+        ("case", "name"),
+        ("model", "fidelity"),
+        ("measured", lambda c: _figure(c["figure"])),
+        ("limit", "limit"),
+        ("simpler method", "control"),
+        ("verdict", _verdict),
+    )
     good = sum(c["held"] and c["control_failed"] for c in document["cases"])
-    title = f"{good} of {len(rows)} hard cases are held where a simpler method fails:"
-    return [Table(columns, rows, title=title)]
+    title = f"{good} of {len(document['cases'])} hard cases are held where a simpler method fails:"
+    return [Table.of(document["cases"], columns, title=title)]
 
 
 def _figure(value: float | None) -> float | str:

@@ -3,17 +3,17 @@ reason for a plateau, and the figures."""
 
 from tipoff.studies.populations import answers, population
 from tipoff.studies.render.document import Bullets, Caption, Figure, Fold, Heading, Part
-from tipoff.studies.render.table import Column, Noted, Table, number, percent, span
+from tipoff.studies.render.table import Cells, Column, Noted, Table, number, percent, span
 from tipoff.studies.sweeps.figures import pictures
 from tipoff.studies.sweeps.knee import LEVEL, MISFIT
 
 _SHORT = {"rate_x_deg_s": "x", "rate_y_deg_s": "y", "rate_z_deg_s": "z", "rate_deg_s": "total"}
-_RUN = (
-    Column("thrust, times as long", form="g"),
-    "cases",
-    "did not settle",
-    Column("exit", "ms", scale=1e3),
-    Column("impulse after the exit", "%", ".2g", 100.0),
+_RUN: Cells = (
+    (Column("thrust, times as long", form="g"), "stretch"),
+    ("cases", lambda launch: launch["cases"]["asked"]),
+    ("did not settle", "not_settled"),
+    (Column("exit", "ms", scale=1e3), "exit_s"),
+    (Column("impulse after the exit", "%", ".2g", 100.0), "share_after_exit"),
 )
 _VERDICT = (
     "error",
@@ -51,7 +51,7 @@ _REASON = (
 def draw(found: dict) -> list[Part]:
     """The section: runs, verdicts, the reason for a plateau, figures."""
     launches = found["launches"]
-    parts: list[Part] = [Bullets([population.model_line(found)]), _counts(launches)]
+    parts = _runs(found)
     for launch in launches:
         parts += [
             Heading(_title(launch)),
@@ -65,32 +65,20 @@ def draw(found: dict) -> list[Part]:
 
 def summary(found: dict) -> list[Part]:
     """Runs, verdicts and the largest values, for the terminal."""
-    parts: list[Part] = [Bullets([population.model_line(found)]), _counts(found["launches"])]
+    parts = _runs(found)
     for launch in found["launches"]:
         parts += [Heading(_title(launch)), table_of_verdicts(launch), table_of_largest(launch)]
     return parts
+
+
+def _runs(found: dict) -> list[Part]:
+    return [Bullets([population.model_line(found)]), Table.of(found["launches"], _RUN)]
 
 
 def _title(launch: dict) -> str:
     if launch["stretch"] == 1.0:
         return "The launcher as given"
     return f"With a thrust {launch['stretch']:g} times as long and the same impulse"
-
-
-def _counts(launches: list[dict]) -> Table:
-    return Table(
-        _RUN,
-        [
-            (
-                item["stretch"],
-                item["cases"]["asked"],
-                item["not_settled"],
-                item["exit_s"],
-                item["share_after_exit"],
-            )
-            for item in launches
-        ],
-    )
 
 
 def table_of_verdicts(launch: dict) -> Table:
