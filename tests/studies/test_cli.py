@@ -14,8 +14,7 @@ from tests.studies.synthetic import flight
 from tests.written_names import RUN_ROW
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import CATALOG
-from tipoff.studies.cli import app
-from tipoff.studies.commands.helptext import flowed
+from tipoff.studies.cli import app, flowed
 from tipoff.studies.core import store as store_module
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -11,7 +11,6 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.helptext import flowed
 from tipoff.studies.commands.options import Json
 from tipoff.studies.commands.running import Output, guarded
 from tipoff.studies.new_scene.command import new, schema
@@ -106,6 +105,14 @@ def doctor() -> None:
     raise typer.Exit(check.main())
 
 
+def flowed(text: str) -> str:
+    """``text`` with each paragraph on one line; indented paragraphs are unchanged."""
+    paragraphs = inspect.cleandoc(text).split("\n\n")
+    return "\n\n".join(
+        item if item.startswith(" ") else " ".join(item.split()) for item in paragraphs
+    )
+
+
 def _commands(entries: tuple[Entry, ...]) -> list[Callable[..., None]]:
     return [command for entry in entries for command in entry.commands]
 
@@ -119,7 +126,7 @@ _GROUPS: dict[str, list[Callable[..., None]]] = {
 }
 for _title, _members in _GROUPS.items():
     for _command in _members:
-        _help = flowed(inspect.getdoc(_command) or "")
+        _help = flowed(_command.__doc__ or "")
         app.command(help=_help, rich_help_panel=_title)(_command)
 
 if __name__ == "__main__":

@@ -53,10 +53,11 @@ class Entry:
 
 
 class Parts(NamedTuple):
-    """The functions of a study with one result; ``draw`` makes the parts of its section."""
+    """The functions of a study with one result, of which ``run`` and ``stored`` are those of its
+    ``Result``; ``draw`` makes the parts of its section."""
 
     run: Callable[["Study"], dict]
-    stored: Callable[["Study"], dict | None]
+    stored: Callable[["Study"], dict | None] | None
     draw: Callable[[dict], "list[Part]"]
 
 

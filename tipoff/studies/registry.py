@@ -33,8 +33,8 @@ COMPARISON: tuple[Entry, ...] = (
     calibration.ENTRY,
     agreement.ENTRY,
     cost.ENTRY,
-    stability.ENTRY,
-    ablation.ENTRY,
+    stability.QUESTION,
+    ablation.QUESTION,
     convergence.ENTRY,
     view.ENTRY,
 )

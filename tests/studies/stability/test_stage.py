@@ -3,9 +3,9 @@ drift are real figures."""
 
 import pytest
 
-from tipoff.studies.render.table import html
+from tests.studies.shown import html
 from tipoff.studies.stability import contacts, guides, thrusts
-from tipoff.studies.stability.page import stability
+from tipoff.studies.stability.page import draw
 
 # The scenes of the table compile kernels of their own. `make report` computes the table, and the
 # same cases are tests of the surrogate in tests/lowfi.
@@ -32,7 +32,7 @@ def test_case_holds_and_its_control_fails(verdicts, name):
 
 
 def test_table_shows_steps_in_microseconds(verdicts):
-    page = html(stability({"cases": [found._asdict() for found in verdicts.values()]}))
+    page = html(draw({"cases": [found._asdict() for found in verdicts.values()]}))
     assert "7.56" in page and "largest step (µs)" in page and page.count("<tr") == len(CHEAP) + 1
     assert page.count('class="good"') == len(CHEAP)
 
@@ -41,7 +41,7 @@ def test_a_case_that_does_not_hold_is_marked(verdicts):
     """Control: one wrong figure, one control that holds too."""
     missed = verdicts["stiff_pad"]._replace(held=False)
     useless = verdicts["stiff_pad"]._replace(control_failed=False)
-    page = html(stability({"cases": [missed._asdict(), useless._asdict()]}))
+    page = html(draw({"cases": [missed._asdict(), useless._asdict()]}))
     assert (
         page.count('class="bad"') == 2
         and "not held" in page

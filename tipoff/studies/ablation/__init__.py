@@ -1,16 +1,13 @@
 """Runs without each effect, one at a time: change of the result and of the time."""
 
 from tipoff.studies.ablation import command
-from tipoff.studies.question import Contents, Entry, Result, Section
+from tipoff.studies.question import Parts, Question
 
 
-def _load() -> Contents:
+def _load() -> Parts:
     from tipoff.studies.ablation import page, stage
 
-    return Contents(
-        (Result("ablation", stage.run),),
-        (Section("ablation", "Ablation", page.draw, "Runs without each effect"),),
-    )
+    return Parts(stage.run, None, page.draw)
 
 
-ENTRY = Entry((command.ablation,), _load)
+QUESTION = Question("ablation", "Runs without each effect", "Ablation", command.ablation, _load)

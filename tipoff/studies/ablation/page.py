@@ -1,12 +1,7 @@
 """Runs without each effect, on the page."""
 
-from typing import TYPE_CHECKING
-
 from tipoff.studies.render.document import Part
 from tipoff.studies.render.table import Cells, Column, Table
-
-if TYPE_CHECKING:
-    from tipoff.studies.report.page import Page
 
 _COLUMNS: Cells = (
     ("model", "fidelity"),
@@ -18,12 +13,7 @@ _COLUMNS: Cells = (
 _CHANGE = "settled_rate_change_deg_s"
 
 
-def draw(page: "Page") -> list[Part]:
-    """The table, or how to make the result."""
-    return page.shown("ablation", lambda found: [ablation(found)], "ablation")
-
-
-def ablation(document: dict) -> Table:
+def draw(document: dict) -> list[Part]:
     """Time and settled rates of both fidelities without each effect."""
     columns: Cells = (
         *_COLUMNS,
@@ -40,7 +30,7 @@ def ablation(document: dict) -> Table:
         f"{1e3 * document['element_size_m']:g} mm, the time loop alone of the surrogate on "
         "compliant contact."
     )
-    return Table.of(document["rows"], columns, notes=(note,))
+    return [Table.of(document["rows"], columns, notes=(note,))]
 
 
 def terminal(document: dict) -> list[Part]:

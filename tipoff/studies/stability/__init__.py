@@ -1,16 +1,13 @@
 """Hard cases, each with a simpler method that fails on it."""
 
-from tipoff.studies.question import Contents, Entry, Result, Section
+from tipoff.studies.question import Parts, Question
 from tipoff.studies.stability import command
 
 
-def _load() -> Contents:
+def _load() -> Parts:
     from tipoff.studies.stability import page, stage
 
-    return Contents(
-        (Result("stability", stage.run),),
-        (Section("stability", "Hard cases", page.draw, "Hard cases"),),
-    )
+    return Parts(stage.run, None, page.draw)
 
 
-ENTRY = Entry((command.stability,), _load)
+QUESTION = Question("stability", "Hard cases", "Hard cases", command.stability, _load)

@@ -1,12 +1,7 @@
 """Hard cases on the page."""
 
-from typing import TYPE_CHECKING
-
 from tipoff.studies.render.document import Part
 from tipoff.studies.render.table import Cells, Column, Noted, Table
-
-if TYPE_CHECKING:
-    from tipoff.studies.report.page import Page
 
 _NOTE = (
     "Largest step: for the surrogate the smallest value of the proven limit, which no step exceeds; "
@@ -17,12 +12,7 @@ _NOTE = (
 )
 
 
-def draw(page: "Page") -> list[Part]:
-    """The table, or how to make the result."""
-    return page.shown("stability", lambda found: [stability(found)], "stability")
-
-
-def stability(document: dict) -> Table:
+def draw(document: dict) -> list[Part]:
     """Hard cases, held or not, each with a simpler method that fails."""
     columns: Cells = (
         (
@@ -42,14 +32,10 @@ def stability(document: dict) -> Table:
         ("verdict", _verdict),
     )
     kinds = ["good" if c["held"] and c["control_failed"] else "bad" for c in document["cases"]]
-    return Table.of(
-        document["cases"],
-        columns,
-        notes=(_NOTE,),
-        title="For each case, a simpler method must fail: otherwise the case proves nothing.",
-        kinds=kinds,
-        dense=True,
-    )
+    title = "For each case, a simpler method must fail: otherwise the case proves nothing."
+    return [
+        Table.of(document["cases"], columns, notes=(_NOTE,), title=title, kinds=kinds, dense=True)
+    ]
 
 
 def terminal(document: dict) -> list[Part]:

@@ -1,11 +1,17 @@
-"""Stage ``stability``: hard cases of both fidelities, each with a simpler method that fails."""
+"""Stage ``stability``: hard cases of both fidelities, each with a control: a simpler method that
+must fail, else the case proves nothing.
+
+A case is a function without arguments that returns a ``Verdict``.
+"""
 
 from pathlib import Path
 
 from tipoff import sources
 from tipoff.studies.core.progress import Board
 from tipoff.studies.core.study import Study
-from tipoff.studies.stability import cases
+from tipoff.studies.stability import contacts, elastic, guides, thrusts
+
+CASES = {**contacts.CASES, **guides.CASES, **thrusts.CASES, **elastic.CASES}
 
 
 def run(study: Study) -> dict:
@@ -14,9 +20,8 @@ def run(study: Study) -> dict:
 
     def make() -> tuple[dict, list[Path]]:
         found = []
-        listed = cases.cases()
-        with Board("stability", len(listed)) as board:
-            for name, case in listed.items():
+        with Board("stability", len(CASES)) as board:
+            for name, case in CASES.items():
                 board.callback(name)(0.0)
                 found.append(case())
                 board.finished(name, "held" if found[-1].held else "NOT held")
