@@ -153,7 +153,7 @@ def test_cases_that_do_not_settle_elsewhere_are_reported_and_stop_nothing(
     assert models["both_settled"] == 0 and models["quantities"] == []
     both = found | {"models": models}
     assert "No case of 120 settled in both models" in html(pictures.draw(both))
-    assert len(pictures.charts(both)) == 2
+    assert len(pictures.figures(both)) == 2
     assert "no case settled in both models" in terminal(pictures.summary(both))
 
 

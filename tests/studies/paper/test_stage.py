@@ -119,7 +119,7 @@ def test_three_measures_are_drawn_by_pairs(quick):
         "54 deviations": "largest_deviation_error_deg_s",
         "conditions 1 and 5": "largest_negligible_deg_s",
     }
-    trade, beside = section.charts(found)
+    trade, beside = (figure.chart for figure in section.figures(found))
     assert len(trade.panels) == 3 and len(beside.panels) == 2
     pairs = set()
     for panel in trade.panels:

@@ -48,7 +48,7 @@ def test_without_contact_rates_are_the_moment_impulse_over_the_inertia(tmp_path,
     """Rates in proportion to every factor, without a plateau, for both thrusts. Allowed errors:
     0.2 % of integration, and the gyroscopic moment -w x I w, which the closed form leaves out, at its
     last value."""
-    monkeypatch.setattr(sweeps.drawing, "pictures", lambda _: [])
+    monkeypatch.setattr(sweeps.drawing, "figures", lambda _: [])
     study = Study(
         load("reference").replace({"contact": None, "friction": None}),
         tmp_path / "reference",

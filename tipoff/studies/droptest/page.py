@@ -33,18 +33,12 @@ _SIMULATED = (
 
 def draw(found: dict) -> list[Part]:
     """Everything in the section."""
-    rates, cloud = charts(found)
-    shown, settled = len(found["cases"]["shown_deg_s"]), found["cases"]["settled"]
-    words = _CLOUD.format(
-        share=100.0 * found["regions"][0]["share"],
-        shown="" if shown == settled else f", the first {shown:,} of {settled:,},",
-        vary=found["request"]["vary"],
-    )
+    rates, cloud = figures(found)
     return [
         *_warning(found),
-        Figure(rates, _RATES),
+        rates,
         _changes(found["tests"]),
-        Figure(cloud, words),
+        cloud,
         *table_of_comparison(found),
         _budgets(found["tests"]),
         *_notes(found["tests"]),
@@ -76,11 +70,18 @@ def table_of_comparison(found: dict) -> list[Part]:
     return [_standing(found), _together(found), _cases(found["cases"]), _power(found["power"])]
 
 
-def charts(found: dict) -> tuple[Chart, Chart]:
+def figures(found: dict) -> tuple[Figure, Figure]:
     """Filtered rates of every test; the simulated cloud with the tests in it."""
     panels = [panel for row in found["tests"] for panel in _rates(row)]
-    return Chart("droptest-rates", panels, columns=2, height=250), Chart(
-        "droptest-cloud", _clouds(found), columns=2, height=380
+    shown, settled = len(found["cases"]["shown_deg_s"]), found["cases"]["settled"]
+    words = _CLOUD.format(
+        share=100.0 * found["regions"][0]["share"],
+        shown="" if shown == settled else f", the first {shown:,} of {settled:,},",
+        vary=found["request"]["vary"],
+    )
+    return (
+        Figure(Chart("droptest-rates", panels, columns=2, height=250), _RATES),
+        Figure(Chart("droptest-cloud", _clouds(found), columns=2, height=380), words),
     )
 
 

@@ -60,7 +60,7 @@ def run(study: Study, options: Options = Options()) -> dict:
 
     def make() -> tuple[dict, list[Path]]:
         from tipoff.studies.droptest import page
-        from tipoff.studies.render.chart import to_files
+        from tipoff.studies.render.document import to_files
 
         model = population.surrogate(study, options.model, options.condition)
         cases = population.run(study, NAME, model, drawn)
@@ -72,9 +72,7 @@ def run(study: Study, options: Options = Options()) -> dict:
         }
         data = study.path(f"{NAME}.nc")
         signals.write(data, drops)
-        pictures = [
-            path for chart in page.charts(found) for path in to_files(chart, study.path("figures"))
-        ]
+        pictures = to_files(page.figures(found), study.path("figures"))
         return found | {"data": study.relative(data)}, [data, *pictures]
 
     return STAGE.run(study, options, make)

@@ -62,7 +62,7 @@ def draw(found: dict) -> list[Part]:
     """The section."""
     return [
         _setup(found),
-        *(Figure(*item) for item in charts(found)),
+        *figures(found),
         table_of_conditions(found, [item.name for item in answers.ALL], [_EXITS], ".4g"),
         *_flights(found),
         _cases(found["cases"]),
@@ -121,14 +121,14 @@ def _cases(many: dict) -> Table:
     return Table(heads, rows, notes, dense=True)
 
 
-def charts(found: dict) -> list[tuple[Chart, str]]:
+def figures(found: dict) -> list[Figure]:
     """Charts with their captions."""
     curves, flight = found["curves"], found["flight"]
-    drawn = [(_paths(curves, flight), _PATHS), (_axes(curves), _AXES)]
+    drawn = [Figure(_paths(curves, flight), _PATHS), Figure(_axes(curves), _AXES)]
     if any(curve.get("clearance_s") for curve in curves):
-        drawn.append((_clearance(curves), _CLEARANCE))
+        drawn.append(Figure(_clearance(curves), _CLEARANCE))
     if found["cases"]["points_m"]:
-        drawn.append((_scatter(found), _SCATTER))
+        drawn.append(Figure(_scatter(found), _SCATTER))
     return drawn
 
 

@@ -51,18 +51,17 @@ _COLUMNS: tuple[tuple[str, Callable[[dict], Any]], ...] = (
 )
 
 
-def charts(found: dict) -> list[tuple[Chart, str]]:
+def figures(found: dict) -> list[Figure]:
     """Each figure with its caption."""
-    return [(_curves(found), _CURVES.format(**found))] + (
-        [(_map(found), _MAP)] if found["map"] else []
-    )
+    curves = Figure(_curves(found), _CURVES.format(**found))
+    return [curves, Figure(_map(found), _MAP)] if found["map"] else [curves]
 
 
 def draw(found: dict) -> list[Part]:
     """The section."""
     return [
         *summary(found),
-        *(Figure(*each) for each in charts(found)),
+        *figures(found),
         *_beside(found),
         _ADVICE,
     ]

@@ -47,17 +47,13 @@ def run(study: Study, options: Options = Options()) -> dict:
     margin = _margin(study, options)
 
     def make() -> tuple[dict, list[Path]]:
-        from tipoff.studies.limits import page as pictures
-        from tipoff.studies.render.chart import to_files
+        from tipoff.studies.limits import page
+        from tipoff.studies.render.document import to_files
 
         with Board(NAME, 1) as board:
             found = Search(study, options, limits, cases, model, margin, board.callback(NAME)).all()
             board.finished(NAME, f"{found['evaluations']:,} sets of {cases:,} cases")
-        return found, [
-            path
-            for chart, _ in pictures.charts(found)
-            for path in to_files(chart, study.path("figures"))
-        ]
+        return found, to_files(page.figures(found), study.path("figures"))
 
     return STAGE.run(study, options, make)
 

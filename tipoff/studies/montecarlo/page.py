@@ -41,21 +41,21 @@ _PAPER = (
 _DIFFERENT = 0.01  # probability by chance, below which two readings are called different
 
 
-def charts(found: dict) -> list[tuple[Chart, str]]:
+def figures(found: dict) -> list[Figure]:
     """Each figure with its caption."""
     made = [
-        (_histograms(found), _HISTOGRAMS.format(paper_cases=found["paper_cases"])),
-        (_convergence(found), _CONVERGENCE),
+        Figure(_histograms(found), _HISTOGRAMS.format(paper_cases=found["paper_cases"])),
+        Figure(_convergence(found), _CONVERGENCE),
     ]
     models = found["models"]
     if models and models["quantities"]:
-        made.append((_models(models), _MODELS.format(cases=models["cases"])))
+        made.append(Figure(_models(models), _MODELS.format(cases=models["cases"])))
     return made
 
 
 def draw(found: dict) -> list[Part]:
     """The section."""
-    histograms, convergence, *models = [Figure(*each) for each in charts(found)]
+    histograms, convergence, *models = figures(found)
     return [
         Bullets(_run(found)),
         histograms,

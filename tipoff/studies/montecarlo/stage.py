@@ -54,8 +54,8 @@ def run(study: Study, options: Options = Options()) -> dict:
     )
 
     def make() -> tuple[dict, list[Path]]:
-        from tipoff.studies.montecarlo import page as pictures
-        from tipoff.studies.render.chart import to_files
+        from tipoff.studies.montecarlo import page
+        from tipoff.studies.render.document import to_files
 
         found = population.run(study, NAME, population.surrogate(study, options.model), source)
         if (settled := int(found.settled.sum())) < _FEWEST:
@@ -82,11 +82,7 @@ def run(study: Study, options: Options = Options()) -> dict:
             "readings": _readings(study, options, found),
             "models": compared(study, options, found),
         }
-        return made, [
-            path
-            for chart, _ in pictures.charts(made)
-            for path in to_files(chart, study.path("figures"))
-        ]
+        return made, to_files(page.figures(made), study.path("figures"))
 
     return STAGE.run(study, options, make)
 

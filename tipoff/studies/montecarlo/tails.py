@@ -66,8 +66,8 @@ def run(study: Study, options: Options = Options()) -> dict:
     limits, source = checked(study, options)
 
     def make() -> tuple[dict, list[Path]]:
-        from tipoff.studies.montecarlo import tails_page as pictures
-        from tipoff.studies.render.chart import to_files
+        from tipoff.studies.montecarlo import tails_page
+        from tipoff.studies.render.document import to_files
 
         whole = population.run(
             study, montecarlo.NAME, population.surrogate(study, asked.model), source
@@ -99,8 +99,7 @@ def run(study: Study, options: Options = Options()) -> dict:
             ],
             "pairs": paired_statistics.pairs(drawn, whole),
         }
-        chart, _ = pictures.chart(made)
-        return made, to_files(chart, study.path("figures"))
+        return made, to_files([tails_page.figure(made)], study.path("figures"))
 
     return STAGE.run(study, options, make)
 

@@ -43,17 +43,17 @@ _TAILS = (
 )
 
 
-def chart(found: dict) -> tuple[Chart, str]:
-    """The figure with its caption."""
+def figure(found: dict) -> Figure:
+    """Draws of both models, case by case and as quantiles."""
     panels = [*map(_scatter, _rates(found)), *map(_quantiles, _rates(found))]
-    return Chart("tails", panels, columns=3, height=300), _CAPTION.format(**found)
+    return Figure(Chart("tails", panels, columns=3, height=300), _CAPTION.format(**found))
 
 
 def draw(found: dict) -> list[Part]:
     """The section."""
     return [
         Bullets([*sentences(found), *_run(found)]),
-        Figure(*chart(found)),
+        figure(found),
         by_contacts(found),
         *own_modes_page.table(found),
         statistics(found),

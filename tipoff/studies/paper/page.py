@@ -43,7 +43,7 @@ _AT_EXIT = (
 
 def draw(found: dict) -> list[Part]:
     """The section."""
-    trade, beside = charts(found)
+    trade, beside = figures(found)
     best = found["searches"][found["best"]]
     words = (
         f"The paper prints no geometry, inertia, thrust, friction or clearance. "
@@ -54,9 +54,9 @@ def draw(found: dict) -> list[Part]:
     )
     return [
         words,
-        Figure(trade, _TRADED),
+        trade,
         _fit(found),
-        Figure(beside, _BESIDE),
+        beside,
         _table2(best),
         *_deviations(best),
         table_at_exit(found["exit"]),
@@ -117,22 +117,20 @@ def _outside(found: dict) -> str:
     return note if missed > found["admissible_deg_s"] else ""
 
 
-def charts(found: dict) -> list[Chart]:
+def figures(found: dict) -> tuple[Figure, Figure]:
     """Measures of all searches, and rates and deviations of the best set over the printed ones."""
     best, printed = found["searches"][found["best"]], published.sensitivity()
     rates = np.array(best["rates_deg_s"])[1:4]
     deviations = np.array(best["changed_deg_s"]) - rates[:, None, :]
-    return [
-        Chart("paper", [_traded(found, *pair) for pair in _PAIRS], columns=3),
-        Chart(
-            "paper_tables",
-            [
-                _against("Nine rates, deg/s", printed.baseline, rates),
-                _against("54 deviations, deg/s", printed.deviations(), deviations),
-            ],
-            columns=2,
-        ),
+    traded = [_traded(found, *pair) for pair in _PAIRS]
+    against = [
+        _against("Nine rates, deg/s", printed.baseline, rates),
+        _against("54 deviations, deg/s", printed.deviations(), deviations),
     ]
+    return (
+        Figure(Chart("paper", traded, columns=3), _TRADED),
+        Figure(Chart("paper_tables", against, columns=2), _BESIDE),
+    )
 
 
 def _traded(found: dict, title: str, across: tuple[str, str], upwards: tuple[str, str]) -> Panel:

@@ -2,12 +2,13 @@
 Markdown and for the terminal."""
 
 import base64
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from markupsafe import Markup
 
+from tipoff.studies.render import chart as charts
 from tipoff.studies.render import table as tables
 from tipoff.studies.render.chart import Chart, Picture
 from tipoff.studies.render.table import Table, inline
@@ -163,6 +164,11 @@ def _image(image: Image) -> Markup:
 def _data(path: Path) -> str:
     """The address that is the content of an image file."""
     return f"data:{_MIME[path.suffix]};base64,{base64.b64encode(path.read_bytes()).decode()}"
+
+
+def to_files(figures: Iterable[Figure], folder: Path) -> list[Path]:
+    """Every figure as PNG and SVG files in ``folder``; their paths."""
+    return [path for figure in figures for path in charts.to_files(figure.chart, folder)]
 
 
 def markdown(parts: Sequence[Part]) -> str:

@@ -76,7 +76,7 @@ def name_of(key: str) -> str:
     return _NAMES.get(key) or (f"{_NAMES[head]} {last}" if head in _NAMES else key)
 
 
-def pictures(found: dict) -> list[tuple[Chart | Picture, str]]:
+def figures(found: dict) -> list[Figure]:
     """Every figure of the study and its caption."""
     sobol = found["sobol"]
     shown = [item for item in sobol["quantities"] if item["indices"]]
@@ -84,9 +84,9 @@ def pictures(found: dict) -> list[tuple[Chart | Picture, str]]:
     if not rates:
         return []
     return [
-        (_bars(sobol, rates), _BARS),
-        (_map(sobol, shown), _MAP),
-        (_convergence(sobol, rates), _CONVERGENCE),
+        Figure(_bars(sobol, rates), _BARS),
+        Figure(_map(sobol, shown), _MAP),
+        Figure(_convergence(sobol, rates), _CONVERGENCE),
     ]
 
 
@@ -104,7 +104,7 @@ def draw(found: dict) -> list[Part]:
         Heading("All inputs together"),
         _used(found["sobol"]),
         table_of_indices(found["sobol"]),
-        *(Figure(*item) for item in pictures(found)),
+        *figures(found),
         _inputs(found["sobol"]),
     ]
 

@@ -4,6 +4,7 @@ growth of the largest rates, and polar maps."""
 import numpy as np
 
 from tipoff.studies.render.chart import Chart, Line, Panel, Picture
+from tipoff.studies.render.document import Figure
 from tipoff.studies.render.palette import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL
 
 _LOOKS = {
@@ -35,19 +36,18 @@ _MAP = (
 )
 
 
-def pictures(found: dict) -> list[tuple[Chart | Picture, str]]:
+def figures(found: dict) -> list[Figure]:
     """Every figure of the study and its caption."""
     given = found["launches"][0]
-    drawn: list[tuple[Chart | Picture, str]] = [(_growth(found), _GROWTH)]
+    drawn = [Figure(_growth(found), _GROWTH)]
     for factor in given["factors"]:
         angle = _ANGLE[factor["name"]]
-        drawn.append(
-            (_scatter(factor), _SCATTER.format(figure=_FIGURES[factor["name"]], angle=angle))
-        )
+        caption = _SCATTER.format(figure=_FIGURES[factor["name"]], angle=angle)
+        drawn.append(Figure(_scatter(factor), caption))
         if factor["sides"] is not None:
             jumps = _jumps(factor["sides"]["jumps_deg_s"])
             caption = _MAP.format(unit=factor["unit"], angle=angle, jumps=jumps)
-            drawn.append((_map(factor, given["faces"]), caption))
+            drawn.append(Figure(_map(factor, given["faces"]), caption))
     return drawn
 
 

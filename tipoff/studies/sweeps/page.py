@@ -2,9 +2,9 @@
 reason for a plateau, and the figures."""
 
 from tipoff.studies.populations import answers, population
-from tipoff.studies.render.document import Bullets, Caption, Figure, Fold, Heading, Part
+from tipoff.studies.render.document import Bullets, Caption, Fold, Heading, Part
 from tipoff.studies.render.table import Cells, Column, Noted, Table, number, percent, span
-from tipoff.studies.sweeps.figures import pictures
+from tipoff.studies.sweeps.figures import figures
 from tipoff.studies.sweeps.knee import LEVEL, MISFIT
 
 _SHORT = {"rate_x_deg_s": "x", "rate_y_deg_s": "y", "rate_z_deg_s": "z", "rate_deg_s": "total"}
@@ -59,8 +59,7 @@ def draw(found: dict) -> list[Part]:
             table_of_largest(launch),
             Fold("Slopes, and the largest values by size", _details(launch)),
         ]
-    figures = [Figure(*item) for item in pictures(found)]
-    return [*parts, Caption(_METHOD), *_why(launches), *figures]
+    return [*parts, Caption(_METHOD), *_why(launches), *figures(found)]
 
 
 def summary(found: dict) -> list[Part]:
