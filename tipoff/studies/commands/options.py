@@ -181,6 +181,16 @@ Workers = Annotated[
     int | None,
     typer.Option("--workers", metavar="N", min=1, help="Parallel runs; default: all cores."),
 ]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of all draws.")]
+SeedOfFile = Annotated[
+    int | None,
+    typer.Option(
+        "--seed", metavar="N", min=0, help="Seed of all draws; default: that of the file."
+    ),
+]
+Vary = Annotated[
+    str, typer.Option("--vary", metavar="NAME_OR_FILE", help="Distributions of the cases.")
+]
 Neighbours = Annotated[
     int | None,
     typer.Option(
@@ -217,11 +227,3 @@ StepEverything = Annotated[
         "long steps; default: such rails rest.",
     ),
 ]
-
-
-class Sampling(StrEnum):
-    """Ways to draw the cases of an ensemble."""
-
-    random = "random"
-    latin_hypercube = "latin-hypercube"
-    sobol = "sobol"

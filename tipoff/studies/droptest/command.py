@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import Surrogate, condition_names
+from tipoff.studies.commands.options import SeedOfFile, Surrogate, Vary, condition_names
 from tipoff.studies.commands.request import Request, scene_command
 from tipoff.studies.commands.running import Output
 
@@ -29,18 +29,11 @@ def droptest(
             help="Named condition of the drop test; default: the scene.",
         ),
     ] = None,
-    vary: Annotated[
-        str, typer.Option("--vary", metavar="NAME_OR_FILE", help="Distributions of the cases.")
-    ] = "paper",
+    vary: Vary = "paper",
     cases: Annotated[
         int, typer.Option("--cases", metavar="N", min=50, help="Simulated cases to compare with.")
     ] = 1000,
-    seed: Annotated[
-        int | None,
-        typer.Option(
-            "--seed", metavar="N", min=0, help="Seed of all draws; default: that of the file."
-        ),
-    ] = None,
+    seed: SeedOfFile = None,
     model: Surrogate = None,
 ) -> Output:
     """Change of rate in drop tests with its uncertainty, and its rank among simulated cases.

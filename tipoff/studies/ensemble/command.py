@@ -1,13 +1,22 @@
 """``tipoff ensemble``."""
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import CalibrationFile, Modes, Sampling, Surrogate
+from tipoff.studies.commands.options import CalibrationFile, Modes, Surrogate
 from tipoff.studies.commands.request import Request, scene_command
 from tipoff.studies.commands.running import Output
+
+
+class Sampling(StrEnum):
+    """Ways to draw the cases of an ensemble."""
+
+    random = "random"
+    latin_hypercube = "latin-hypercube"
+    sobol = "sobol"
 
 
 @scene_command()

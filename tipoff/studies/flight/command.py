@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import Conditions, Surrogate
+from tipoff.studies.commands.options import Conditions, SeedOfFile, Surrogate, Vary
 from tipoff.studies.commands.request import Request, scene_command
 from tipoff.studies.commands.running import Output, quantity
 
@@ -28,17 +28,12 @@ def flight(
     duration: Annotated[
         str | None, typer.Option(metavar="TIME", help='Duration of the flight, "2 hour".')
     ] = None,
-    vary: Annotated[
-        str, typer.Option("--vary", metavar="NAME_OR_FILE", help="Distributions of the cases.")
-    ] = "paper",
+    vary: Vary = "paper",
     cases: Annotated[
         int | None,
         typer.Option(metavar="N", min=1, help="Number of cases; default: that of the file."),
     ] = None,
-    seed: Annotated[
-        int | None,
-        typer.Option(metavar="N", min=0, help="Seed of all draws; default: that of the file."),
-    ] = None,
+    seed: SeedOfFile = None,
     model: Surrogate = None,
 ) -> Output:
     """Flight of the payload in orbit: miss distance of a target, pointing error, coning, and

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import Surrogate, condition_names
+from tipoff.studies.commands.options import Seed, Surrogate, condition_names
 from tipoff.studies.commands.request import Request, scene_command
 from tipoff.studies.commands.running import Output
 
@@ -87,7 +87,6 @@ Certify = Annotated[
         "reference: an upper bound of its probability above a limit.",
     ),
 ]
-Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of all draws.")]
 
 
 @scene_command()

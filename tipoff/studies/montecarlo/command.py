@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tipoff.studies.commands.options import Surrogate
+from tipoff.studies.commands.options import Seed, Surrogate
 from tipoff.studies.commands.request import Request, scene_command
 from tipoff.studies.commands.running import Output
 
@@ -37,7 +37,6 @@ class Rules(StrEnum):
 
 
 Cases = Annotated[int, typer.Option("--cases", metavar="N", min=100, help="Number of cases.")]
-Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of all draws.")]
 Meaning = Annotated[
     Values,
     typer.Option(
