@@ -18,7 +18,7 @@ from tipoff.studies.convergence import equal_accuracy
 from tipoff.studies.core.study import read
 from tipoff.studies.montecarlo import tails_page
 from tipoff.studies.render.document import Part, markdown
-from tipoff.studies.render.table import Column, Table, number, percent
+from tipoff.studies.render.table import Cells, Column, Table, number, percent
 from tipoff.studies.render.uncertain import STEPS
 from tipoff.studies.report import further
 
@@ -134,52 +134,39 @@ def section(folder: Path) -> str:
     return markdown(parts)
 
 
-_SPRINGS, _OURS = "springs, calibrated", "compliant contact"
-_BOUNDS = (
-    Column("floor", "deg/s", ".2g"),
-    Column("reference uncertainty", "deg/s", ".2g"),
-    "judged as",
-    "verdict",
+def _pair(row: dict) -> str:
+    return (
+        f"{percent(row['rate_relative_l2'], '.2g')} / "
+        f"{number(row['settled_rate_error_deg_s'], '.2g', STEPS['deg/s'])}"
+    )
+
+
+_COMPLIANT: Cells = (
+    ("compliant contact", _pair),
+    (Column("floor", "deg/s", ".2g"), "floor_deg_s"),
+    (Column("reference uncertainty", "deg/s", ".2g"), "reference_uncertainty_deg_s"),
+    ("judged as", "judged_as"),
+    ("verdict", "verdict"),
 )
 
 
 def _agreement(found: dict) -> Table:
     before = {row["condition"]: row for row in found["uncalibrated"]}
     fitted = {row["condition"]: row for row in found["fitted"] + found["held_out"]}
-    return Table(
-        ["condition", "role", "springs, uncalibrated", _SPRINGS, _OURS, *_BOUNDS],
-        [
-            (
-                row["condition"],
-                row["role"].replace("_", " "),
-                _pair(before[row["condition"]]),
-                _pair(fitted[row["condition"]]),
-                *_judged(row),
-            )
-            for row in found["compliant"]
-        ],
+    columns: Cells = (
+        ("condition", "condition"),
+        ("role", lambda row: row["role"].replace("_", " ")),
+        ("springs, uncalibrated", lambda row: _pair(before[row["condition"]])),
+        ("springs, calibrated", lambda row: _pair(fitted[row["condition"]])),
+        *_COMPLIANT,
+    )
+    return Table.of(
+        found["compliant"],
+        columns,
         title="Rates of the surrogates against the reference (rate L2 in % / largest error of a "
         "settled rate in deg/s), and what bounds any\nsuch claim. Nothing is fitted on compliant "
         "contact; the role is that of the condition in the calibration of the springs.\n"
         "The verdict is on compliant contact.",
-    )
-
-
-def _judged(row: dict) -> tuple:
-    """Errors on compliant contact, and the columns of ``_BOUNDS``."""
-    return (
-        _pair(row),
-        row["floor_deg_s"],
-        row["reference_uncertainty_deg_s"],
-        row["judged_as"],
-        row["verdict"],
-    )
-
-
-def _pair(row: dict) -> str:
-    return (
-        f"{percent(row['rate_relative_l2'], '.2g')} / "
-        f"{number(row['settled_rate_error_deg_s'], '.2g', STEPS['deg/s'])}"
     )
 
 
@@ -235,12 +222,14 @@ def _rails(found: list[dict]) -> Table:
 def _blind(found: dict) -> Table:
     """Conditions drawn after all code was written, as the agreement table has the scene's own."""
     springs = {row["condition"]: row for row in found["calibrated"]}
-    return Table(
-        ["condition", _SPRINGS, _OURS, *_BOUNDS],
-        [
-            (row["condition"], _pair(springs[row["condition"]]), *_judged(row))
-            for row in found["compliant"]
-        ],
+    columns: Cells = (
+        ("condition", "condition"),
+        ("springs, calibrated", lambda row: _pair(springs[row["condition"]])),
+        *_COMPLIANT,
+    )
+    return Table.of(
+        found["compliant"],
+        columns,
         title=f"{len(springs)} conditions drawn afterwards, with errors as in the paper's Table 3 "
         "(`make blind`; another line of code draws others):",
     )
