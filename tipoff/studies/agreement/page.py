@@ -1,5 +1,6 @@
 """Agreement with the reference on the page."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from tipoff.studies.agreement import distribution_page, verdicts
@@ -15,21 +16,45 @@ def _percent(title: str) -> Column:
     return Column(title, "%", ".2g", 100.0)
 
 
-_HEADS: tuple[Column | str, ...] = (
-    "condition",
-    "role",
-    _percent("rate L2"),
-    _percent("floor L2"),
-    _percent("v_x L2"),
-    Column("settled error", "deg/s"),
-    Column("error x, y, z", "deg/s", "+.2g"),
-    Column("floor", "deg/s"),
-    Column("reference ±", "deg/s"),
-    Column("ISO 18571", form=".3f"),
-    _percent("S-G magnitude"),
-    _percent("S-G phase"),
-    "judged as",
-    "verdict",
+def _to_floor(key: str) -> Callable[[dict], Measured]:
+    """A cell with an error, rounded to the floor."""
+    return lambda row: Measured(row[key], row["floor_deg_s"], apart=True)
+
+
+def starred(shown: str, measured_here: bool) -> str:
+    """A number, with a star where it was measured on other conditions."""
+    return shown if measured_here else f"{shown}*"
+
+
+def _starred(key: str, measured_here: str, shown: Callable[..., str]) -> Callable[[dict], str]:
+    """A cell with a value that may have a star."""
+    return lambda row: starred(shown(row[key]), row[measured_here])
+
+
+def _rounded(uncertainty: float | None) -> str:
+    """A floor or an uncertainty (deg/s) with the digits that count."""
+    return rounded(uncertainty, uncertainty)
+
+
+_FLOOR, _REFERENCE = "floor_measured_here", "reference_uncertainty_measured_here"
+_COLUMNS: Cells = (
+    ("condition", "condition"),
+    ("role", lambda row: row["role"].replace("_", " ")),
+    (_percent("rate L2"), "rate_relative_l2"),
+    (_percent("floor L2"), _starred("floor_l2", _FLOOR, lambda share: percent(share, ".2g"))),
+    (_percent("v_x L2"), "velocity_relative_l2"),
+    (Column("settled error", "deg/s"), _to_floor("settled_rate_error_deg_s")),
+    (Column("error x, y, z", "deg/s", "+.2g"), _to_floor("settled_rate_error_xyz_deg_s")),
+    (Column("floor", "deg/s"), _starred("floor_deg_s", _FLOOR, _rounded)),
+    (
+        Column("reference ±", "deg/s"),
+        _starred("reference_uncertainty_deg_s", _REFERENCE, _rounded),
+    ),
+    (Column("ISO 18571", form=".3f"), "iso18571"),
+    (_percent("S-G magnitude"), "sprague_geers_magnitude"),
+    (_percent("S-G phase"), "sprague_geers_phase"),
+    ("judged as", "judged_as"),
+    ("verdict", "verdict"),
 )
 
 
@@ -99,7 +124,7 @@ def _notes(document: dict) -> tuple[str, ...]:
 def judged(rows: list[dict], name: str, notes: tuple[str, ...] = ()) -> Table:
     """A table of agreement rows: good, bad, or not judged."""
     kinds = [distribution_page.kind(row["judgement"]) for row in rows]
-    return Table(_HEADS, [_agreement_row(row) for row in rows], notes, "", name, kinds, dense=True)
+    return Table.of(rows, _COLUMNS, notes=notes, name=name, kinds=kinds, dense=True)
 
 
 def _simpler(document: dict) -> Fold:
@@ -231,39 +256,6 @@ def counts(rows: list[dict], words: str = "") -> tuple[str, str]:
         + f", {count[verdicts.CANNOT]} cannot be judged, "
         + f"{missing} {'misses' if missing == 1 else 'miss'}"
     )
-
-
-def _agreement_row(row: dict) -> tuple:
-    floor_here, uncertainty_here = (
-        row["floor_measured_here"],
-        row["reference_uncertainty_measured_here"],
-    )
-    return (
-        row["condition"],
-        row["role"].replace("_", " "),
-        row["rate_relative_l2"],
-        starred(percent(row["floor_l2"], ".2g"), floor_here),
-        row["velocity_relative_l2"],
-        Measured(row["settled_rate_error_deg_s"], row["floor_deg_s"], apart=True),
-        Measured(row["settled_rate_error_xyz_deg_s"], row["floor_deg_s"], apart=True),
-        starred(_rounded(row["floor_deg_s"]), floor_here),
-        starred(_rounded(row["reference_uncertainty_deg_s"]), uncertainty_here),
-        row["iso18571"],
-        row["sprague_geers_magnitude"],
-        row["sprague_geers_phase"],
-        row["judged_as"],
-        row["verdict"],
-    )
-
-
-def _rounded(uncertainty: float | None) -> str:
-    """A floor or an uncertainty (deg/s) with the digits that count."""
-    return rounded(uncertainty, uncertainty)
-
-
-def starred(shown: str, measured_here: bool) -> str:
-    """A number, with a star where it was measured on other conditions."""
-    return shown if measured_here else f"{shown}*"
 
 
 def _further(rows: list[dict]) -> Fold:
