@@ -1,11 +1,14 @@
 """A changed callee: a compiled caller contains its old callee unless its place in the cache depends
 on all the code it uses. Changed comments compile nothing."""
 
+import functools
 import gc
+import json
 import os
 import shutil
 import subprocess
 import sys
+import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -28,6 +31,26 @@ ASK = (
 )
 ASK_PART = "from tipoff.highfi.callee import value; print(value(), 0)"
 ASK_TESTS = ASK.replace("tipoff.highfi.caller", "tests.caller")
+# Each question is answered by a process of its own, which has loaded nothing of the project before.
+SERVER = """
+import json, os, sys, traceback
+import numba.core.caching, numba.core.compiler, numba.core.registry
+assert "tipoff" not in sys.modules
+for line in sys.stdin:
+    asked = json.loads(line)
+    child = os.fork()
+    if child == 0:
+        os.chdir(asked["folder"])
+        os.environ["NUMBA_CACHE_DIR"] = asked["cache"]
+        try:
+            exec(asked["question"], {})
+        except BaseException:
+            traceback.print_exc()
+            os._exit(1)
+        sys.stdout.flush()
+        os._exit(0)
+    print("ended", os.waitpid(child, 0)[1], flush=True)
+"""
 # Numba's own cache: all kernels in one place, distinguished by their own code alone.
 STAMP = "    return hashlib.sha256(settings.encode()).hexdigest()[:16]"
 
@@ -61,22 +84,38 @@ def project(stored, tmp_path):
     return shutil.copytree(stored, tmp_path / "project")
 
 
+@functools.cache
+def _server() -> subprocess.Popen:
+    """The process that loads Numba once and begins a process for each question."""
+    return subprocess.Popen(
+        [sys.executable, "-c", SERVER],
+        cwd=tempfile.gettempdir(),
+        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+
+
+@pytest.fixture(scope="module", autouse=True)
+def ended():
+    """Ends it."""
+    yield
+    if _server.cache_info().currsize:
+        _server().communicate()
+        _server.cache_clear()
+
+
 def ask(project: Path, question: str = ASK) -> tuple[float, int]:
     """What the caller returns in a new process, and how many of its kernels were compiled there."""
-    environment = os.environ | {
-        "NUMBA_CACHE_DIR": str(project / "cache"),
-        "PYTHONDONTWRITEBYTECODE": "1",
-    }
-    run = subprocess.run(
-        [sys.executable, "-c", question],
-        cwd=project,
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
-    assert run.returncode == 0, run.stderr
-    number, compiled = run.stdout.split()
+    asked = {"folder": str(project), "cache": str(project / "cache"), "question": question}
+    server = _server()
+    print(json.dumps(asked), file=server.stdin, flush=True)
+    said = server.stdout.readline()
+    if not said.startswith("ended"):
+        number, compiled = said.split()
+        said = server.stdout.readline()
+    assert said == "ended 0\n"  # its traceback is among what pytest shows
     return float(number), int(compiled)
 
 
