@@ -53,8 +53,8 @@ def sentence(found: dict) -> str:
     )
     return (
         f"speed-up at equal accuracy on {found['condition']}: {'' if found['surer'] else 'at least '}"
-        f"{found['ratio']:,.0f} times ({found['low']:,.0f} to {found['high']:,.0f}), "
-        f"{found['highfi_wall_s']:.3g} s of the reference to {1e3 * found['lowfi_wall_s']:.3g} ms of "
+        f"{found['ratio']:,.0f} times ({found['low']:,.0f} to {found['high']:,.0f} over repeats): "
+        f"{found['highfi_wall_s']:.3g} s with the reference, {1e3 * found['lowfi_wall_s']:.3g} ms with "
         f"compliant contact. The error of compliant contact is {found['error_deg_s']:.2g} deg/s from "
         f"the finest mesh; {mesh} ({found['mesh_uncertainty_deg_s']:.2g} deg/s, without "
         "interface stiffness and contact cells)"

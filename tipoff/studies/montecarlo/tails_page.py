@@ -93,11 +93,13 @@ def _agreement(found: dict) -> str:
     *_, everything = found["contacts"]
     gate, worst = found["gate_deg_s"], number(everything["most"], ".2g")
     few = [row["most"] for row in found["contacts"][:3] if row["most"] is not None]
-    limit = f"; with up to 2 contacts by at most {number(max(few), '.2g')} deg/s" if few else ""
+    limit = (
+        f". With at most 2 contacts the largest is {number(max(few), '.2g')} deg/s" if few else ""
+    )
     return (
-        f"on the same mesh the surrogate differs from the reference by at most {gate:g} deg/s in "
-        f"{percent(everything['within_gate'], '.0f')} % of {everything['settled']} draws (median "
-        f"{number(everything['median'], '.2g')}, largest {worst} deg/s){limit}"
+        f"the settled rates of both models, on the same mesh, differ by at most {gate:g} deg/s in "
+        f"{percent(everything['within_gate'], '.0f')} % of {everything['settled']} draws. The median "
+        f"difference is {number(everything['median'], '.2g')} deg/s, the largest {worst} deg/s{limit}"
     )
 
 
@@ -111,9 +113,9 @@ def _corrected(found: dict) -> str:
         and (None not in (row["low"], row["high"]) or row["share"] == _MEDIAN)
     ]
     return (
-        f"corrected by the reference, {percent(row['share'])} % of the total rates are below "
-        f"{number(row['value'])} deg/s ({span(row['low'], row['high'])}); the surrogate alone gives "
-        f"{number(row['surrogate'])} deg/s"
+        f"the {percent(row['share'])} % quantile of the total rate, corrected by the reference, is "
+        f"{number(row['value'])} deg/s ({percent(found['confidence'], '.0f')} % interval "
+        f"{span(row['low'], row['high'])}). The surrogate alone gives {number(row['surrogate'])} deg/s"
     )
 
 
@@ -124,9 +126,9 @@ def _cost(found: dict) -> str:
     if alone is None:
         return "the mean total rate has no interval to compare"
     return (
-        f"for the mean total rate, as narrow an interval from the reference alone takes "
-        f"{alone:,.0f} runs, {in_words(alone * cost['reference_cpu_s'])} of one core; both models "
-        f"together take {in_words(took)}"
+        f"both models together give the mean total rate in {in_words(took)} of one core. For an "
+        f"interval as narrow, the reference alone needs {alone:,.0f} runs, "
+        f"{in_words(alone * cost['reference_cpu_s'])}"
     )
 
 

@@ -56,7 +56,12 @@ def tails(found: dict, folder: Path) -> None:
     README says of it."""
     _into_readme(
         "tails",
-        "- **Tails**: " + " ".join(_upper(f"{said}.") for said in tails_page.sentences(found)),
+        "\n  - ".join(
+            [
+                "- **Tails**, from [random ejections](docs/tails.md):",
+                *(_upper(f"{said}.") for said in tails_page.sentences(found)),
+            ]
+        ),
     )
     text = markdown(tails_page.document(found))
     write_text(_ROOT / "docs" / "tails.md", f"{_TAILS.format(**found)}\n\n{text}\n")
@@ -91,22 +96,22 @@ def _agreed(rows: list[dict]) -> str:
     touched = [row for row in agree if row["touches"]]
     errors = [row["rate_relative_l2"] for row in touched]
     said = (
-        f"- **Agreement**: the reference is converged on {len(judged)} of {len(rows)} conditions. Compliant contact, "
-        f"with nothing fitted, agrees on {len(agree)} of these {len(judged)}."
+        f"- **Agreement**: The reference is converged on {len(judged)} of {len(rows)} conditions. "
+        f"Compliant contact has no fitted constants and agrees on {len(agree)} of these {len(judged)}."
     )
     if touched:
         settled = max(row["settled_rate_error_deg_s"] for row in touched)
         said += (
-            f" Pads touch in {len(touched)} of them: there rates differ by "
-            f"{percent(min(errors), '.2g')} to {percent(max(errors), '.2g')} % (L2) and settled "
-            f"rates by at most {number(settled, '.2g')} deg/s."
+            f"\n  - Pads touch in {len(touched)} of the {len(agree)}. There the rates differ by at most "
+            f"{percent(max(errors), '.2g')} % over time (L2), and the settled rates by at most "
+            f"{number(settled, '.2g')} deg/s."
         )
     if others := [row for row in rows if row["judged_as"] == verdicts.DISTRIBUTION]:
         count = Counter(row["judgement"] for row in others)
         said += (
-            f" The others are judged as distributions: of "
-            f"{len(others)}, {count[verdicts.AS_DISTRIBUTION]} agree, {count[verdicts.MISSES]} "
-            f"miss, {count[verdicts.CANNOT]} cannot be judged."
+            f"\n  - On {len(others)} others, [distributions](docs/chaotic_conditions.md) of the settled rates "
+            f"are compared: {count[verdicts.AS_DISTRIBUTION]} agree, {count[verdicts.MISSES]} miss, "
+            f"{count[verdicts.CANNOT]} cannot be judged."
         )
     return said
 
