@@ -25,7 +25,7 @@ EXAMPLES = """Examples:
   tipoff run --scene my_launcher.toml    # velocity and rates
   tipoff run --condition phi15,phi35     # conditions of a scene
   tipoff run --set thrust.peak="7 kN"    # another value
-  tipoff report                          # all of it on one page
+  tipoff report                          # all results on one page
   tipoff compare --scene tiny --json     # results as JSON
 """
 
@@ -61,12 +61,12 @@ def scenes(
     show: Annotated[
         str | None,
         typer.Option(
-            "--show", metavar="NAME", help="Print the file of a scene, to copy and change it."
+            "--show", metavar="NAME", help="Print the file of this scene, for a changed copy."
         ),
     ] = None,
     json_: Json = False,
 ) -> None:
-    """List the catalogue: name, conditions, description.
+    """List the scenes of the catalogue: name, number of conditions, description.
 
     tipoff scenes --show reference > my_launcher.toml
     """
@@ -99,7 +99,7 @@ def scenes(
 
 
 def doctor() -> None:
-    """Check whether this machine has everything that tipoff needs, and print how to repair it."""
+    """Check whether this machine has everything that tipoff needs; prints how to repair a fault."""
     from tipoff.studies import doctor as check
 
     raise typer.Exit(check.main())

@@ -7,8 +7,8 @@ from tipoff.studies.commands.running import Output
 
 @scene_command()
 def compare(request: Request, neighbours: Neighbours = None) -> Output:
-    """Agreement on fitted and held-out conditions with the floor, and the speed-up; writes
-    agreement.json."""
+    """Compare the surrogates with the reference on fitted and held-out conditions: agreement, floor,
+    speed-up; writes agreement.json."""
     from tipoff.studies.agreement import page, stage
 
     options = None if neighbours is None else stage.Options(neighbours)

@@ -39,8 +39,9 @@ def bench(
 ) -> None:
     """Measure the speed of both solvers; writes bench/highfi.json and bench/lowfi.json.
 
-    The reference is compared with a SciPy matrix and NumPy on the same mesh; the surrogate, on
-    compliant contact and on springs, with plain Runge-Kutta and solve_ivp at the same error.
+    The reference is compared with a SciPy matrix and with NumPy on the same mesh. The surrogate, with
+    compliant contact and with springs, is compared with plain Runge-Kutta and solve_ivp at the same
+    error.
     """
 
     def work() -> Output:

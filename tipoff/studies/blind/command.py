@@ -18,8 +18,8 @@ def blind(
             "--cases",
             metavar="N",
             min=1,
-            help="Number of conditions; each takes several runs of the reference, and those of "
-            "its neighbours where it is judged as a distribution.",
+            help="Number of conditions. Each needs several runs of the reference. A condition that is "
+            "judged as a distribution also needs runs of its neighbours.",
         ),
     ] = 8,
     vary: Annotated[
@@ -41,8 +41,8 @@ def blind(
     ] = None,
     neighbours: Neighbours = None,
 ) -> Output:
-    """Agreement of the surrogates on conditions drawn at random after all constants are fixed;
-    writes blind.json."""
+    """Compare the surrogates with the reference on random conditions, drawn after all constants are
+    fixed; writes blind.json."""
     from tipoff.studies.blind import page, stage
 
     options = stage.Options(cases, vary, seed, neighbours)

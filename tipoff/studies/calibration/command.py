@@ -20,7 +20,7 @@ def calibrate(
         typer.Option(
             "--reference",
             metavar="[NAME=]FILE",
-            help="CSV file with curves of condition NAME, used in place of the reference; repeatable.",
+            help="CSV file with curves of condition NAME, used instead of the reference; repeatable.",
         ),
     ] = None,
     condition: Annotated[
@@ -29,7 +29,7 @@ def calibrate(
             "--condition",
             metavar="NAME",
             autocompletion=condition_names,
-            help="Condition of a file without NAME; default: the scene itself.",
+            help="Condition of a FILE that is given without NAME; default: the scene itself.",
         ),
     ] = None,
     settled_from: Annotated[
@@ -44,7 +44,7 @@ def calibrate(
         SurrogateName | None,
         typer.Option(
             "--model",
-            help="Calibrate only this model; default: both, with --reference springs, with --fit "
+            help="Calibrate only this model. Default: both; with --reference: springs; with --fit: "
             "compliant.",
         ),
     ] = None,
@@ -53,34 +53,35 @@ def calibrate(
         typer.Option(
             "--fit",
             metavar="KEY",
-            help="Parameter of compliant contact to fit, such as contact.clearance; repeatable, or "
-            "several with commas; all: whatever the curves determine.",
+            help="Parameter of compliant contact to fit, such as contact.clearance. Repeatable, or "
+            "several with commas. all: every parameter that the curves determine.",
         ),
     ] = None,
 ) -> Output:
-    """Find the contact of the surrogate from the finite elements; writes compliance.json,
+    """Compute the rail compliance, and fit springs to the reference; writes compliance.json,
     calibration.json and calibration.toml.
 
-    The compliance of the rail comes from statics, without a run of the reference. Springs are
-    fitted to curves of the reference. --model compliant or --model springs does only one of them.
+    The rail compliance comes from statics, without a run of the reference. The constants of springs
+    are fitted to curves of the reference. --model compliant or --model springs does only one of both.
 
-    Curves of another code or of a test can replace the reference; the results are then in curves/:
+    Curves of another code or of a test can replace the reference. Then the results are in curves/:
 
       tipoff calibrate --reference phi15=test15.csv --reference phi60=test60.csv --settled-from "44 ms"
 
-    They fit the constants of springs or, with --model compliant, those of interface and mount
-    stiffness, clearance and friction that the curves determine. --fit chooses among these and errors
-    of mounting, and without --reference fits to the reference itself:
+    By default these curves determine the constants of springs. With --model compliant they determine
+    interface stiffness, mount stiffness, clearance and friction, as far as they contain the
+    information. --fit names the parameters to fit, also errors of mounting. Without --reference it
+    fits them to the reference:
 
       tipoff calibrate --fit contact.clearance,friction.dynamic --fit thrust_offset.misalignment.y
 
-    Errors of mounting are changes, the same in all conditions and added to what each states:
+    Errors of mounting are changes: one amount, added to the value of each condition. They are
     initial.position.y and .z, initial.attitude.x, .y and .z, thrust_offset.misalignment.y and .z,
     thrust_offset.eccentricity.y and .z, thrust.arm, mass_offset.eccentricity.y and .z,
     payload.inertia.xy, .xz and .yz. contact.clearance_y and .clearance_z are clearances along one
-    axis. tipoff run and tipoff ensemble take the file as --calibration.
+    axis. tipoff run and tipoff ensemble read calibration.toml with --calibration.
 
-    A file has the columns time (from ignition, at any instants), velocity_x (inertial, along the
+    A CSV file has the columns time (from ignition, at any instants), velocity_x (inertial, along the
     rail), rate_x, rate_y and rate_z (inertial, in payload body axes). Units are in the header,
     rate_x \\[deg/s], or in the second line. Other columns are ignored.
     """

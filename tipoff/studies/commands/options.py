@@ -101,8 +101,8 @@ Set = Annotated[
     typer.Option(
         "--set",
         metavar="KEY=VALUE",
-        help='Change of a value, repeatable: --set payload.mass="9 kg"; --set friction=absent '
-        "removes a table.",
+        help='Change a value: --set payload.mass="9 kg". --set friction=absent removes a table. '
+        "Repeatable.",
     ),
 ]
 Conditions = Annotated[
@@ -111,7 +111,7 @@ Conditions = Annotated[
         "--condition",
         metavar="NAME",
         autocompletion=condition_names,
-        help="Named condition of the scene, repeatable, or several with commas; default: all.",
+        help="Named condition of the scene. Repeatable, or several names with commas. Default: all.",
     ),
 ]
 RefinedCondition = Annotated[
@@ -120,7 +120,7 @@ RefinedCondition = Annotated[
         "--condition",
         metavar="NAME",
         autocompletion=condition_names,
-        help="Named condition; default: the first refined one.",
+        help="Named condition; default: the first in agreement.refined of the scene.",
     ),
 ]
 _COMPLIANT = (
@@ -149,8 +149,8 @@ Modes = Annotated[
         "--modes",
         metavar="N",
         parser=modes_of,
-        help="Vibration modes of each rail, with --model compliant, or auto (default): those that "
-        "matter to the rates.",
+        help="Number of vibration modes of each rail, with --model compliant; auto (default): as "
+        "many as the rates need.",
     ),
 ]
 CalibrationFile = Annotated[
@@ -174,7 +174,7 @@ ElementSize = Annotated[
         metavar="LENGTH",
         parser=in_millimetres,
         help='Element size of the reference and of the rail compliance, "4 mm" or 4; default 2 mm '
-        "(scene tiny: 8 mm). Studies of many runs and of differences of runs use twice this size.",
+        "(scene tiny: 8 mm). Studies with many runs, or with differences of runs, use twice this size.",
     ),
 ]
 Workers = Annotated[
@@ -198,8 +198,9 @@ Neighbours = Annotated[
         metavar="N",
         min=5,
         max=10_000,
-        help="Runs of the reference within 1 µm of each condition that is judged as a "
-        "distribution; default: 32 (scene tiny: 5), for compare as many as in the present result.",
+        help="Number of neighbours of each condition that is judged as a distribution: runs of the "
+        "reference within 1 µm of it. Default: 32 (scene tiny: 5), or for compare the number of its "
+        "stored result.",
     ),
 ]
 CheckpointEvery = Annotated[
@@ -214,7 +215,7 @@ Resume = Annotated[
     bool,
     typer.Option(
         "--resume/--no-resume",
-        help="Continue an interrupted run of the reference from its checkpoint; the result is the "
+        help="Continue an interrupted run of the reference from its checkpoint. The result is the "
         "same.",
     ),
 ]
@@ -223,7 +224,7 @@ StepEverything = Annotated[
     bool,
     typer.Option(
         "--step-everything",
-        help="Also step rails that no pad has touched, or that the payload has left, and take no "
-        "long steps; default: such rails rest.",
+        help="Step all rails at every step, and take no long steps. Default: a rail is at rest "
+        "before the first contact and after the payload has left it.",
     ),
 ]

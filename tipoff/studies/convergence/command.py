@@ -7,8 +7,8 @@ from tipoff.studies.commands.running import Output
 
 @scene_command()
 def convergence(request: Request, condition: RefinedCondition = None) -> Output:
-    """Error of the reference by mesh, step, interface stiffness and contact cells; takes minutes;
-    writes convergence.json."""
+    """Estimate the error of the reference from mesh, step, interface stiffness and contact cells;
+    takes minutes; writes convergence.json."""
     from tipoff.studies.convergence import page, stage
 
     return Output(stage.run(request.study(), condition), page.terminal, request.out)

@@ -6,7 +6,7 @@ from tipoff.studies.commands.running import Output
 
 @scene_command()
 def cost(request: Request) -> Output:
-    """Error over wall time, and growth of time with elements, pads and effects; writes
+    """Measure error over wall time, and growth of time with elements, pads and effects; writes
     cost.json and cost_study.json."""
     from tipoff.studies.cost import page, stage
 

@@ -17,7 +17,7 @@ def droptest(
         list[Path] | None,
         typer.Argument(
             metavar="[LOG.toml]...",
-            help="Sheets of logs; default: the three simulated ones that come with the package.",
+            help="Sheets of logs; default: the three simulated logs of the package.",
         ),
     ] = None,
     condition: Annotated[
@@ -36,21 +36,21 @@ def droptest(
     seed: SeedOfFile = None,
     model: Surrogate = None,
 ) -> Output:
-    """Change of rate in drop tests with its uncertainty, and its rank among simulated cases.
+    """Compute the change of rate in drop tests, its uncertainty, and its rank among simulated cases.
 
     Writes droptest.json, all signals to droptest.nc, and figures.
 
-    A log is a CSV file with time, three rates and optional accelerations and temperature. Its sheet
-    is a .toml file in the same folder with units, axes, calibration and uncertainties;
-    studies/droptest/logs/ has three examples. Give the sheets:
+    A log is a CSV file with time and three rates; accelerations and temperature are optional. Its
+    sheet is a .toml file in the same folder with units, axes, calibration and uncertainties.
+    studies/droptest/logs/ has three examples. The arguments are the sheets:
 
       tipoff droptest test1.toml test2.toml test3.toml
 
-    The simulated cases have the errors that the paper lists; --vary gives others:
+    The simulated cases have the random errors of the paper. --vary replaces them:
 
       tipoff droptest test1.toml --scene my_launcher.toml --vary my_errors.toml --condition heavy
 
-    The logs of the package are simulated by a sensor model and are marked so in all results.
+    The logs of the package are simulated by a sensor model. All results mark them as simulated.
     """
     from tipoff.studies.droptest import page, stage
 

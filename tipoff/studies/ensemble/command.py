@@ -27,7 +27,7 @@ def ensemble(
         typer.Option(
             "--vary",
             metavar="NAME_OR_FILE",
-            help="Distributions: a .toml file, or from the catalogue.",
+            help="Distributions: a .toml file, or a name of the catalogue.",
         ),
     ] = "paper",
     table: Annotated[
@@ -68,9 +68,9 @@ def ensemble(
         bool,
         typer.Option(
             "--sensitivity",
-            help="Also run each case with 1 µm more of every clearance, and at a tolerance of 1e-10: "
-            "how far they move its settled rates. The second takes about 20 times as long as the "
-            "cases at the default --tolerance.",
+            help="Also run each case with 1 µm more of every clearance, and at a tolerance of 1e-10. "
+            "The result is the change of its settled rates. The runs at 1e-10 take about 20 times as "
+            "long as the cases at the default --tolerance.",
         ),
     ] = False,
     tolerance: Annotated[
@@ -78,7 +78,7 @@ def ensemble(
         typer.Option(
             "--tolerance",
             metavar="X",
-            help="Relative error of a step. 95 % of 20 reference cases have a rate with an error "
+            help="Relative error of a step. In 95 % of 20 reference cases the error of the rate is "
             "below 0.2 % with 1e-2, and below 0.1 % with 1e-4.",
         ),
     ] = 1e-2,
@@ -94,8 +94,8 @@ def ensemble(
         ),
     ] = None,
 ) -> Output:
-    """Run the surrogate on thousands to millions of varied cases; writes ensemble.json and a store
-    in zarr.
+    """Run the surrogate on thousands to millions of varied cases; writes ensemble.json and a zarr
+    store.
 
     A file of distributions defines the inputs that vary; --cases, --seed and --sampling override
     it:
@@ -115,11 +115,13 @@ def ensemble(
       tipoff ensemble --cases 1000000 --case 1234    # that case alone, compared with the store
       tipoff ensemble --sensitivity                  # count the sensitive cases too
 
-    After a stop or a full disk, the same command continues and gives the same bits. A bad case is
-    refused alone; the store lists it with its inputs and the reason (done/*.json).
-    xarray.open_zarr(STORE + "/cases.zarr") reads the results. --sensitivity adds to them
-    rate_change_by_clearance and rate_change_by_tolerance (rad/s), also to a store that is there;
-    NaN where a case or its disturbed run does not settle, 0 by clearance without contact.
+    After an interruption or a full disk, the same command continues and gives the same bits. A case
+    with bad input is refused, and the others run; the store lists it with its inputs and the reason
+    (done/*.json). xarray.open_zarr(STORE + "/cases.zarr") reads the results.
+
+    --sensitivity adds the variables rate_change_by_clearance and rate_change_by_tolerance (rad/s),
+    also to an existing store. They are NaN if the case or its disturbed run does not settle. The
+    change by clearance is 0 for a case without contact.
     """
     from tipoff.studies.core import models
     from tipoff.studies.ensemble import page, stage

@@ -36,10 +36,10 @@ def flight(
     seed: SeedOfFile = None,
     model: Surrogate = None,
 ) -> Output:
-    """Flight of the payload in orbit: miss distance of a target, pointing error, coning, and
+    """Compute the flight of the payload in orbit: miss distance, pointing error, coning, and
     clearance to the platform.
 
-    Computes every condition and many cases with random errors; writes flight.json, flight.nc and
+    Runs every condition and many cases with random errors; writes flight.json, flight.nc and
     figures. The scene defines the orbit and the target:
 
       \\[flight]

@@ -38,7 +38,7 @@ Probability = Annotated[
     typer.Option("--probability", metavar="P", help="Share of launches that keep all limits."),
 ]
 Confidence = Annotated[
-    float, typer.Option("--confidence", metavar="C", help="Confidence of that probability.")
+    float, typer.Option("--confidence", metavar="C", help="Confidence level of the probability.")
 ]
 Cases = Annotated[
     int | None,
@@ -46,19 +46,20 @@ Cases = Annotated[
         "--cases",
         metavar="N",
         min=1,
-        help="Cases of each set of tolerances; default: ten times the fewest that are possible.",
+        help="Cases of each set of tolerances; default: ten times the smallest possible number.",
     ),
 ]
 Scaled = Annotated[
     Tolerances,
     typer.Option(
         "--tolerances",
-        help="Tolerances that are scaled together: the paper's advice, or ranges of its Table 3.",
+        help="Tolerances that are scaled together: those that the paper advises, or the ranges of its "
+        "Table 3.",
     ),
 ]
 Fixed = Annotated[
     Others,
-    typer.Option("--others", help="Errors that do not vary: as the scene has them, or zero."),
+    typer.Option("--others", help="Errors that do not vary: values of the scene, or zero."),
 ]
 Draws = Annotated[
     int | None,
@@ -83,8 +84,8 @@ Certify = Annotated[
     typer.Option(
         "--certify",
         metavar="N",
-        help="Check the tolerances that are scaled together by N runs of the finite-element "
-        "reference: an upper bound of its probability above a limit.",
+        help="Check the tolerances that are scaled together with N runs of the finite-element "
+        "reference. The result is an upper bound of the probability above a limit.",
     ),
 ]
 
@@ -104,11 +105,11 @@ def limits(
     seed: Seed = 1,
     model: Surrogate = None,
 ) -> Output:
-    """The largest tolerances of thrust, mass, clearance and friction that keep the rates below
-    limits with a probability; writes limits.json.
+    """Find the largest tolerances of thrust, mass, clearance and friction that keep the rates
+    below limits with a probability; writes limits.json.
 
-    The result has each tolerance alone, all together, pairs of misalignment and mass
-    eccentricity, and the uncertainty of the constants and of the model.
+    The result has each tolerance alone, all tolerances together, and pairs of misalignment and
+    mass eccentricity. It includes the uncertainty of the constants and of the model.
 
       tipoff limits --limit "x=2 deg/s" --limit "5 deg/s" --probability 0.99
       tipoff limits --limit "10 deg/s" --others zero --tolerances table3

@@ -45,18 +45,18 @@ Meaning = Annotated[
     ),
 ]
 Direction = Annotated[
-    Angles, typer.Option("--angles", help="A radial angle for each error, or one for all errors.")
+    Angles, typer.Option("--angles", help="One radial angle for each error, or one for all errors.")
 ]
 Rule = Annotated[
     Rules,
-    typer.Option("--rule", help="A value beyond three sigma is drawn again, clipped or kept."),
+    typer.Option("--rule", help="Redraw, clip or keep a value beyond three sigma."),
 ]
 Initial = Annotated[
-    bool, typer.Option("--initial", help="Draw the initial position inside the clearance too.")
+    bool, typer.Option("--initial", help="Also draw the initial position, within the clearance.")
 ]
 Interface = Annotated[
     bool,
-    typer.Option("--interface", help="Draw the interface stiffness too, within a factor of four."),
+    typer.Option("--interface", help="Also draw the interface stiffness, within a factor of four."),
 ]
 Limit = Annotated[
     list[str] | None,
@@ -73,8 +73,8 @@ Reference = Annotated[
         "--reference",
         metavar="N",
         min=1,
-        help="Run the first N cases through the finite-element reference too; it checks and corrects "
-        "the statistics of all cases.",
+        help="Also run the first N cases in the finite-element reference. It checks and corrects the "
+        "statistics of all cases.",
     ),
 ]
 Finer = Annotated[
@@ -83,7 +83,8 @@ Finer = Annotated[
         "--finer",
         metavar="N",
         min=1,
-        help="Cases of the reference also at half the element size; default: a tenth, at least 4.",
+        help="Number of these cases that also run at half the element size; default: a tenth, at "
+        "least 4.",
     ),
 ]
 
@@ -103,12 +104,12 @@ def montecarlo(
     finer: Finer = None,
     model: Surrogate = None,
 ) -> Output:
-    """Random errors of thrust and mass as in the paper's Table 3: quantiles of the rates and
+    """Run random errors of thrust and mass as in the paper's Table 3: quantiles of the rates and
     probabilities above limits, with bounds; writes montecarlo.json.
 
-    The paper has 1,000 cases. All readings of its Table 3 are compared, and both surrogates on
-    the same cases. With --reference the first cases run through the finite elements, which
-    corrects rates, quantiles and probabilities; this writes tails.json.
+    The paper has 1,000 cases. Its Table 3 can be read in several ways; all readings are compared.
+    Both surrogates run the same cases. With --reference the first cases also run in the finite
+    elements. They correct rates, quantiles and probabilities; this writes tails.json.
 
       tipoff montecarlo --cases 1000000 --limit "x=2 deg/s" --limit "8 deg/s"
       tipoff montecarlo --reading half --angles shared --initial

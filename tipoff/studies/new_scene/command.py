@@ -13,11 +13,11 @@ from tipoff.studies.commands.running import Output, guarded, quantity
 # option, unit, question, answer if none is given
 _ASKED = {
     "mass": ("kg", "Mass of the payload", "9.9 kg"),
-    "size": ("m", "Its size along X, Y and Z", "350 mm, 200 mm, 200 mm"),
+    "size": ("m", "Size of the payload along X, Y and Z", "350 mm, 200 mm, 200 mm"),
     "rail_length": ("m", "Travel along the rail", "220 mm"),
     "clearance": ("m", "Clearance between each pad and its wall", "0.25 mm"),
     "thrust": ("N", "Peak of the thrust", "6 kN"),
-    "burn_time": ("s", "Time in which it rises and falls", "24 ms"),
+    "burn_time": ("s", "Time in which the thrust rises and falls", "24 ms"),
 }
 
 
@@ -44,7 +44,7 @@ def new(
         Path | None,
         typer.Option(
             metavar="FILE.csv",
-            help="Your thrust in place of --thrust and --burn-time: a table with the header "
+            help="CSV file of a thrust curve, instead of --thrust and --burn-time. Its header is "
             "time_s,force_N. The scene refers to the file.",
         ),
     ] = None,
@@ -52,16 +52,16 @@ def new(
         int | None,
         typer.Option(
             metavar="4|8|12...",
-            help="Pads on all four rails: 4 is a long one on each rail, 8 is two on each, and so "
-            "on; default: 8.",
+            help="Number of pads on all four rails: 4 is one long pad on each rail, 8 is two pads "
+            "on each rail, and so on; default: 8.",
         ),
     ] = None,
     json_: Json = False,
 ) -> None:
     """Write a commented scene of your own launcher from a few numbers; it runs as it is.
 
-    On a terminal the numbers that are not given are asked for. What they do not say is assumed, and
-    listed so under [provenance] in the file.
+    On a terminal, the command asks for each number that is not given. All other values are assumed;
+    the table provenance of the file marks them as assumed.
 
       tipoff new my_launcher.toml --mass "12 kg" --thrust "4 kN"
       tipoff new cubesat.toml --mass "4 kg" --size "340 mm, 100 mm, 100 mm" --pads 4
@@ -193,11 +193,11 @@ def _require_pads(pads: int | None) -> None:
 
 
 def schema() -> None:
-    """Print the JSON schema of scene files, with which an editor completes and checks them.
+    """Print the JSON schema of scene files. With it, an editor completes and checks these files.
 
       tipoff schema > tipoff.schema.json
 
-    An editor with Even Better TOML or taplo uses it for a file that begins with the line
+    An editor with Even Better TOML or taplo uses the schema if a file begins with the line
     #:schema ./tipoff.schema.json
     """
 

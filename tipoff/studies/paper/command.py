@@ -17,17 +17,17 @@ def paper(
             "--starts",
             metavar="N",
             min=1,
-            help="Number of searches over three conditions, and as many over all five; each takes "
-            "some minutes.",
+            help="Number of searches over three conditions, and of searches over all five. Each "
+            "takes some minutes.",
         ),
     ] = 3,
 ) -> Output:
-    """Infer inputs that the paper does not print from its rates, and compare its tables with ours.
+    """Infer unpublished inputs of the paper from its rates, and compare its tables with ours.
 
-    Writes paper.json, paper.nc with the end of every search and all admissible points, and the best
-    set as paper_like.toml.
+    Writes paper.json and paper.nc, which has the end of every search and all admissible points. The
+    best set of inputs is written as paper_like.toml.
 
-    The size of the pads and the platform are those of the scene. After an interruption the same
+    The size of the pads and the platform are taken from the scene. After an interruption the same
     command continues with the next search.
     """
     from tipoff.studies.paper import page, stage

@@ -30,8 +30,8 @@ def peers(
 ) -> None:
     """Solve the same cases in other codes; writes peers/PEER.json.
 
-    A code that is not installed is a row that says so. `make peers` installs those of the package
-    index. Takes half an hour.
+    The result lists codes that are not installed as missing. `make peers` installs the codes of the
+    Python package index. The command takes half an hour.
     """
 
     def work() -> Output:

@@ -6,7 +6,7 @@ from tipoff.studies.commands.running import Output
 
 @scene_command()
 def recovery(request: Request) -> Output:
-    """Whether calibration finds hidden values: 20 draws with 2 % of noise, and a reference
+    """Test whether calibration finds hidden values: 20 draws with 2 % of noise, and a reference
     with hidden clearance and friction; writes recovery.json."""
     from tipoff.studies.recovery import page, stage
 

@@ -15,8 +15,8 @@ def report(
         bool,
         typer.Option(
             "--every",
-            help="First make every study without a present result (an hour). The page gives the "
-            "reason where the scene does not allow one.",
+            help="First run every study that has no current result (an hour). If the scene does not "
+            "allow a study, the page gives the reason.",
         ),
     ] = False,
     limit: Annotated[
@@ -24,8 +24,8 @@ def report(
         typer.Option(
             "--limit",
             metavar="[AXIS=]RATE",
-            help='Limit of a rate, "x=2 deg/s", or of the total rate, "5 deg/s", that the page '
-            "judges; repeatable.",
+            help='Limit of a rate, "x=2 deg/s", or of the total rate, "5 deg/s". The page compares '
+            "the rates with it. Repeatable.",
         ),
     ] = None,
 ) -> Output:

@@ -30,16 +30,16 @@ def highfi(
     resume: Resume = True,
     step_everything: StepEverything = False,
 ) -> Output:
-    """Run the finite-element reference on every condition; writes highfi.json and a netCDF file
-    each."""
+    """Run the finite-element reference on every condition; writes highfi.json and one netCDF file
+    for each condition."""
     numerics = {"resume": resume, "step_everything": step_everything}
     return _every(request, "highfi", condition, checkpoint_every=checkpoint_every, **numerics)
 
 
 @scene_command()
 def lowfi(request: Request, condition: Conditions = None) -> Output:
-    """Run the surrogate, model compliant, on every condition; writes lowfi.json and a netCDF file
-    each."""
+    """Run the surrogate, model compliant, on every condition; writes lowfi.json and one netCDF file
+    for each condition."""
     return _every(request, "lowfi", condition)
 
 
@@ -61,7 +61,7 @@ def run(
             "--condition",
             metavar="NAME",
             autocompletion=condition_names,
-            help="Named condition, repeatable, or several with commas; default: the scene itself.",
+            help="Named condition. Repeatable, or several with commas. Default: the scene itself.",
         ),
     ] = None,
     model: Model = None,
@@ -89,7 +89,7 @@ def run(
     checkpoint_every: CheckpointEvery = None,
     resume: Resume = True,
 ) -> Output:
-    """Run one condition or several in one model and print velocity and rates after the exit.
+    """Run one or more conditions in one model; prints velocity and rates after the exit.
 
     The output names the model and, after tipoff compare, its error. The rail compliance is computed
     once for a rail with its pads. --accuracy and --budget choose a model from the results of tipoff

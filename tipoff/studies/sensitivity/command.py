@@ -27,8 +27,8 @@ def sensitivity(
         typer.Option(
             "--points",
             metavar="N",
-            help="Base points of the Sobol' indices, a power of two; each base point takes two "
-            "cases more than there are inputs.",
+            help="Base points of the Sobol' indices, a power of two. Each base point needs two cases "
+            "more than the number of inputs.",
         ),
     ] = 1024,
     seed: Annotated[
@@ -36,8 +36,8 @@ def sensitivity(
     ] = 1,
     model: Surrogate = None,
 ) -> Output:
-    """Sensitivity of the result to uncertain inputs: contact constants as in the paper's Table 2,
-    and Sobol' indices; writes sensitivity.json.
+    """Compute the sensitivity to uncertain inputs: contact constants as in the paper's Table 2, and
+    Sobol' indices; writes sensitivity.json.
 
     A file of tolerances gives the distribution of an input (vary), or of a factor of its nominal
     value (factor):

@@ -6,7 +6,7 @@ from tipoff.studies.commands.running import Output
 
 @scene_command()
 def stability(request: Request) -> Output:
-    """Hard cases, each with a simpler method that fails on it; writes stability.json."""
+    """Run hard cases, each with a simpler method that fails on it; writes stability.json."""
     from tipoff.studies.stability import page, stage
 
     return Output(stage.run(request.study()), page.terminal, request.out)

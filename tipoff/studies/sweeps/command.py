@@ -17,12 +17,11 @@ def sweeps(
     ] = 120,
     model: Surrogate = None,
 ) -> Output:
-    """Rates by size and direction of misalignment, thrust eccentricity and mass eccentricity, up to
-    1 deg and 1 mm; writes sweeps.json.
+    """Vary size and direction of misalignment, thrust eccentricity and mass eccentricity, up to 1 deg
+    and 1 mm; writes sweeps.json.
 
-    The result states whether the largest rate about each axis stops growing, and the size at which
-    it does, with its interval. The launcher is also run with a thrust that continues after the
-    exit, or that ends before it.
+    The result states whether the largest rate about each axis stops to grow, and at which size, with
+    an interval. The sweep is repeated with a thrust that continues after the exit, or ends before it.
     """
     from tipoff.studies.sweeps import page, stage
 

@@ -28,14 +28,14 @@ def view(
             "--exaggeration",
             metavar="X",
             min=1e-6,
-            help="Factor of the deformation of the rail in pictures; default: chosen by its size.",
+            help="Factor of the deformation of the rail in pictures; default: makes the largest deformation visible.",
         ),
     ] = None,
 ) -> Output:
     """Show stress and motion of one condition; writes view/CONDITION/ with run.pvd, and pictures
     where pyvista is installed.
 
-    Open run.pvd in ParaView. It shows rails and payload, seen from the platform and undeformed. To
+    Open run.pvd in ParaView. It shows undeformed rails and the payload in axes of the platform. To
     see the deformation of the rails, use "Warp By Vector" with the array "displacement (m)" and a
     scale factor of some hundreds. Colour by "von Mises stress (Pa)" or "contact pressure (Pa)".
 
@@ -43,7 +43,7 @@ def view(
       tipoff view --scene my_launcher.toml --element-size 4 --exaggeration 500
 
     Pictures (peak.png, ejection.webp, and both for a dark page) need pyvista: pip install pyvista.
-    The files for ParaView do not.
+    The files for ParaView do not need it.
     """
     from tipoff.studies.view import page, stage
 
