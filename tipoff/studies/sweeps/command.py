@@ -20,7 +20,7 @@ def sweeps(
     """Vary size and direction of misalignment, thrust eccentricity and mass eccentricity, up to 1 deg
     and 1 mm; writes sweeps.json.
 
-    The result states whether the largest rate about each axis stops to grow, and at which size, with
+    The result states whether the largest rate about each axis stops growing, and at which size, with
     an interval. The sweep is repeated with a thrust that continues after the exit, or ends before it.
     """
     from tipoff.studies.sweeps import page, stage
