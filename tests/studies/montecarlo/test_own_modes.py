@@ -174,9 +174,9 @@ def test_what_is_said_of_them():
     page = {"own_modes": own, "draws": 5, "modes": 0, "gate_deg_s": GATE}
     (said,) = own_modes_page.sentences(page)
     assert said == (
-        "3 of 5 draws choose rail modes for themselves, 2 of them all 20; these modes change a rate "
-        "of such a draw by 0.2 deg/s in the median, 1 µm more of every clearance by 0.15 deg/s, and "
-        "in 2 of the 3 by more than the modes"
+        "3 of 5 draws choose rail modes for themselves, 2 of them all 20. In the median, these modes "
+        "change a rate of such a draw by 0.2 deg/s, and 1 µm more of every clearance changes it by "
+        "0.15 deg/s. In 2 of the 3 the clearance changes it more"
     )
     assert "case by case" in terminal(own_modes_page.table(page))
     assert all(

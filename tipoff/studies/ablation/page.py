@@ -23,12 +23,12 @@ def draw(document: dict) -> list[Part]:
         ("effects in the compiled kernel", lambda row: ", ".join(row["compiled"]) or "none"),
     )
     note = (
-        f"Condition {document['condition']}. The first line of each model has all effects; effects "
-        "that the scene lacks have small values. Each further line lacks one effect; the last line of the "
-        "reference also steps the rails that rest. Times exclude "
-        "compilation: a whole run of the reference with elements of "
-        f"{1e3 * document['element_size_m']:g} mm, the time loop alone of the surrogate on "
-        "compliant contact."
+        f"Condition {document['condition']}. The first row of each model has all effects; "
+        "effects that are absent in the scene have small values. Each further row lacks one "
+        "effect. The last row of the reference also steps the rails at rest. Times exclude "
+        "compilation. For the reference they are those of a complete run with elements of "
+        f"{1e3 * document['element_size_m']:g} mm, for the surrogate (compliant contact) those "
+        "of the time loop."
     )
     return [Table.of(document["rows"], columns, notes=(note,))]
 

@@ -23,7 +23,7 @@ def parts(document: dict, name: str = "distributions") -> list[Part]:
         return []
     shown = most_spread(found)
     return [
-        f"Conditions that no single run can judge, as distributions over neighbours within "
+        "Conditions judged as distributions over neighbours within "
         f"±{1e6 * document['clearance_change_m']:g} µm: {sentence(found)}.",
         Figure(picture(shown, name), _CAPTION.format(count=shown["neighbours"], **shown)),
         summary(found, name),
@@ -90,9 +90,10 @@ def summary(found: list[dict], name: str = "distributions") -> Table:
             kinds.append(kind(own["judgement"]))
     note = (
         f"The quantile with the largest bound of its difference. Agreement: all {CONFIDENCE:.0%} "
-        "bounds are below one margin, which is the limit of the settled rates or "
-        f"{MARGIN_SHARE:.0%} of the distance between the 10 and 90 % quantiles of the reference. Both "
-        "models on the coarse mesh. docs/chaotic_conditions.md."
+        "bounds are below one margin. The margin is the larger of two values: the limit of "
+        f"agreement, and {MARGIN_SHARE:.0%} of the distance between the 10 and 90 % quantiles of "
+        "the reference. Both models run on the coarse mesh. docs/chaotic_conditions.md explains "
+        "the test."
     )
     return Table(heads, rows, (note,), "", name, kinds, dense=True)
 
@@ -105,7 +106,9 @@ def verdicts_of(found: list[dict]) -> Table:
         for item in found
         for own in item["models"].values()
     ]
-    title = "Conditions judged as distributions over neighbours, both models on the coarse mesh."
+    title = (
+        "Conditions judged as distributions over neighbours. Both models run on the coarse mesh."
+    )
     return Table(heads, rows, title=title)
 
 

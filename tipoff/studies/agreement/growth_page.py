@@ -14,15 +14,16 @@ if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
 _SEPARATION = (
-    "Largest difference of the body rates from twins with ±1 µm of clearance, from their first "
-    "contact on. Grey: below the gate of the settled rates. Marker: horizon, after which the "
-    "difference stays above the gate."
+    "Largest difference of the body rates between a run and its twins with ±1 µm of clearance, "
+    "from the first contact on. Grey: below the limit of agreement of the settled rates. "
+    "Marker: the horizon, after which the difference stays above this limit."
 )
 _NOTES = (
-    "Reference on the coarse mesh; conditions of the floor, and all with a reference that is not "
-    "converged.",
-    "Sensitive: 1 µm changes a settled rate by more than the gate ({gate:g} deg/s). Chaotic: "
-    "sensitive, and the factor is above the number of contacts, which is the factor without growth.",
+    "The reference on the coarse mesh, for the conditions of the floor and for all conditions "
+    "whose reference is not converged.",
+    "Sensitive: 1 µm changes a settled rate by more than the limit of agreement ({gate:g} "
+    "deg/s). Chaotic: sensitive, and the factor is above the number of contacts. Without "
+    "growth, the factor equals the number of contacts.",
 )
 _SHOWN = 1e-4  # of the gate; nothing below matters to a comparison
 _LOOKS = ((NAVY, 5.0, "-", 0.35), (VERMILION, 1.5, "-", 1.0))

@@ -68,8 +68,8 @@ def agreement(document: dict) -> list[Part]:
     uncertainty of the reference."""
     calibrated = [*document["fitted"], *document["held_out"]]
     return [
-        "Compliant contact with the rail compliance; nothing is fitted, and the role is that of "
-        f"the condition in the calibration of the springs. {summary(document['compliant'])}.",
+        "Compliant contact with the rail compliance and without fitted constants. The role is "
+        f"that of the condition in the calibration of springs. {summary(document['compliant'])}.",
         judged(document["compliant"], "agreement", _notes(document)),
         _further(document["compliant"]),
         _simpler(document),
@@ -106,18 +106,20 @@ def terminal(document: dict) -> list[Part]:
 def _notes(document: dict) -> tuple[str, ...]:
     gates = document["gates"]
     return (
-        f"Gates: rate L2 {percent(gates['rate_relative_l2'])} %, v_x L2 "
+        f"Limits of agreement: rate L2 {percent(gates['rate_relative_l2'])} %, v_x L2 "
         f"{percent(gates['velocity_relative_l2'])} %, settled error "
         f"{gates['settled_rate_error_deg_s']:g} deg/s or twice the floor, if that is larger. "
         f"Floor: change of either model by ±{1e6 * document['clearance_change_m']:g} µm of "
         "clearance.",
-        "Reference ±: largest uncertainty of its settled rates by mesh, step and contact cells, each "
-        "extrapolated with the order it shows. Above "
-        f"{document['converged_deg_s']:g} deg/s the reference is not converged. Such a condition, and "
-        "one that 1 µm moves by more than the gate, is judged as a distribution.",
-        "Settled errors are rounded to the floor. A star marks the largest value of other conditions. "
-        "ISO 18571 is the mean rating of the three rates (1 is perfect); Sprague and Geers (S-G) is "
-        "over the three rates together.",
+        "Reference ±: the largest uncertainty of its settled rates by mesh, step and contact "
+        "cells, each extrapolated with its observed order. Above "
+        f"{document['converged_deg_s']:g} deg/s the reference is not converged. A condition is "
+        "judged as a distribution if its reference is not converged, or if 1 µm changes a "
+        "settled rate by more than the limit of agreement.",
+        "Settled errors are rounded to the floor. A star marks a value that is not measured on "
+        "this condition: the largest value of other conditions. ISO 18571 is the mean rating of "
+        "the three rates (1 is perfect). Sprague and Geers (S-G) is over the three rates "
+        "together.",
     )
 
 
@@ -174,9 +176,10 @@ def interface(found: list[dict]) -> list[Part]:
     )
     kinds = [distribution_page.kind(item["judgement"]) for item in found]
     note = (
-        "Both models on the coarse mesh; changes of the largest settled rate from factor 1. The "
-        "interface stiffness is a property of the launcher: it moves both models alike. A condition "
-        "agrees where it does at every factor at which it is judged."
+        "Both models run on the coarse mesh. Changes are those of the largest settled rate, "
+        "relative to factor 1. The interface stiffness is a property of the launcher and "
+        "changes both models. A condition agrees if it agrees at every factor at which it is "
+        "judged."
     )
     return [
         f"Other values of the interface stiffness: {stiffnesses(found)}.",
@@ -202,7 +205,7 @@ def by_factor(found: list[dict]) -> list[Part]:
             [
                 "condition",
                 *(f"{factor:g} times" for factor in factors),
-                Column(f"reference moves at {factors[-1]:g} times", "deg/s", ".2g"),
+                Column(f"change of the reference at {factors[-1]:g} times", "deg/s", ".2g"),
             ],
             rows,
             title="Compliant contact at other values of the interface stiffness, which both models "

@@ -31,9 +31,10 @@ def draw(page: "Page") -> list[Part]:
 def parts(found: list[dict]) -> list[Part]:
     """Agreement and constants of the scenes ``found``."""
     note = (
-        "The springs are calibrated for each scene. Judged are conditions with contact, as curves or "
-        "as distributions; errors are those of the curves. `tipoff compare --scene "
-        "thin --element-size 4` makes those of the thin rail of the catalogue."
+        "The springs are calibrated for each scene. Conditions with contact are judged, as "
+        "curves or as distributions. Errors are those of the conditions judged as curves. "
+        "`tipoff compare --scene thin --element-size 4` computes those of the thin rail of the "
+        "catalogue."
     )
     rows = [
         (

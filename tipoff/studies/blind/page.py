@@ -12,18 +12,18 @@ def draw(found: dict) -> list[Part]:
     """The section."""
     options, compliant, calibrated = found["asked"], found["compliant"], found["calibrated"]
     origin = (
-        " (digest of the sources and the scene: other code draws other conditions)"
+        " (a digest of the sources and the scene, so other code draws other conditions)"
         if options["seed"] is None
         else ""
     )
     note = (
-        f"Drawn from the distributions “{options['vary']}” with seed {found['seed']}{origin}. Every "
-        "condition has its own floor and its own uncertainty of the reference by mesh, step and "
-        "contact cells. Where the reference is not converged, or 1 µm moves it by more than the gate, "
-        "a condition is judged as a distribution."
+        f"Drawn from the distributions “{options['vary']}” with seed {found['seed']}{origin}. "
+        "Every condition has its own floor and its own uncertainty of the reference by mesh, "
+        "step and contact cells. A condition is judged as a distribution if its reference is "
+        "not converged, or if 1 µm changes a settled rate by more than the limit of agreement."
     )
     return [
-        f"Compliant contact, nothing fitted: {summary(compliant)}.",
+        f"Compliant contact, no fitted constants: {summary(compliant)}.",
         judged(compliant, "blind-compliant", (note,)),
         f"Calibrated springs: {summary(calibrated)}.",
         judged(calibrated, "blind-calibrated"),

@@ -106,7 +106,7 @@ def calibration(document: dict) -> list[Part]:
         "unit",
         Column("lower bound", form=".4g"),
         Column("upper bound", form=".4g"),
-        "why free, why these bounds",
+        "reasons for fit and bounds",
     )
     keys = ("parameters", "values", "intervals", "units", "lower", "upper", "justification")
     rows = [

@@ -18,9 +18,9 @@ _RATES = (
     "mesh, from the three finest meshes."
 )
 _METHOD = (
-    "Order and GCI after Roache and ASME V&V 20, safety factor 1.25. Where the values show no order "
-    "between 0.5 and 2 the factor is 3. Where changes do not fall the quantity is not converged, and "
-    "three times the range of the values is given."
+    "Order and GCI according to Roache and ASME V&V 20, safety factor 1.25. If the observed "
+    "order is not between 0.5 and 2, the factor is 3. If the changes do not decrease, the "
+    "quantity is not converged, and its uncertainty is three times the range of the values."
 )
 _RIPPLE = (
     "A payload under constant load slides along straight walls: largest amplitude of the force of "

@@ -15,10 +15,11 @@ if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
 _ERRORS = (
-    "Condition {condition}. Errors against the finest finite-element mesh, whose uncertainty is the "
-    "band: smaller errors count as the band in the Pareto front. Below: the part of the error that "
-    "a smaller tolerance removes. Labels: model, element size, number of modes. The cross is "
-    "the recommended model: the fastest surrogate within the band or 0.1 deg/s, whichever is larger."
+    "Condition {condition}. Errors are relative to the finest finite-element mesh. The band is "
+    "the uncertainty of this mesh; in the Pareto front smaller errors count as the band. Below: "
+    "the part of the error that a smaller tolerance removes. Labels: model, element size, "
+    "number of modes. The cross is the recommended model: the fastest surrogate within the band "
+    "or 0.1 deg/s, whichever is larger."
 )
 
 

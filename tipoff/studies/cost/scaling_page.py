@@ -22,13 +22,13 @@ _LOOKS = {
 }
 _EXPECTED = (
     "Time t = c n^p, p with its standard error. Expected over elements: 1 for a step, 4/3 for a "
-    "run. Smaller values occur where part of a step is the same on any mesh, or where the "
-    "thickness of the walls sets the step. Other numbers of pads also change the motion."
+    "run. Values are smaller if part of a step takes the same time on any mesh, or if the "
+    "thickness of the walls limits the time step. Other numbers of pads also change the motion."
 )
 _TIMES = (
-    "In brackets: time relative to that without effects. First rows: nested sets of effects. Rows "
-    "below: time of all effects minus that of all others, negative where the motion without the "
-    "effect takes longer. From the ablation study."
+    "In brackets: time relative to that without effects. First rows: nested sets of effects. "
+    "Rows below, from the ablation study: time with all effects minus time without this effect. "
+    "It is negative if the motion without the effect takes longer."
 )
 
 

@@ -26,7 +26,7 @@ _CLOUD = (
     "bars. Last panel: magnitudes, which do not depend on the angle about X."
 )
 _SIMULATED = (
-    "SIMULATED logs from a sensor model: they demonstrate the reduction and are no evidence about "
+    "SIMULATED logs from a sensor model: they demonstrate the reduction and are no evidence for "
     "a launcher."
 )
 
@@ -261,8 +261,8 @@ def _together(found: dict) -> Table:
     ]
     note = (
         f"The tests {verdict} the simulated distribution at the {percent(power.LEVEL)} % level. "
-        f"{'All tests are' if together['inside_range'] else 'Not all tests are'} inside the range "
-        "of the cases, which alone is no validation."
+        f"{'All tests are' if together['inside_range'] else 'Not all tests are'} inside the "
+        "range of the cases. This alone is no validation."
     )
     return Table(["all tests together", Column("p", form=".3f")], rows, (note,))
 
@@ -278,9 +278,9 @@ def _cases(cases: dict) -> Table:
         for item in answers.ALL
     ]
     note = (
-        f"Exit state of {cases['settled']:,} simulated cases: values below which that share of the "
-        f"cases lies, in brackets the bounds at {spread.CONFIDENCE:.0%} confidence where the cases "
-        "are independent and enough."
+        f"Exit state of {cases['settled']:,} simulated cases. Each share of the cases is below "
+        f"the value of its column. In brackets: bounds at {spread.CONFIDENCE:.0%} confidence, "
+        "where the cases are independent and enough."
     )
     heads = ["simulated cases", *(f"{percent(share, '.4g')} %" for share in shares)]
     return Table(heads, rows, (note,), dense=True)
@@ -300,10 +300,10 @@ def _power(table: list[dict]) -> Table:
     )
     rows = [(row["factor"], *(row[name] for name in columns)) for row in table]
     note = (
-        "Probability that this many tests lie inside the range of this many cases, and that a "
-        "two-sided 5 % test of their spread rejects the model. Row 1 is a correct model and exact; "
-        "the other rows are for a normal distribution (Monte Carlo). This cloud: the truth is the "
-        "simulated cloud, scaled about its mean."
+        "Probability that this number of tests is inside the range of this number of cases, and "
+        "probability that a two-sided 5 % test of their spread rejects the model. Row 1 is a "
+        "correct model and exact. The other rows are for a normal distribution (Monte Carlo). "
+        "This cloud: the truth is the simulated cloud, scaled about its mean."
     )
     return Table(heads, rows, (note,))
 

@@ -71,10 +71,10 @@ def _sensitivity(found: dict) -> list[Part]:
     heads = ["change by", "median (deg/s)", "95 % below", "largest", f"above {limit}", "unsettled"]
     took = [f"{CAUSES[cause]}: {_time(cost)}" for cause, cost in found["run"].items()]
     return [
-        f"sensitive: {counted(found['sensitive'], 'case')}. A settled rate moves by more than {limit}, or the "
-        "disturbed run does not settle.",
+        f"sensitive: {counted(found['sensitive'], 'case')}. A settled rate changes by more than "
+        f"{limit}, or the disturbed run does not settle.",
         Table(heads, rows),
-        f"run time of the sensitivity, beside the above: {'; '.join(took)}",
+        f"additional run time of the sensitivity: {'; '.join(took)}",
     ]
 
 

@@ -30,8 +30,8 @@ _TARGET = (
 )
 _ROTATION = ("cone_least_deg", "cone_largest_deg", "coning_deg_s", "nutation_s")
 _PATHS = (
-    "Left and middle: path to the target in orbit axes; sideways is scene y, up is scene z. The "
-    "curvature common to all paths is the orbit's. Right: path relative to the platform."
+    "Left and middle: path to the target in orbit axes; sideways is scene y, up is scene z. All "
+    "paths have the curvature of the orbit. Right: path relative to the platform."
 )
 _AXES = (
     "Left: direction of the payload's x axis in inertial space during one round about the angular "
@@ -110,7 +110,7 @@ def _cases(many: dict) -> Table:
     notes = (
         f"{counted(counts['asked'], 'case')}: {counts['ok']:,} ok, {counts['refused']:,} refused, "
         f"{counts['failed']:,} failed; {many['settled']:,} flown.{_touching(many)}",
-        "Values below which that share of the cases lies, in brackets the bounds at "
+        "Each share of the cases is below the value of its column. In brackets: bounds at "
         f"{many['confidence']:.0%} confidence ({many['bounds']}).",
     )
     rows = [

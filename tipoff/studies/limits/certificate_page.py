@@ -21,19 +21,22 @@ def lines(found: dict) -> list[str]:
     multiple = next(row for row in found["rows"] if row["name"] == TOGETHER)["nominal"]["tolerance"]
     runs = sum(each["runs"] for each in shown["strata"])
     lines = [
-        f"finite elements of {1e3 * shown['element_size_m']:g} mm, {runs} runs at {multiple:.3g} times "
-        f"the set: a rate is above its limit with a probability of at most "
+        f"finite elements of {1e3 * shown['element_size_m']:g} mm, {runs} runs at {multiple:.3g} "
+        "times the set: a rate is above its limit with a probability of at most "
         f"{percent(shown['upper'])} % ({found['confidence']:.0%} confidence), estimate "
-        f"{percent(shown['estimate'])} %; asked for {percent(1.0 - found['probability'])} %: "
+        f"{percent(shown['estimate'])} %; allowed are {percent(1.0 - found['probability'])} %: "
         f"{'certified' if shown['certified'] else 'not certified'}",
-        f"as many plain runs, none of them above a limit, would leave {percent(shown['plain'])} %",
+        (
+            "the same number of runs without strata, none of them above a limit, would give at most "
+            f"{percent(shown['plain'])} %"
+        ),
     ]
     if not shown["certified"]:
         lines.append(
             "too many cases of the surrogate are above a limit for any number of runs: make the tolerances "
             "smaller"
             if shown["needed"] is None
-            else f"{shown['needed']:,} runs would certify it, if no further one is above a limit"
+            else f"{shown['needed']:,} runs would certify it, if no further run is above a limit"
         )
     if shown["lost"]:
         lost = "; ".join(f"{row['run']}: {row['status']} {row['message']}" for row in shown["lost"])

@@ -20,13 +20,13 @@ _CURVES = (
     "share 1 - p. Vertical: the largest certified tolerance; dashed: the advice of the paper."
 )
 _MAP = (
-    "Both errors vary; on an axis the other error is zero. Pairs on the side of the origin are "
-    "certified. Square: the advice of the paper."
+    "Both errors vary; on an axis the other error is zero. Pairs between the line and the "
+    "origin are certified. Square: the advice of the paper."
 )
 _TOLERANCE = (
-    "A tolerance is three sigma of a normal distribution, drawn again beyond it; an error has any "
-    "direction. One factor varies at a time, the errors of the others are {others}; the last "
-    "row scales a whole set."
+    "A tolerance is three sigma of a normal distribution; larger values are drawn again. The "
+    "direction of an error is random. One factor varies at a time, and the errors of the others "
+    "are {others}. The last row scales a whole set."
 )
 _CERTIFIED = (
     "Certified: the upper bound of the probability that a rate is above its limit is at most "
@@ -130,7 +130,9 @@ def _odd(row: dict) -> list[str]:
     lines = [f"also certified beyond the first failure, not used: {sizes}{unit}"] if again else []
     ends = ", ".join(f"{one:.3g} to {two:.3g}" for one, two in falls)
     return lines + (
-        [f"a larger tolerance has fewer cases above from {ends}{unit}"] if falls else []
+        [f"the number of cases above a limit falls with the tolerance from {ends}{unit}"]
+        if falls
+        else []
     )
 
 

@@ -6,9 +6,10 @@ from tipoff.studies.render.document import Part
 from tipoff.studies.render.table import Cells, Column, Table, number, percent
 
 _NOTE = (
-    "Errors are those of single runs on the mesh of the reference, the largest of the three axes. Times "
-    "are means over the draws, of one core: of a single run, case by case with the runs from which a "
-    "draw chooses, and of a case of a population with this number in all cases, whose steps are longer."
+    "Errors are those of single runs on the mesh of the reference, and the largest of the three "
+    "axes. Times are means over the draws, of one core. Single run: case by case, it includes "
+    "the runs that choose the modes. Case of a population: all its cases have this number of "
+    "modes, and their steps are longer."
 )
 
 
@@ -41,12 +42,11 @@ def sentences(found: dict) -> list[str]:
     if not choosing:
         return [f"none of {draws} chooses rail modes for itself"]
     return [
-        f"{choosing} of {draws} choose rail modes for themselves, {own['choosing_all']} of them all "
-        f"{own['held']}; these modes change a rate of such a draw by "
-        f"{number(own['moved_deg_s'], '.2g')} deg/s in the median, "
-        f"{1e6 * own['clearance_change_m']:g} µm more of every clearance by "
-        f"{number(own['moved_by_clearance_deg_s'], '.2g')} deg/s, and in "
-        f"{own['more_by_clearance']} of the {choosing} by more than the modes"
+        f"{choosing} of {draws} choose rail modes for themselves, {own['choosing_all']} of them "
+        f"all {own['held']}. In the median, these modes change a rate of such a draw by "
+        f"{number(own['moved_deg_s'], '.2g')} deg/s, and {1e6 * own['clearance_change_m']:g} µm "
+        f"more of every clearance changes it by {number(own['moved_by_clearance_deg_s'], '.2g')} "
+        f"deg/s. In {own['more_by_clearance']} of the {choosing} the clearance changes it more"
     ]
 
 

@@ -21,8 +21,9 @@ _CAPTION = (
     "contacts. Below: quantiles of the same draws. On the grey line both are equal."
 )
 _CONTACTS = (
-    "A contact is a stretch of time in which some pad bears a force in the surrogate; stretches less "
-    "than 1 ms apart are one. Error: the largest of the three axes, both models on the same mesh."
+    "A contact is a time interval in which some pad of the surrogate has a force; intervals "
+    "less than 1 ms apart count as one. Error: the largest of the three axes, both models on "
+    "the same mesh."
 )
 _ERRORS = (
     "Same mesh: the surrogate with the rail compliance of the mesh of the reference. Population: the "
@@ -32,10 +33,10 @@ _ERRORS = (
 )
 _INTERVALS = (
     "{confidence:.0%} intervals. The reference alone: its {paired} draws without correction. "
-    "Equivalent runs: runs of the reference alone with an interval of the same width. A dash: too few "
-    "draws for a bound. Intervals of quantiles and probabilities allow for rare differences that no "
-    "draw has shown, so they gain less than those of a mean, which "
-    "take the draws to show the largest differences."
+    "Equivalent runs: runs of the reference alone with an interval of the same width. A dash: "
+    "too few draws for a bound. Intervals of quantiles and probabilities allow for rare "
+    "differences that no draw has shown. Intervals of a mean do not, so the correction narrows "
+    "them more."
 )
 _TAILS = (
     "A case that did not settle counts as above. Missed: draws above the limit in the reference and "

@@ -27,10 +27,10 @@ _PAIRS = (
     ("54 deviations, conditions 1 and 5", _DEVIATIONS, _QUIET),
 )
 _TRADED = (
-    "Ends of the searches by three measures, two in each panel: largest error of the nine printed "
-    "rates, largest error of their 54 deviations, largest rate on conditions 1 and 5. Squares: "
-    "searches over conditions 2 to 4; circles: over all five. The line is the Pareto front of all "
-    "points, whatever their deviations."
+    "Ends of the searches by three measures, two in each panel: largest error of the nine "
+    "printed rates, largest error of their 54 deviations, largest rate on conditions 1 and 5. "
+    "Squares: searches over conditions 2 to 4; circles: over all five. The line is the Pareto "
+    "front of all points, with any deviations."
 )
 _BESIDE = (
     "Printed rates (left) and deviations (right) and those of the best set; equal on the line."

@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
 _NOTE = (
-    "Means over 2 ms after exit and burnout, by the finite elements. Velocity in the initial scene "
-    "axes; rates inertial, in payload body axes: roll about X, transverse across it. ±: the largest "
-    "uncertainty of the reference by mesh, step and contact cells."
+    "Means over 2 ms after exit and burnout, by the finite elements. Velocity is in the initial "
+    "scene axes. Rates are inertial, in payload body axes: roll about X, transverse across it. "
+    "±: the largest uncertainty of the reference by mesh, step and contact cells."
 )
 _HAND_NOTE = (
-    "By hand: the same two rates of a rigid payload from the moment impulse of the thrust over the "
-    "inertia, where no pad touches. Where one pad touches, with the impulse of its force. Both must be "
-    "near the finite elements; left out is the gyroscopic moment."
+    "By hand: the same two rates of a rigid payload, from the moment impulse of the thrust over "
+    "the inertia. If one pad touches, the impulse of its force is added. Both must be near the "
+    "finite elements. The gyroscopic moment is left out."
 )
 
 
@@ -257,8 +257,8 @@ def _numerics(compared: dict[str, dict]) -> list[str]:
     name = max(known, key=lambda name: known[name])
     open_ = [name for name, row in compared.items() if not row["reference_converged"]]
     return [
-        f"numerics: mesh, step and contact cells leave at most {number(known[name], '.2g', LEAST)} deg/s "
-        f"({name}) uncertain in the reference"
+        "numerics: the uncertainty of the reference by mesh, step and contact cells is at most "
+        f"{number(known[name], '.2g', LEAST)} deg/s ({name})"
         + (f"; it is not converged on {', '.join(open_)}" if open_ else "")
     ]
 
@@ -272,14 +272,14 @@ def _model(page: "Page", compared: dict[str, dict]) -> list[str]:
     chaotic = [row for row in compared.values() if row["judged_as"] == verdicts.DISTRIBUTION]
     alike = sum(row["judgement"] == verdicts.AS_DISTRIBUTION for row in chaotic)
     found = (
-        f"model: where one run can be judged, the surrogate is within {number(max(errors), '.2g', LEAST)} "
-        "deg/s of the finite elements; "
+        "model: on conditions judged as curves, the surrogate is within "
+        f"{number(max(errors), '.2g', LEAST)} deg/s of the finite elements; "
         if errors
-        else "model: no single run can be judged against the finite elements; "
+        else "model: no condition can be judged as a curve; "
     )
     if chaotic:
         found += f"as distributions {alike} of {len(chaotic)} conditions agree; "
-    return [f"{found}neither was validated on a measured ejection"]
+    return [f"{found}neither model was validated on a measured ejection"]
 
 
 def _inputs(page: "Page", compared: dict[str, dict]) -> list[str]:
@@ -290,7 +290,7 @@ def _inputs(page: "Page", compared: dict[str, dict]) -> list[str]:
         assumed += text.startswith("assumed") or (was_stated and not text)
     floors = [row["floor_deg_s"] for row in compared.values() if row["floor_deg_s"] is not None]
     moved = (
-        f"; 1 µm of clearance moves a rate by up to {number(max(floors), '.2g', LEAST)} deg/s"
+        f"; 1 µm of clearance changes a rate by up to {number(max(floors), '.2g', LEAST)} deg/s"
         if floors
         else ""
     )
@@ -304,4 +304,4 @@ def _inputs(page: "Page", compared: dict[str, dict]) -> list[str]:
             f"; a quarter or four times the interface stiffness by up to "
             f"{number(max(interface), '.2g', LEAST)} deg/s"
         )
-    return [f"inputs: {assumed} of {every} values are assumed or have no origin{moved}"]
+    return [f"inputs: {assumed} of {every} values are assumed or have no stated source{moved}"]

@@ -57,8 +57,8 @@ def _cost(found: dict) -> Table:
     return Table.of(
         found["matched"],
         columns,
-        title=f"What the same accuracy costs (`make cost`, {found['condition']}): each surrogate, "
-        "and the coarsest mesh that is no less exact.",
+        title=f"Time at equal accuracy (`make cost`, {found['condition']}): each surrogate, and "
+        "the coarsest mesh whose error is not larger.",
     )
 
 
@@ -86,9 +86,9 @@ def _scaling(found: dict) -> Table:
     return Table(
         ["over", "model", "p of a run", "p of a step"],
         rows,
-        (f"{step}All effects over none take: {prices}.",),
-        "How time grows (`make cost`, one processor): t = c n^p. Expected over elements: 1 for a "
-        "step, 4/3 for a run, whose steps\nshorten too.",
+        (f"{step}Time with all effects over time without: {prices}.",),
+        "How time grows (`make cost`, one processor): t = c n^p. Expected over elements: 1 for "
+        "a step, 4/3 for a run, because its steps\nbecome shorter too.",
     )
 
 
@@ -175,11 +175,12 @@ def _surrogate(found: dict) -> Table:
     return Table.of(
         found["single"],
         columns,
-        title="Speed of the surrogate (`make bench`), processor ms per case on one core at the "
-        f"same error of the settled rate (95th percentile of {found['varied_cases']} varied "
-        f"cases); an ensemble of {found['ensembles'][0]['cases']:,} takes {many} per case at "
-        f"{found['single'][0]['error_percent']:g} %, set-up and the choice of modes included. Modes "
-        f"of compliant contact: {found['modes_why']}; in the last column each run chooses its own:",
+        title="Speed of the surrogate (`make bench`): processor ms per case on one core, at the "
+        f"same error of the settled rate (95th percentile of {found['varied_cases']} "
+        f"varied cases). An ensemble of {found['ensembles'][0]['cases']:,} takes {many} "
+        f"per case at {found['single'][0]['error_percent']:g} %, set-up and the choice of "
+        f"modes included. Modes of compliant contact: {found['modes_why']}; in the last "
+        "column each run chooses its own:",
     )
 
 

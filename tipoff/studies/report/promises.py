@@ -121,7 +121,7 @@ def _friction(rows: list[dict]) -> Promise | None:
         None
         if worst is None
         else Promise(
-            "friction never gives energy back",
+            "friction never adds energy",
             f"{number(worst, '.2g')} W ({where})",
             "0 W",
             worst <= 0.0,

@@ -25,18 +25,19 @@ from tipoff.studies.report import further
 _ROOT = Path(__file__).resolve().parents[3]
 _TITLE = """# Results on the reference scene
 
-Written by `python -m tipoff.studies.report.readme` from the files of `make full-report` and `make bench`; times
-of different tables may be those of different days and are not to be divided by each other. The
+Written by `python -m tipoff.studies.report.readme` from the files of `make full-report` and `make bench`. Times
+of different tables may be from different days, so do not divide them by each other. The
 [glossary](glossary.md) has the terms, and [agreement](explanation/convergence_and_chaos.md) the limits.
 
-Conditions `phi0` to `phi90` are the paper's (0.1 deg of thrust misalignment, that clock angle) and were
-fitted; `h1` to `h10` were not. No pad touches a rail in `h5` and `h6`: their agreement tests free flight."""
+Conditions `phi0` to `phi90` are those of the paper: 0.1 deg of thrust misalignment at this clock angle. The
+springs were fitted to them, and not to `h1` to `h10`. No pad touches a rail in `h5` and `h6`: their agreement
+tests free flight."""
 _TAILS = """# Random errors checked by the reference
 
 Scene {scene}. Written by `python -m tipoff.studies.report.readme` from the file of
 `tipoff montecarlo --cases {cases} --reference {draws} --finer {fine}`. All runs of the surrogate have the
-[number of rail modes](rail_modes.md#one-number-in-a-study) that pilot cases of the population chose, but
-those of the table by rail modes."""
+[number of rail modes](rail_modes.md#one-number-in-a-study) that pilot cases of the population chose. The
+table by rail modes has runs with other numbers too."""
 _BEGIN, _END = "<!-- {name}: python -m tipoff.studies.report.readme -->", "<!-- end of {name} -->"
 
 
@@ -168,10 +169,10 @@ def _agreement(found: dict) -> Table:
     return Table.of(
         found["compliant"],
         columns,
-        title="Rates of the surrogates against the reference (rate L2 in % / largest error of a "
-        "settled rate in deg/s), and what bounds any\nsuch claim. Nothing is fitted on compliant "
-        "contact; the role is that of the condition in the calibration of the springs.\n"
-        "The verdict is on compliant contact.",
+        title="Errors of the surrogates against the reference (rate L2 in % / largest error of "
+        "a settled rate in deg/s), the floor, and the\nuncertainty of the reference. "
+        "Compliant contact has no fitted constants; the role is that of the condition in "
+        "the calibration of springs.\nThe verdict is that of compliant contact.",
     )
 
 
@@ -192,7 +193,11 @@ def _growth(found: list[dict]) -> list[Part]:
         lines.append(
             f"- {names}: stable to the end (up to {number(most, '.2g', STEPS['deg/s'])} deg/s per µm)"
         )
-    return ["How 1 µm of clearance grows in the reference:", "\n".join(lines)] if lines else []
+    return (
+        ["Growth of a difference of 1 µm of clearance in the reference:", "\n".join(lines)]
+        if lines
+        else []
+    )
 
 
 def _speed(agreement: dict) -> str:
@@ -235,8 +240,8 @@ def _blind(found: dict) -> Table:
     return Table.of(
         found["compliant"],
         columns,
-        title=f"{len(springs)} conditions drawn afterwards, with errors as in the paper's Table 3 "
-        "(`make blind`; another line of code draws others):",
+        title=f"{len(springs)} random conditions with errors as in the paper's Table 3 (`make "
+        "blind`; other code draws other conditions):",
     )
 
 
@@ -258,10 +263,9 @@ def _ladder(found: dict) -> list[Part]:
         Column("rate L2", "%", ".2g"),
     )
     return [
-        f"What accuracy costs in time (`make cost`, {found['condition']}): errors against the "
-        "finest mesh, whose own uncertainty is "
-        f"{number(found['band_deg_s'], '.2g')} deg/s; smaller ones count as that. Bold: none "
-        "faster is as good.",
+        f"Error and time of all models (`make cost`, {found['condition']}). Errors are relative "
+        f"to the finest mesh, whose own uncertainty is {number(found['band_deg_s'], '.2g')} "
+        "deg/s; smaller errors count as this value. Bold: no faster model is as accurate.",
         "![Errors of all models against wall time](cost.png)",
         Table(heads, rows, kinds=["best" if point["pareto"] else "" for point in found["points"]]),
     ]

@@ -12,9 +12,10 @@ if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
 _CURVES = (
-    "The paper's Figure 6 for this scene. The colour is the axis, the line the model: broad and pale "
-    "finite elements, thin compliant contact, dashed springs, calibrated, dotted springs before "
-    "calibration. Right: surrogate minus finite elements. Rates are inertial, in payload body axes."
+    "The paper's Figure 6 for this scene. The colour shows the axis, the line the model. Broad "
+    "and pale: finite elements; thin: compliant contact; dashed: springs, calibrated; dotted: "
+    "springs before calibration. Right: surrogate minus finite elements. Rates are inertial, in "
+    "payload body axes."
 )
 
 
@@ -58,7 +59,7 @@ def curves(page: "Page") -> list[Part]:
     names = fitted or list(page.runs.highfi)[:5]
     if not names:
         return [page.missing("highfi", "highfi")]
-    caption = _CURVES if page.runs.calibrated else f"{_CURVES} There are no runs on springs."
+    caption = _CURVES if page.runs.calibrated else f"{_CURVES} There are no runs with springs."
     return [Figure(figures.figure6(page.runs, names), caption)]
 
 

@@ -4,11 +4,11 @@ from tipoff.studies.render.document import Part
 from tipoff.studies.render.table import Cells, Column, Noted, Table
 
 _NOTE = (
-    "Largest step: for the surrogate the smallest value of the proven limit, which no step exceeds; "
-    "for the reference the step it took. Critical step: 2 / ω of the linearised case at its "
-    "stiffest, or 2 / rate where friction damps faster; central differences grow beyond it. Energy "
-    "drift: largest residual of the total energy ledger over its scale. A dash: nothing touches or "
-    "vibrates, or the figure does not apply."
+    "Largest step: for the surrogate, the smallest value of the proven limit, which no step "
+    "exceeds; for the reference, its time step. Critical step: 2 / ω of the linearised case at "
+    "its stiffest, or 2 / rate if friction damps faster. Above it, central differences diverge. "
+    "Energy drift: largest residual of the total energy ledger over its scale. A dash: nothing "
+    "touches or vibrates, or the value does not apply."
 )
 
 
@@ -32,7 +32,7 @@ def draw(document: dict) -> list[Part]:
         ("verdict", _verdict),
     )
     kinds = ["good" if c["held"] and c["control_failed"] else "bad" for c in document["cases"]]
-    title = "For each case, a simpler method must fail: otherwise the case proves nothing."
+    title = "For each case a simpler method must fail. Otherwise the case proves nothing."
     return [
         Table.of(document["cases"], columns, notes=(_NOTE,), title=title, kinds=kinds, dense=True)
     ]

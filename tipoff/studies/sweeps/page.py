@@ -26,10 +26,10 @@ _VERDICT = (
 )
 _SLOPES = ("error", "not free from", "rate", "slope before", "slope after")
 _METHOD = (
-    "The corrected information criterion chooses the law. Plateau: beyond the knee the rate stays "
-    f"within {100.0 * LEVEL:g} % of its value there. Levels off: at the largest size at most "
-    f"{100.0 * LEVEL:g} % of the height is left to grow. None of the laws: the best law has a "
-    f"misfit (rms) above {100.0 * MISFIT:g} % of the largest rate."
+    "The corrected information criterion selects the law. Plateau: beyond the knee the rate "
+    f"stays within {100.0 * LEVEL:g} % of its value there. Levels off: at the largest size, at "
+    f"most {100.0 * LEVEL:g} % of the height is left to grow. None of the laws: the best law has "
+    f"a misfit (rms) above {100.0 * MISFIT:g} % of the largest rate."
 )
 _INTERVAL = (
     "The paper: the size at which its plateau begins. The interval of a knee is a bootstrap over "
@@ -40,11 +40,11 @@ _FREE = (
     "payload. Slopes in deg/s per unit of the error."
 )
 _REASON = (
-    "Reason for a plateau: an error turns the payload until the clearance stops it, and a larger "
-    "moment then only increases the pressure. If the thrust burns out on the rail, a larger error "
-    "adds little to the rate until other pads touch. If the payload leaves under thrust, no wall "
-    "limits the rest: the remaining impulse J' adds the rate J' r/I, in proportion to the error, "
-    "and there is no plateau."
+    "Reason for a plateau: an error turns the payload until the clearance stops it. A larger "
+    "moment then only increases the pressure. If the thrust burns out on the rail, a larger "
+    "error adds little to the rate until other pads touch. If the payload leaves under thrust, "
+    "no wall limits the rest: the remaining impulse J' adds the rate J' r/I. It is proportional "
+    "to the error, so there is no plateau."
 )
 
 
