@@ -151,7 +151,7 @@ def _(mo):
 
     Three things limit what a single run says. The balances of energy and momentum show whether the
     equations were solved. A second run with 1 µm more clearance shows whether the ejection is
-    chaotic: where it moves a rate by more than 0.1 deg/s, only an ensemble makes sense. And the
+    chaotic: if it changes a rate by more than 0.1 deg/s, only an ensemble is useful. And the
     surrogate itself differs from finite elements; `tipoff compare` measures by how much.
     """)
     return
@@ -163,7 +163,7 @@ def _(compliance, np, scene, tipoff):
     for title, looked_at in (("as it is", scene), ("tighter and stronger", tighter)):
         moved = tipoff.ensemble(looked_at, [{}], compliance=compliance, sensitivity=True)
         by_clearance = np.degrees(moved.rate_change_by_clearance.values[0])
-        print(f"{title:22} 1 µm of clearance moves a rate by {by_clearance:.2g} deg/s")
+        print(f"{title:22} 1 µm of clearance changes a rate by {by_clearance:.2g} deg/s")
     return
 
 

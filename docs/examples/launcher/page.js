@@ -63,7 +63,7 @@ function writeUncertainty(root, { answer, is_final }, found) {
   if (!is_final) return void (place.textContent = "Rails without inertia, until the slider rests.");
   if (!found) return void (place.textContent = "How far small changes move the rates is being found.");
   const parts = [["1 µm of clearance", found.by_clearance], ["a tolerance of 1e-10", found.by_tolerance]].map(([cause, change]) =>
-    (change === null ? `${cause} keeps the run from settling` : `${cause} moves a rate by ±${change.toPrecision(2)} deg/s`));
+    (change === null ? `${cause} prevents the run from settling` : `${cause} changes a rate by ±${change.toPrecision(2)} deg/s`));
   const sensitive = [found.by_clearance, found.by_tolerance].some((change) => change === null || change > answer.limit);
   place.classList.toggle("sensitive", sensitive);
   place.textContent = `${parts.join("; ")}. ${sensitive

@@ -136,7 +136,7 @@ def test_too_few_neighbours_cannot_judge_and_say_how_many_can(study, monkeypatch
     )
     found = judged(study, 6)["models"]["calibrated"]
     assert found["judgement"] == "cannot be judged"
-    assert "6 neighbours leave the" in found["verdict"] and "are needed" in found["verdict"]
+    assert "with 6 neighbours the" in found["verdict"] and "are needed" in found["verdict"]
 
 
 def test_neighbours_that_do_not_settle(study, monkeypatch):

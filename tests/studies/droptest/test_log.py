@@ -198,7 +198,7 @@ def test_what_is_wrong_with_a_table_is_listed(tmp_path):
         (
             "[[0, 1, 0], [-1, 0, 0], [0, 0, 1]]",
             "[[0, -1, 0], [1, 0, 0], [0, 0, 1]]",
-            "do the axes point so",
+            "are the axes correct",
         ),
         ('range = "250 deg/s"', "", "gyro.range"),
         ("scale = 0.0005", "scale = -1", "gyro.uncertainty.scale"),
@@ -225,7 +225,7 @@ def test_every_fault_of_a_sheet_is_listed(tmp_path):
 
 def test_missing_release_and_missing_ignition_are_refused(tmp_path):
     assert "begins in free fall" in refused(written(tmp_path, rows=lambda cells: cells[1260:]))
-    assert "no push along +X" in refused(written(tmp_path, rows=lambda cells: cells[:1640]))
+    assert "no acceleration along +X" in refused(written(tmp_path, rows=lambda cells: cells[:1640]))
     assert "no free fall" in refused(written(tmp_path, rows=lambda cells: cells[:1200]))
 
 
@@ -239,7 +239,7 @@ def test_without_accelerations_the_sheet_must_say_when(tmp_path):
         written(tmp_path, bare + '\n[events]\nrelease = "1.25 s"\nignition = "1.65 s"\n')
     )
     for words in (
-        "as the sheet gives them",
+        "release and ignition from the sheet",
         "g-sensitivity not compensated",
         "temperature not compensated",
         "in both windows",

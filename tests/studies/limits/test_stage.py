@@ -390,7 +390,7 @@ def test_the_model_error_is_the_largest_of_the_held_out_conditions(tmp_path, mon
         {"x": 0.3, "y": 0.4, "z": 0.2, "total": 0.5}
     )
     assert constants.margin(study, "springs").source == (
-        "largest of 2 held-out conditions; no single run judges 2 others, 1 did not settle"
+        "largest of 2 held-out conditions; not judged as curves: 2; not settled: 1"
     )
     assert constants.margin(study, "compliant").deg_s == pytest.approx(
         {"x": 0.1, "y": 0.1, "z": 0.2, "total": 0.06**0.5}

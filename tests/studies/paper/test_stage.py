@@ -268,7 +268,7 @@ def test_a_set_that_no_scene_file_could_hold_is_told_before_any_search(tmp_path,
     path.write_text('extends = "reference"\nname = "mine"\n')
     with pytest.raises(StudyError, match="paper_like.toml, which extends 'mine'.*does not load"):
         paper.run(Study(scenes.load(path), tmp_path / "out", Settings()), SMALL)
-    with pytest.raises(StudyError, match="is another: rail.material.density$"):
+    with pytest.raises(StudyError, match="scene differs: rail.material.density$"):
         paper.run(
             Study(BASE.replace({"rail.material.density": 2700.0}), tmp_path / "out", Settings()),
             SMALL,

@@ -67,4 +67,4 @@ def test_a_sensitive_run_says_so(condition, warned):
 def test_a_disturbed_run_that_does_not_settle_is_a_warning():
     words = disturbed.lines(moved("phi60")[0] | {"by_clearance_deg_s": None}, 0.1)
     assert "1 µm of clearance: does not settle" in words[0]
-    assert "1 µm of clearance keeps the run from settling" in words[1]
+    assert "1 µm of clearance prevents the run from settling" in words[1]

@@ -200,7 +200,7 @@ def _why(word: str, found: list[equivalence.Comparison], draws: int) -> str:
     # far beyond, the width of so few draws foretells nothing
     words = f"up to {needed}" if needed <= _FORETOLD * draws else f"more than {_FORETOLD * draws}"
     return (
-        f": {draws} neighbours leave the {_place(worst)} of the reference uncertain by "
+        f": with {draws} neighbours the {_place(worst)} of the reference is uncertain by "
         f"{worst.width:.2g} x margin; {words} are needed"
     )
 

@@ -98,5 +98,5 @@ def _one(row: dict) -> str:
     if verdicts.is_judged_as_curve(row):
         return off
     if row["judged_as"] == verdicts.DISTRIBUTION:
-        return f"{off}, but 1 µm or the mesh moves the reference as much there; it {row['verdict']}"
+        return f"{off}, but 1 µm or the mesh changes the reference as much; it {row['verdict']}"
     return f"{off}, but the reference is not converged there"

@@ -30,6 +30,6 @@ def announce(study: Study, runs: Sequence[Run]) -> None:
             f"  {len(missing)} of {counted(len(wanted), 'run')} of the reference on elements of "
             f"{1e3 * size:g} mm {verb} to be made: {elements:,} elements, about "
             f"{step_cost.in_words(len(missing) * seconds)} on one core, "
-            f"{memory_estimate.in_words(memory)} for each of {study.settings.workers} at once; an "
-            "interrupted study goes on from the finished runs"
+            f"{memory_estimate.in_words(memory)} for each of {study.settings.workers} parallel "
+            "runs; an interrupted study continues from the finished runs"
         )

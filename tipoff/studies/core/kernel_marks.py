@@ -20,7 +20,7 @@ from tipoff.studies.core.progress import say
 if TYPE_CHECKING:
     from tipoff.studies.core.store import Run
 
-_WITH_MODES = ", and as long again if modes of the rails turn out to matter"
+_WITH_MODES = ", and the same time again if modes of the rails are needed"
 _SAID: set[Path] = set()  # marks of kernels that this process has announced
 
 

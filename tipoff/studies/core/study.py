@@ -250,7 +250,7 @@ class Study:
         return True
 
 
-def read(path: Path, remedy: str = "the command that wrote it writes it again") -> dict | None:
+def read(path: Path, remedy: str = "repeat the command that wrote it") -> dict | None:
     """The content of a result file; None if it is missing or does not match its digest. Prints the
     latter with the ``remedy``."""
     try:

@@ -84,12 +84,12 @@ def _require_whole(log: Log, spans: Spans, source: str) -> None:
 def _notes(sheet: Sheet, log: Log, events: Events, unrest: float) -> list[str]:
     notes = [*log.notes, *missing_information(sheet, log)]
     if events.given:
-        notes.append("release and ignition as the sheet gives them")
+        notes.append("release and ignition from the sheet")
     if events.later:
         times = ", ".join(f"{at:.4g} s" for at in events.later)
         notes.append(
-            f"pushed along +X as long as by a burn after ignition too, at {times}: taken for the "
-            f"catch"
+            f"also accelerated along +X after ignition, as long as by a burn, at {times}: taken "
+            "for the catch"
         )
     if unrest > sheet.windows.rest_rate:
         notes.append(

@@ -97,7 +97,7 @@ def _release(sheet: Sheet, found: Calibrated, interval: float, source: str) -> i
     falls = [run for run in runs(smooth < 0.5 * GRAVITY) if run[1] - run[0] >= _FALL / interval]
     if not falls or falls[0][0] == 0:
         given = "a log that begins in free fall" if falls else "no free fall"
-        expected = f"a force that falls from g to nothing for {1e3 * _FALL:g} ms and longer"
+        expected = f"a force that falls from g to zero for at least {1e3 * _FALL:g} ms"
         raise SceneError([Fault(source, "release", given, expected)])
     crossing = falls[0][0]
     span = max(3, int(np.ceil(reach(sheet.channel_class) / interval)))
@@ -125,8 +125,10 @@ def _pushes(found: Calibrated, interval: float, release: int, source: str) -> li
         if burn.size and interval * float(ahead[burn].sum()) >= _IMPULSE
     ]
     if not strong:
-        expected = f"one of {_IMPULSE} m/s and more; do the axes point so?"
-        raise SceneError([Fault(source, "ignition", "no push along +X in free fall", expected)])
+        expected = f"an impulse per mass of at least {_IMPULSE} m/s; are the axes correct?"
+        raise SceneError(
+            [Fault(source, "ignition", "no acceleration along +X in free fall", expected)]
+        )
     return strong
 
 

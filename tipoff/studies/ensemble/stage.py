@@ -60,7 +60,7 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
     }
     if options.table is not None:
         if changed:
-            expected = "no such option, since the table lists its cases"
+            expected = "no such option: the table lists its cases"
             raise SceneError(
                 [Fault("--table", name, str(value), expected) for name, value in changed.items()]
             )

@@ -74,8 +74,8 @@ def margin(study: Study, model: str) -> Margin:
         largest["total"] = max(sum(part**2 for part in error) ** 0.5 for error in errors)
         return Margin(
             largest,
-            f"largest of {counted(len(errors), 'held-out condition')}; no single run judges "
-            f"{counted(len(rows) - len(judged), 'other')}, {len(judged) - len(errors)} did not settle",
+            f"largest of {counted(len(errors), 'held-out condition')}; not judged as curves: "
+            f"{len(rows) - len(judged)}; not settled: {len(judged) - len(errors)}",
         )
     left = [
         row["settled_rate_error_deg_s"]

@@ -68,7 +68,7 @@ def _cases(options: Options) -> int:
         faults.append(Fault("--certify", "value", str(options.certify), expected))
     if options.draws is not None and options.model != SPRINGS:
         expected = (
-            f"used with --model {SPRINGS} alone; the constants of compliant contact are not drawn"
+            f"used only with --model {SPRINGS}; the constants of compliant contact are not drawn"
         )
         faults.append(Fault("--draws", "option", str(options.draws), expected))
     elif options.draws is not None and not 0 <= options.draws <= _MOST_DRAWS:

@@ -79,8 +79,8 @@ def run(study: Study, options: Options = Options()) -> dict:
         if both.sum() < control_variate.FEWEST:
             settled = counted(int(both.sum()), "draw") if both.any() else "no draw"
             raise StudyError(
-                f"{settled} of {options.draws} settled in both models; "
-                f"{control_variate.FEWEST} are the fewest"
+                f"{settled} of {options.draws} settled in both models; at least "
+                f"{control_variate.FEWEST} are needed"
             )
         made = {
             "asked": STAGE.plain(options),

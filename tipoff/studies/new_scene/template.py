@@ -188,9 +188,9 @@ def _pads(numbers: Numbers) -> dict[str, str]:
         length = _n(1e3 * (2.0 * numbers.station + numbers.pad))
         return {
             "stations": '"0 mm"',
-            "length": f'"{length} mm"  # long, because one pad on a rail holds the payload straight '
-            "alone\n# The model springs has one point for a pad, which does not: use compliant, the "
-            "default.",
+            "length": f'"{length} mm"  # long: a single pad on a rail must guide the payload '
+            "alone\n# The model springs has one point for a pad, which cannot guide it: use compliant, "
+            "the default.",
         }
     places = 1e3 * np.linspace(-numbers.station, numbers.station, numbers.pads // _RAILS)
     return {
@@ -208,7 +208,7 @@ def _thrust(numbers: Numbers, folder: Path) -> str:
             "[thrust]  # other kinds: gaussian (a pulse), gaussians (a sum), constant\n"
             'kind = "measured"\n'
             f"file = {file}  # columns time_s,force_N; relative to this file\n"
-            'use = "curve"  # "fit": the Gaussian through the points acts instead'
+            'use = "curve"  # "fit": use the Gaussian that is fitted to the points'
         )
     return (
         "[thrust]  # other kinds: gaussians (a sum), constant, measured (a CSV file)\n"
@@ -225,8 +225,8 @@ def _n(value: float) -> str:
 
 _TEXT = """\
 # A launcher for tipoff. X runs along the rails to their open end, Y and Z across; the origin is the
-# payload's mass centre. Every quantity is text with its unit. A table that is absent is an effect that
-# is absent. What "tipoff new" assumed is listed under [provenance]: replace it by what you know.
+# payload's mass centre. Every quantity is text with its unit. An absent table is an absent effect.
+# [provenance] lists the values that "tipoff new" assumed: replace them by your values.
 name = "{name}"
 description = "Made by tipoff new."
 duration = "{duration} ms"  # until the payload has left the rail and its rates have settled

@@ -172,9 +172,9 @@ def _write(base: Scene, shares: np.ndarray, rates: np.ndarray, path: Path) -> No
     try:
         kept = load(path)
     except SceneError as fault:
-        raise StudyError(f"{cannot}, for it does not load: {fault}") from fault
+        raise StudyError(f"{cannot}, because it does not load: {fault}") from fault
     if other := _differing(kept.physics(), misfit.Launcher(base).scene(shares).physics()):
-        raise StudyError(f"{cannot}, for the scene given here is another: {', '.join(other)}")
+        raise StudyError(f"{cannot}, because the given scene differs: {', '.join(other)}")
 
 
 def _differing(first, second, key: str = "") -> list[str]:

@@ -51,7 +51,11 @@ def lines(found: dict, limit: float) -> list[str]:
     ]
     warnings = [
         f"  warning       sensitive: {cause} "
-        + ("keeps the run from settling" if value is None else f"moves a rate by {value:.2g} deg/s")
+        + (
+            "prevents the run from settling"
+            if value is None
+            else (f"changes a rate by {value:.2g} deg/s")
+        )
         + ". Use an ensemble instead of a single run"
         for cause, value in changes.items()
         if value is None or value > limit

@@ -173,8 +173,8 @@ def _take(study: Study, request: Run, original: Trajectory, folder: Path, frames
         )
     if not (np.array_equal(again.rate, original.rate) and again.stress == original.stress):
         say(
-            "view: the run shown is not the stored one to the last bit, as on another kind of "
-            "processor"
+            "view: the run shown differs from the stored run in its last bits, as on another "
+            "kind of processor"
         )
     return observer
 
