@@ -1,5 +1,5 @@
-"""The contact of the surrogate from the finite elements: rail compliance from statics, constants of
-springs and parameters of compliant contact from curves."""
+"""Contact of the surrogate from the finite elements: rail compliance from statics, and fits of
+springs or of parameters of compliant contact to curves."""
 
 from tipoff.calibration.choice import require_parameters
 from tipoff.calibration.curves import Curves

@@ -1,5 +1,5 @@
-"""Parameters for errors of mounting: initial position and attitude in the clearance, direction and
-line of the thrust, mass centre, products of inertia.
+"""Parameters for errors of mounting: initial position and attitude within the clearance, direction
+and line of the thrust, mass centre, products of inertia.
 
 They are changes (``scenes.changes``): one amount for all conditions, added to what each condition
 states. An error that differs from condition to condition cannot be fitted. A table that is absent

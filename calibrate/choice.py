@@ -1,6 +1,6 @@
-"""Which parameters a fit on compliant contact has: those the user names, else those the curves
-determine, by the information matrix at the scene's own values. Candidates are the constants of
-contact, on request (``ALL``) errors of mounting too.
+"""Selection of the parameters of a fit on compliant contact: those that the user names, or else
+those that the curves determine. The information matrix at the scene's values decides. Candidates
+are the constants of contact and, on request (``ALL``), errors of mounting.
 
 From the matrix the parameter with the most information is taken, then the one with the most
 information left when those taken are fitted again, and so on: Cholesky's factorisation with diagonal

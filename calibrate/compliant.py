@@ -1,5 +1,5 @@
-"""Constants of compliant contact that a fit may find. They are usually not measured, and the statics
-of the rail do not give them.
+"""Constants of compliant contact that a fit may determine. They are usually not measured, and the
+statics of the rail do not give them.
 
 The interface stiffness is known to a factor (``docs/interface_stiffness.md``), as is the stiffness
 of bolted mounts (``docs/mount_stiffness.md``). Friction and clearance are known to a tolerance. The

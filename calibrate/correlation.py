@@ -1,4 +1,4 @@
-"""Correlation time of a curve: the number of samples that count as one independent sample.
+"""Correlation time of a curve: the number of samples that are equivalent to one independent sample.
 
     tau = 1 + 2 max_m sum_{k = 1}^{m} rho_k        rho_k = sum_i x_i x_{i+k} / sum_i x_i^2
 

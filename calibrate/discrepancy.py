@@ -1,4 +1,4 @@
-"""How uncertain fitted parameters are where the model is wrong too: measured curve = model + error of
+"""Uncertainty of fitted parameters with an error of the model: measured curve = model + error of
 the model + noise.
 
     y = f(x) + d(t) + e        Cov d(t) d(t') = (s a)^2 min(t, t') / T        e ~ N(0, v)

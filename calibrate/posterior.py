@@ -1,6 +1,5 @@
-"""What a fit on compliant contact says about its parameters: half widths of the 95 % intervals
-without and with model error (``discrepancy``), and whether the curves ask for other values than the
-scene's.
+"""Intervals of the parameters of a fit on compliant contact: half widths at 95 % without and with
+model error (``discrepancy``), and whether the curves exclude the scene's own values.
 
 They do not where the scene's values are inside the interval with model error of every direction that
 is not weak, at a level of 1 - 0.05 / k for k directions, so that all hold together with 95 %

@@ -1,5 +1,5 @@
-"""Recovery of hidden values from the surrogate's own curves with noise: whether a fit on compliant
-contact finds them, and whether its intervals contain them as often as they say."""
+"""Recovery of hidden values from the surrogate's own curves with noise: whether a fit on
+compliant contact finds them, and how often its intervals contain them."""
 
 from collections.abc import Sequence
 from typing import NamedTuple

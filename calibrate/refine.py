@@ -1,5 +1,5 @@
-"""The last stage of a fit on compliant contact: least squares with the weights of the curves' own
-scatter.
+"""The last stage of a fit on compliant contact: least squares, weighted by the scatter of each
+curve.
 
 The objective of the search wants v_x to 0.1 % and rates to 5 %. Noise seldom has this ratio. With
 every curve weighted by its scatter, least squares uses all information in curves with white noise.

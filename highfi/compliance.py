@@ -1,4 +1,4 @@
-"""Compliance of the rail walls along the track of the pads, from the stiffness of the reference.
+"""Compliance of the rail walls along the path of the pads, from the stiffness of the reference.
 
     C_iajb = 1/(A_i A_j) integral over faces i and j of phi_a n_i . K^-1 . n_j phi_b
     F_ij = G_i^-1 C_ij G_j^-1,   G_i = 1/A_i integral phi_a phi_b dA

@@ -1,4 +1,5 @@
-"""Reasons to stop a run: lost energy, a struck edge, a speed or friction beyond the method's range."""
+"""Reasons to stop a run: lost energy, a pad that strikes an edge, a speed or friction outside
+the range of the method."""
 
 import numpy as np
 

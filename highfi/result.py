@@ -1,4 +1,5 @@
-"""The Trajectory of a run of the reference, from its samples, its book and its ledgers."""
+"""The Trajectory of a run of the reference, from its samples, its totals of work and its
+ledgers."""
 
 import numpy as np
 

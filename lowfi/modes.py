@@ -1,4 +1,4 @@
-"""How many modes of each rail vibrate in a run with ``modes="auto"``.
+"""The number of modes of each rail that vibrate in a run with ``modes="auto"``.
 
 The first run has none. From its forces follows what each neglected mode would do to the settled rates
 (``lowfi.contact.compliant.neglected``). While the sum over the neglected modes is above

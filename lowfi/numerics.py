@@ -1,4 +1,5 @@
-"""Numerical choices of the rigid surrogate: what may be refined without changing the scene."""
+"""Numerical parameters of the rigid surrogate: they can be refined without a change of the
+scene."""
 
 import math
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""One run of the surrogate: set-up, the sampled time loop, and the Trajectory it leaves."""
+"""One run of the surrogate: set-up, the sampled time loop, and its Trajectory."""
 
 import time as clock
 from collections.abc import Callable

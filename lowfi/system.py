@@ -1,4 +1,4 @@
-"""Records of a scene as the kernels of the surrogate take them; faces are one table."""
+"""Records of a scene for the kernels of the surrogate; the faces are one table."""
 
 from typing import TYPE_CHECKING, NamedTuple
 

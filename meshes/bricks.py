@@ -1,4 +1,5 @@
-"""Hexahedra of a grid: the cells between planes across the three axes that lie in metal."""
+"""Hexahedra of a grid: the cells between planes normal to the three axes that are inside the
+solid."""
 
 from collections.abc import Sequence
 

@@ -1,5 +1,5 @@
-"""Two C channels with lightening holes as structured hexahedra: the rail of the catalogue scene
-`channel`, given to it as a file.
+"""Two C channels with lightening holes as structured hexahedra: the rail file of the catalogue
+scene `channel`.
 
 Scene frame: SI, origin at the payload mass centre at t = 0, +X to the open end. One channel stands
 at each side, y > 0 and y < 0, open towards the payload: pads press its web along y and its flanges

@@ -1,5 +1,5 @@
-"""Boxes on a solid: the parts of its faces that lie in them, their areas, and their borders drawn onto
-the solid, so that every element has its faces inside or outside.
+"""Boxes on a solid: the parts of its faces inside the boxes, their areas, and their borders drawn
+onto the solid. So each element face is either inside or outside.
 
 Places within ``SAME`` of a box count as inside, so that a box may be flat; but a face that only
 touches a box from outside, at most ``2 SAME`` deep, has no part in it.

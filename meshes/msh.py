@@ -1,4 +1,4 @@
-"""Elements with named surfaces as meshio holds them, tagged so that they read the same from memory
+"""Elements with named surfaces as meshio objects, tagged so that they are the same from memory
 and from a gmsh file."""
 
 from pathlib import Path

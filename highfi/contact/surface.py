@@ -1,4 +1,4 @@
-"""Facets of the rail walls, for each pad face those it can touch, and the cells of the faces."""
+"""Facets of the rail walls, the facets that each pad face can touch, and the cells of the faces."""
 
 import numpy as np
 from scipy.sparse import coo_array

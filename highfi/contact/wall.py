@@ -1,5 +1,5 @@
-"""The deformed wall under a place: its facet there, its height and slope, and the share of a cell
-that is over it.
+"""The deformed wall at a point: its facet, its height and slope, and the share of a cell that lies
+over it.
 
 The wall is seen along its nominal normal, the axis ``a`` of the frame. At a place (X, Y) of its plane
 

@@ -1,4 +1,5 @@
-"""Checkpoints: a run in progress as a file, from which a killed run continues to the same bits.
+"""Checkpoints: the state of a run as a file, from which an interrupted run continues to the same
+bits.
 
 A checkpoint holds everything of a Loop that evolves, that is all but ``CONSTANT``. The file is one
 line of text and a NumPy archive of plain arrays, no code::

@@ -1,4 +1,4 @@
-"""What is left out of rails that rest on an accelerated platform: their vibration.
+"""The vibration that is left out of rails at rest on an accelerated platform.
 
 For each term c of the acceleration (``statics.inertial``) a mode with a frequency w is followed,
 

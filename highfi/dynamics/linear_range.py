@@ -1,4 +1,4 @@
-"""Where displacements are no longer small: the largest displacement gradient of the rails.
+"""Check that displacements are small: the largest displacement gradient of the rails.
 
 Linear elasticity has an error of the order of the square of the rotation, and of the order of the
 strain. Both are parts of the displacement gradient G = du/dx, whose norm is the angle where an

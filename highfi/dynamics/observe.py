@@ -1,5 +1,5 @@
-"""Samples of a run: places, velocities, energies and momenta *at* time n, from velocities at n - 1/2
-and n + 1/2.
+"""Samples of a run: positions, velocities, energies and momenta *at* time n, from velocities at n -
+1/2 and n + 1/2.
 
     v(n) = (v(n-1/2) + v(n+1/2)) / 2,     kinetic energy = v(n-1/2) M v(n+1/2) / 2
 

@@ -1,4 +1,4 @@
-"""Let rails rest, or step them again, between two steps.
+"""Between two steps: put rails to rest, or step them again.
 
 Linear and angular momentum and mass centre of the whole are the same before and after: the rigid part of a free
 platform takes what is left of them, the ground takes it where the platform is fixed. The energy that

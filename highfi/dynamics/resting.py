@@ -1,4 +1,4 @@
-"""Rails that rest: no pad has touched them yet, or the payload has left them. They are not stepped.
+"""Rails at rest: no pad has touched them yet, or the payload has left them. They are not stepped.
 
 A rail that rests is a part of the rigid part of its platform. On a fixed platform that is exact until
 a pad touches it. On a free platform the rail follows the platform's acceleration as in statics

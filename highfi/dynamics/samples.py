@@ -1,4 +1,4 @@
-"""From sample vectors to ledgers, momentum checks and the motion a Trajectory holds."""
+"""Ledgers, momentum checks and the motion of a Trajectory, from sample vectors."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""The largest stable step of the explicit scheme, and the step a run takes.
+"""The largest stable step of the explicit scheme, and the step that a run uses.
 
 Central differences are stable for
 

@@ -1,4 +1,5 @@
-"""When rails rest and when they are stepped again, and when all bodies take long steps.
+"""Rules for rails at rest: when a rail rests, when it is stepped again, and when all bodies take
+long steps.
 
 A rail that rests is stepped again before a pad can touch it, within two steps at
 ``pads.FASTEST_APPROACH``; on a free platform also where more vibration than ``MOST_LEFT_OUT`` is left

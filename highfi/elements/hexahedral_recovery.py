@@ -1,5 +1,5 @@
-"""Strain anywhere in eight-node hexahedra from the displacement of their corners, incompatible modes
-included.
+"""Strain at any point of eight-node hexahedra from the displacement of their corners, incompatible
+modes included.
 
     du/dX = sum over corners of u_a (x) grad N_a + sum over bubbles of a_i (x) grad P_i,      a = -H^-1 L u
     grad N_a = J^-1 dN_a/dxi,       grad P_i = (det J0 / det J) 4 (1 - 2 xi_i) J0^-1 e_i

@@ -1,5 +1,5 @@
-"""Strain anywhere in ten-node tetrahedra from the displacement of their nodes; see
-``elements.hexahedral_recovery`` for hexahedra.
+"""Strain at any point of ten-node tetrahedra from the displacement of their nodes;
+``elements.hexahedral_recovery`` does the same for hexahedra.
 
     du/dX = sum over nodes of u_a (x) grad N_a,      grad N_a = J^-1 dN_a/dxi
 

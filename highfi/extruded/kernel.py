@@ -1,5 +1,5 @@
-"""Internal force of an extruded mesh: for each column three sums over the neighbouring columns, then
-a filter along the layers.
+"""Internal force of an extruded mesh: three sums over the neighbouring columns for each column,
+then a filter along the layers.
 
     d = sum D u,  l = sum L u,  o = sum O u,      f(k) = d(k) + (l - o)(k-1) + (l + o)(k+1)
 

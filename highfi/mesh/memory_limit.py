@@ -1,5 +1,5 @@
-"""A limit of the memory that reading a file may take, so that a few bytes in it, such as the number
-of a node, cannot ask for all memory of the machine."""
+"""A limit of the memory for reading a file. Without it a few bytes in the file, such as the
+number of a node, could request all memory of the machine."""
 
 import resource
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Separate solids of a mesh, and the mirror images among them, for which one solution is enough."""
+"""Separate solids of a mesh. Solids that are mirror images of each other need only one solution."""
 
 from itertools import product
 

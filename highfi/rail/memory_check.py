@@ -1,5 +1,5 @@
-"""Memory check: a mesh that does not fit into the memory of this process is refused, before it is made
-where its size can be predicted (``memory_fault`` for files)."""
+"""Memory check: refuses a mesh that does not fit into the memory of this process. If its size
+can be predicted, the check comes before the mesh is made (``memory_fault`` for files)."""
 
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.rail import memory_estimate

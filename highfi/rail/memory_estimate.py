@@ -1,4 +1,4 @@
-"""Estimate of the memory that a run takes, and the memory that this process can still get.
+"""Estimate of the memory that a run needs, and the memory that is available to this process.
 
     bytes = FIXED + PER_ELEMENT elements
 

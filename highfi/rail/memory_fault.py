@@ -1,5 +1,5 @@
-"""Refusal of a rail given by a file before it is split or filled with elements that do not fit into
-memory: a wrong unit, or an element size in the wrong unit, asks for billions of them."""
+"""Refusal of a rail from a file whose elements would not fit into memory, before it is split or
+filled. A wrong unit, in the file or of the element size, can give billions of elements."""
 
 from tipoff.highfi.mesh import split
 from tipoff.highfi.mesh.rail_mesh import RailMesh

@@ -1,4 +1,4 @@
-"""The sizes of elements that a mesh file really gives, and whether a finer mesh fits.
+"""The element sizes that a mesh file gives, and whether a finer mesh fits into memory.
 
 A file is split where its elements are larger than asked, and never coarsened: for two element sizes
 it may give the same mesh. Other rails are meshed in the size asked.

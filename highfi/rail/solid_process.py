@@ -1,5 +1,5 @@
-"""Solids from CAD files, meshed in a process of their own: a damaged line in a file can end the
-process that reads it, and a wrong number can take all its memory.
+"""Solids from CAD files, meshed in a separate process: a damaged line in a file can stop the
+process that reads it, and a wrong number can use all its memory.
 
 The process gets a scene and an element size as JSON on its standard input. It leaves the mesh, or
 its refusal, in a folder.

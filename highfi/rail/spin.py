@@ -1,4 +1,4 @@
-"""How fast a platform may turn before its rails are no longer linear in its frame.
+"""The largest rotation rate of a platform for which its rails are linear in its frame.
 
 Rails are linear elastic in the frame of the platform. Centrifugal load on the deformed rail is taken
 into account. The stiffening by the tension that it causes is not. For a beam that turns at W with a

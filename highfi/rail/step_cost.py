@@ -1,5 +1,5 @@
-"""What the worst elements of a mesh cost: its step against that of good hexahedra, and the time of a
-run.
+"""Cost of the worst elements of a mesh: the time step relative to that of good hexahedra, and the
+time of a run.
 
 No frequency of a mesh exceeds the highest one of its elements (``stable_step.element_bound``), and
 thin or folded elements have the highest. So only the worst ones by two measures are assembled: the

@@ -1,4 +1,4 @@
-"""Stiffness and lumped mass of a rail mesh, in the form the explicit kernel reads.
+"""Stiffness and lumped mass of a rail mesh, in the form that the explicit kernel uses.
 
     f(u) = sum over elements of scatter(K_class gather(u)),    m = sum over elements of scatter(m_class)
 

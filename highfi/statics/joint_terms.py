@@ -1,4 +1,4 @@
-"""Solutions from which ``mechanics.joint_terms`` finds the compliance of a rail on joints of any
+"""Solutions that ``mechanics.joint_terms`` needs for the compliance of a rail on joints with any
 factor of their stiffness."""
 
 from collections.abc import Iterable

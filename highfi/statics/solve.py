@@ -1,6 +1,5 @@
-"""Linear statics of a rail held by its mounts: K u = f over the free nodes, one factor for many
-loads.
-"""
+"""Linear statics of a rail held by its mounts: K u = f over the free nodes, one factorisation
+for many loads."""
 
 from functools import cache
 

@@ -1,1 +1,1 @@
-"""Stress of the rails while a run goes on."""
+"""Stress of the rails during a run."""

@@ -1,1 +1,1 @@
-"""Contact of pad faces with rail walls: springs, compliant contact, friction that sticks."""
+"""Contact of pad faces with rail walls: springs, compliant contact, friction with sticking."""

@@ -1,4 +1,4 @@
-"""The proven step limit while anything touches.
+"""The proven step limit during contact.
 
 Linearised, the touching faces are springs and dampers on two rigid bodies: s^2 + C s + K = 0 in the
 metric of the masses. With the slopes k_i = dF/dp and c_i = dF/d(p_dot) of each face and the inverse

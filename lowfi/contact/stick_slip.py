@@ -1,4 +1,5 @@
-"""Friction that sticks: the force on a touching face that sticks or slides, and when that changes.
+"""Friction with sticking: the force on a face in contact that sticks or slides, and the changes
+between both.
 
 With the tangential spring k and damper c, the displacement xi of the face's centre from its anchor
 on the wall, its slip velocity u, the normal force N, the direction e of a slide and the capture

@@ -1,4 +1,4 @@
-"""Ends of a wall: which faces are over it, where a face comes over it within a step, and what strikes
+"""Ends of a wall: which faces are over it, where a face enters it within a step, and what strikes
 its edges.
 
 A wall is a plate. With X of a face's middle, s the place of that middle across the rail, measured

@@ -1,4 +1,4 @@
-"""Energy ledgers at the end of every step: their errors, and how much a step may add to them.
+"""Energy ledgers at the end of every step: their errors, and the error that a step may add.
 
     balance = work - kinetic - strain - stored - losses,     error = balance - balance at ignition
 

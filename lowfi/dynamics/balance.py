@@ -1,4 +1,4 @@
-"""From samples to the motion a Trajectory holds, its ledgers and its checks."""
+"""Motion, ledgers and checks of a Trajectory, from samples."""
 
 import numpy as np
 

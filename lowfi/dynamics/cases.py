@@ -1,4 +1,4 @@
-"""The cases that one call of the time loop runs: what differs between them, and their results.
+"""The cases of one call of the time loop: the inputs that differ between them, and their results.
 
 A run with curves is one case whose samples are taken. Cases of an ensemble have none; their results
 are those of ``lowfi.run``, bit for bit, or none: a case that fails, or whose pads press at ignition,

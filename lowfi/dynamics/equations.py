@@ -1,4 +1,4 @@
-"""Equations of motion of payload and platform, with the power of every force beside them.
+"""Equations of motion of payload and platform, together with the power of every force.
 
     r' = v,   m v' = sum F,   q' = w q / 2,   A' = sum X x F   (X the point a force acts at, all about the scene origin)
 

@@ -1,5 +1,5 @@
-"""Events inside a step, where the right-hand side changes its law: a face closes or opens, its
-force is cut off, it leaves or comes over its wall, it sticks or slips.
+"""Events inside a step, at which the law of the right-hand side changes: a face closes or opens,
+its force is cut off, it leaves or enters its wall, it sticks or slips.
 
 A face that is open when a step begins carries no load in it: the step passes through the wall, the
 instant of contact is found on its interpolant (regula falsi, Illinois variant), and the step ends

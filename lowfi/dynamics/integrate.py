@@ -1,4 +1,4 @@
-"""The time loop: steps from event to event, and samples on their own grid in between."""
+"""The time loop: steps from event to event, and samples on a separate grid."""
 
 import numpy as np
 

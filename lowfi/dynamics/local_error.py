@@ -1,4 +1,4 @@
-"""Local error of a step, as speeds at the pads, against what is allowed.
+"""Local error of a step, as speeds at the pads, relative to the allowed error.
 
 With the error e of each slot, the spin error e_w = R I^-1 R' (e_A - e_r x m v - r x m e_v), the
 distance ``reach`` of the farthest pad from the mass centre and the step h, each body's ratio is the

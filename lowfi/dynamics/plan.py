@@ -1,5 +1,5 @@
-"""When steps must end and how long they may be, so that none passes over a corner or a short pulse of
-the thrust."""
+"""Times at which steps must end, and their largest length, so that no step skips a corner or a
+short pulse of the thrust."""
 
 import numpy as np
 

@@ -1,5 +1,5 @@
-"""One sample of a run: places, velocities, rates, energies and momenta of a state, and the force on
-every pad face."""
+"""One sample of a run: positions, velocities, rates, energies and momenta of a state, and the
+force on every pad face."""
 
 import numpy as np
 

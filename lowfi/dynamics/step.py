@@ -1,5 +1,5 @@
-"""One step of the time loop, as long as error control, events, the proven limit and the energy
-ledgers allow."""
+"""One step of the time loop. Error control, events, the proven limit and the energy ledgers
+limit its length."""
 
 import numpy as np
 

@@ -1,5 +1,5 @@
-"""Between two steps: which faces stick from now on, which slide, and the energy that leaves their
-springs (law: ``lowfi.contact.stick_slip``)."""
+"""Between two steps: which faces stick or slide in the next step, and the energy that leaves
+their springs (law: ``lowfi.contact.stick_slip``)."""
 
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot

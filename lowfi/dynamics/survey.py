@@ -1,5 +1,5 @@
-"""Contact of every pad face at the ends of a step: which faces are over their walls, how deep they
-press, and which of them touch."""
+"""Contact of every pad face at the ends of a step: which faces are over their walls, how deep
+they press, and which of them touch."""
 
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot

@@ -1,4 +1,5 @@
-"""Vibration of the rails in the time loop. Without compliant contact a kernel contains nothing of it."""
+"""Vibration of the rails in the time loop. Without compliant contact, a kernel contains no code
+of it."""
 
 import numpy as np
 

@@ -1,1 +1,1 @@
-"""Many runs at once: where cases come from, how they run, where results are kept."""
+"""Many runs at once: sources of cases, their computation, and the store of their results."""

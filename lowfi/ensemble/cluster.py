@@ -1,4 +1,4 @@
-"""Chunks of an ensemble on a Dask cluster: workers run them, this process alone draws the cases and
+"""Chunks of an ensemble on a Dask cluster: workers run them; only this process draws the cases and
 writes the store.
 
 If a worker dies, its chunks go to others. If the scheduler or the last worker dies, the run ends with

@@ -1,5 +1,5 @@
-"""Definition of an ensemble: the scene, the source of its cases, and everything else its numbers
-depend on."""
+"""Definition of an ensemble: the scene, the source of its cases, and all other inputs of its
+numbers."""
 
 from collections.abc import Mapping
 from functools import lru_cache

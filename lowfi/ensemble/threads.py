@@ -1,5 +1,5 @@
-"""Cases in threads. Kernels release the interpreter lock, and runs share nothing, so the number of
-threads changes no bit."""
+"""Cases in threads. Kernels release the interpreter lock, and runs share no data, so the number
+of threads changes no bit."""
 
 import os
 from collections import deque

@@ -1,4 +1,4 @@
-"""Sensitivity of each case of an ensemble: how far small disturbances move its settled rates.
+"""Sensitivity of each case of an ensemble: the change of its settled rates by small disturbances.
 
 Each disturbance has a twin of the ensemble, with the same cases: one with every clearance 1 um
 larger, one with a tighter tolerance. The change of a case is the largest change of a settled rate

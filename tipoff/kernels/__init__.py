@@ -1,1 +1,1 @@
-"""What every compiled kernel rests on: compilation, aligned arrays, rotations."""
+"""Basis of all compiled kernels: compilation, aligned arrays, rotations."""

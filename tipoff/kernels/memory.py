@@ -1,4 +1,4 @@
-"""Arrays that start on a cache line: a vector of eight numbers then never straddles two."""
+"""Arrays that start on a cache line, so that a vector of eight numbers is never in two lines."""
 
 import math
 from typing import Literal

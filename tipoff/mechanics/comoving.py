@@ -1,4 +1,4 @@
-"""The inertial frame a run is solved in. Its velocity is that of the platform's mass centre at
+"""The inertial frame of the solution. Its velocity is that of the platform's mass centre at
 ignition.
 
 Rounding depends on the frame: at 7.5 km/s, millimetres per second are the last digits of a

@@ -1,4 +1,4 @@
-"""What people see of a rail compliance: one line, a summary, a card, a plot, a table."""
+"""A rail compliance as text and pictures: one line, a summary, a card, a plot, a table."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any

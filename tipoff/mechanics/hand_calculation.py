@@ -1,4 +1,4 @@
-"""Rates of a payload by hand, beside those of a run: moment impulse over inertia.
+"""Rates of a payload by a hand calculation, for comparison with a run: moment impulse over inertia.
 
     w = w_0 + J^-1 (r x d I + sum over the pad of integral of c x f dt)
 

@@ -1,5 +1,4 @@
-"""The models of an ejection, one name each wherever a model is named: options, arguments, result
-files.
+"""Names of the models of an ejection, used in options, arguments and result files.
 
 * ``compliant``: rigid bodies; pads press on the rail's static compliance, condensed from the finite
   elements. The default.

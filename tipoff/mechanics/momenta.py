@@ -1,4 +1,4 @@
-"""Errors of linear and angular momentum of a run, in the frame it is solved in
+"""Errors of linear and angular momentum of a run, in the frame of its solution
 (``mechanics.comoving``).
 
     error = largest |change of a sum of momenta - impulse from outside| / scale

@@ -1,5 +1,4 @@
-"""The largest errors of its balances that a run may have (its promises), and which of them a run
-exceeds.
+"""Promises: the largest errors of its balances that a run may have, and those that a run exceeds.
 
 An error is a residual over a scale. A sum of large terms has their rounding error, however small
 the sum is: a scene without transverse motion has a transverse scale that is only rounding. So the

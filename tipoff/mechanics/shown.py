@@ -1,4 +1,4 @@
-"""A trajectory as text: one line, and the facts of its summary and of its card."""
+"""A trajectory as text: one line, and the values of its summary and of its card."""
 
 import math
 from collections.abc import Mapping

@@ -1,5 +1,5 @@
-"""What would help a run that reached the end of its scene before the payload left the rail, or
-before its rates settled (status ``time_limit``).
+"""Advice for a run that reached the end of its scene before the payload left the rail, or before
+its rates settled (status ``time_limit``).
 
 The definitions of exit and settled window are those of ``mechanics.outcome``.
 """

@@ -1,4 +1,4 @@
-"""Rails that no face presses: their modes are free oscillators, whose motion is known. So they do not
+"""Rails without contact: their modes are free oscillators with a known solution. So they do not
 limit the step.
 
     q'' + d q' + omega^2 q = 0,    q(t) = e^(-d t / 2) (q_0 C + (q_0' + q_0 d / 2) S)

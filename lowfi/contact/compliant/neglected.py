@@ -1,4 +1,5 @@
-"""What the modes that a run takes as quasi-static would do to the rates, from the forces of that run.
+"""Estimate of the change of the rates by the modes that a run treats as quasi-static, from the
+forces of this run.
 
 The force of the pads on a neglected mode m, linear between the ends of steps, drives an oscillator
 beside the run, exactly::

@@ -1,4 +1,4 @@
-"""Records of compliant contact as the kernels take them, with their workspace."""
+"""Records of compliant contact for the kernels, with their workspace."""
 
 from typing import NamedTuple
 

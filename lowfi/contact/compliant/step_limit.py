@@ -1,5 +1,5 @@
 """The proven step limit of compliant contact: stiffness and damping of the faces of each rail
-(``lowfi.contact.step_limit`` has the bound).
+(``lowfi.contact.step_limit`` derives the bound).
 
 With the tangent T = K (1 + F K)^-1 of ``lowfi.contact.compliant.solution`` and the wrenches g of depth, tilt
 along and tilt across of each rigid face, the linearised springs are sum_ab T_ab g_a g_b', and the

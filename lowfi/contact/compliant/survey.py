@@ -1,4 +1,5 @@
-"""Which faces press in compliant contact, how deep, and the longest step at the ends of a rail."""
+"""Faces that press in compliant contact, their depth, and the longest step near the ends of a
+rail."""
 
 import numpy as np
 
