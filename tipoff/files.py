@@ -33,8 +33,8 @@ _MARK = b"# sha-256 "
 _LINE = re.compile(_MARK + rb"([0-9a-f]{64})\n")
 _LENGTH = len(_MARK) + 64 + 1
 _temporaries: set[Path] = set()  # of this process, not yet renamed
-_CARRIES_NONE = "carries no digest of what it holds, or a damaged one"
-_DIFFERS = "does not fit the digest it carries (damaged, or edited)"
+_CARRIES_NONE = "has no digest of its content, or a damaged one"
+_DIFFERS = "differs from its digest (damaged, or edited)"
 
 
 class DamageError(ValueError):
@@ -43,9 +43,7 @@ class DamageError(ValueError):
 
     def __init__(self, path: str | Path, reason: str):
         self.path, self.reason = path, reason
-        super().__init__(
-            f"{path} {reason}; remove it, and the command that wrote it writes it again"
-        )
+        super().__init__(f"{path} {reason}; remove it, and repeat the command that wrote it")
 
     def __reduce__(self):
         return type(self), (self.path, self.reason)
@@ -186,7 +184,7 @@ def read_json(path: str | Path) -> dict[str, Any]:
         found = json.loads(_content(path))
         whole = isinstance(found, dict) and fits_digest(found)
     except (ValueError, RecursionError) as fault:
-        raise DamageError(path, "is no JSON (damaged, or edited)") from fault
+        raise DamageError(path, "is not JSON (damaged, or edited)") from fault
     if not whole:
         raise DamageError(
             path, _DIFFERS if isinstance(found, dict) and KEY in found else _CARRIES_NONE

@@ -129,7 +129,7 @@ def test_an_outcome_edited_by_another_program_is_refused(tmp_path):
         file.attrs["outcome"] = json.dumps(told | {"rate": [99.0, 0.0, 0.0]})
     with pytest.raises(
         OSError,
-        match="run.nc: not a whole trajectory file: it carries no digest|does not fit the digest",
+        match="run.nc: not a whole trajectory file: it has no digest|differs from its digest",
     ):
         Trajectory.load(path)
 
@@ -164,7 +164,7 @@ def test_a_calibration_edited_on_purpose_needs_no_digest(tmp_path):
     path.write_text(edited, encoding="utf-8")
     with pytest.raises(
         ValueError,
-        match="calibration.toml does not fit the digest it carries.*remove the line '# sha-256",
+        match="calibration.toml differs from its digest.*remove the line '# sha-256",
     ):
         Calibration.load(path)
     for more in ("\n# a remark\n", "\r\n"):

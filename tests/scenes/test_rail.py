@@ -99,7 +99,7 @@ def test_every_key_that_does_not_go_with_a_file_is_named(file):
         "rail.wall",
         "rail.end",
     }
-    assert faults["rail.geometry"] == "no such key beside mesh"
+    assert faults["rail.geometry"] == "no such key with mesh"
     assert faults["rail.end"] == "an end beyond start, by 1e-06 m or more"
 
 

@@ -145,7 +145,7 @@ def _expected(error: ErrorDetails) -> str:
     if kind == "extra_forbidden" and (instead := renamed(_key(error))):
         return instead
     if kind == "extra_forbidden" and error["loc"][:2] in _FILED:
-        return f"no such key beside {error['loc'][1]}"
+        return f"no such key with {error['loc'][1]}"
     if kind in _WORDS:
         return _WORDS[kind]
     if kind == "value_error":

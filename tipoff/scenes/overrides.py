@@ -168,7 +168,7 @@ def _apply_inside(
     if not is_drop(value):
         table[place] = value
     elif isinstance(table, list):
-        return key, "nothing", "a value, since a list keeps its length"
+        return key, "nothing", "a value: an element of a list cannot be removed"
     else:
         del table[place]
     return None

@@ -53,7 +53,7 @@ def _faults(pattern: dict) -> Iterator[tuple[str, str, str]]:
         yield "pads.corner", repr(corner), 'distances along Y and Z, such as ["100 mm", "100 mm"]'
     for key in ("position", "normals"):
         if key in pattern:
-            yield f"pads.{key}", repr(pattern[key]), "no such key beside stations and corner"
+            yield f"pads.{key}", repr(pattern[key]), "no such key with stations and corner"
 
 
 def _sign(sign: int) -> str:

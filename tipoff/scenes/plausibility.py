@@ -161,8 +161,7 @@ def _of_temperature(scene) -> list[str]:
     largest = float(abs(fields(ends, thermal.middle) @ thermal.amounts[:-1]).max())
     if largest > _FREE_STRAIN:
         found.append(
-            f"thermal: rails that would expand by {100.0 * largest:.3g} % if they could, plausible "
-            f"up to "
-            f"{100.0 * _FREE_STRAIN:g} %"
+            f"thermal: free thermal expansion of the rails of {100.0 * largest:.3g} %, plausible "
+            f"up to {100.0 * _FREE_STRAIN:g} %"
         )
     return found

@@ -96,8 +96,8 @@ def _of_turning(scene) -> list[str]:
         turn = 2.0 * clearance / (max(ends) - min(ends))
         if turn > TURN * (1.0 + _SLACK):
             found.append(
-                f"pads, contact.clearance: along {axis} the walls let the payload turn by "
-                f"{math.degrees(turn):.3g} deg, plausible up to {math.degrees(TURN):g} deg; longer "
-                f"pads or more stations hold it"
+                f"pads, contact.clearance: along {axis} the walls allow the payload to turn "
+                f"by {math.degrees(turn):.3g} deg, plausible up to {math.degrees(TURN):g} deg; "
+                "longer pads or more stations reduce this angle"
             )
     return found[:1]

@@ -220,7 +220,7 @@ class BoxTable(Table):
     @classmethod
     def _above(cls, high, info: ValidationInfo):
         if any(above < below for below, above in zip(info.data.get("low", high), high)):
-            raise ValueError("a corner nowhere below low")
+            raise ValueError("a corner whose coordinates are at least those of low")
         return high
 
 

@@ -80,7 +80,7 @@ def _converted(quantity: "pint.Quantity", unit: str, absolute: bool, given: str)
     ``absolute``, for a unit whose zero is elsewhere."""
     if not absolute and registry().Quantity(0.0, quantity.units).to(unit).magnitude != 0.0:
         raise ValueError(
-            f"{named(unit)} ({given!r} has its zero elsewhere: a difference is in K or delta_degC)"
+            f"{named(unit)} ({given!r} is not a difference: give it in K or delta_degC)"
         )
     # An angle has no dimension, so "0.1" would pass for 0.1 rad and "5 Hz" for 5 rad/s: ask for the
     # unit itself.
@@ -132,7 +132,7 @@ def sized(value: float, unit: str, is_positive: bool = False) -> float:
     if abs(value) > largest:
         raise ValueError(f"{named(unit)}, {largest:g} at most")
     if is_positive and 0.0 < value < 1.0 / largest:
-        raise ValueError(f"{named(unit)}, {1.0 / largest:g} at least")
+        raise ValueError(f"{named(unit)}, at least {1.0 / largest:g}")
     return value
 
 

@@ -39,7 +39,7 @@ def test_periods(altitude, period):
         ({"flight.height": "1 m"}, "no such key"),
         ({"flight.pointing_limit": "200 deg"}, "flight.pointing_limit"),
         ({"flight.body": ["1 m", "1 m"]}, "flight.body"),
-        ({"flight.envelope.0.low.0": "9 m"}, "a corner nowhere"),
+        ({"flight.envelope.0.low.0": "9 m"}, "a corner whose coordinates"),
     ],
 )
 def test_what_is_refused(changed, words):

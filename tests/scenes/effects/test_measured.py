@@ -9,7 +9,7 @@ pytestmark = pytest.mark.case("X19")
 CURVES = {
     "unsorted": ("time_s,force_N\n0,0\n2,5\n1,0\n", "increasing order"),
     "one time": ("time_s,force_N\n0,0\n0,5\n", "at least two different times"),
-    "one time thrice": ("time_s,force_N\n0,0\n1,5\n1,6\n1,7\n2,0\n", "more than two rows"),
+    "one time thrice": ("time_s,force_N\n0,0\n1,5\n1,6\n1,7\n2,0\n", "at most two rows"),
     "one row": ("time_s,force_N\n0,0\n", "at least two different times"),
     "no rows": ("time_s,force_N\n", "at least two different times"),
     "negative times": ("time_s,force_N\n-1,0\n1,5\n", "not negative"),

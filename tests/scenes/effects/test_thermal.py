@@ -44,9 +44,9 @@ def test_a_gradient(text):
         (
             {"mean": "20 degC"},
             "thermal.mean",
-            "'degC' has its zero elsewhere: a difference is in K or delta_degC",
+            "'degC' is not a difference: give it in K or delta_degC",
         ),
-        ({"mean": "68 degF"}, "thermal.mean", "has its zero elsewhere"),
+        ({"mean": "68 degF"}, "thermal.mean", "is not a difference"),
         ({"mean": "20 m"}, "thermal.mean", "a quantity in K"),
         ({"mean": 20.0}, "thermal.mean", "text with a unit"),
         ({"mean": "nan K"}, "thermal.mean", "neither NaN nor infinite"),

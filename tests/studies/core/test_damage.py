@@ -132,7 +132,7 @@ def test_a_result_that_is_only_shown_is_not_shown_when_it_was_edited(study, caps
     assert study.stored("cost_study", lambda found: "k")["error"] == 0.5
     path.write_text(path.read_text().replace("0.5", "0.1"))
     assert study.stored("cost_study", lambda found: "k") is None and read(path) is None
-    assert f"{path} does not fit the digest it carries" in capsys.readouterr().err
+    assert f"{path} differs from its digest" in capsys.readouterr().err
 
 
 def test_pictures_of_a_view_that_were_altered_are_not_shown(study, monkeypatch):
@@ -207,7 +207,10 @@ def test_edited_times_of_a_benchmark_are_not_shown(tmp_path, capsys):
     write_json(path, {"rows": [{"ns_one_thread": 9.0}]})
     assert reference.stored(tmp_path)["rows"][0]["ns_one_thread"] == 9.0
     path.write_text(path.read_text().replace("9.0", "1.0"))
-    assert reference.stored(tmp_path) is None and f"{path} does not fit" in capsys.readouterr().err
+    assert (
+        reference.stored(tmp_path) is None
+        and f"{path} differs from its digest" in capsys.readouterr().err
+    )
 
 
 def test_an_edited_calibration_is_bad_input_until_its_digest_is_removed(tmp_path):
@@ -229,7 +232,7 @@ def test_an_edited_calibration_is_bad_input_until_its_digest_is_removed(tmp_path
         str(tmp_path / "out"),
     ]
     told = CliRunner().invoke(app, asked)
-    assert told.exit_code == 2 and f"{path} does not fit the digest it carries" in told.stderr
+    assert told.exit_code == 2 and f"{path} differs from its digest" in told.stderr
     assert (
         "remove the line '# sha-256 ...' if you edited the file on purpose" in told.stderr
         and not (tmp_path / "out").exists()
@@ -249,5 +252,5 @@ def test_every_netcdf_result_carries_a_digest(tmp_path):
     with h5py.File(tmp_path / "droptest.nc") as file:
         assert set(file) == {"a", "b"}
     flip(tmp_path / "droptest.nc", 5000)
-    with pytest.raises(ValueError, match="droptest.nc does not fit the digest"):
+    with pytest.raises(ValueError, match="droptest.nc differs from its digest"):
         require_whole(tmp_path / "droptest.nc")

@@ -157,7 +157,10 @@ def test_a_condition_without_a_flight_shows_its_status():
         (["--altitude", "absent"], "one of altitude and mean_motion"),
         (["--set", "flight.mean_motion=1e-3 rad/s"], "one of altitude and mean_motion"),
         (["--set", "gravity.z=-9.81 m/s**2"], "fall freely"),
-        (["--set", "flight.envelope.0.high.0=-2 m"], "a corner nowhere below low"),
+        (
+            ["--set", "flight.envelope.0.high.0=-2 m"],
+            "a corner whose coordinates are at least those of low",
+        ),
         (["--vary", "nothing"], "paper"),
     ],
 )

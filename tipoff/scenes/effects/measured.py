@@ -56,7 +56,7 @@ def read_curve(path: str | Path) -> MeasuredCurve:
     if (steps < 0.0).any():
         wrong.append("times in increasing order")
     if ((steps[1:] == 0.0) & (steps[:-1] == 0.0)).any():
-        wrong.append("no time in more than two rows (two are a jump)")
+        wrong.append("each time in at most two rows (two are a jump)")
     if wrong:
         raise ValueError("a curve with " + ", ".join(wrong))
     return MeasuredCurve(time, force)

@@ -40,7 +40,7 @@ class StickingTable(Table):
     @classmethod
     def _not_above_static(cls, dynamic: float, info: ValidationInfo):
         if dynamic > info.data.get("static", dynamic):
-            raise ValueError("at most static, or a face that slips would be held at once")
+            raise ValueError("at most static; otherwise a face that slips would stick at once")
         return dynamic
 
     def record(self) -> "Sticking":

@@ -61,8 +61,8 @@ class DampingTable(Table):
         low, high = ratios[0] / quotient, min(quotient * ratios[0], 1.0) if ratios[0] > 0.0 else 0.0
         if not low * (1.0 - _ROUNDING) <= ratios[1] <= high * (1.0 + _ROUNDING):
             raise ValueError(
-                f"beside {ratios[0]:g} a second ratio from {low:.6g} to {high:.6g}, all that these "
-                f"frequencies allow"
+                f"a second ratio from {low:.6g} to {high:.6g}, the range for these frequencies "
+                f"and a first ratio of {ratios[0]:g}"
             )
         return ratios
 

@@ -157,7 +157,7 @@ class _PulsedTable(_ThrustTable):
     @classmethod
     def _only_when_cut(cls, rescale: bool, info: ValidationInfo):
         if rescale and "cutoff" in info.data and info.data["cutoff"] is None:
-            raise ValueError("a cutoff beside it: without one there is nothing to restore")
+            raise ValueError("a cutoff too: rescale restores the impulse that the cutoff removes")
         return rescale
 
     def pulses(self) -> tuple[Pulse, ...]:
