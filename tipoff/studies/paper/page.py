@@ -142,29 +142,13 @@ def _traded(found: dict, title: str, across: tuple[str, str], upwards: tuple[str
         if (across, upwards) == (_NINE, _QUIET)
         else []
     )
-    lines.append(
-        Line(
-            [best[across[0]]],
-            [best[upwards[0]]],
-            "best set",
-            VERMILION,
-            dash="",
-            marker="D",
-            size=17.0,
-        )
-    )
     known = found["known"]
-    lines.append(
-        Line(
-            [known[across[0]]],
-            [known[upwards[0]]],
-            f"scene {known['name']}",
-            TEAL,
-            dash="",
-            marker="^",
-            size=11.0,
-        )
-    )
+    for own, name, colour, marker, size in (
+        (best, "best set", VERMILION, "D", 17.0),
+        (known, f"scene {known['name']}", TEAL, "^", 11.0),
+    ):
+        place = [own[across[0]]], [own[upwards[0]]]
+        lines.append(Line(*place, name, colour, dash="", marker=marker, size=size))
     for all_five, name, colour, marker in (
         (False, "search over three conditions", GREY, "s"),
         (True, "search over five conditions", NAVY, "o"),

@@ -99,12 +99,6 @@ def headline() -> dict[str, str]:
     return {row["quantity"]: row["value"] for row in _rows("headline.csv")}
 
 
-@cache
-def factors() -> list[dict[str, str]]:
-    """Table 3: what its 1,000 random cases vary."""
-    return _rows("table3_random_factors.csv")
-
-
 def slips() -> list[str]:
     """Where a printed number is not what the printed tables give, in words."""
     largest, claimed = 100.0 * sensitivity().largest_relative()[2], CLAIMED_DEVIATION[2]
