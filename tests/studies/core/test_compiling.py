@@ -68,7 +68,7 @@ def test_kernels_with_modes_of_the_rails_are_others(monkeypatch, tmp_path, capfd
         kernel_marks.remember(pressed(modes), chosen)
         return capfd.readouterr().err
 
-    assert "once, and as long again if modes" in announced("auto")
+    assert "again if modes" in announced("auto")
     # it began without modes, so those with modes are not there
     assert "with modes of the rails" in announced("auto", chosen=True)
     assert [announced(modes) for modes in ("auto", 0, 4, 20)] == [""] * 4

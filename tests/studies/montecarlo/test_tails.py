@@ -108,7 +108,7 @@ def test_runs_and_time_are_announced_before(study, found, capsys):
     said = " ".join(capsys.readouterr().err.split())
     assert "2 of 2 runs of the reference on elements of 16 mm are to be made" in said
     assert "1 of 1 run of the reference on elements of 8 mm is to be made" in said
-    assert "on one core" in said and "GB for each of 1 at once" in said
+    assert "on one core" in said and "0.06 GB for each of 1" in said
 
 
 def nominal(study) -> Surrogate:
