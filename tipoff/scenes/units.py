@@ -7,6 +7,7 @@ SI only where the caller says so (overrides made by a program, resolved scenes r
 
 import math
 import re
+import threading
 from collections.abc import Iterable
 from functools import cache, lru_cache
 from numbers import Real
@@ -32,10 +33,18 @@ _UNIT = re.compile(rf"(?:{_POWER}(?!\s*(?:\*\*|\^))|[^\W\d]\w*|1(?![\w.])|[%°()
 _LARGEST, _LARGEST_LENGTH = 1e200, 1e9
 
 
-@cache
+_LOADING = threading.Lock()
+
+
 def registry() -> "pint.UnitRegistry":
     """All units of pint, which loads when the first unit is read: it takes 0.3 s, and the scenes that
     worker processes get are in SI."""
+    with _LOADING:  # threads share one registry
+        return _registry()
+
+
+@cache
+def _registry() -> "pint.UnitRegistry":
     import pint
 
     return pint.UnitRegistry()
