@@ -54,8 +54,8 @@ def test_free_flight_sees_thrust_line_minus_mass_centre_alone():
 @pytest.mark.parametrize(("draws", "least"), [(6, 5), pytest.param(20, 17, marks=pytest.mark.slow)])
 def test_the_interval_of_the_line_contains_what_acts_as_the_line(draws, least):
     """Line and mass centre are hidden, and the line alone is fitted: it takes both, e - c. Draws
-    have 2 % of noise; intervals that hold 95 % miss more of 20 once in 60, and more of 6 once in 30.
-    Control: the hidden line itself."""
+    have 2 % of noise. Of intervals that hold 95 %, more than three of 20 are missed once in 60 times,
+    and more than one of 6 once in 30. Control: the hidden line itself."""
     generator, hits = np.random.default_rng(8), np.zeros(2)
     exact = {
         name: Curves.from_trajectory(run)

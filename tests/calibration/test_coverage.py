@@ -40,16 +40,16 @@ def rates(found) -> np.ndarray:
     return np.degrees(lowfi.run(scene, compliance=reference_compliance()).outcome.rate)
 
 
-def drawn(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Draws (p,) whose intervals contain the truth, the same of intervals half as wide, and the
-    largest errors (count,) of a held-out rate (deg/s), for noise of 2 %."""
+def drawn(count: int, share: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Draws (p,) whose intervals contain the truth, the same of intervals of a ``share`` of the width,
+    and the largest errors (count,) of a held-out rate (deg/s), for noise of 2 %."""
     hits, narrow, errors = np.zeros(4), np.zeros(4), []
     for seed in range(count):
         found = fitted(curves(HIDDEN, 0.02, seed), NAMES)
         assert found.verdict.startswith("the curves ask for other values")
         middle = np.mean(found.intervals, axis=1, keepdims=True)
         hits += inside(found.intervals, TRUTH)
-        narrow += inside(middle + 0.4 * (np.array(found.intervals) - middle), TRUTH)
+        narrow += inside(middle + share * (np.array(found.intervals) - middle), TRUTH)
         assert inside(found.with_model_error, TRUTH).all()
         errors.append(np.abs(rates(found) - rates(HIDDEN)).max())
     return hits, narrow, np.array(errors)
@@ -58,7 +58,7 @@ def drawn(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 @pytest.mark.slow
 def test_intervals_cover_in_17_of_20_draws():
     """The control, intervals of 0.4 times the width, covers 57 % of 80 by theory."""
-    hits, narrow, errors = drawn(20)
+    hits, narrow, errors = drawn(20, 0.4)
     assert (hits >= 17).all(), hits
     assert narrow.sum() < 0.75 * 80, narrow
     assert (errors < 0.02).all(), errors
@@ -68,10 +68,10 @@ def test_intervals_cover_in_17_of_20_draws():
 def test_hidden_values_are_covered_and_held_out_rates_agree(draws, least):
     """Of 16 values of four draws at most three are missed, of 4 values of one draw at most one: of
     intervals that hold 95 % more are missed once in 140 and in 70 times. Controls: intervals of 0.3
-    times the width miss two values of the first draw, and the scene's own values miss the held-out
-    rates."""
-    hits, _, errors = drawn(draws)
-    assert hits.sum() >= least and (hits >= draws - 2).all(), hits
+    times the width miss more, and the scene's own values miss the held-out rates."""
+    hits, narrow, errors = drawn(draws, 0.3)
+    assert hits.sum() >= least and (draws == 1 or (hits >= 2).all()), hits
+    assert narrow.sum() < least, narrow
     assert (errors < 0.02).all(), errors
     own = dataclasses.replace(CALIBRATION, constants={})
     assert np.abs(rates(own) - rates(HIDDEN)).max() > 0.5
@@ -86,16 +86,19 @@ def test_where_nothing_needs_fitting_it_says_so():
     assert found.apply(SCENE).hash == SCENE.hash
 
 
-def test_friction_that_the_fit_lacks_is_model_error():
-    """Friction of 0.08 in the curves, 0.2 in the model. The fit compensates it by other values: with
-    model error the interval of the clearance contains the truth, and that of the interface stiffness
-    is wider than its bounds, so that it has no ends."""
-    hidden = {CLEARANCE: TRUTH[0], FRICTION: 0.08, "friction.static": 0.08}
+@pytest.mark.parametrize("friction", [0.08, pytest.param(0.13, marks=pytest.mark.slow)])
+def test_friction_that_the_fit_lacks_is_model_error(friction):
+    """Friction of 0.2 in the model, which the fit compensates by other values: with model error the
+    clearance is less certain, and its interval contains the truth. At 0.08 the interval of the
+    interface stiffness is wider than its bounds, so that it has no ends; at 0.13 it has nearly their
+    width."""
+    hidden = {CLEARANCE: TRUTH[0], FRICTION: friction, "friction.static": friction}
     found = fitted(curves(hidden, 0.0, 0), [CLEARANCE, STIFFNESS])
     truth = [TRUTH[0], SCENE.contact.interface_stiffness]
     assert not inside(found.intervals, truth).any()
-    assert inside(found.with_model_error, truth).tolist() == [True, False]
-    assert not np.isfinite(found.with_model_error[1]).any()
+    assert inside(found.with_model_error, truth)[0]
+    if friction == 0.08:
+        assert not np.isfinite(found.with_model_error[1]).any()
 
 
 @pytest.mark.slow

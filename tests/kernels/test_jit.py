@@ -5,6 +5,7 @@ import functools
 import gc
 import json
 import os
+import select
 import shutil
 import subprocess
 import sys
@@ -111,11 +112,27 @@ def ask(project: Path, question: str = ASK) -> tuple[float, int]:
     asked = {"folder": str(project), "cache": str(project / "cache"), "question": question}
     server = _server()
     print(json.dumps(asked), file=server.stdin, flush=True)
+    assert select.select([server.stdout], [], [], 60.0)[0]
     said = server.stdout.readline()
     if not said.startswith("ended"):
         number, compiled = said.split()
         said = server.stdout.readline()
     assert said == "ended 0\n"  # its traceback is among what pytest shows
+    return float(number), int(compiled)
+
+
+def ask_anew(project: Path) -> tuple[float, int]:
+    """The same in an interpreter of its own, whose hashes and addresses are others."""
+    run = subprocess.run(
+        [sys.executable, "-c", ASK],
+        cwd=project,
+        env=os.environ | {"NUMBA_CACHE_DIR": str(project / "cache"), "PYTHONHASHSEED": "1"},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
+    number, compiled = run.stdout.split()
     return float(number), int(compiled)
 
 
@@ -198,7 +215,9 @@ def test_threads_that_compile_together_leave_the_garbage_collector_as_it_was():
 
 
 def test_comments_compile_nothing(project):
-    """Docstrings and comments above a kernel move its lines and change its file."""
+    """Docstrings and comments above a kernel move its lines and change its file. Nor does another
+    interpreter compile anything."""
+    assert ask_anew(project) == (2.0, 0)
     for name in ("caller", "callee"):
         source = project / "tipoff" / "highfi" / f"{name}.py"
         text = source.read_text().replace("Twice", "Two times").replace("A value", "One number")

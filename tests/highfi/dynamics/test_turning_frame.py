@@ -109,7 +109,8 @@ def assert_seen_alike(run, other, nudged):
     "share, nudge", [(0.1, 2.0 * NUDGE), pytest.param(1.0, NUDGE, marks=pytest.mark.slow)]
 )
 def test_part_of_a_turn_seen_from_the_platform(share, nudge):
-    """A ``share`` of a quarter of a turn on the rail, in corner contact."""
+    """A ``share`` of a quarter of a turn on the rail, in corner contact. The nudge of the control is
+    twice as large on the short part."""
     part = share * QUARTER
     run, other = (ejected(0.9, turn, BODIES, part) for turn in (None, turning.TURN))
     assert run.status == other.status == "time_limit"

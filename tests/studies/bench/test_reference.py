@@ -9,7 +9,6 @@ import pytest
 from typer.testing import CliRunner
 
 import tipoff
-from tests.studies.synthetic import undrawn
 from tipoff import highfi, lowfi
 from tipoff.highfi import Numerics
 from tipoff.highfi.statics import assembly
@@ -52,10 +51,9 @@ def test_baseline_is_central_differences_on_the_assembled_matrix():
     "few, errors",
     [(5, (1.0, 0.5)), pytest.param(20, surrogate.REQUESTED, marks=pytest.mark.slow)],
 )
-def test_bench_writes_one_row_per_size(tmp_path, monkeypatch, few, errors):
+def test_bench_writes_one_row_per_size(tmp_path, monkeypatch, figures, few, errors):
     monkeypatch.setattr(surrogate, "run", functools.partial(surrogate.run, few=few))
     monkeypatch.setattr(surrogate, "REQUESTED", errors)
-    undrawn(monkeypatch, laid_out=True)
     arguments = [
         "bench",
         "--element-size",

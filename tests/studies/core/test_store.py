@@ -171,16 +171,16 @@ def test_settings_and_roles_change_a_stage_key_and_workers_do_not(study):
     assert key(scene=study.scene.replace({"payload.mass": "9 kg"})) != key()
 
 
-MOMENTS = (0.0, 0.001, 0.002, 0.003, 0.005, 0.007, 0.009, 0.012)  # s after a file was written
+MOMENTS = (0.0, 0.001, 0.002, 0.003, 0.005, 0.007, 0.009, 0.012)  # s after a small file was written
 # The bytes are made once, so that the loop hardly does anything but write.
 KILLED = """
 import os, sys
 import xarray
 from tests.studies.synthetic import flight
-run = flight(samples=10001)
+run = flight(samples=int(sys.argv[1]))
 content = run.to_xarray().to_netcdf(engine="h5netcdf")
 xarray.Dataset.to_netcdf = lambda *_, **__: content
-for path in sys.argv[1:]:  # a process each
+for path in sys.argv[2:]:  # a process each
     child = os.fork()
     while child == 0:
         run.save(path)
@@ -189,11 +189,13 @@ for path in sys.argv[1:]:  # a process each
 """
 
 
-def test_kill_while_writing_leaves_no_half_file(tmp_path):
+@pytest.mark.parametrize("samples", [10001, pytest.param(40001, marks=pytest.mark.slow)])
+def test_kill_while_writing_leaves_no_half_file(tmp_path, samples):
     """SIGKILL at several moments of a loop that only writes: the file under its final name can
     always be read."""
-    moments = {tmp_path / str(delay) / "victim.nc": delay for delay in MOMENTS}
-    command = [sys.executable, "-c", KILLED, *map(str, moments)]
+    late = samples / 10001  # a larger file takes longer
+    moments = {tmp_path / str(delay) / "victim.nc": late * delay for delay in MOMENTS}
+    command = [sys.executable, "-c", KILLED, str(samples), *map(str, moments)]
     writer = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
     killed = set()
     try:
@@ -205,4 +207,4 @@ def test_kill_while_writing_leaves_no_half_file(tmp_path):
     finally:
         writer.kill()
         writer.communicate()
-    assert [Trajectory.load(path).time.size for path in moments] == [10001] * len(moments)
+    assert [Trajectory.load(path).time.size for path in moments] == [samples] * len(moments)

@@ -40,8 +40,7 @@ def call(*arguments):
     )
 
 
-def test_shipped_logs_from_command_to_page(tmp_path, fitted, monkeypatch):
-    undrawn(monkeypatch, laid_out=True)
+def test_shipped_logs_from_command_to_page(tmp_path, fitted, figures):
     result = call("--cases", 200, "--out", tmp_path)
     assert result.exit_code == 0, result.output
     for words in (

@@ -38,9 +38,8 @@ def call(*arguments):
     return CliRunner(env={"COLUMNS": "400"}).invoke(app, ["flight", *map(str, arguments)])
 
 
-def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, monkeypatch):
+def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, figures, monkeypatch):
     asked = ("--condition", "phi35", "--condition", "phi60", "--cases", 60, "--out", tmp_path)
-    undrawn(monkeypatch, laid_out=True)
     first = call(*asked)
     assert first.exit_code == 0, first.output
     assert "60 cases: 60 ok, 0 refused, 0 failed" in first.stdout and "flight.nc" in first.stdout

@@ -24,9 +24,8 @@ from tipoff.studies.paper import page as section
 from tipoff.studies.paper import stage as paper
 
 
-def test_stage_keeps_searches_and_is_skipped(tmp_path, monkeypatch):
+def test_stage_keeps_searches_and_is_skipped(tmp_path, monkeypatch, figures):
     study = Study(BASE, tmp_path, Settings(workers=1))
-    undrawn(monkeypatch, laid_out=True)
     found = paper.run(study, SMALL)
     assert (
         len(found["searches"]) == 2

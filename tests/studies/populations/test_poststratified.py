@@ -3,10 +3,10 @@ known answers."""
 
 import numpy as np
 import pytest
-from scipy.stats import binomtest
+from scipy.stats import beta, binomtest
 
 from tests.studies.populations.synthetic_pairs import Exponential, Normal, covered, repetitions
-from tipoff.studies.populations import exceedance, poststratified
+from tipoff.studies.populations import poststratified
 from tipoff.studies.populations.control_variate import Pairs
 
 REPETITIONS = 400
@@ -56,7 +56,8 @@ def test_intervals_of_a_probability_hold_the_truth_as_often_as_they_say(law, cor
             pair.reference > threshold, pair.surrogate > threshold, share, 3000
         )
         bounds.append((found.low, found.high))
-        own.append(exceedance.bounds(round(3000 * share), 3000, 0.95))
+        above = round(3000 * share)
+        own.append(beta.ppf([0.025, 0.975], [above, above + 1], [3001 - above, 3000 - above]))
     assert NOMINAL[0] < covered(bounds, 0.1) < NOMINAL[1]
     assert covered(own, 0.1) < 0.05
 

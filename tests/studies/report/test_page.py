@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.studies.shown import html
-from tests.studies.synthetic import flight, undrawn
+from tests.studies.synthetic import flight
 from tipoff import scenes
 from tipoff.studies import registry
 from tipoff.studies.agreement import rails_page, verdicts
@@ -98,8 +98,7 @@ def test_chart_is_drawn_twice(tmp_path):
     assert to_files(chart, tmp_path)[1].read_bytes() == drawn
 
 
-def test_page_of_a_reference_alone_names_the_targets_that_make_the_rest(tmp_path, monkeypatch):
-    undrawn(monkeypatch, laid_out=True)
+def test_page_of_a_reference_alone_names_the_targets_that_make_the_rest(tmp_path, figures):
     scene = scenes.load("tiny")
     runs = {
         name: flight(lambda t: np.outer(np.sin(100.0 * t), [0.1, 0.2, 0.3]))
