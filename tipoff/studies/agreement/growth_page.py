@@ -56,7 +56,7 @@ def picture(found: list[dict]) -> Chart:
                     "time after ignition (ms)",
                     "separation (deg/s)",
                     lines,
-                    band=(own[0]["gate_deg_s"], "below the gate"),
+                    band=(own[0]["gate_deg_s"], "below the limit of agreement"),
                     log_y=True,
                 )
             )

@@ -63,7 +63,7 @@ def _surrogate(found: dict) -> Table:
     )
     note = (
         "Surrogate: processor time of one core per case, without set-up. The setting is the "
-        "coarsest one with an error below the limit (95th percentile over "
+        "coarsest one whose error is within that of the row (95th percentile over "
         f"{found['varied_cases']} varied cases). The baselines have compiled equations and no "
         "events: plain Runge-Kutta of order four with fixed steps, and solve_ivp with steps of "
         "at most 1 ms. Longer steps miss contacts. Ensembles of "

@@ -224,7 +224,7 @@ StepEverything = Annotated[
     bool,
     typer.Option(
         "--step-everything",
-        help="Step all rails at every step, and take no long steps. Default: a rail is at rest "
-        "before the first contact and after the payload has left it.",
+        help="Step all rails at every step, and take no long steps. Default: a rail that no pad has "
+        "touched, or that the payload has left, is not stepped.",
     ),
 ]

@@ -64,8 +64,8 @@ def scene_command(
 ) -> Callable[[Callable[..., Output]], Callable[..., None]]:
     """Decorator: a command from a function of a request and its own options that returns the output.
 
-    The help lists own options after --set, and keyword-only ones after --workers. ``without``: names
-    of the common options that the command does not have.
+    The help lists own options after --set, and keyword-only ones after --workers. ``without``:
+    "element_size" or "workers", where the command does not have them.
     """
     common = {name: option for name, option in _COMMON.items() if name not in without}
 

@@ -28,7 +28,8 @@ def view(
             "--exaggeration",
             metavar="X",
             min=1e-6,
-            help="Factor of the deformation of the rail in pictures; default: makes the largest deformation visible.",
+            help="Factor of the deformation of the rail in pictures; default: one that makes the "
+            "largest deformation visible.",
         ),
     ] = None,
 ) -> Output:
