@@ -1,6 +1,8 @@
 """Quantities: what is read, and what is refused because it could mean something else."""
 
 import math
+import subprocess
+import sys
 
 import pytest
 from hypothesis import given
@@ -75,3 +77,21 @@ def test_a_bare_number_is_si_only_where_allowed():
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_si_text_is_read_to_the_bit(value):
     assert to_si(f"{value!r} m", "m") == value
+
+
+def test_threads_that_read_the_first_unit_together_share_one_registry():
+    """In a process that has read none. Without a lock each would load its own."""
+    program = """
+import threading
+from tipoff.scenes.units import registry
+barrier, found = threading.Barrier(8), set()
+def read():
+    barrier.wait()
+    found.add(registry())
+threads = [threading.Thread(target=read) for _ in range(8)]
+for thread in threads: thread.start()
+for thread in threads: thread.join()
+print(len(found))
+"""
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert run.stdout == "1\n", run.stderr

@@ -120,11 +120,25 @@ def test_waking_too_late_is_seen(numerics):
 
 @pytest.mark.parametrize("duration", ["3 ms", pytest.param("9 ms", marks=pytest.mark.slow)])
 def test_long_steps_change_less_than_the_scheme_errs(duration):
-    """Several steps at once until a pad is near: order two, so the velocity along the thrust has an
+    """Several steps at once while no pad is near: order two, so the velocity along the thrust has an
     error of a millionth."""
     scene = tiny(platform=None, duration=duration)
     long, short = run_out(loop_of(scene)), run_out(loop_of(scene, rests=False))
-    assert long.taken < 0.8 * long.steps
+    assert long.taken < 0.8 * long.steps and long.rests.all()
+    assert_near(long, short)
+
+
+def test_long_steps_end_before_a_pad_is_near(numerics):
+    """Single steps from then on, through the contact: the motion is as near as before it."""
+    scene = tiny(platform=None, **EARLY | {"contact__clearance": "0.12 mm"})
+    long, short = (run_out(loop_of(scene, numerics, rests)) for rests in (True, False))
+    assert 0.3 * long.steps < long.taken < 0.8 * long.steps
+    assert np.abs(long.forces).max() > 1.0 and not long.rests.all()
+    assert_near(long, short)
+
+
+def assert_near(long: Loop, short: Loop) -> None:
+    """Motion of the bodies within 1e-5 of its largest values."""
     found, expected = rows(long), rows(short)
     for first, size in ((observe.POSITION, 3), (observe.VELOCITY, 3), (observe.RATE, 3)):
         part = slice(first, first + size)
