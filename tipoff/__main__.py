@@ -1,13 +1,16 @@
 """``python -m tipoff`` and the command ``tipoff``."""
 
 import os
+import signal
 import sys
+import threading
 
 
 def main() -> None:
     """Run the command line. Ctrl-C ends it with exit code 130 and a file that the machine refuses
     with 1, also while modules load."""
     _one_thread_of_blas()
+    sys.unraisablehook = _keep_interrupts
     try:
         from tipoff.studies.cli import app
 
@@ -18,6 +21,16 @@ def main() -> None:
     except OSError as error:
         print(f"tipoff: {error}", file=sys.stderr)
         sys.exit(1)
+
+
+def _keep_interrupts(dropped: "sys.UnraisableHookArgs") -> None:
+    """Python drops what is raised in a destructor or in the callback of a weak reference, Ctrl-C
+    too, and imports run many of these. So Ctrl-C is sent again when the callback has ended."""
+    if not issubclass(dropped.exc_type, KeyboardInterrupt):
+        sys.__unraisablehook__(dropped)
+        return
+    main_thread = threading.main_thread().ident
+    threading.Timer(0.01, signal.pthread_kill, (main_thread, signal.SIGINT)).start()
 
 
 def _one_thread_of_blas() -> None:

@@ -83,3 +83,39 @@ def test_ctrl_c_while_the_command_loads(after):
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=60)
     assert process.returncode in (0, 130) and "Traceback" not in said
+
+
+IN_A_CALLBACK = """
+import signal, sys, time, weakref
+from tipoff import __main__
+
+class Interrupted:
+    \"\"\"Imports nothing; while the commands load, Ctrl-C falls into a callback.\"\"\"
+
+    def find_spec(self, name, path=None, target=None):
+        if name == "tipoff.studies.cli":
+            gone = Interrupted()
+            reference = weakref.ref(gone, lambda _: signal.raise_signal(signal.SIGINT))
+            del gone
+            print("dropped", flush=True)
+            time.sleep({wait})
+
+sys.meta_path.insert(0, Interrupted())
+sys.argv = ["tipoff", "scenes"]
+{before}
+__main__.main()
+"""
+
+
+@pytest.mark.parametrize(
+    "before, code", [("", 130), ("__main__._keep_interrupts = lambda _: None", 0)]
+)
+def test_ctrl_c_in_a_callback_of_python_is_not_lost(before, code):
+    """Control: Python alone drops it and the command goes on."""
+    script = IN_A_CALLBACK.format(wait=0.0 if code == 0 else 30.0, before=before)
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == code and done.stdout.startswith("dropped")
+    assert "Traceback" not in done.stderr
+    assert ("tipoff: stopped" in done.stderr) == (code == 130)
