@@ -58,13 +58,6 @@ def strain_matrix(corners: np.ndarray, law: np.ndarray, local: np.ndarray) -> np
     return matrix
 
 
-def strain(
-    corners: np.ndarray, law: np.ndarray, local: np.ndarray, displacement: np.ndarray
-) -> np.ndarray:
-    """Strain (p,6) at p points from the displacement (p,8,3) m of the corners around each."""
-    return (strain_matrix(corners, law, local) @ displacement.reshape(-1, 24, 1))[..., 0]
-
-
 def corner_gradients(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """At the corners of c elements: slopes (c,8,3,3) 1/m of local coordinate i along j, and
     gradients (c,8,3,3) of the bubbles."""
@@ -73,19 +66,6 @@ def corner_gradients(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     inverse, _, _ = _mapping(repeated, local)
     _, bubble = gradients(repeated, local)
     return np.swapaxes(inverse, 1, 2).reshape(count, 8, 3, 3), bubble.reshape(count, 8, 3, 3)
-
-
-def corner_matrix(corners: np.ndarray, law: np.ndarray) -> np.ndarray:
-    """Matrix (c,8,6,24) Pa/m from the displacement of the corners (c,8,3) m to the stress at each
-    corner."""
-    count, local = len(corners), np.tile(NODES, (len(corners), 1))
-    nodal, bubble = gradients(np.repeat(corners, 8, axis=0), local)
-    strained = hexahedron.strain_matrix(nodal).reshape(count, 8, 6, 24)
-    return law @ (
-        strained
-        + hexahedron.strain_matrix(bubble).reshape(count, 8, 6, 9)
-        @ amplitudes(corners, law)[:, None]
-    )
 
 
 def von_mises(stress: np.ndarray) -> np.ndarray:

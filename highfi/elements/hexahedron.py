@@ -131,13 +131,6 @@ def node_mass(corners: np.ndarray, density: float) -> np.ndarray:
     return density * np.einsum("aq,cq->ca", shape_functions(cells), cells.dx)
 
 
-def centre_strain(corners: np.ndarray, displacement: np.ndarray) -> np.ndarray:
-    """Strain (c,6) at the centre, where the bubbles have no gradient; displacement (c,8,3) m.
-    Stress is `strain @ law`."""
-    strain = kinematics(basis(corners, quadrature=(_CENTRE, np.ones(1))))
-    return np.einsum("csd,cd->cs", strain.nodal[:, 0], displacement.reshape(-1, 24))
-
-
 def gauss_strain(corners: np.ndarray, law: np.ndarray, displacement: np.ndarray) -> np.ndarray:
     """Strain (c,8,6) at the Gauss points, bubbles included; displacement (c,8,3) m."""
     strain = kinematics(basis(corners))

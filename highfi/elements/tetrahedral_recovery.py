@@ -38,13 +38,6 @@ def strain_matrix(nodes: np.ndarray, law: np.ndarray, local: np.ndarray) -> np.n
     return hexahedron.strain_matrix(gradients(nodes, local))
 
 
-def strain(
-    nodes: np.ndarray, law: np.ndarray, local: np.ndarray, displacement: np.ndarray
-) -> np.ndarray:
-    """Strain (p,6) at p points from the displacement (p,10,3) m of the nodes around each."""
-    return (strain_matrix(nodes, law, local) @ displacement.reshape(-1, 30, 1))[..., 0]
-
-
 def node_slopes(nodes: np.ndarray) -> np.ndarray:
     """Slopes (c,10,3,3) 1/m of local coordinate i along j at the nodes of elements with nodes
     (c,10,3) m."""

@@ -8,6 +8,7 @@ from scipy.sparse.linalg import spsolve
 from tests.exact import elasticity
 from tests.highfi import cylinder
 from tests.highfi.blocks import ALUMINIUM, block
+from tests.highfi.elements.recovered import centre_strain, corner_matrix, strain
 from tests.highfi.elements.test_beams import BEAM, ELASTIC, ROOT_STRESS, deflection
 from tests.highfi.elements.test_hexahedron import (
     PATCH_GRADIENT,
@@ -24,7 +25,7 @@ CORNERS = hexahedron.VTK_CORNERS.astype(float)
 
 def at_corners(mesh, law, displacement):
     """Stress (e,8,6) Pa at the corners of the elements."""
-    matrix = hexahedral_recovery.corner_matrix(mesh.points[mesh.cells], law)
+    matrix = corner_matrix(mesh.points[mesh.cells], law)
     return (matrix @ displacement[mesh.cells].reshape(-1, 1, 24, 1))[..., 0]
 
 
@@ -59,14 +60,14 @@ def test_recovery_agrees_with_the_integration_points_of_the_element():
     places = hexahedron.basis(corners).X.T
     expected = hexahedron.gauss_strain(corners, law, displacement)
     for point, place in enumerate(places):
-        found = hexahedral_recovery.strain(corners, law, np.tile(place, (4, 1)), displacement)
+        found = strain(hexahedral_recovery, corners, law, np.tile(place, (4, 1)), displacement)
         assert found == pytest.approx(
             expected[:, point], rel=1e-11, abs=1e-12 * np.abs(expected).max()
         )
-    centre = hexahedral_recovery.strain(
-        corners, law, np.tile(hexahedral_recovery.CENTRE, (4, 1)), displacement
+    centre = strain(
+        hexahedral_recovery, corners, law, np.tile(hexahedral_recovery.CENTRE, (4, 1)), displacement
     )
-    assert centre == pytest.approx(hexahedron.centre_strain(corners, displacement), rel=1e-12)
+    assert centre == pytest.approx(centre_strain(corners, displacement), rel=1e-12)
 
 
 def test_corner_gradients_are_those_of_the_corner_matrix():
@@ -74,13 +75,12 @@ def test_corner_gradients_are_those_of_the_corner_matrix():
     displacement = np.random.default_rng(5).standard_normal((4, 8, 3))
     for corner in range(8):
         found = (
-            hexahedral_recovery.strain(corners, law, np.tile(CORNERS[corner], (4, 1)), displacement)
+            strain(
+                hexahedral_recovery, corners, law, np.tile(CORNERS[corner], (4, 1)), displacement
+            )
             @ law
         )
-        expected = (
-            hexahedral_recovery.corner_matrix(corners, law)[:, corner]
-            @ displacement.reshape(4, 24, 1)
-        )[..., 0]
+        expected = (corner_matrix(corners, law)[:, corner] @ displacement.reshape(4, 24, 1))[..., 0]
         assert found == pytest.approx(expected, rel=1e-11, abs=1e-12 * np.abs(expected).max())
 
 
@@ -107,7 +107,7 @@ def test_root_stress_in_the_outer_fibre(divisions):
     assert -root.mean() == pytest.approx(ROOT_STRESS, rel=1e-4)
     assert np.ptp(root) < 0.01 * ROOT_STRESS
     if divisions[2] == 1:
-        centre = hexahedron.centre_strain(place, displacement[mesh.cells]) @ law
+        centre = centre_strain(place, displacement[mesh.cells]) @ law
         assert np.abs(centre[:, 0]).max() < 0.01 * ROOT_STRESS
 
 

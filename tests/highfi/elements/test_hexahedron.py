@@ -7,6 +7,7 @@ from scipy.sparse.linalg import spsolve
 
 from tests.exact import elasticity
 from tests.highfi.blocks import ALUMINIUM, block, free_stiffness, modes, without_bubbles
+from tests.highfi.elements.recovered import centre_strain
 from tipoff.highfi.elements import hexahedron
 from tipoff.highfi.mesh.rail_mesh import RailMesh, read
 from tipoff.highfi.statics import assembly
@@ -73,7 +74,7 @@ def test_patch_has_constant_stress(turn):
     nodal = displacement.reshape(-1, 3)[mesh.cells]
     gauss, centre = (
         hexahedron.gauss_strain(corners, law, nodal) @ law,
-        hexahedron.centre_strain(corners, nodal) @ law,
+        centre_strain(corners, nodal) @ law,
     )
     for stress in (*np.moveaxis(gauss, 1, 0), centre):
         xx, yy, zz, xy, yz, zx = stress.T

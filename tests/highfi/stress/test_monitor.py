@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from tests.highfi.blocks import block
+from tests.highfi.elements.recovered import corner_matrix
 from tests.highfi.support import COARSE, assert_same_bits, begun, tiny
 from tipoff import highfi
 from tipoff.highfi.dynamics.system import build
@@ -21,7 +22,7 @@ def seen():
     """The run on ``tiny`` and, at every sample, the plain von Mises stress (e,8) Pa at all corners
     of all elements."""
     mesh, stresses = highfi.prepare(tiny(), COARSE), []
-    matrix = hexahedral_recovery.corner_matrix(mesh.points[mesh.cells], LAW)
+    matrix = corner_matrix(mesh.points[mesh.cells], LAW)
 
     def look(loop):
         np.testing.assert_array_equal(loop.system.mesh.cells, mesh.cells)

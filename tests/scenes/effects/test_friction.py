@@ -6,12 +6,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tipoff.scenes.effects.friction import Friction, coefficient_over_speed, steepest_slope
+from tipoff.scenes.effects.friction import Friction, coefficient_over_speed
 
 LAW = Friction(0.3, 0.1, 0.01, 0.02)
 # Zero or a coefficient some surface may have: below 1e-300 a relative tolerance means nothing.
 COEFFICIENT = st.just(0.0) | st.floats(1e-6, 2.0)
 SPEED = st.floats(1e-4, 1.0)
+
+
+def steepest_slope(friction):
+    """Largest d(mu)/ds (s/m)."""
+    rise = friction.static / friction.static_speed
+    fall = abs(friction.dynamic - friction.static) / (
+        friction.dynamic_speed - friction.static_speed
+    )
+    return 1.5 * max(rise, fall)
 
 
 def coefficient(law, speed):

@@ -99,15 +99,3 @@ def coefficient_over_speed(friction, speed):
     return (
         friction.static + (friction.dynamic - friction.static) * x * x * (3.0 - 2.0 * x)
     ) / speed
-
-
-def steepest_slope(friction) -> float:
-    """Largest d(mu)/ds (s/m): the damping per newton of normal force that bounds an explicit
-    step."""
-    start = 1.5 * friction.static / friction.static_speed
-    drop = (
-        1.5
-        * abs(friction.dynamic - friction.static)
-        / (friction.dynamic_speed - friction.static_speed)
-    )
-    return max(start, drop)

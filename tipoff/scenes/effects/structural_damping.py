@@ -79,10 +79,3 @@ class DampingTable(Table):
         )
         # On the bound of what is possible one of the two is zero, but for rounding.
         return Damping(max(0.0, mass_rate), max(0.0, stiffness_time))
-
-
-def ratio(damping: Damping | None, frequency: float) -> float:
-    """Damping ratio at an angular frequency (rad/s); zero where the effect is absent."""
-    if damping is None:
-        return 0.0
-    return 0.5 * (damping.mass_rate / frequency + damping.stiffness_time * frequency)

@@ -71,17 +71,6 @@ def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float | N
     return float(brentq(miss, -_STEEPEST, _STEEPEST, xtol=1e-12))
 
 
-def grid_convergence_index(sizes: Sequence[float], values: Sequence[float], order: float) -> float:
-    """GCI of the finest of three values on grids of three falling ``sizes``, as a fraction of
-    it."""
-    return abs(SAFETY_FACTOR * _error(_ratios(sizes)[1], values, order) / values[2])
-
-
-def extrapolated(sizes: Sequence[float], values: Sequence[float], order: float) -> float:
-    """Richardson's value for an infinitely fine grid."""
-    return values[2] + (values[2] - values[1]) / (_ratios(sizes)[1] ** order - 1.0)
-
-
 def estimate(sizes: Sequence[float], values: Sequence[float | None]) -> Estimate:
     """Uncertainty of the last of the ``values``, from the three finest grids or from two; None
     stands for a run that did not settle."""
