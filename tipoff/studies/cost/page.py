@@ -22,6 +22,17 @@ _ERRORS = (
     "or 0.1 deg/s, whichever is larger."
 )
 
+# colour, marker and dash of each model, in the order of the points
+_LOOKS = (
+    (NAVY, "s", "-"),
+    (GREY, "^", ":"),
+    (AMBER, "o", "--"),
+    (TEAL, "v", "-."),
+    (VERMILION, "D", "-"),
+    (NAVY, "o", ":"),
+    (NAVY, "x", ""),
+)
+
 
 def draw(page: "Page") -> list[Part]:
     """The section, or how to make its result."""
@@ -99,37 +110,16 @@ def picture(cost: dict) -> Chart:
     """Errors of the settled rates and of the curves over wall time, one line per model, with the
     uncertainty of the finest mesh and the Pareto front; and the surrogate's error of time
     integration."""
-    looks = (("s", "-"), ("^", ":"), ("o", "--"), ("v", "-."), ("D", "-"), ("o", ":"), ("x", ""))
     models = dict.fromkeys(point["model"] for point in cost["points"])
-    look = {
-        model: (colour, *rest)
-        for model, colour, rest in zip(
-            models, (NAVY, GREY, AMBER, TEAL, VERMILION, NAVY, NAVY), looks
-        )
-    }
-    band = (cost["band_deg_s"], "uncertainty of the finest mesh") if cost["band_deg_s"] else None
-    settled = [
-        point
-        | {
-            "error_deg_s": cost["band_deg_s"]
-            if point["error_deg_s"] is None
-            else point["error_deg_s"]
-        }
-        for point in cost["points"]
-    ]
-    curves = [
-        point | {"curve_error": point["curve_error"] and 100.0 * point["curve_error"]}
-        for point in cost["points"]
-    ]
+    looks = dict(zip(models, _LOOKS))
+    shade = cost["band_deg_s"]
+    band = (shade, "uncertainty of the finest mesh") if shade else None
+    settled = _with(cost, "error_deg_s", lambda error: shade if error is None else error)
+    curves = _with(cost, "curve_error", lambda error: error and 100.0 * error)
+    rates = "error of the settled rates (deg/s)"
     panels = []
     for title, points, error, label, shaded in (
-        (
-            "settled rates, against the finest mesh",
-            settled,
-            "error_deg_s",
-            "error of the settled rates (deg/s)",
-            band,
-        ),
+        ("settled rates, against the finest mesh", settled, "error_deg_s", rates, band),
         (
             "curves of the rates, against the finest mesh",
             curves,
@@ -141,7 +131,7 @@ def picture(cost: dict) -> Chart:
             "settled rates, error of time integration",
             cost["points"],
             "integration_error_deg_s",
-            "error of the settled rates (deg/s)",
+            rates,
             None,
         ),
     ):
@@ -150,15 +140,20 @@ def picture(cost: dict) -> Chart:
                 [p for p in points if p["model"] == model and (p[error] or 0.0) > 0.0],
                 error,
                 model,
-                *style,
+                *look,
                 beside=("bottom right", "top right")[place % 2],
             )
-            for place, (model, style) in enumerate(look.items(), 1)
+            for place, (model, look) in enumerate(looks.items(), 1)
         ]
         front = [_front(cost), *_recommended(cost)] if shaded else []
         shown = [line for line in front + lines if len(line.x)]
         panels.append(Panel(title, "wall time of one run (s)", label, shown, True, shaded))
     return Chart("cost", [panel for panel in panels if panel.lines], columns=2, height=420)
+
+
+def _with(cost: dict, key: str, changed: Callable) -> list[dict]:
+    """The points, each with a changed value of ``key``."""
+    return [point | {key: changed(point[key])} for point in cost["points"]]
 
 
 def recommended(cost: dict) -> dict | None:

@@ -21,6 +21,14 @@ _PLOTLY_MARKER = {
     "": "circle",
     "x": "x",
 }
+_AXIS = {
+    "title_font": {"size": 13},
+    "showline": True,
+    "linecolor": EDGE,
+    "gridcolor": RULE,
+    "zerolinecolor": ZERO,
+    "ticks": "outside",
+}
 
 
 def to_html(chart: Chart | Picture) -> str:
@@ -39,101 +47,87 @@ def to_html(chart: Chart | Picture) -> str:
         horizontal_spacing=0.09 if chart.columns > 1 else 0.0,
         vertical_spacing=_GAP / (chart.height * chart.rows),
     )
-    shown: set[str] = set()
+    named: set[str] = set()  # lines that the legend has
     for index, panel in enumerate(chart.panels):
         place = {"row": index // chart.columns + 1, "col": index % chart.columns + 1}
         for line in panel.lines:
-            x, y = _thinned(line)
-            figure.add_trace(
-                go.Scatter(
-                    x=x,
-                    y=y,
-                    name=line.name,
-                    legendgroup=line.name,
-                    opacity=line.opacity,
-                    text=list(line.labels) or None,
-                    showlegend=line.legend and line.name not in shown,
-                    mode=_mode(line),
-                    textposition=line.beside,
-                    cliponaxis=not line.labels,
-                    line={
-                        "color": line.colour,
-                        "width": line.width,
-                        "dash": _PLOTLY_DASH[line.dash],
-                    },
-                    marker={"symbol": _PLOTLY_MARKER[line.marker], "size": line.size},
-                ),
-                **place,
-            )
-            shown |= {line.name} if line.legend else set()
-        x_kind = (
-            _log_axis(across(panel), panel.ticks)
-            if panel.log
-            else {"type": "log", "dtick": _tick_step(panel)}
-            if panel.log_x
-            else {}
-        )
-        y_kind = _log_axis(upwards(panel)) if panel.steep else {}
-        figure.update_xaxes(title_text=panel.x_label, **x_kind, **place)
-        figure.update_yaxes(title_text=panel.y_label, **y_kind, **place)
-        for low, high in panel.spans:
-            figure.add_vrect(x0=low, x1=high, fillcolor=GREY, opacity=0.16, line_width=0, **place)
-        if panel.band:
-            figure.add_hrect(
-                y0=upwards(panel)[0] if panel.steep else 0.0,
-                y1=panel.band[0],
-                fillcolor=GREY,
-                opacity=0.16,
-                line_width=0,
-                **place,
-            )
-            figure.add_annotation(
-                text=panel.band[1],
-                xref="x domain",
-                yref="y domain",
-                x=0.98,
-                y=0.02,
-                xanchor="right",
-                yanchor="bottom",
-                showarrow=False,
-                **place,
-            )
-    figure.update_layout(
-        height=chart.height * chart.rows + 90,
-        template="plotly_white",
-        margin={"l": 62, "r": 18, "t": 40, "b": 60},
-        font={"family": _FONT, "size": 13, "color": INK},
-        hovermode="closest",
-        legend={
-            "orientation": "h",
-            "yanchor": "top",
-            "y": -90.0 / (chart.height * chart.rows),
-            "x": 0.0,
-        },
-    )
+            shown = line.legend and line.name not in named
+            figure.add_trace(go.Scatter(**_trace(line), showlegend=shown), **place)
+            named |= {line.name} if line.legend else set()
+        figure.update_xaxes(title_text=panel.x_label, **_x_axis(panel), **place)
+        figure.update_yaxes(title_text=panel.y_label, **_y_axis(panel), **place)
+        _shade(figure, panel, place)
+    figure.update_layout(**_layout(chart.height * chart.rows))
     figure.update_annotations(font={"size": 14})
-    figure.update_xaxes(
-        title_font={"size": 13},
-        showline=True,
-        linecolor=EDGE,
-        gridcolor=RULE,
-        zerolinecolor=ZERO,
-        ticks="outside",
-    )
-    figure.update_yaxes(
-        title_font={"size": 13},
-        showline=True,
-        linecolor=EDGE,
-        gridcolor=RULE,
-        zerolinecolor=ZERO,
-        ticks="outside",
-    )
+    figure.update_xaxes(**_AXIS)
+    figure.update_yaxes(**_AXIS)
     return figure.to_html(
         full_html=False,
         include_plotlyjs=False,
         div_id=f"chart-{chart.name}",
         config={"displayModeBar": False, "responsive": True},
     )
+
+
+def _trace(line: Line) -> dict:
+    x, y = _thinned(line)
+    return {
+        "x": x,
+        "y": y,
+        "name": line.name,
+        "legendgroup": line.name,
+        "opacity": line.opacity,
+        "text": list(line.labels) or None,
+        "mode": _mode(line),
+        "textposition": line.beside,
+        "cliponaxis": not line.labels,
+        "line": {"color": line.colour, "width": line.width, "dash": _PLOTLY_DASH[line.dash]},
+        "marker": {"symbol": _PLOTLY_MARKER[line.marker], "size": line.size},
+    }
+
+
+def _shade(figure, panel: Panel, place: dict) -> None:
+    """Spans of x, and the band at the foot of the panel with its words."""
+    grey = {"fillcolor": GREY, "opacity": 0.16, "line_width": 0}
+    for low, high in panel.spans:
+        figure.add_vrect(x0=low, x1=high, **grey, **place)
+    if not panel.band:
+        return
+    top, words = panel.band
+    figure.add_hrect(y0=upwards(panel)[0] if panel.steep else 0.0, y1=top, **grey, **place)
+    figure.add_annotation(
+        text=words,
+        xref="x domain",
+        yref="y domain",
+        x=0.98,
+        y=0.02,
+        xanchor="right",
+        yanchor="bottom",
+        showarrow=False,
+        **place,
+    )
+
+
+def _layout(height: float) -> dict:
+    """Of a chart whose panels are ``height`` px high together."""
+    return {
+        "height": height + 90,
+        "template": "plotly_white",
+        "margin": {"l": 62, "r": 18, "t": 40, "b": 60},
+        "font": {"family": _FONT, "size": 13, "color": INK},
+        "hovermode": "closest",
+        "legend": {"orientation": "h", "yanchor": "top", "y": -90.0 / height, "x": 0.0},
+    }
+
+
+def _x_axis(panel: Panel) -> dict:
+    if panel.log:
+        return _log_axis(across(panel), panel.ticks)
+    return {"type": "log", "dtick": _tick_step(panel)} if panel.log_x else {}
+
+
+def _y_axis(panel: Panel) -> dict:
+    return _log_axis(upwards(panel)) if panel.steep else {}
 
 
 def _tick_step(panel: Panel) -> int | str:
