@@ -5,7 +5,8 @@ from the platform's mass centre at ignition (the scene origin when the platform 
 platform axes, which coincide with scene axes then.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -33,6 +34,7 @@ _REUSED = (
     "platform",
     "thermal",
 )
+_OF_FACES = ("pads", "rail", "contact", "platform")
 
 
 @by_reference
@@ -119,73 +121,56 @@ def built(scene: Scene, earlier: Built | None = None) -> Built:
         else set()
     )
 
-    def kept(*names: str) -> Built | None:
-        """The earlier records, if they come from these same tables."""
-        return earlier if same.issuperset(names) else None
+    def kept(field: str, make: Callable[[], Any], *tables: str) -> Any:
+        """The earlier record where its ``tables`` (none: that of its name) are the same, else a
+        new one."""
+        if earlier and same.issuperset(tables or (field,)):
+            return getattr(earlier.model, field)
+        return make()
 
     offset = scene.mass_offset.eccentricity.offset() if scene.mass_offset else (0.0, 0.0, 0.0)
-    platform = (
-        old.model.platform
-        if (old := kept("platform"))
-        else scene.platform.record()
-        if scene.platform
-        else None
-    )
+    platform = kept("platform", lambda: scene.platform.record() if scene.platform else None)
     origin = platform.mass_centre[0] if platform else 0.0
-    standing = kept("pads", "rail", "contact", "platform")
-    nominal = standing.nominal if standing else _faces(scene, platform)
-    return Built(
-        scene,
-        Model(
-            payload=_payload(
-                scene, offset, old.model.payload if (old := kept("payload")) else None
-            ),
-            faces=nominal._replace(centre=nominal.centre - np.array(offset)),
-            plate=standing.model.plate if standing else _plate(scene, nominal, platform),
-            rail_start=scene.rail.start - origin,
-            rail_end=scene.rail.end - origin,
-            thrust=old.model.thrust if (old := kept("thrust")) else scene.thrust.record(),
-            reacts_on_platform=scene.thrust.reaction == "platform",
-            thrust_offset=thrust_offset.record(
-                scene.thrust_offset, scene.mass_offset, scene.thrust.arm
-            ),
-            contact=old.model.contact
-            if (old := kept("contact"))
-            else contact.laws(scene.contact.record())
-            if scene.contact
-            else None,
-            interface_stiffness=scene.contact.series_stiffness() if scene.contact else None,
-            # Friction without contact has no normal force to act on, so it is absent too.
-            friction=(
-                old.model.friction
-                if (old := kept("friction", "contact"))
-                else scene.friction.record()
-                if scene.friction and scene.contact
-                else None
-            ),
-            platform=platform,
-            body_force=registry.body_force(scene),
-            thermal=old.model.thermal
-            if (old := kept("rail", "thermal"))
-            else scene.thermal.record(scene.rail)
-            if scene.thermal
-            else None,
-            initial=old.model.initial
-            if (old := kept("initial"))
-            else scene.initial.record()
-            if scene.initial
-            else Initial(),
-            thrust_arm=scene.thrust.arm,
+    nominal = earlier.nominal if earlier and same.issuperset(_OF_FACES) else _faces(scene, platform)
+    model = Model(
+        payload=kept("payload", lambda: _payload(scene))._replace(mass_centre=offset),
+        faces=nominal._replace(centre=nominal.centre - np.array(offset)),
+        plate=kept("plate", lambda: _plate(scene, nominal, platform), *_OF_FACES),
+        rail_start=scene.rail.start - origin,
+        rail_end=scene.rail.end - origin,
+        thrust=kept("thrust", scene.thrust.record),
+        reacts_on_platform=scene.thrust.reaction == "platform",
+        thrust_offset=thrust_offset.record(
+            scene.thrust_offset, scene.mass_offset, scene.thrust.arm
         ),
-        nominal,
+        contact=kept(
+            "contact", lambda: contact.laws(scene.contact.record()) if scene.contact else None
+        ),
+        interface_stiffness=scene.contact.series_stiffness() if scene.contact else None,
+        # Friction without contact has no normal force to act on, so it is absent too.
+        friction=kept(
+            "friction",
+            lambda: scene.friction.record() if scene.friction and scene.contact else None,
+            "friction",
+            "contact",
+        ),
+        platform=platform,
+        body_force=registry.body_force(scene),
+        thermal=kept(
+            "thermal",
+            lambda: scene.thermal.record(scene.rail) if scene.thermal else None,
+            "rail",
+            "thermal",
+        ),
+        initial=kept("initial", lambda: scene.initial.record() if scene.initial else Initial()),
+        thrust_arm=scene.thrust.arm,
     )
+    return Built(scene, model, nominal)
 
 
-def _payload(scene: Scene, offset: tuple, earlier: Payload | None) -> Payload:
-    if earlier is not None:
-        return earlier._replace(mass_centre=offset)
+def _payload(scene: Scene) -> Payload:
     inertia = tensor(scene.payload.inertia)
-    return Payload(scene.payload.mass, inertia, np.linalg.inv(inertia), offset)
+    return Payload(scene.payload.mass, inertia, np.linalg.inv(inertia), (0.0, 0.0, 0.0))
 
 
 def _plate(scene: Scene, nominal: Faces, platform: Platform | None) -> Plate:

@@ -140,7 +140,7 @@ def picture(cost: dict) -> Chart:
                 [p for p in points if p["model"] == model and (p[error] or 0.0) > 0.0],
                 error,
                 model,
-                *look,
+                look,
                 beside=("bottom right", "top right")[place % 2],
             )
             for place, (model, look) in enumerate(looks.items(), 1)
@@ -204,9 +204,10 @@ def _front(cost: dict) -> Line:
 
 
 def _cost_line(
-    points: list[dict], error: str, model: str, colour: str, marker: str, dash: str, beside: str
+    points: list[dict], error: str, model: str, look: tuple[str, str, str], beside: str
 ) -> Line:
     """One model, with its name at its slowest point; meshes and numbers of modes have their own labels."""
+    colour, marker, dash = look
     varied = any(point["modes"] is not None for point in points)
     labels = [
         str(point["modes"]) if varied else point["numerics"].split(",")[0] for point in points

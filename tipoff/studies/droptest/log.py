@@ -88,63 +88,62 @@ def _table(path: Path, wanted: list[str]) -> dict[str, np.ndarray]:
 
 def _even(sheet: Sheet, source: str, values: dict[str, np.ndarray]) -> Log:
     time = values["time"][:, 0]
-    if not np.isfinite(time).all():
-        raise SceneError(
-            [
-                Fault(
-                    source,
-                    "time",
-                    f"{counted((~np.isfinite(time)).sum(), 'sample')} without a time",
-                    "a time for every sample",
-                )
-            ]
+    place, start, interval = _places(sheet, source, time)
+    off = np.abs(time - start - interval * place).max() / interval
+    if off > _UNEVEN or (np.diff(place) == 0).any():
+        given = f"samples up to {off:.2g} of an interval off an even grid"
+        raise _fault(source, given, f"less than {_UNEVEN}")
+    notes: list[str] = []
+    grid = start + interval * np.arange(place[-1] + 1)
+    if off > _JITTER:
+        notes.append(
+            f"time jitters by up to {100.0 * off:.2g} % of an interval: interpolated onto an even grid"
         )
+    else:
+        time = grid[place]
+    filled, doubtful = {"time": grid}, np.zeros(grid.size, dtype=bool)
+    for name, columns in values.items():
+        if name == "temperature":
+            filled[name] = _drifting(values["time"][:, 0], columns[:, 0], grid, source, notes)
+        elif name != "time":
+            filled[name], gone = _bridged(time, columns, grid, place, name, notes)
+            doubtful |= gone
+    return _marked(sheet, filled, doubtful, notes)
+
+
+def _places(sheet: Sheet, source: str, time: np.ndarray) -> tuple[np.ndarray, float, float]:
+    """Instant (n,) of an even grid that each sample belongs to, and the grid's start and interval
+    (s). Raises SceneError."""
+    finite = np.isfinite(time)
+    if not finite.all():
+        given = f"{counted((~finite).sum(), 'sample')} without a time"
+        raise _fault(source, given, "a time for every sample")
     steps = np.diff(time)
     if (steps <= 0.0).any():
         given = f"{counted((steps <= 0.0).sum(), 'sample')} not later than the one before"
-        raise SceneError([Fault(source, "time", given, "times in increasing order")])
+        raise _fault(source, given, "times in increasing order")
     interval = float(np.median(steps))
     if not (time[-1] - time[0]) <= _MOST_MISSING * time.size * interval:
         gap = int(np.argmax(steps))
-        given = (
-            f"a gap from {time[gap]:.6g} s to {time[gap + 1]:.6g} s, samples {interval:.3g} s apart"
+        raise _fault(
+            source,
+            f"a gap from {time[gap]:.6g} s to {time[gap + 1]:.6g} s, samples {interval:.3g} s apart",
+            f"at most {_MOST_MISSING:g} times as many instants as samples",
         )
-        expected = f"at most {_MOST_MISSING:g} times as many instants as samples"
-        raise SceneError([Fault(source, "time", given, expected)])
     # Counted step by step: jitter may put the median off by more than the whole log forgives.
     place = np.concatenate([[0], np.cumsum(np.round(steps / interval).astype(int))])
     interval, start = (
         float(value) for value in np.polynomial.Polynomial.fit(place, time, 1).convert().coef[::-1]
     )
-    if interval * SAMPLES_PER_CLASS * sheet.channel_class > 1.0 + 1e-6:
-        expected = (
-            f"at least {SAMPLES_PER_CLASS * sheet.channel_class:g} Hz for CFC "
-            f"{sheet.channel_class} (SAE J211)"
-        )
-        raise SceneError([Fault(source, "time", f"{1.0 / interval:.4g} Hz", expected)])
-    off = np.abs(time - start - interval * place).max() / interval
-    if off > _UNEVEN or (np.diff(place) == 0).any():
-        given = f"samples up to {off:.2g} of an interval off an even grid"
-        raise SceneError([Fault(source, "time", given, f"less than {_UNEVEN}")])
-    notes = (
-        [
-            f"time jitters by up to {100.0 * off:.2g} % of an interval: interpolated onto an even "
-            f"grid"
-        ]
-        if off > _JITTER
-        else []
-    )
-    grid = start + interval * np.arange(place[-1] + 1)
-    filled, doubtful = {"time": grid}, np.zeros(grid.size, dtype=bool)
-    for name, columns in values.items():
-        if name == "temperature":
-            filled[name] = _drifting(time, columns[:, 0], grid, source, notes)
-        elif name != "time":
-            filled[name], gone = _bridged(
-                time if off > _JITTER else grid[place], columns, grid, place, name, notes
-            )
-            doubtful |= gone
-    return _marked(sheet, filled, doubtful, notes)
+    least = SAMPLES_PER_CLASS * sheet.channel_class
+    if interval * least > 1.0 + 1e-6:
+        expected = f"at least {least:g} Hz for CFC {sheet.channel_class} (SAE J211)"
+        raise _fault(source, f"{1.0 / interval:.4g} Hz", expected)
+    return place, start, interval
+
+
+def _fault(source: str, given: str, expected: str, column: str = "time") -> SceneError:
+    return SceneError([Fault(source, column, given, expected)])
 
 
 def _bridged(
@@ -183,15 +182,11 @@ def _drifting(time, values, grid, source: str, notes: list[str]) -> np.ndarray:
     for a column without a number."""
     good = np.isfinite(values)
     if not good.any():
-        raise SceneError(
-            [
-                Fault(
-                    source,
-                    "temperature",
-                    "no number in the column",
-                    "a temperature, or no such column in the sheet",
-                )
-            ]
+        raise _fault(
+            source,
+            "no number in the column",
+            "a temperature, or no such column in the sheet",
+            "temperature",
         )
     if not good.all():
         known = time[good]
