@@ -9,7 +9,7 @@ from tipoff.lowfi.dynamics.cases import alone
 from tipoff.lowfi.dynamics.integrate import integrate
 from tipoff.lowfi.dynamics.loop import Sampling
 from tipoff.lowfi.numerics import Numerics
-from tipoff.lowfi.run import Run
+from tipoff.lowfi.single_run import Run
 from tipoff.mechanics.ledger import BODY_FORCE
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.effects.friction import coefficient_over_speed

@@ -16,12 +16,10 @@ the first run is the result.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from tipoff.lowfi.run import Run
+from tipoff.lowfi.single_run import Run
 
 THRESHOLD = math.radians(0.02)  # rad/s, of the settled rates
 _MOST_RUNS = 3
@@ -34,7 +32,7 @@ class Choice:
 
     modes: int
     why: str
-    runs: tuple["Run", ...] = ()
+    runs: tuple[Run, ...] = ()
 
     def cost(self) -> dict[str, int]:
         """``modes``; for how many runs beside the result, and their steps."""
@@ -44,8 +42,8 @@ class Choice:
 
 
 def choose(
-    run: "Callable[[int], Run]", accurate: "Callable[[], Run] | None" = None
-) -> tuple["Run", Choice]:
+    run: Callable[[int], Run], accurate: Callable[[], Run] | None = None
+) -> tuple[Run, Choice]:
     """The run with the modes that matter, and the choice. ``run`` makes one with so many modes that
     has watched the others; ``accurate``, for runs of a looser tolerance than the default, makes the
     one without modes at the default."""
@@ -78,7 +76,7 @@ def needed(effect: np.ndarray) -> int:
     return int(np.argmax(rest <= THRESHOLD))
 
 
-def _enlarged(last: "list[Run]", effect: np.ndarray) -> float:
+def _enlarged(last: list[Run], effect: np.ndarray) -> float:
     """Change of the settled rates from one run to the next, over the sum that stood for it."""
     before, after = (found.judged()[1].rate for found in last)
     if before is None or after is None:
@@ -88,7 +86,7 @@ def _enlarged(last: "list[Run]", effect: np.ndarray) -> float:
     return change / stood if change > THRESHOLD else 1.0
 
 
-def _why(made: "list[Run]", effects: list[np.ndarray], enlarged: float) -> str:
+def _why(made: list[Run], effects: list[np.ndarray], enlarged: float) -> str:
     held = effects[0].size
     if held == 0:
         return "none: this rail compliance holds no modes"

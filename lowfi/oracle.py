@@ -16,7 +16,8 @@ import numpy as np
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel, njit
 from tipoff.lowfi.contact import thermal_offset
-from tipoff.lowfi.system import BACK, NUMBER, SIDE_MIDDLE, SIDE_REACH, System, build
+from tipoff.lowfi.faces import BACK, NUMBER, SIDE_MIDDLE, SIDE_REACH
+from tipoff.lowfi.system import System, build
 from tipoff.mechanics import model as models
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.effects import contact as law

@@ -1,37 +1,18 @@
-"""One run of the surrogate: set-up, the sampled time loop, and its Trajectory."""
+"""A scene solved with the surrogate: the options, the number of modes, the result."""
 
 import time as clock
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
-
-from tipoff.lowfi import modes, state, system
-from tipoff.lowfi.contact import thermal_offset, wall_ends
-from tipoff.lowfi.contact.compliant import neglected
-from tipoff.lowfi.contact.compliant import record as compliance_record
-from tipoff.lowfi.dynamics import audit, balance, cases, integrate, local_error, plan
-from tipoff.lowfi.dynamics.loop import Sampling
-from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
+from tipoff.lowfi import modes
 from tipoff.lowfi.models import require
-from tipoff.lowfi.numerics import AUTO, Numerics, promises_of
-from tipoff.mechanics import comoving, ending, outcome, promises
-from tipoff.mechanics import model as models
+from tipoff.lowfi.numerics import AUTO, Numerics
+from tipoff.lowfi.single_run import Run, integrated
 from tipoff.mechanics.models import COMPLIANT
-from tipoff.mechanics.rail_compliance import RailCompliance, may_vibrate, model_of
+from tipoff.mechanics.rail_compliance import RailCompliance, may_vibrate
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
-
-_STRIDE = 5e-3  # s, from one report of progress to the next
-_REASONS = {
-    integrate.UNDERFLOW: "no step is short enough: the state is no longer finite or its equations too "
-    "stiff",
-    integrate.NOT_FINITE: "a value became infinite",
-    integrate.OUT_OF_STEPS: "the step budget is spent (numerics.maximum_steps)",
-    integrate.LOST_ENERGY: "a tenth of the energy is lost or came from nothing",
-}
-_RERUNS = 4  # at a tenth of the tolerance each, while that halves the errors of the ledgers
 
 
 def run(
@@ -79,7 +60,7 @@ def solved(
     def made(asked: Numerics, watches: bool = False) -> Run:
         if watches and asked.count and vibrates:
             vibrates(asked.count)
-        return _integrated(Run(scene, asked, compliance, watches=watches), progress, spent)
+        return integrated(Run(scene, asked, compliance, watches=watches), progress, spent)
 
     if numerics.modes == AUTO and may_vibrate(scene, compliance):
         accurate = numerics.accurate()
@@ -96,205 +77,3 @@ def solved(
     result.cost.update(wall_s=clock.perf_counter() - began - spent["compile_s"], **spent)
     result.cost["cpu_s"] = clock.thread_time() - cpu - compile_cpu
     return result
-
-
-def _integrated(
-    run_: "Run", progress: Callable[[float], None] | None, spent: dict[str, float]
-) -> "Run":
-    """``run_`` integrated, again with smaller steps where needed; its times (s) are added to
-    ``spent``."""
-    compiled, cpu = len(integrate.integrate.overloads), clock.thread_time()
-    setting_up = clock.perf_counter()
-    run_.begin()
-    integrating = clock.perf_counter()
-    if len(integrate.integrate.overloads) > compiled:
-        spent["compile_s"] += integrating - setting_up
-        spent["compile_cpu_s"] += clock.thread_time() - cpu
-    run_.integrate(progress)
-    run_ = improved(run_, progress)
-    spent["kernel_s"] += clock.perf_counter() - integrating
-    return run_
-
-
-def improved(first: "Run", progress: Callable[[float], None] | None = None) -> "Run":
-    """``first``, which has been integrated, or the same scene run again with smaller steps where its
-    ledgers need them."""
-    best, numerics = first, first.numerics
-    for reruns in range(1, _RERUNS + 1):
-        if (
-            best.usage() <= 1.0
-            or (best.message and not best.lost_energy())
-            or numerics == numerics.tightened()
-        ):
-            break
-        numerics = numerics.tightened()
-        finer = Run(
-            first.scene,
-            first.numerics,
-            first.compliance,
-            numerics,
-            first.watches,
-        )
-        finer.reruns, finer.discarded = reruns, best.discarded + int(best.loop.counts.steps)
-        finer.begin()
-        finer.integrate(progress)
-        usage, best = best.usage(), finer
-        if finer.usage() > 0.5 * usage and not usage == np.inf:
-            break
-    return best
-
-
-class Run:
-    """State of a run in progress and its samples, the last with number ``end``; one that is
-    ``whole`` goes on to the end of the scene also when exit and jam are settled. It keeps the
-    promises of ``numerics``, with the steps of ``finer`` ones if given. One that ``watches`` finds
-    what the modes that it neglects would do."""
-
-    reruns, discarded = 0, 0  # runs of the scene before this one, and their steps
-
-    def __init__(
-        self,
-        scene: Scene,
-        numerics: Numerics,
-        compliance: RailCompliance | None = None,
-        finer: Numerics | None = None,
-        watches: bool = False,
-    ):
-        self.scene, self.numerics, self.compliance = scene, numerics, compliance
-        self.watches, self.modes = watches, numerics.count
-        self.promised = promises_of(numerics)
-        self.used = used = finer or numerics
-        self.model = model = models.build(scene)
-        self.marks = outcome.milestones(scene, model)
-        self.interval = scene.output.interval
-        self.end = scene.output.last(scene.duration)
-        self.plan = plan.make(model, scene.duration, used)
-        reach = float(np.sqrt((model.faces.centre**2).sum(axis=1).max()))
-        self.tolerance = local_error.tolerance(used, self.promised, reach)
-        self.system = system.build(
-            model,
-            compliance=compliance_record.under_pads(scene, model, compliance, self.modes),
-            thermal_offset=thermal_offset.under_pads(scene, model, compliance),
-            neglected=neglected.watched(scene, model, compliance, self.modes, watches),
-        )
-        self.loop = integrate.ready(self.system, state.initial(model), self.plan.first)
-        self.rows, self.forces = (
-            np.zeros((self.end + 1, SAMPLE_SIZE)),
-            np.zeros((self.end + 1, model.faces.axis.size, 3)),
-        )
-        self.last, self.taken, self.whole, self.message = self.end, 0, False, ""
-
-    def begin(self) -> None:
-        """Take the first sample; compiles the kernels, or loads them from disk."""
-        self.advance(0)
-
-    def integrate(self, progress) -> None:
-        """Advance to the end of the run, some samples at a time where ``progress`` is reported:
-        each call of the kernel costs some microseconds for its records."""
-        stride = max(1, round(_STRIDE / self.interval)) if progress else self.end + 1
-        while self.taken <= self.end and not self.message:
-            self.advance(min(self.taken - 1 + stride, self.end))
-            if progress:
-                progress(self.taken / (self.end + 1))
-
-    def advance(self, number: int) -> None:
-        """Take samples up to ``number``, fewer where exit or jam end the run."""
-        status = integrate.integrate(
-            self.system,
-            self.plan,
-            self.tolerance,
-            self.marks,
-            self.loop,
-            Sampling(self.interval, self.last, number, self.whole, self.rows, self.forces),
-            cases.alone(self.system, self.loop.start, self.tolerance.reach),
-        )
-        self.taken = int(self.loop.counts.samples)
-        if status == integrate.STRUCK:
-            self.message = self._strike()
-        elif status in _REASONS:
-            self.message = f"{_REASONS[status]}, at {self.loop.clock.now:.6g} s"
-        elif status == integrate.ENDED:
-            self.end = self.taken - 1
-
-    def _strike(self) -> str:
-        """Which face struck an edge of a wall, where and when."""
-        face = int(self.loop.counts.striking_face)
-        surveyed, time = self.loop.after[face], float(self.loop.clock.now)
-        return wall_ends.strike(self.model, face, self.system.faces[face], surveyed, time)
-
-    def usage(self) -> float:
-        """Largest share that a ledger uses of half of what is promised of it at the ends of
-        steps."""
-        return float(audit.usage(self.loop.audit, self.tolerance.total, self.tolerance.transverse))
-
-    def neglected(self) -> np.ndarray:
-        """What each mode (n,) of all rails would do to the settled rates (rad/s) if it were not
-        neglected, of a run that watches."""
-        assert self.system.neglected is not None
-        return self.system.neglected.effect.copy()
-
-    def lost_energy(self) -> bool:
-        """Whether the run stopped because a tenth of its energy was lost."""
-        return bool(self.loop.audit.failed)
-
-    def judged(self) -> tuple[str, outcome.Outcome]:
-        """Status and outcome of the run so far, in the frame it is solved in."""
-        return ("diverged", outcome.Outcome()) if self.message else ending.found(self.loop.book)
-
-    def motion(self) -> outcome.Motion:
-        """Motion of the samples taken so far, in the frame it is solved in
-        (``mechanics.comoving``)."""
-        return balance.motion(self.rows[: self.taken], self.interval)
-
-    def trajectory(self) -> Trajectory:
-        """The result of the samples taken so far."""
-        moved, rows, forces = self.motion(), self.rows[: self.taken], self.forces[: self.taken]
-        total, across = balance.ledgers(rows)
-        checks = balance.checks(
-            rows, moved, forces, self.model.payload.mass, self.loop, self.promised
-        )
-        broken, seen_from = promises.broken(checks, self.promised), comoving.frame(self.model)
-        status, result = ("diverged", outcome.Outcome()) if broken else self.judged()
-        pressed = outcome.pressed_at_ignition(self.model.faces, self.forces[0])
-        message = "; ".join(filter(None, [self.message, broken, self._again(), pressed]))
-        return Trajectory(
-            model=model_of(self.scene, self.compliance),
-            status=status,
-            message=message,
-            **comoving.motion(seen_from, moved)._asdict(),
-            pad_force=forces,
-            energy=total,
-            transverse_energy=across,
-            outcome=comoving.outcome(seen_from, result),
-            checks=checks,
-            cost=self._cost(),
-            scene=self.scene.resolved(),
-            numerics=self.numerics.as_dict(),
-        )
-
-    def _again(self) -> str:
-        """Report of smaller steps than requested, or nothing."""
-        if not self.reruns:
-            return ""
-        times = "once" if self.reruns == 1 else f"{self.reruns} times"
-        return (
-            f"run again {times}, with relative_tolerance {self.used.relative_tolerance:.3g}, "
-            f"for the energy ledgers to close"
-        )
-
-    def _cost(self) -> dict[str, float]:
-        """Counts; dt_limit_s is the smallest proven limit in contact, limit_used
-        the largest step over its limit. Where the scene was run again, how often, and the steps of
-        the runs before."""
-        clock_, counts = self.loop.clock, self.loop.counts
-        steps, limit = int(counts.steps), float(clock_.limit)
-        cost = {
-            "steps": steps,
-            "rhs_evaluations": int(counts.evaluations),
-            "rejected": int(counts.rejected),
-            "events": int(counts.events),
-            "dt_s": float(clock_.now) / max(steps, 1),
-            "limit_used": float(clock_.limit_used),
-        }
-        again = {"reruns": self.reruns, "discarded_steps": self.discarded} if self.reruns else {}
-        return cost | again | ({"dt_limit_s": limit} if np.isfinite(limit) else {})

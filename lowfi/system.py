@@ -1,10 +1,14 @@
-"""Records of a scene for the kernels of the surrogate; the faces are one table."""
+"""Records of a scene for the kernels of the surrogate."""
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from tipoff.kernels.reference import by_reference
+from tipoff.lowfi import faces
+from tipoff.lowfi.contact.compliant.neglected import Neglected
+from tipoff.lowfi.contact.compliant.record import Compliance
+from tipoff.lowfi.contact.thermal_offset import ThermalOffset
 from tipoff.mechanics.model import Model
 from tipoff.scenes.effects.body_force import BodyForce
 from tipoff.scenes.effects.contact import HuntCrossley, Impact, Linear
@@ -12,33 +16,6 @@ from tipoff.scenes.effects.friction import Friction
 from tipoff.scenes.effects.sticking import Sticking
 from tipoff.scenes.effects.thrust_law import Thrust
 from tipoff.scenes.effects.thrust_offset import ThrustOffset
-
-if TYPE_CHECKING:
-    from tipoff.lowfi.contact.compliant.neglected import Neglected
-    from tipoff.lowfi.contact.compliant.record import Compliance
-    from tipoff.lowfi.contact.thermal_offset import ThermalOffset
-
-# Columns of the table of faces: centre in payload body axes (m); outward normal's y and z and the
-# wall's distance along it (m), in platform axes; half the length (m); its own number; and for the
-# ends of the wall (``lowfi.contact.wall_ends``): how far (m) the middle of the face may be beyond an
-# end of the rail, its place across the rail when centred (m, platform axes), how far from there it
-# may be (m), the thickness of the wall (m), and how deep (m) its edge may pass that of the wall.
-(
-    CENTRE,
-    NORMAL_Y,
-    NORMAL_Z,
-    WALL,
-    HALF_LENGTH,
-    NUMBER,
-    OVERHANG,
-    SIDE_MIDDLE,
-    SIDE_REACH,
-    BACK,
-    ROUND,
-    FACE_SIZE,
-) = (0, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13)
-ROUNDED = 1e-6  # m: edges of pads and walls are no sharper, and no gap is more accurate
-LAST_STRIP = 0.01  # of half a face: what is still over a compliant wall when the face leaves it
 
 
 @by_reference
@@ -56,7 +33,7 @@ class Contact(NamedTuple):
     impact: Impact | None
     hunt_crossley: HuntCrossley | None
     linear: Linear | None
-    thermal_offset: "ThermalOffset | None"  # of the walls, None where they are not warm
+    thermal_offset: ThermalOffset | None  # of the walls, None where they are not warm
 
 
 @by_reference
@@ -65,14 +42,14 @@ class System(NamedTuple):
 
     payload: Body
     platform: Body | None  # None where the rails are fixed
-    faces: np.ndarray  # (f, FACE_SIZE)
+    faces: np.ndarray  # (f, faces.FACE_SIZE)
     rail_start: float  # m, X of the rear end
     rail_end: float  # m, X of the open end
     thrust: Thrust
     reacts_on_platform: bool  # whether the platform takes the reaction of the thrust
     thrust_offset: ThrustOffset | None
     contact: Contact | None  # contact springs
-    compliance: "Compliance | None"  # compliant contact, instead of contact springs
+    compliance: Compliance | None  # compliant contact, instead of contact springs
     has_contact: bool  # of either kind
     # True with a compliance, else None: a small argument by which functions are pruned
     is_compliant: bool | None
@@ -80,15 +57,15 @@ class System(NamedTuple):
     sticking: Sticking | None  # stick-slip law
     body_force: BodyForce | None
     ledger: bool | None  # True where work, losses and impulses are integrated
-    neglected: "Neglected | None"  # modes of the rails that are watched, None at rigid walls
+    neglected: Neglected | None  # modes of the rails that are watched, None at rigid walls
 
 
 def build(
     model: Model,
     ledger: bool = True,
-    compliance: "Compliance | None" = None,
-    thermal_offset: "ThermalOffset | None" = None,
-    neglected: "Neglected | None" = None,
+    compliance: Compliance | None = None,
+    thermal_offset: ThermalOffset | None = None,
+    neglected: Neglected | None = None,
 ) -> System:
     """Records of ``model``: contact springs at rigid walls, with a ``thermal_offset`` or without,
     or compliant contact with a ``compliance``. Without a ``ledger`` no work, loss or impulse is
@@ -99,7 +76,7 @@ def build(
     return System(
         payload=_body(model.payload),
         platform=_body(model.platform) if model.platform is not None else None,
-        faces=_table(model, compliance),
+        faces=faces.table(model, compliance),
         rail_start=float(model.rail_start),
         rail_end=float(model.rail_end),
         thrust=model.thrust,
@@ -120,21 +97,3 @@ def build(
 
 def _body(record) -> Body:
     return Body(record.mass, np.ascontiguousarray(record.inverse_inertia))
-
-
-def _table(model: Model, compliance) -> np.ndarray:
-    faces = model.faces
-    table = np.zeros((faces.axis.size, FACE_SIZE))
-    table[:, CENTRE : CENTRE + 3] = faces.centre
-    table[:, NORMAL_Y] = np.where(faces.axis == 1, faces.sign, 0.0)
-    table[:, NORMAL_Z] = np.where(faces.axis == 2, faces.sign, 0.0)
-    table[:, WALL], table[:, HALF_LENGTH] = faces.sign * faces.wall, faces.half_length
-    table[:, NUMBER] = np.arange(faces.axis.size)
-    if compliance is not None:
-        table[:, OVERHANG] = compliance.half[:, 0] * (1.0 - LAST_STRIP)
-    table[:, SIDE_MIDDLE], table[:, SIDE_REACH] = (
-        model.plate.across,
-        model.plate.leg + faces.half_width,
-    )
-    table[:, BACK], table[:, ROUND] = model.plate.thickness, faces.relief + ROUNDED
-    return table

@@ -16,8 +16,8 @@ from typing import NamedTuple
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi.contact.thermal_offset import offset_and_slope
+from tipoff.lowfi.faces import NORMAL_Y, NORMAL_Z, NUMBER, WALL
 from tipoff.lowfi.state import velocity_at
-from tipoff.lowfi.system import NORMAL_Y, NORMAL_Z, NUMBER, WALL
 from tipoff.scenes.effects import contact as law
 from tipoff.scenes.effects.friction import coefficient_over_speed
 

@@ -24,7 +24,7 @@ import numpy as np
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi.contact.springs import pad_point
-from tipoff.lowfi.system import NORMAL_Y, NORMAL_Z
+from tipoff.lowfi.faces import NORMAL_Y, NORMAL_Z
 
 # Columns of the table of stick-slip states, one row per face: whether it sticks; its anchor (m) if
 # so, else the direction e, in platform axes; stretch (m) that a slide keeps.

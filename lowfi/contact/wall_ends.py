@@ -22,7 +22,7 @@ thickness) carries no load; when it comes back through p = thickness it strikes 
 import numpy as np
 
 from tipoff.kernels.jit import kernel
-from tipoff.lowfi.system import BACK, HALF_LENGTH, OVERHANG, ROUND, SIDE_REACH
+from tipoff.lowfi.faces import BACK, HALF_LENGTH, OVERHANG, ROUND, SIDE_REACH
 from tipoff.mechanics import outcome
 
 # m by which a step passes a crossing: above rounding, and without effect on any force

@@ -37,7 +37,7 @@ from tipoff.lowfi.contact.wall_ends import (
 )
 from tipoff.lowfi.dynamics.dormand_prince import interpolate
 from tipoff.lowfi.dynamics.survey import margin, pull
-from tipoff.lowfi.system import SIDE_MIDDLE, SIDE_REACH
+from tipoff.lowfi.faces import SIDE_MIDDLE, SIDE_REACH
 
 _NEAR = 1e-7  # pull that counts as zero
 

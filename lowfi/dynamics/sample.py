@@ -14,6 +14,7 @@ from tipoff.lowfi.contact.compliant.modes import energies
 from tipoff.lowfi.contact.compliant.solution import solve
 from tipoff.lowfi.contact.springs import along, load, penetration, relative_pose
 from tipoff.lowfi.dynamics.survey import stored
+from tipoff.lowfi.faces import HALF_LENGTH
 from tipoff.lowfi.state import (
     IMPULSE,
     MOMENT,
@@ -25,7 +26,6 @@ from tipoff.lowfi.state import (
     WORK_SIZE,
     Motion,
 )
-from tipoff.lowfi.system import HALF_LENGTH
 
 # Slots of a sample: payload and platform first (place, velocity, quaternion, rate in body axes),
 # each BODY_SIZE long.

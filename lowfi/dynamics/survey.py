@@ -33,7 +33,7 @@ from tipoff.lowfi.contact.wall_ends import (
     stands_over,
     strikes,
 )
-from tipoff.lowfi.system import BACK, SIDE_MIDDLE
+from tipoff.lowfi.faces import BACK, SIDE_MIDDLE
 from tipoff.scenes.effects.contact import stored_energy
 
 

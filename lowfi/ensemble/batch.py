@@ -14,6 +14,7 @@ from tipoff.lowfi.contact.compliant import record as compliance_record
 from tipoff.lowfi.dynamics import cases, integrate, local_error, plan
 from tipoff.lowfi.dynamics.loop import Plan, Sampling
 from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
+from tipoff.lowfi.faces import CENTRE
 from tipoff.lowfi.numerics import AUTO, Numerics, promises_of
 from tipoff.lowfi.run import solved
 from tipoff.mechanics import comoving, ending, outcome
@@ -273,7 +274,7 @@ def _stacked(common: system.System, group: _Group) -> cases.Cases:
     of_cases = group.models
     centre = np.stack([model.faces.centre for model in of_cases])
     faces = np.repeat(common.faces[None], len(of_cases), axis=0)
-    faces[:, :, system.CENTRE : system.CENTRE + 3] = centre
+    faces[:, :, CENTRE : CENTRE + 3] = centre
     # all cases of a group have one, or none has
     offsets = [model.thrust_offset for model in of_cases if model.thrust_offset is not None]
     return cases.Cases(

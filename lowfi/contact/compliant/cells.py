@@ -26,7 +26,7 @@ from tipoff.lowfi.contact.compliant.record import (
     SHIFT,
 )
 from tipoff.lowfi.contact.springs import along, penetration
-from tipoff.lowfi.system import NORMAL_Y, NORMAL_Z
+from tipoff.lowfi.faces import NORMAL_Y, NORMAL_Z
 
 _NO_FORCE, _NO_MOMENTS = (0.0,) * 6, (0.0,) * 15
 # in xi, half the travel over which the place of a pad on the wall comes to rest as the pad begins

@@ -32,7 +32,7 @@ from tipoff.lowfi.contact.wall_ends import (
     SIDE,
     SIDEWAYS,
 )
-from tipoff.lowfi.system import LAST_STRIP, NORMAL_Y, NORMAL_Z, SIDE_MIDDLE
+from tipoff.lowfi.faces import LAST_STRIP, NORMAL_Y, NORMAL_Z, SIDE_MIDDLE
 
 _THERE = 1e-9  # m, by which a step passes its target
 

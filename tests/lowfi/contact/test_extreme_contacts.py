@@ -12,8 +12,8 @@ from tests.lowfi.support import ONE_PAD, PAPER_PAD, RAIL, close, drop, numerics,
 from tipoff import lowfi
 from tipoff.lowfi import state
 from tipoff.lowfi.dynamics import integrate
+from tipoff.lowfi.faces import WALL
 from tipoff.lowfi.run import Run
-from tipoff.lowfi.system import WALL
 from tipoff.mechanics import ledger
 from tipoff.studies.stability import weaker_methods as weaker
 

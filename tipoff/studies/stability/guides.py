@@ -108,7 +108,7 @@ def _slider(mu: float, offset: float, duration: float, transition: float) -> Sce
 def _whole(scene: Scene) -> Trajectory:
     """The run to the end of the scene, even if it jams before."""
     from tipoff.lowfi import Numerics
-    from tipoff.lowfi.run import Run
+    from tipoff.lowfi.single_run import Run
 
     made = Run(scene, Numerics(relative_tolerance=1e-7))
     made.whole = True
@@ -221,7 +221,7 @@ def _seen_from(scene: Scene, turn: tuple | None) -> Trajectory:
     """The run after a rotation of its bodies about the origin of the scene by a rotation vector."""
     from tipoff.lowfi import Numerics, state
     from tipoff.lowfi.dynamics import integrate
-    from tipoff.lowfi.run import Run
+    from tipoff.lowfi.single_run import Run
 
     made = Run(scene, Numerics(relative_tolerance=7e-13))
     if turn:
