@@ -25,6 +25,7 @@ from tipoff.studies.bench.methods import (
     varied,
 )
 from tipoff.studies.cli import app
+from tipoff.studies.report.assembly import render
 from tipoff.studies.report.page import Page
 from tipoff.studies.runs.figures import Runs
 
@@ -78,9 +79,9 @@ def test_bench_writes_one_row_per_size(tmp_path, monkeypatch, figures, few, erro
     )
     assert row["bytes_per_element"] > 24 * 8 and row["dt_s"] > row["dt_element_s"] * 0.9
     assert f"{row['elements']:,} elements" in reference.line(row)
-    page = Page(
-        load("tiny"), tmp_path, {"bench": reference.stored(tmp_path)}, Runs({}, {}, {}), {}
-    ).render()
+    page = render(
+        Page(load("tiny"), tmp_path, {"bench": reference.stored(tmp_path)}, Runs({}, {}, {}), {})
+    )
     assert 'id="bench"' in page and f"{row['elements']:,}" in page
     assert reference.stored(tmp_path / "elsewhere") is None
     found = json.loads((tmp_path / "bench" / "lowfi.json").read_text())

@@ -20,6 +20,7 @@ from tipoff.studies.render.chart import Chart, Line, Panel, to_files
 from tipoff.studies.render.interactive import to_html
 from tipoff.studies.render.table import Table, markdown, number
 from tipoff.studies.report import inputs, stage
+from tipoff.studies.report.assembly import render
 from tipoff.studies.report.page import Page
 from tipoff.studies.report.promises import promises
 from tipoff.studies.runs import figures
@@ -64,7 +65,7 @@ def test_every_number_of_the_scene_is_listed_with_unit_and_provenance():
 def test_text_from_a_scene_is_escaped(tmp_path):
     scene = scenes.load("tiny").replace({"description": "<script>alert(1)</script>"})
     page = Page(scene, tmp_path, {}, Runs({}, {}, {}), {})
-    assert "<script>alert" not in page.render()
+    assert "<script>alert" not in render(page)
     assert "&lt;b&gt;" in html([Table(("a",), [("<b>",)])])
 
 
@@ -115,13 +116,14 @@ def test_page_of_a_reference_alone_names_the_targets_that_make_the_rest(tmp_path
         "constants": {},
         "agreement": {"fitted": [], "held_out": [], "compliant": []},
     }
-    page = Page(
+    made = Page(
         scene,
         tmp_path,
         {"highfi": {"key": "k", "conditions": rows}, "rails": [other]},
         Runs(runs, {}, {}),
         {"calibration": "phi15 diverged"},
-    ).render()
+    )
+    page = render(made)
     assert 'id="rails"' in page and "0 of 0" in page
     line = re.search(r"Not made: ([^.]*)\. <code>([^<]*)</code>", page)
     assert {"mesh", "compare", "cost", "stability", "ablation"} <= set(line[1].split(", "))

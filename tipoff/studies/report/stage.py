@@ -9,7 +9,7 @@ from tipoff.files import content_hash, write_text
 from tipoff.scenes.faults import InputError
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.core.progress import say
-from tipoff.studies.core.store import Run
+from tipoff.studies.core.run import Run
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.question import Result
@@ -38,6 +38,7 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
     there = {name: stored(study) for name, _, stored in listed if stored is not None}
 
     def make() -> tuple[dict, list[Path]]:
+        from tipoff.studies.report.assembly import render
         from tipoff.studies.report.page import Page
 
         page = Page(
@@ -49,7 +50,7 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
             limits,
         )
         path = study.path("report.html")
-        write_text(path, page.render())
+        write_text(path, render(page))
         found = {
             "report": study.relative(path),
             "verdict": _verdict(documents.get("agreement")),
@@ -61,7 +62,7 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
     made_at = {
         name: study.path(f"{name}.json").read_text() for name, found in documents.items() if found
     }
-    drawn = sources.digest("tipoff.studies.report.page")
+    drawn = sources.digest("tipoff.studies.report.assembly")
     shown = study.key(__name__, drawn, study.scene.resolved().get("flight"), list(limits))
     key = content_hash(keys, content_hash(made_at), content_hash(there), problems | absent, shown)
     return study.stage("report", key, make)
