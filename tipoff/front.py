@@ -84,7 +84,7 @@ def run(
         [5, 2, 9]
     """
     from tipoff.studies.core import kernel_marks
-    from tipoff.studies.core.store import Run
+    from tipoff.studies.core.run import Run
 
     _require(scene, model, MODELS)
     if model == FINITE_ELEMENTS:
@@ -158,7 +158,7 @@ def ensemble(
     """
     from tipoff import lowfi
     from tipoff.studies.core import kernel_marks
-    from tipoff.studies.core.store import Run
+    from tipoff.studies.core.run import Run
 
     _require(scene, model, SURROGATES)
     drawn = {"cases": options.pop("count", None), "seed": options.pop("seed", None)}

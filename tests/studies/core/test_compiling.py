@@ -6,7 +6,8 @@ from tests.lowfi.compliance import REFERENCE, reference_compliance
 from tests.studies.synthetic import flight
 from tipoff import lowfi, scenes
 from tipoff.studies.core import compiling, kernel_marks
-from tipoff.studies.core.store import Run, Store
+from tipoff.studies.core.run import Run
+from tipoff.studies.core.store import Store
 
 FLYING = scenes.load("tiny").replace({"contact": None, "friction": None})
 

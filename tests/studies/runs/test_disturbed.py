@@ -5,7 +5,7 @@ import pytest
 
 from tipoff import lowfi, scenes
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.studies.core.store import Run
+from tipoff.studies.core.run import Run
 from tipoff.studies.runs import disturbed
 
 REFERENCE = scenes.load("reference")

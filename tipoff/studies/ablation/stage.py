@@ -20,7 +20,7 @@ from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.scenes.scene import Scene
 from tipoff.studies.core import machine
 from tipoff.studies.core.compiling import compile_ahead, warm_up
-from tipoff.studies.core.store import Run
+from tipoff.studies.core.run import Run
 from tipoff.studies.core.study import Study
 from tipoff.studies.cost.timing import timed
 

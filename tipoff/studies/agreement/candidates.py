@@ -9,7 +9,7 @@ from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.core.store import Run
+from tipoff.studies.core.run import Run
 from tipoff.studies.core.study import Study
 
 _TAGS = {AUTO: "", 0: "-static"}  # in names of files; any other number of modes is "-modal"

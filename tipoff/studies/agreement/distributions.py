@@ -19,7 +19,7 @@ from tipoff.studies.agreement import equivalence, neighbours, verdicts
 from tipoff.studies.agreement.growth import Growth
 from tipoff.studies.core.announcing import announce
 from tipoff.studies.core.progress import Board
-from tipoff.studies.core.store import Run
+from tipoff.studies.core.run import Run
 from tipoff.studies.core.study import Study
 
 FURTHER = 8  # draws of the surrogates beside each of the reference; more would add little

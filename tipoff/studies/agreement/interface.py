@@ -20,7 +20,7 @@ from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.agreement import growth, verdicts
 from tipoff.studies.agreement.metrics import compare
 from tipoff.studies.agreement.verdicts import Context
-from tipoff.studies.core.store import Run
+from tipoff.studies.core.run import Run
 from tipoff.studies.core.study import Study
 
 FACTORS = (0.25, 1.0, 4.0)

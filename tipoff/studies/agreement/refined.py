@@ -14,7 +14,7 @@ from tipoff.studies.agreement.refinement import (
     refinement,
 )
 from tipoff.studies.core.progress import say
-from tipoff.studies.core.store import Run
+from tipoff.studies.core.run import Run
 from tipoff.studies.core.study import Study
 
 _TWO = 2  # meshes show a change

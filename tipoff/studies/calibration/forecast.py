@@ -26,7 +26,7 @@ from tipoff.files import read_json, require_whole
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
-from tipoff.studies.core.store import Run
+from tipoff.studies.core.run import Run
 from tipoff.studies.core.study import Study
 from tipoff.studies.core.words import counted
 

@@ -19,8 +19,8 @@ from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import NOMINAL
 from tipoff.studies.calibration import compliance, forecast
 from tipoff.studies.core.progress import Board, say
+from tipoff.studies.core.run import Run
 from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study, StudyError, read, require_success
 
 FILE = "calibration.toml"

@@ -23,8 +23,8 @@ from tipoff.studies.convergence import contact_loads, equal_accuracy, ripple, st
 from tipoff.studies.convergence.quantities import RATE, quantities, settled_rate
 from tipoff.studies.core.extrapolation import Estimate, estimate
 from tipoff.studies.core.progress import Board
+from tipoff.studies.core.run import Run
 from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study, require_success
 from tipoff.studies.cost.timing import speedups
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from tipoff.highfi.rail import memory_estimate, step_cost
 from tipoff.highfi.statics import assembly
 from tipoff.studies.core.progress import say
-from tipoff.studies.core.store import Run
+from tipoff.studies.core.run import Run
 from tipoff.studies.core.study import Study
 from tipoff.studies.core.words import counted
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from tipoff.studies.core import kernel_marks
 from tipoff.studies.core.progress import Board, say
-from tipoff.studies.core.store import Run, execute, prepare
+from tipoff.studies.core.run import Run, execute, prepare
 
 
 def warm_up(run: Run) -> None:

@@ -8,7 +8,6 @@ are others; they are compiled only where the run turns out to need them, and hav
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from tipoff import sources
 from tipoff.files import content_hash
@@ -16,16 +15,14 @@ from tipoff.kernels.jit import kernel_digest
 from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.models import COMPLIANT
 from tipoff.studies.core.progress import say
-
-if TYPE_CHECKING:
-    from tipoff.studies.core.store import Run
+from tipoff.studies.core.run import Run
 
 _WITH_MODES = ", and the same time again if modes of the rails are needed"
 _SAID: set[Path] = set()  # marks of kernels that this process has announced
 
 
 @contextmanager
-def first_use(run: "Run", many: bool = False) -> Iterator[None]:
+def first_use(run: Run, many: bool = False) -> Iterator[None]:
     """Announce the kernels of ``run``, or of ``many`` cases like it, and note that they are there
     once the block has used them."""
     announce(run, many=many)
@@ -34,7 +31,7 @@ def first_use(run: "Run", many: bool = False) -> Iterator[None]:
 
 
 @contextmanager
-def chosen_modes(run: "Run") -> Iterator[Callable[[int], None]]:
+def chosen_modes(run: Run) -> Iterator[Callable[[int], None]]:
     """The argument ``vibrates`` of ``lowfi.run`` for ``run``: it announces the kernels with modes once
     the run has chosen some. They are noted when the block has used them."""
     chosen: list[int] = []
@@ -49,7 +46,7 @@ def chosen_modes(run: "Run") -> Iterator[Callable[[int], None]]:
         remember(run, chosen=True)
 
 
-def announce(run: "Run", chosen: bool = False, many: bool = False) -> None:
+def announce(run: Run, chosen: bool = False, many: bool = False) -> None:
     """Print, once in a process, that the kernels of ``run``, or of ``many`` cases like it, have to be
     compiled, where no run has compiled them: those that it begins with, or where modes were ``chosen``
     in it those with modes."""
@@ -67,7 +64,7 @@ def announce(run: "Run", chosen: bool = False, many: bool = False) -> None:
     )
 
 
-def remember(run: "Run", chosen: bool = False, many: bool = False) -> None:
+def remember(run: Run, chosen: bool = False, many: bool = False) -> None:
     """Note in the cache that ``run``, or ``many`` cases like it, compiled its kernels, or where modes
     were ``chosen`` those with modes."""
     path = mark(run, chosen, many)
@@ -75,7 +72,7 @@ def remember(run: "Run", chosen: bool = False, many: bool = False) -> None:
     path.touch()
 
 
-def mark(run: "Run", chosen: bool = False, many: bool = False) -> Path:
+def mark(run: Run, chosen: bool = False, many: bool = False) -> Path:
     """File in the cache of kernels that says that those of ``run``, or of ``many`` cases like it, are
     there."""
     key = content_hash(
@@ -90,13 +87,13 @@ def mark(run: "Run", chosen: bool = False, many: bool = False) -> Path:
     return sources.cache_folder() / "kernels" / f"compiled-{key[:16]}"
 
 
-def _vibrates(run: "Run", chosen: bool) -> bool:
+def _vibrates(run: Run, chosen: bool) -> bool:
     """Whether the run needs the kernels with modes of the rails: it asks for some, or has ``chosen``
     some."""
     return chosen or _modes(run) not in (AUTO, 0)
 
 
-def _modes(run: "Run") -> str | int:
+def _modes(run: Run) -> str | int:
     """Modes of the rails that ``run`` asks for, zero where nothing presses a rail."""
     pressed = run.model == COMPLIANT and run.compliance is not None
     return getattr(run.numerics, "modes", 0) if pressed else 0

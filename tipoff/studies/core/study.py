@@ -23,8 +23,9 @@ from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import NOMINAL, Scene
 from tipoff.studies.core import words
 from tipoff.studies.core.progress import say
+from tipoff.studies.core.run import Run
 from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.store import Run, Store
+from tipoff.studies.core.store import Store
 
 FAILED = ("diverged", "refused")
 

@@ -27,7 +27,7 @@ from tipoff.scenes.rail import MeshTable
 from tipoff.scenes.scene import Scene
 from tipoff.studies.core.compiling import warm_up
 from tipoff.studies.core.progress import Board
-from tipoff.studies.core.store import Run
+from tipoff.studies.core.run import Run
 from tipoff.studies.core.study import Study
 from tipoff.studies.cost.timing import timed
 

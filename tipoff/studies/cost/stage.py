@@ -27,8 +27,8 @@ from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core import machine
 from tipoff.studies.core.compiling import warm_up
 from tipoff.studies.core.progress import Board
+from tipoff.studies.core.run import Run, execute, with_modes_of
 from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.store import Run, execute, with_modes_of
 from tipoff.studies.core.study import Study
 from tipoff.studies.cost import choice, scaling
 from tipoff.studies.cost.timing import timed

@@ -14,7 +14,7 @@ import numpy as np
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.core import machine
 from tipoff.studies.core.compiling import warm_up
-from tipoff.studies.core.store import Run, execute
+from tipoff.studies.core.run import Run, execute
 
 
 def timed(

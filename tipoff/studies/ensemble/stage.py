@@ -24,7 +24,7 @@ from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.core import kernel_marks, machine, models, words
 from tipoff.studies.core.progress import Board, say
-from tipoff.studies.core.store import Run
+from tipoff.studies.core.run import Run
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.core.words import counted
 from tipoff.studies.ensemble import sensitivity, summary

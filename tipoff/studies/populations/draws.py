@@ -25,7 +25,7 @@ from tipoff.scenes.scene import NOMINAL, Scene
 from tipoff.studies.agreement import growth
 from tipoff.studies.core import kernel_marks
 from tipoff.studies.core.announcing import announce
-from tipoff.studies.core.store import Run
+from tipoff.studies.core.run import Run
 from tipoff.studies.core.study import Study
 from tipoff.studies.populations.population import TOLERANCE, Surrogate
 

@@ -29,7 +29,7 @@ from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core import kernel_marks, words
 from tipoff.studies.core.models import require_accepted
 from tipoff.studies.core.progress import Board
-from tipoff.studies.core.store import Run
+from tipoff.studies.core.run import Run
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.core.words import counted
 

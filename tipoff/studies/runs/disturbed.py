@@ -9,7 +9,7 @@ from dataclasses import replace
 from tipoff.lowfi.ensemble import twins
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.agreement.verdicts import largest, settled_change
-from tipoff.studies.core.store import Run, execute, with_modes_of
+from tipoff.studies.core.run import Run, execute, with_modes_of
 
 
 def of(run: Run, nominal: Trajectory, clearance_change: float) -> dict[str, float | None]:

@@ -9,7 +9,7 @@ from tipoff.studies.agreement import stage as compare
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.core import kernel_marks, models, words
 from tipoff.studies.core.progress import say
-from tipoff.studies.core.store import Run
+from tipoff.studies.core.run import Run
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.cost import choice
 from tipoff.studies.cost import stage as cost

@@ -9,7 +9,7 @@ from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.convergence import stresses
 from tipoff.studies.core import kernel_marks
-from tipoff.studies.core.store import Run
+from tipoff.studies.core.run import Run
 from tipoff.studies.core.study import FAILED, Study
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.core.progress import Board, say
-from tipoff.studies.core.store import Run
+from tipoff.studies.core.run import Run
 from tipoff.studies.core.study import Study, read, require_success
 from tipoff.studies.core.words import counted
 
