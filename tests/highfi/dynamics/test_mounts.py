@@ -188,7 +188,7 @@ def test_ledgers_close_and_momenta_are_kept(change):
 def test_threads_and_a_resume_do_not_change_a_bit(tmp_path, kernel):
     """One thread makes the whole run; the run that is resumed ends with three."""
     whole, half, second = (
-        test_kernels.begun(kernel, threads, **SOFT, **DAMPED) for threads in (1, 1, 3)
+        test_kernels.begun(kernel, "early", threads, **SOFT, **DAMPED) for threads in (1, 1, 3)
     )
     whole.integrate(None)
     expected = whole.trajectory({}, test_kernels.NUMERICS)
@@ -208,7 +208,7 @@ def test_threads_and_a_resume_do_not_change_a_bit(tmp_path, kernel):
 def test_columns_and_elements_carry_the_same_run():
     runs = []
     for kernel in ("columns", "elements"):
-        loop = test_kernels.begun(kernel, **SOFT)
+        loop = test_kernels.begun(kernel, "early", **SOFT)
         loop.integrate(None)
         runs.append(loop.trajectory({}, test_kernels.NUMERICS))
     columns, elements = (run.rate for run in runs)
