@@ -11,7 +11,7 @@ from tipoff import lowfi, scenes
 from tipoff.kernels import rotation
 from tipoff.lowfi import state
 from tipoff.lowfi.dynamics import integrate
-from tipoff.lowfi.run import Run
+from tipoff.lowfi.single_run import Run
 
 G = 9.80665
 PAPER_PAD = {

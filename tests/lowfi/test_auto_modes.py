@@ -12,7 +12,7 @@ from tests.highfi.support import COARSE
 from tests.lowfi.compliance import REFERENCE, reference_compliance
 from tipoff import highfi, lowfi
 from tipoff.lowfi import Numerics, modes
-from tipoff.lowfi.run import Run
+from tipoff.lowfi.single_run import Run
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes import load
 

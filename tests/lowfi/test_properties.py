@@ -29,7 +29,7 @@ from tests.lowfi.random_scenes import (
 from tests.lowfi.support import RAIL, turned_state, unwatched
 from tipoff import lowfi
 from tipoff.lowfi import Numerics, state
-from tipoff.lowfi.run import Run
+from tipoff.lowfi.single_run import Run
 from tipoff.mechanics import ledger
 
 QUICK = ("ejection", "guided", "frictionless", "free")  # kernels that other tests compile too

@@ -13,7 +13,7 @@ from tipoff import lowfi
 from tipoff.lowfi import state
 from tipoff.lowfi.dynamics import integrate
 from tipoff.lowfi.faces import WALL
-from tipoff.lowfi.run import Run
+from tipoff.lowfi.single_run import Run
 from tipoff.mechanics import ledger
 from tipoff.studies.stability import weaker_methods as weaker
 

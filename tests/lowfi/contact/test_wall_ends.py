@@ -12,7 +12,7 @@ from tests.lowfi.contact.compliant.test_runs import EFFECTS, RUB, STIFFNESS, on_
 from tests.lowfi.support import ONE_PAD, RAIL, numerics, scene, unwatched
 from tipoff import lowfi
 from tipoff.lowfi import oracle
-from tipoff.lowfi.run import Run
+from tipoff.lowfi.single_run import Run
 from tipoff.mechanics import ledger
 
 WIDTH, START = 2e-3, 0.1  # m: a wall, and how far ahead of the middle of the pad it begins

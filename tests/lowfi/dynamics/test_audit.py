@@ -9,7 +9,7 @@ from tests.lowfi.random_scenes import EFFECTS, independent, scene_of
 from tests.lowfi.support import PAPER_PAD, scene
 from tipoff import lowfi
 from tipoff.lowfi.dynamics import audit
-from tipoff.lowfi.run import Run, improved
+from tipoff.lowfi.single_run import Run, improved
 from tipoff.mechanics import promises
 from tipoff.scenes import load
 

@@ -13,7 +13,7 @@ from tipoff import lowfi
 from tipoff.kernels import rotation
 from tipoff.lowfi import Numerics
 from tipoff.lowfi.ensemble import columns
-from tipoff.lowfi.run import Run
+from tipoff.lowfi.single_run import Run
 from tipoff.mechanics.ending import DONE
 from tipoff.scenes import load
 

@@ -8,7 +8,7 @@ from tipoff import lowfi
 from tipoff.lowfi import Numerics
 from tipoff.lowfi.dynamics import integrate
 from tipoff.lowfi.dynamics.loop import Loop
-from tipoff.lowfi.run import Run
+from tipoff.lowfi.single_run import Run
 from tipoff.scenes import load
 
 ASKED = load("sensitive").condition("phi35")

@@ -17,7 +17,7 @@ from tests.lowfi.support import corners, scene, turned_state
 from tipoff.kernels import rotation
 from tipoff.lowfi import Numerics, state
 from tipoff.lowfi.dynamics import integrate
-from tipoff.lowfi.run import Run
+from tipoff.lowfi.single_run import Run
 
 RATE, OFFSET, ARM = (0.5, 0.003, -0.002), 1.2e-4, (0.1, 1.2e-4, 1.2e-4)
 ISOTROPIC = {"xx": 4.9, "yy": 4.9, "zz": 4.9}

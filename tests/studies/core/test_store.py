@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from tests.studies.synthetic import flight
-from tipoff import scenes
+from tipoff import scenes, sources
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.core import store as store_module
 from tipoff.studies.core.settings import Settings
@@ -66,7 +66,7 @@ def test_every_input_is_part_of_the_key(study, change):
 
 def test_sources_are_part_of_the_key(study, monkeypatch):
     before = study.highfi("phi15").key
-    monkeypatch.setattr(store_module.sources, "digest", lambda *modules: "another program")
+    monkeypatch.setattr(sources, "digest", lambda *modules: "another program")
     assert study.highfi("phi15").key != before
 
 

@@ -15,7 +15,7 @@ from tipoff.lowfi import Numerics
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant import free_vibration
 from tipoff.lowfi.dynamics import integrate
-from tipoff.lowfi.run import Run
+from tipoff.lowfi.single_run import Run
 from tipoff.mechanics.rail_compliance import PATTERNS
 
 OMEGA, SWING = 2.0 * np.pi * 3000.0, 2e-6  # 1/s; m, amplitude of the wall

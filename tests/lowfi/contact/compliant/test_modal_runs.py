@@ -21,7 +21,7 @@ from tipoff import lowfi
 from tipoff.lowfi import Numerics
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.dynamics import integrate
-from tipoff.lowfi.run import Run
+from tipoff.lowfi.single_run import Run
 from tipoff.mechanics import ledger
 from tipoff.mechanics.rail_compliance import PATTERNS
 
