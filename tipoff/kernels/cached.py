@@ -1,14 +1,20 @@
-"""Files in which Numba keeps compiled kernels, each with a digest of its content.
+"""Files in which Numba keeps compiled kernels: one for each combination of types, with a digest of
+its content.
 
-Numba loads what it finds, and a damaged file ends the program with a traceback or a fault of the
-processor. Here a damaged file counts as missing, so the kernel is compiled again and the file
-replaced. A file that cannot be written, as on a full disk, is left out.
+Numba alone numbers these files and keeps the numbers in an index. Of two processes that compile at
+the same time both take the next number, and one may find the machine code of the other under its
+own types. It also loads what it finds, and a damaged file ends the program with a traceback or a
+fault of the processor. Here the name of a file follows from the types, no index is needed, and a
+damaged file counts as missing, so the kernel is compiled again and the file replaced. A file that
+cannot be written, as on a full disk, is left out.
 """
 
 import contextlib
+import hashlib
 import io
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from numba.core.caching import IndexDataCacheFile
 
@@ -16,16 +22,37 @@ from tipoff.files import DamageError, require_whole, sealed
 
 
 class KernelFiles(IndexDataCacheFile):
-    """The index and the machine code of one kernel."""
+    """The machine code of one kernel. A ``key`` has the types, the processor and the function."""
 
-    def _load_index(self) -> dict:
+    def __init__(self, cache_path: str, filename_base: str, source_stamp: str):
+        super().__init__(cache_path, filename_base, source_stamp)
+        self._base = filename_base
+
+    def save(self, key: tuple, data: Any) -> None:
+        """Keep ``data``, as Numba makes it, under ``key``."""
+        self._save_data(self._name(key), (self._origin(key), data))
+
+    def load(self, key: tuple) -> Any:
+        """What is kept under ``key``, or None."""
         try:
-            require_whole(self._index_path)
-        except (DamageError, OSError):
-            return {}
-        return super()._load_index()
+            origin, data = self._load_data(self._name(key))
+        except OSError:
+            return None
+        return data if origin == self._origin(key) else None
 
-    def _load_data(self, name: str):
+    def flush(self) -> None:
+        """Remove what is kept of this kernel."""
+        for path in Path(self._cache_path).glob(f"{self._base}.*.nbc"):
+            path.unlink(missing_ok=True)
+
+    def _origin(self, key: tuple) -> tuple:
+        return self._version, self._source_stamp, key
+
+    def _name(self, key: tuple) -> str:
+        digest = hashlib.sha256(repr(self._origin(key)).encode()).hexdigest()
+        return f"{self._base}.{digest[:16]}.nbc"
+
+    def _load_data(self, name: str) -> Any:
         try:
             require_whole(self._data_path(name))
         except DamageError as fault:
