@@ -54,6 +54,7 @@ for line in sys.stdin:
 """
 # Numba's own cache: all kernels in one place, distinguished by their own code alone.
 STAMP = "    return hashlib.sha256(settings.encode()).hexdigest()[:16]"
+PRIVATE = '            function.linkage = "private"'
 
 
 @pytest.fixture(scope="module")
@@ -272,3 +273,47 @@ def test_a_kernel_with_one_other_byte_is_compiled_again(project):
     content[len(content) // 2] ^= 1
     kept.write_bytes(content)
     assert ask(project) == (2.0, 1)
+
+
+# Too long to be put in the place of a call; the entry leaves out the argument that is not used.
+LONG = (
+    "import math\n\nfrom tipoff.kernels.jit import entry, kernel\n\n\n@kernel\n"
+    "def long(unused, values, scale):\n    found = 0.0\n    for value in values:\n"
+    + "".join(
+        f"        found += scale * math.sin({n} * value) / (1.0 + math.exp({n} * value))\n"
+        for n in range(40)
+    )
+    + "    return found\n\n\n@entry\ndef twice(unused, values):\n"
+    "    return long(unused, values, 1.0) + long(unused, values, 2.0)\n"
+)
+ASK_BOTH = (
+    "import numpy as np; from tipoff.highfi.long import long, twice; "
+    "values = np.linspace(0.1, 1.0, 7); twice(values, values); "
+    "print(long(values, values, 1.0) / long.py_func(values, values, 1.0), 0)"
+)
+
+
+def test_a_part_that_python_calls_is_not_that_of_an_entry(project):
+    """An entry changes the arguments of its parts. Both have the same name, by which the loader of
+    machine code would call the first one that it finds."""
+    (project / "tipoff" / "highfi" / "long.py").write_text(LONG)
+    assert ask(project, ASK_BOTH)[0] == pytest.approx(1.0, rel=1e-12)
+
+
+def test_names_that_the_loader_sees_are_confused(project):
+    """Control: the call ends in the code of the entry, with arguments at other places."""
+    source = project / "tipoff" / "kernels" / "jit.py"
+    text = source.read_text()
+    assert PRIVATE in text
+    source.write_text(text.replace(PRIVATE, PRIVATE.replace("private", "internal")))
+    (project / "tipoff" / "highfi" / "long.py").write_text(LONG)
+    done = subprocess.run(
+        [sys.executable, "-c", ASK_BOTH],
+        cwd=project,
+        env=os.environ | {"NUMBA_CACHE_DIR": str(project / "cache")},
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    found = done.stdout.split()
+    assert done.returncode < 0 or float(found[0]) != pytest.approx(1.0, rel=1e-3)

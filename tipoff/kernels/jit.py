@@ -172,7 +172,9 @@ def _simplify(codegen, module) -> None:
 
 def _link(module, libraries: list) -> None:
     """Link ``libraries`` and all that they call into a ``module`` of LLVM, each once. What it takes
-    in is internal to it, so that LLVM may drop and specialise it."""
+    in is private to it, so that LLVM may drop it and change its arguments, and so that the loader
+    of machine code does not see its name: it would call it in the place of functions of the same
+    name in other machine code."""
     own = {function.name for function in module.functions if not function.is_declaration}
     linked: dict[JITCodeLibrary, None] = {}
     while libraries:
@@ -188,7 +190,7 @@ def _link(module, libraries: list) -> None:
             module.link_in(library._get_module_for_linking(), preserve=True)
     for function in module.functions:
         if not function.is_declaration and function.name not in own:
-            function.linkage = "internal"
+            function.linkage = "private"
 
 
 class _PartCompiler(Compiler):
