@@ -1,60 +1,93 @@
 """Files of compiled kernels when two processes compile at the same time."""
 
+import threading
+from dataclasses import dataclass
+
 import pytest
-from numba import types
-from numba.core.caching import IndexDataCacheFile
 
 from tipoff.kernels.cached import KernelFiles
 
-# As Numba makes them: types, processor, function.
-OURS, THEIRS = (((kind,), ("x86_64",), ("code",)) for kind in (types.float64, types.int64))
+NUMBA_FILES = KernelFiles.__base__  # Numba's own class, for controls
+OURS, THEIRS = "types of ours", "types of theirs"
 
 
-def interleaved(kind, folder, monkeypatch):
-    """Files of one kernel in which two processes keep code. The second one keeps its own after the
-    first has chosen a name and before it has written its file."""
-    first, second = (kind(str(folder), "kernel.py311", "stamp") for _ in range(2))
-    write = first._save_data
+class Met(str):
+    """A text that calls a function while it is written to a file."""
 
-    def late(name, data):
-        second.save(THEIRS, "theirs")
-        write(name, data)
+    def __new__(cls, text, function):
+        made = super().__new__(cls, text)
+        made.function = function
+        return made
 
-    monkeypatch.setattr(first, "_save_data", late)
-    index = first._load_index()
-    monkeypatch.setattr(first, "_load_index", lambda: index)
-    monkeypatch.setattr(second, "_load_index", dict)
-    first.save(OURS, "ours")
-    return kind(str(folder), "kernel.py311", "stamp")
+    def __reduce__(self):
+        self.function()
+        return str, (str(self),)
 
 
-def test_both_find_their_own_code(tmp_path, monkeypatch):
-    kept = interleaved(KernelFiles, tmp_path, monkeypatch)
+def files(kind, folder, name="kernel.py311", stamp="stamp"):
+    return kind(cache_path=str(folder), filename_base=name, source_stamp=stamp)
+
+
+def interleaved(kind, folder):
+    """Files of one kernel in which two processes keep code. Both look for a free name before either
+    has taken one, and theirs is written as a whole before the code of ours is."""
+    theirs_begun, ours_begun, theirs_ended = (threading.Event() for _ in range(3))
+
+    def first():
+        theirs_begun.set()
+        assert ours_begun.wait(10.0)
+
+    def second():
+        ours_begun.set()
+        assert theirs_ended.wait(10.0)
+
+    def keep_theirs():
+        files(kind, folder).save(Met(THEIRS, first), "theirs")
+        theirs_ended.set()
+
+    other = threading.Thread(target=keep_theirs)
+    other.start()
+    assert theirs_begun.wait(10.0)
+    files(kind, folder).save(OURS, Met("ours", second))
+    other.join()
+    return files(kind, folder)
+
+
+def test_both_find_their_own_code(tmp_path):
+    kept = interleaved(KernelFiles, tmp_path)
     assert (kept.load(OURS), kept.load(THEIRS)) == ("ours", "theirs")
 
 
-def test_with_an_index_one_finds_the_code_of_the_other(tmp_path, monkeypatch):
-    """Control: Numba's own files. Both processes read the index before either has changed it."""
-    kept = interleaved(IndexDataCacheFile, tmp_path, monkeypatch)
-    assert kept.load(THEIRS) == "ours"
+def test_with_an_index_one_finds_the_code_of_the_other(tmp_path):
+    """Control: Numba's own files."""
+    assert interleaved(NUMBA_FILES, tmp_path).load(THEIRS) == "ours"
 
 
-@pytest.mark.parametrize("base, stamp", [("kernel.py311", "new code"), ("other.py311", "stamp")])
-def test_code_of_another_kernel_is_not_found(tmp_path, base, stamp):
-    KernelFiles(str(tmp_path), "kernel.py311", "stamp").save(OURS, "ours")
-    assert KernelFiles(str(tmp_path), base, stamp).load(OURS) is None
+@pytest.mark.parametrize("name, stamp", [("kernel.py311", "new code"), ("other.py311", "stamp")])
+def test_code_of_another_kernel_is_not_found(tmp_path, name, stamp):
+    files(KernelFiles, tmp_path).save(OURS, "ours")
+    assert files(KernelFiles, tmp_path, name, stamp).load(OURS) is None
 
 
 def test_flush_removes_the_code_of_one_kernel(tmp_path):
-    one, other = (KernelFiles(str(tmp_path), f"{name}.py311", "stamp") for name in ("one", "other"))
+    one, other = (files(KernelFiles, tmp_path, name) for name in ("one.py311", "other.py311"))
     one.save(OURS, "ours")
     other.save(OURS, "theirs")
     one.flush()
     assert one.load(OURS) is None and other.load(OURS) == "theirs"
 
 
-def test_a_name_that_two_types_share_gives_no_wrong_code(tmp_path, monkeypatch):
-    files = KernelFiles(str(tmp_path), "kernel.py311", "stamp")
-    monkeypatch.setattr(files, "_name", lambda key: "kernel.py311.0.nbc")
-    files.save(OURS, "ours")
-    assert files.load(THEIRS) is None and files.load(OURS) == "ours"
+@dataclass(frozen=True)
+class Alike:
+    """Types that differ although their names do not."""
+
+    number: int
+
+    def __repr__(self):
+        return "alike"
+
+
+def test_types_of_one_name_give_no_wrong_code(tmp_path):
+    kept = files(KernelFiles, tmp_path)
+    kept.save(Alike(1), "ours")
+    assert kept.load(Alike(2)) is None and kept.load(Alike(1)) == "ours"
