@@ -13,6 +13,8 @@ READY = .venv/.ready
 CHECKED = .venv/.checked
 DOCUMENTED = .venv/.documented
 EXAMPLED = .venv/.exampled
+# A worker that crashes ends the run, with the name of its test: with another in its place pytest would wait for ever.
+PARALLEL = --numprocesses=auto --dist=loadfile --max-worker-restart=0
 # Tests that take a second or two each where kernels are compiled.
 QUICK = tests/test_layers.py tests/test_sources.py tests/scenes tests/mechanics tests/meshes \
   $(patsubst %,tests/highfi/%,elements mesh statics extruded contact/test_hertz.py test_compliance.py) \
@@ -121,21 +123,21 @@ check: $(CHECKED) ## format, lint, types and the quick tests: within a minute wh
 	.venv/bin/ruff format --check --quiet .
 	.venv/bin/ruff check --quiet .
 	.venv/bin/mypy
-	.venv/bin/python -m pytest -m "not slow" --numprocesses=auto --dist=loadfile $(QUICK)
+	.venv/bin/python -m pytest -m "not slow" $(PARALLEL) $(QUICK)
 
 coverage: $(CHECKED) ## the tests with the share of lines they run (kernels are compiled and not counted)
-	.venv/bin/python -m pytest -m "not slow" --numprocesses=auto --dist=loadfile --cov --cov-report=term:skip-covered
+	.venv/bin/python -m pytest -m "not slow" $(PARALLEL) --cov --cov-report=term:skip-covered
 
 hooks: $(CHECKED) ## format, lint and types before each commit
 	.venv/bin/pre-commit install
 
 test: $(READY) ## the tests, without the slow ones
 	.venv/bin/python -m tests.warm
-	.venv/bin/python -m pytest -m "not slow" --numprocesses=auto --dist=loadfile
+	.venv/bin/python -m pytest -m "not slow" $(PARALLEL)
 
 test-slow: $(READY) ## every test
 	.venv/bin/python -m tests.warm
-	.venv/bin/python -m pytest --numprocesses=auto --dist=loadfile
+	.venv/bin/python -m pytest $(PARALLEL)
 
 fuzz: $(READY) ## 10,000 mutants of scenes, meshes, solids, tables and logs, then kills and full disks (COUNT=500 for fewer)
 	.venv/bin/python -m tests.warm
