@@ -14,6 +14,8 @@ from typer.testing import CliRunner
 from tipoff.studies.cli import app
 from tipoff.studies.commands.running import guarded
 
+# A shell starts jobs in the background with Ctrl-C ignored.
+INTERRUPTIBLE = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
 CODE = "import sys; from tipoff.__main__ import main; sys.argv = ['tipoff', 'scenes']; main()"
 
 
@@ -71,7 +73,7 @@ def test_a_folder_of_kernels_that_cannot_be_made_is_named(tmp_path):
 
 @pytest.mark.parametrize("after", [0.15, pytest.param(0.4, marks=pytest.mark.slow), 0.8])
 def test_ctrl_c_while_the_command_loads(after):
-    ready = f"import sys; print('ready', flush=True); {CODE}"
+    ready = f"{INTERRUPTIBLE}; import sys; print('ready', flush=True); {CODE}"
     process = subprocess.Popen(
         [sys.executable, "-c", ready],
         stdout=subprocess.PIPE,
@@ -112,7 +114,8 @@ __main__.main()
 )
 def test_ctrl_c_in_a_callback_of_python_is_not_lost(before, code):
     """Control: Python alone drops it and the command goes on."""
-    script = IN_A_CALLBACK.format(wait=0.0 if code == 0 else 30.0, before=before)
+    wait = 0.0 if code == 0 else 30.0
+    script = f"{INTERRUPTIBLE}\n{IN_A_CALLBACK.format(wait=wait, before=before)}"
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, timeout=120
     )
