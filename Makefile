@@ -13,7 +13,7 @@ READY = .venv/.ready
 CHECKED = .venv/.checked
 DOCUMENTED = .venv/.documented
 EXAMPLED = .venv/.exampled
-# A worker that crashes ends the run, with the name of its test: with another in its place pytest would wait for ever.
+# A worker that crashes ends the run and its test is named. If pytest replaced the worker, it would wait without end.
 PARALLEL = --numprocesses=auto --dist=loadfile --max-worker-restart=0
 # Tests that take a second or two each where kernels are compiled.
 QUICK = tests/test_layers.py tests/test_sources.py tests/scenes tests/mechanics tests/meshes \

@@ -4,11 +4,11 @@ import numpy as np
 
 from tipoff.mechanics.model import Model
 
-# Columns: centre in payload body axes (m); outward normal's y and z and the
-# wall's distance along it (m), in platform axes; half the length (m); its own number; and for the
-# ends of the wall (``lowfi.contact.wall_ends``): how far (m) the middle of the face may be beyond an
-# end of the rail, its place across the rail when centred (m, platform axes), how far from there it
-# may be (m), the thickness of the wall (m), and how deep (m) its edge may pass that of the wall.
+# Columns: centre in payload body axes (m); outward normal's y and z and the wall's distance along it
+# (m), in platform axes; half the length (m); its own number; and for the ends of the wall
+# (``lowfi.contact.wall_ends``): how far (m) the middle of the face may be beyond an end of the rail,
+# its place across the rail when centred (m, platform axes), how far from there it may be (m), the
+# thickness of the wall (m), and how deep (m) its edge may pass that of the wall.
 (
     CENTRE,
     NORMAL_Y,

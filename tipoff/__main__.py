@@ -24,8 +24,8 @@ def main() -> None:
 
 
 def _keep_interrupts(dropped: "sys.UnraisableHookArgs") -> None:
-    """Python drops what is raised in a destructor or in the callback of a weak reference, Ctrl-C
-    too, and imports run many of these. So Ctrl-C is sent again when the callback has ended."""
+    """Send Ctrl-C again after a callback has ended. Python drops what is raised in a destructor or in
+    the callback of a weak reference, KeyboardInterrupt too, and an import runs many of them."""
     if not issubclass(dropped.exc_type, KeyboardInterrupt):
         sys.__unraisablehook__(dropped)
         return

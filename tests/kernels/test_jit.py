@@ -275,7 +275,7 @@ def test_a_kernel_with_one_other_byte_is_compiled_again(project):
     assert ask(project) == (2.0, 1)
 
 
-# Too long to be put in the place of a call; the entry leaves out the argument that is not used.
+# Too long for LLVM to inline. In the entry LLVM drops the argument that is not used.
 LONG = (
     "import math\n\nfrom tipoff.kernels.jit import entry, kernel\n\n\n@kernel\n"
     "def long(unused, values, scale):\n    found = 0.0\n    for value in values:\n"
@@ -294,14 +294,14 @@ ASK_BOTH = (
 
 
 def test_a_part_that_python_calls_is_not_that_of_an_entry(project):
-    """An entry changes the arguments of its parts. Both have the same name, by which the loader of
-    machine code would call the first one that it finds."""
+    """LLVM changes the arguments of the parts of an entry. If they had symbols, the loader would call
+    them in the place of the same part called from Python."""
     (project / "tipoff" / "highfi" / "long.py").write_text(LONG)
     assert ask(project, ASK_BOTH)[0] == pytest.approx(1.0, rel=1e-12)
 
 
-def test_names_that_the_loader_sees_are_confused(project):
-    """Control: the call ends in the code of the entry, with arguments at other places."""
+def test_with_symbols_the_part_of_the_entry_is_called(project):
+    """Control: its arguments are at other places."""
     source = project / "tipoff" / "kernels" / "jit.py"
     text = source.read_text()
     assert PRIVATE in text

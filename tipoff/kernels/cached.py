@@ -1,12 +1,12 @@
 """Files in which Numba keeps compiled kernels: one for each combination of types, with a digest of
 its content.
 
-Numba alone numbers these files and keeps the numbers in an index. Of two processes that compile at
-the same time both take the next number, and one may find the machine code of the other under its
-own types. It also loads what it finds, and a damaged file ends the program with a traceback or a
-fault of the processor. Here the name of a file follows from the types, no index is needed, and a
-damaged file counts as missing, so the kernel is compiled again and the file replaced. A file that
-cannot be written, as on a full disk, is left out.
+Numba numbers these files and keeps the numbers in an index. Two processes that compile at the same
+time may take the same number; then one loads the machine code of the other, made for other types.
+Numba also loads damaged files, which ends the program with a traceback or a segmentation fault.
+Here the name of a file follows from the types, and there is no index. A damaged file counts as
+missing: the kernel is compiled again and the file replaced. A file that cannot be written, as on a
+full disk, is left out.
 """
 
 import contextlib

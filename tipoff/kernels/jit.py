@@ -171,10 +171,10 @@ def _simplify(codegen, module) -> None:
 
 
 def _link(module, libraries: list) -> None:
-    """Link ``libraries`` and all that they call into a ``module`` of LLVM, each once. What it takes
-    in is private to it, so that LLVM may drop it and change its arguments, and so that the loader
-    of machine code does not see its name: it would call it in the place of functions of the same
-    name in other machine code."""
+    """Link ``libraries`` and all that they call into a ``module`` of LLVM, each once. They become
+    private to the module. So LLVM may drop them and change their arguments, and they have no symbol
+    in the machine code: the loader resolves symbols by name across all machine code of a process,
+    and would call them in the place of functions with the same name and other arguments."""
     own = {function.name for function in module.functions if not function.is_declaration}
     linked: dict[JITCodeLibrary, None] = {}
     while libraries:

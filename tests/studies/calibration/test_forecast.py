@@ -198,8 +198,8 @@ def test_a_slow_or_failing_look_delays_nothing(tmp_path, monkeypatch):
     forecast.calibration(of, asked(of))  # what is loaded once does not count
     monkeypatch.setattr(forecast, "PATIENCE", 0.1)
     monkeypatch.setattr(forecast, "pace", lambda study: time.sleep(1.5))
-    began = time.process_time()
+    began = time.monotonic()
     assert "duration unknown" in forecast.calibration(of, asked(of))
-    assert time.process_time() - began < 1.0
+    assert time.monotonic() - began < 1.0
     monkeypatch.setattr(forecast, "pace", lambda study: 1 / 0)
     assert "duration unknown" in forecast.calibration(of, asked(of))

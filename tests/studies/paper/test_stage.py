@@ -209,7 +209,7 @@ def test_interrupt_ends_the_running_search_and_begins_no_other(tmp_path, monkeyp
     def run(launcher_of, stress, seed, plan, progress):
         begun.append((stress, seed))
         if asked_for_all.wait(0.0 if begins == "before it waits" else 30.0):
-            time.sleep(0.2)  # Python hears nothing in the instant before a thread begins to wait
+            time.sleep(0.2)  # a signal just before a thread begins to wait does not wake it
             signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
         for _ in range(3000):  # far longer than a busy machine takes to hand the signal on
             time.sleep(0.01)
