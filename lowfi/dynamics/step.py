@@ -18,6 +18,11 @@ from tipoff.lowfi.dynamics.survey import keeps_law, survey, update_engaged, upda
 from tipoff.lowfi.dynamics.vibration import longest_step, shortened
 
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 5.0
+# Steps that error control proposes are powers of 2^(1 / _RUNGS). Error estimates of steps in which
+# cells begin to press depend strongly on the step: if the next step followed them continuously, a
+# difference by rounding, such as the order of the pads makes, would grow with each step up to the
+# tolerance. The next lower power takes 2 % more steps.
+_RUNGS = 16.0
 # Largest error ratio at which interpolation may cut a step; its error is some times larger.
 _SPARE = 0.1
 # A change of law in this last share of a step does not cut it: the error is of second order in the
@@ -53,6 +58,7 @@ def step(system, plan, tolerance, loop):
     )
     ceiling = _within_predicted_limit(system, loop, ceiling)
     while True:
+        clock.wanted = _rung(clock.wanted)
         dt = min(clock.wanted, ceiling)
         reaches = start + dt * (1.0 + 1e-9) >= stop
         dt = stop - start if reaches else dt
@@ -98,6 +104,12 @@ def step(system, plan, tolerance, loop):
         else:
             _accept(loop, dt, stop if reaches else start + dt, ratio, limit)
         return audit.record_step(system, tolerance, loop, balances)
+
+
+@kernel
+def _rung(dt):
+    """The largest power of 2^(1 / _RUNGS) that is not above ``dt``, to rounding."""
+    return np.exp2(np.floor(_RUNGS * np.log2(dt) + 1e-6) / _RUNGS)
 
 
 @kernel

@@ -1,29 +1,47 @@
-"""The inertial frame of the solution. Its velocity is that of the platform's mass centre at
-ignition.
+"""The frame of the solution. Its velocity is that of the platform's mass centre at ignition, and it
+falls freely.
 
 Rounding depends on the frame: at 7.5 km/s, millimetres per second are the last digits of a
-velocity, and a step control that compares errors with speeds finds no error. So both solvers
-integrate
+velocity, and a step control that compares errors with speeds finds no error. A body force that
+payload and platform share accelerates both alike, so it changes no relative motion, but it would
+change errors and steps. So both solvers integrate
 
-    r' = r - r_0 - V t,    v' = v - V,      r_0 the payload's displacement at ignition, V the platform's velocity then
+    r' = r - r_0 - V t - a t^2 / 2,    v' = v - V - a t
 
-and return positions and velocities in scene axes. Forces, rates, attitudes and times are the same
-in both frames. Ledgers and momenta are those of the moving frame. Where the rails are fixed in
-space, r_0 and V are zero.
+with the payload's displacement r_0 at ignition, the platform's velocity V then and the body force
+per mass a, and return positions and velocities in scene axes. Contact, thrust, rates, attitudes and
+times are the same in both frames. In the moving frame no body force acts; ledgers and momenta are
+those of this frame. Where the rails are fixed in space, r_0, V and a are zero, and the body force
+acts on the payload (``mechanics.model``).
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.mechanics.outcome import Motion, Outcome
+from tipoff.mechanics.outcome import SETTLE_WINDOW, Motion, Outcome
 
 
 class Frame(NamedTuple):
-    """Origin at ignition (m) and velocity (m/s) in scene axes."""
+    """Origin (m) and velocity (m/s) at ignition, and acceleration (m/s2), in scene axes."""
 
     origin: tuple
     velocity: tuple
+    acceleration: tuple
+
+    @property
+    def is_that_of_the_scene(self) -> bool:
+        """Whether it is at rest at the scene's origin."""
+        return not (any(self.origin) or any(self.velocity) or any(self.acceleration))
+
+    def speed(self, time) -> np.ndarray:
+        """Velocity (...,3) m/s at ``time`` (...) s."""
+        return np.add(self.velocity, np.multiply.outer(time, self.acceleration))
+
+    def place(self, time) -> np.ndarray:
+        """Place (...,3) m of the origin at ``time`` (...) s."""
+        mean = np.add(self.velocity, np.multiply.outer(time, np.multiply(0.5, self.acceleration)))
+        return np.add(self.origin, np.expand_dims(time, -1) * mean)
 
 
 class Start(NamedTuple):
@@ -38,14 +56,19 @@ class Start(NamedTuple):
 
 def frame(model) -> Frame:
     """The frame ``model`` is solved in."""
+    zero = (0.0, 0.0, 0.0)
     if model.platform is None:
-        return Frame((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    return Frame(tuple(model.initial.position), tuple(model.initial.platform_velocity))
+        return Frame(zero, zero, zero)
+    return Frame(
+        origin=tuple(model.initial.position),
+        velocity=tuple(model.initial.platform_velocity),
+        acceleration=zero if model.fall is None else tuple(model.fall),
+    )
 
 
 def start(model) -> Start:
     """Both bodies at ignition."""
-    origin, velocity = frame(model)
+    origin, velocity, _ = frame(model)
     first, zero = model.initial, np.zeros(3)
     # The difference is taken first, so that a large displacement costs no digits.
     place = np.add(model.payload.mass_centre, np.subtract(first.position, origin))
@@ -67,29 +90,31 @@ def start(model) -> Start:
 
 def motion(seen_from: Frame, moved: Motion) -> Motion:
     """``moved`` in the scene's axes."""
-    if not (any(seen_from.origin) or any(seen_from.velocity)):
+    if seen_from.is_that_of_the_scene:
         return moved
-    way = np.add(seen_from.origin, np.multiply.outer(moved.time, seen_from.velocity))
+    way, speed = seen_from.place(moved.time), seen_from.speed(moved.time)
     return moved._replace(
         position=moved.position + way,
-        velocity=moved.velocity + seen_from.velocity,
+        velocity=moved.velocity + speed,
         platform_position=moved.platform_position + way,
-        platform_velocity=moved.platform_velocity + seen_from.velocity,
+        platform_velocity=moved.platform_velocity + speed,
     )
 
 
 def outcome(seen_from: Frame, found: Outcome) -> Outcome:
     """``found`` in the scene's axes."""
-    if found.velocity is None or not (any(seen_from.origin) or any(seen_from.velocity)):
+    if found.velocity is None or seen_from.is_that_of_the_scene:
         return found
     assert (
         found.exit_time is not None
+        and found.window_start is not None
         and found.exit_position is not None
         and found.exit_platform_position is not None
         and found.exit_platform_velocity is not None
     )  # as the velocity
-    way = np.add(seen_from.origin, found.exit_time * np.array(seen_from.velocity))
-    velocity = np.add(found.velocity, seen_from.velocity)
+    way, speed = seen_from.place(found.exit_time), seen_from.speed(found.exit_time)
+    # a mean over the window, in whose middle a linear function has its mean
+    velocity = np.add(found.velocity, seen_from.speed(found.window_start + 0.5 * SETTLE_WINDOW))
     lateral = float(np.hypot(velocity[1], velocity[2]))
     return found._replace(
         velocity=velocity.tolist(),
@@ -97,5 +122,5 @@ def outcome(seen_from: Frame, found: Outcome) -> Outcome:
         direction_error=float(np.arctan2(lateral, velocity[0])),
         exit_position=np.add(found.exit_position, way).tolist(),
         exit_platform_position=np.add(found.exit_platform_position, way).tolist(),
-        exit_platform_velocity=np.add(found.exit_platform_velocity, seen_from.velocity).tolist(),
+        exit_platform_velocity=np.add(found.exit_platform_velocity, speed).tolist(),
     )

@@ -93,7 +93,8 @@ class Model(NamedTuple):
     interface_stiffness: float | None
     friction: Friction | Sticking | None
     platform: Platform | None
-    body_force: BodyForce | None
+    body_force: BodyForce | None  # on the payload; None on a free platform, which falls alike
+    fall: BodyForce | None  # acceleration of the frame of the solution (``mechanics.comoving``)
     thermal: Thermal | None
     initial: Initial
     thrust_arm: float
@@ -155,7 +156,8 @@ def built(scene: Scene, earlier: Built | None = None) -> Built:
             "contact",
         ),
         platform=platform,
-        body_force=registry.body_force(scene),
+        body_force=registry.body_force(scene) if platform is None else None,
+        fall=registry.body_force(scene) if platform is not None else None,
         thermal=kept(
             "thermal",
             lambda: scene.thermal.record(scene.rail) if scene.thermal else None,
