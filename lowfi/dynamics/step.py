@@ -1,6 +1,8 @@
 """One step of the time loop. Error control, events, the proven limit and the energy ledgers
 limit its length."""
 
+import math
+
 import numpy as np
 
 from tipoff.kernels.jit import kernel
@@ -18,11 +20,11 @@ from tipoff.lowfi.dynamics.survey import keeps_law, survey, update_engaged, upda
 from tipoff.lowfi.dynamics.vibration import longest_step, shortened
 
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 5.0
-# Steps that error control proposes are powers of 2^(1 / _RUNGS). Error estimates of steps in which
+# Steps that error control proposes are powers of 2^(1/16). Error estimates of steps in which
 # cells begin to press depend strongly on the step: if the next step followed them continuously, a
 # difference by rounding, such as the order of the pads makes, would grow with each step up to the
 # tolerance. The next lower power takes 2 % more steps.
-_RUNGS = 16.0
+_RUNGS = 2.0 ** (np.arange(16) / 16.0 - 1.0)
 # Largest error ratio at which interpolation may cut a step; its error is some times larger.
 _SPARE = 0.1
 # A change of law in this last share of a step does not cut it: the error is of second order in the
@@ -108,8 +110,15 @@ def step(system, plan, tolerance, loop):
 
 @kernel
 def _rung(dt):
-    """The largest power of 2^(1 / _RUNGS) that is not above ``dt``, to rounding."""
-    return np.exp2(np.floor(_RUNGS * np.log2(dt) + 1e-6) / _RUNGS)
+    """The largest power of 2^(1/16) that is not above ``dt`` (s), to rounding."""
+    if not 0.0 < dt < np.inf:
+        return dt
+    mantissa, exponent = math.frexp(dt)
+    rung = _RUNGS[0]
+    for power in _RUNGS:
+        if power <= mantissa * (1.0 + 1e-7):
+            rung = power
+    return math.ldexp(rung, exponent)
 
 
 @kernel
