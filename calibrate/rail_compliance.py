@@ -1,14 +1,8 @@
-"""The rail's compliance under the pads, condensed from the finite elements, and the element size that
-it needs.
+"""The rail's compliance under the pads, condensed from the finite elements and kept in a folder.
 
-On a mesh of size h the compliance is too small by about c h: the edges of a clamped strip are
-singular. So the change between 2h and h gives the difference of h from the reference's mesh, of
-size r::
-
-    |C(2h) - C(h)| = c h        |C(h) - C(r)| = c (h - r)
-
-The coarsest of the meshes 2r and r that is within ``ACCURACY`` of the reference's own mesh is
-taken. A rail from a mesh file has only one mesh.
+Its elements are those of the reference unless another size is asked for. So all commands and the
+Python interface have the same compliance, and a surrogate is judged with the one that it answers
+with.
 """
 
 import time
@@ -20,25 +14,22 @@ import numpy as np
 from tipoff import sources
 from tipoff.files import content_hash
 from tipoff.highfi import compliance as statics
+from tipoff.highfi.statics import inputs
 from tipoff.mechanics import model as scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance, digest
 from tipoff.scenes.scene import Scene
+from tipoff.scenes.studies import element_size as own_size
 
-ACCURACY = 0.01  # relative, of the mean displacement under a unit force on a pad face
-REFERENCE_SIZE = 2e-3  # m, elements of the reference where agreement is judged
 _PLACES = 4  # stations along the rail at which meshes are compared
 
 
-def compliance(
-    scene: Scene, element_size: float | None = None, reference_size: float = REFERENCE_SIZE
-) -> RailCompliance:
+def compliance(scene: Scene, element_size: float | None = None) -> RailCompliance:
     """Compliance of the rails of ``scene`` under its pads, with the modes of the rails, in elements
-    of ``element_size`` (m), else on the coarsest mesh that is within 1 % of the reference's, whose
-    elements are of ``reference_size`` (m).
+    of ``element_size`` (m), else in those of the reference (``scenes.studies``).
 
-    Takes seconds to a minute, once for a rail and its pads. Raises SceneError or MeshError.
+    Takes seconds to minutes, once for a rail and its pads. Raises SceneError or MeshError.
     """
-    return statics.condense(scene, element_size or fine_enough(scene, reference_size))
+    return statics.condense(scene, element_size or own_size(scene.studies))
 
 
 def kept(
@@ -94,27 +85,16 @@ class _Waiting:
 
 
 def kept_file(scene: Scene, folder: Path, element_size: float) -> Path:
-    """The file of ``kept``."""
-    key = content_hash(digest(scene), element_size, sources.digest(__name__))
+    """The file of ``kept``: named after all that the compliance is computed from."""
+    key = content_hash(made_from(scene), element_size, sources.digest(__name__))
     return folder / f"compliance-{key[:8]}.npz"
 
 
-def fine_enough(
-    scene: Scene,
-    reference_size: float = REFERENCE_SIZE,
-    say: Callable[[str], None] | None = None,
-) -> float:
-    """Element size (m) of the coarsest mesh whose compliance is within ``ACCURACY`` of that of
-    ``reference_size`` (m). ``say`` gets a message before it begins."""
-    coarse = 2.0 * reference_size
-    if say is not None:
-        say(
-            f"elements of the rail compliance: are {1e3 * coarse:g} mm fine enough? Takes seconds; a "
-            f"minute for a rail of metres"
-        )
-    coarser, finer = (direct(scene, size) for size in (2.0 * coarse, coarse))
-    change = float((np.abs(coarser - finer) / finer).max())
-    return coarse if change * (coarse - reference_size) / coarse <= ACCURACY else reference_size
+def made_from(scene: Scene) -> str:
+    """Hexadecimal digest of all that the compliance reads from ``scene``, the clearance included, and
+    of the rail and pads it is made for. Scenes with the same digest share a compliance. Raises
+    SceneError where the built-in section does not fit the pads."""
+    return content_hash(digest(scene), inputs.of(statics.nominal(scene)).digest())
 
 
 def direct(scene: Scene, element_size: float) -> np.ndarray:

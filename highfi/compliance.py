@@ -32,7 +32,7 @@ from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.run import prepare
 from tipoff.highfi.state.threads import processors
-from tipoff.highfi.statics import assembly, joint_terms, thermal, vibration
+from tipoff.highfi.statics import assembly, inputs, joint_terms, thermal, vibration
 from tipoff.highfi.statics.pressure import Pressed, pressed
 from tipoff.highfi.statics.solve import Clamped, one_thread
 from tipoff.mechanics import model as scene_model
@@ -99,10 +99,9 @@ def condense(
 
     Raises SceneError or MeshError.
     """
-    if scene.rail.mount_stiffness is not None:
-        scene = scene.replace({"rail.mount_stiffness.factor": 1.0})
-    faces = scene_model.built(scene).nominal
-    way = scene.rail.end - faces.half_length - faces.centre[:, 0]
+    scene = nominal(scene)
+    own = inputs.of(scene)
+    way = own.reach[1] - own.faces.half_length - own.faces.centre[:, 0]
     stations = np.linspace(0.0, way.max(), int(np.ceil(way.max() / spacing)) + 1)
     found = along(scene, element_size, stations, PATTERNS, modes)
     inverse = np.linalg.pinv(found.gram, rcond=_SINGULAR, hermitian=True)
@@ -124,6 +123,13 @@ def condense(
     )
 
 
+def nominal(scene: Scene) -> Scene:
+    """``scene`` with a factor of 1 on the stiffness of its mounts."""
+    if scene.rail.mount_stiffness is None:
+        return scene
+    return scene.replace({"rail.mount_stiffness.factor": 1.0})
+
+
 def along(
     scene: Scene,
     element_size: float,
@@ -137,20 +143,9 @@ def along(
     Faces are those of ``mechanics.model.Faces``. Raises SceneError or MeshError, ValueError for a
     number of patterns or modes there is not.
     """
-    nominal = scene_model.built(scene).nominal
-    origin = np.array(scene.platform.record().mass_centre if scene.platform else (0.0, 0.0, 0.0))
-    in_scene_axes = nominal._replace(wall=nominal.wall + origin[nominal.axis])
+    own = inputs.of(scene)
     mesh = prepare(scene, Numerics(element_size=element_size))
-    return of_mesh(
-        mesh,
-        scene.rail.material,
-        in_scene_axes,
-        (scene.rail.start, scene.rail.end),
-        travel,
-        patterns,
-        modes,
-        scene.rail.joint(),
-    )
+    return of_mesh(mesh, own.material, own.faces, own.reach, travel, patterns, modes, own.joint)
 
 
 def of_mesh(

@@ -32,16 +32,12 @@ def found(monkeypatch, tmp_path):
     def compute(scene, element_size):
         done.append(element_size)
         return SimpleNamespace(
-            flexibility=1.0, save=lambda path: (path.parent.mkdir(parents=True), path.touch())
+            flexibility=1.0,
+            save=lambda path: (path.parent.mkdir(parents=True, exist_ok=True), path.touch()),
         )
-
-    def choose(scene, own, say):
-        done.append("a mesh is chosen")
-        return 2.0 * own
 
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     monkeypatch.setattr(rail_compliance, "compliance", compute)
-    monkeypatch.setattr(rail_compliance, "fine_enough", choose)
     monkeypatch.setattr(rail_compliance.RailCompliance, "load", _stored)
     return done
 
@@ -67,11 +63,24 @@ def test_finite_elements_take_their_own_numerics(solvers):
 def test_compliant_contact_finds_its_compliance_once(solvers, found, capsys):
     for _ in range(2):
         tipoff.run(SCENE, modes=2)
-    assert found == ["a mesh is chosen", 16e-3]  # tiny has 8 mm, as in the command
+    assert found == [8e-3]  # tiny states 8 mm
     assert capsys.readouterr().err.count("rail compliance, once") == 1
     (_, model, first), (_, _, again) = solvers
     assert model == "compliant" and first["numerics"] == lowfi.Numerics(modes=2)
     assert again["compliance"] is STORED
+
+
+def test_elements_do_not_depend_on_the_name_or_on_what_is_stored(solvers, found):
+    """A scene that is named tiny but states no element size has those of the reference, also where a
+    compliance of other elements is stored."""
+    named = tipoff.load("reference").replace({"name": "tiny"})
+    tipoff.compliance(named, 4e-3)
+    tipoff.run(named)
+    tipoff.run(SCENE.replace({"name": "mine"}))
+    assert found == [4e-3, 2e-3, 8e-3]
+    tipoff.run(named, "finite-elements")
+    tipoff.run(SCENE, "finite-elements")
+    assert [asked[2].element_size for asked in solvers[-2:]] == [2e-3, 8e-3]
 
 
 def test_springs_need_no_compliance_but_on_warm_rails(solvers, found):

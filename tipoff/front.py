@@ -9,7 +9,7 @@ from tipoff import scenes, sources
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.scenes import Calibration, Fault, Scene, SceneError, reading, uncertainty
+from tipoff.scenes import Calibration, Fault, Scene, SceneError, reading, studies, uncertainty
 from tipoff.scenes import catalog as catalog
 from tipoff.scenes import parse as parse
 from tipoff.scenes.uncertainty import Uncertainty
@@ -66,7 +66,7 @@ def run(
         calibration: constants that were fitted on the same model.
         progress: called with the fraction of the duration done, 0 to 1.
         numerics: fields of ``lowfi.Numerics`` or ``highfi.Numerics``, such as ``element_size=2e-3``
-            (m) or ``modes=4``.
+            (m) or ``modes=4``. Elements are those that the scene states (``[studies]``) without it.
 
     Returns:
         Trajectory: motion over time. A failure of the run is its ``status``.
@@ -91,7 +91,7 @@ def run(
         from tipoff import highfi
 
         _require_none(scene, model, compliance=compliance, calibration=calibration)
-        sizes = highfi.Numerics(**numerics)
+        sizes = highfi.Numerics(**{"element_size": studies.element_size(scene.studies)} | numerics)
         with kernel_marks.first_use(Run("highfi", scene.name, scene, sizes)):
             return highfi.run(scene, sizes, progress)
     from tipoff import lowfi
@@ -192,8 +192,8 @@ def compliance(scene: Scene, element_size: float | None = None) -> RailComplianc
 
     Args:
         scene: the scene; its rail and pads count.
-        element_size: size of the elements (m); without it the coarsest mesh that is within 1 % of
-            the reference's own.
+        element_size: size of the elements (m); without it that of the reference, which the scene
+            may state (``[studies]``).
 
     Returns:
         RailCompliance: flexibility and lowest modes at stations along the rail.
@@ -208,16 +208,9 @@ def compliance(scene: Scene, element_size: float | None = None) -> RailComplianc
     """
     from tipoff.calibration import rail_compliance
     from tipoff.studies.core.progress import say
-    from tipoff.studies.core.settings import defaults
 
-    folder = sources.cache_folder() / "compliance"
-    if element_size is not None:
-        return rail_compliance.kept(scene, folder / "of-a-size", element_size, say)
-    own = defaults(scene.name).element_size
-    for size in (own, 2.0 * own):
-        if rail_compliance.kept_file(scene, folder, size).is_file():
-            return rail_compliance.kept(scene, folder, size, say)
-    return rail_compliance.kept(scene, folder, rail_compliance.fine_enough(scene, own, say), say)
+    size = studies.element_size(scene.studies) if element_size is None else element_size
+    return rail_compliance.kept(scene, sources.cache_folder() / "compliance", size, say)
 
 
 def calibrate(

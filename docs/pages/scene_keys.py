@@ -115,10 +115,11 @@ def _value(entry: dict) -> str:
     if entry["type"] == "array":
         items = entry.get("prefixItems")
         return f"{len(items)} × {_value(items[0])}" if items else f"list: {_value(entry['items'])}"
-    if entry["type"] == "number":
+    if entry["type"] in ("number", "integer"):
         bounds = [f"{sign} {entry[key]:.4g}" for key, sign in _BOUNDS.items() if key in entry]
-        unit = entry.get("unit", "quantity")
-        return ", ".join(["number" if unit == "dimensionless" else f"`{unit}`", *bounds])
+        unit = entry.get("unit", "quantity") if entry["type"] == "number" else "dimensionless"
+        kind = "whole number" if entry["type"] == "integer" else "number"
+        return ", ".join([kind if unit == "dimensionless" else f"`{unit}`", *bounds])
     return {"string": "text", "boolean": "`true` or `false`", "object": "tables by name"}[
         entry["type"]
     ]

@@ -1,47 +1,139 @@
-"""Choice of the mesh from which the compliance of the rail is condensed."""
+"""The rail compliance that is kept in a folder: its elements, what it is kept under, what is said."""
 
+from collections.abc import Iterator
+from dataclasses import replace
 from types import SimpleNamespace
+from typing import Any
 
-import numpy as np
-import pytest
-
+from tests.highfi.rail.test_own_rail import channels
 from tipoff import calibration
 from tipoff.calibration import rail_compliance
 from tipoff.highfi import compliance as statics
-from tipoff.scenes import load
+from tipoff.mechanics.rail_compliance import digest
+from tipoff.scenes import SceneError, load
+from tipoff.scenes.scene import Scene
 
-REFERENCE = 2e-3
+# Every effect that a scene of tests can have without a file, so that every number of it is there.
+EVERYTHING = {
+    "rail.mount_stiffness": {"normal": 1e13, "shear": 5e12, "factor": 1.5},
+    "rail.damping": {"frequencies": [100.0, 1e4], "ratios": [0.01, 0.02]},
+    "rail.material.expansion": 2e-5,
+    "thermal": {"mean": 20.0, "platform_strain": 1e-5},
+    "gravity": {"z": -9.8},
+    "mass_offset.eccentricity.axial": 1e-3,
+    "initial": {"velocity": {"x": 0.1}},
+    "contact.clearance_y": 3e-4,
+    "conditions": None,
+    "agreement": None,
+    "provenance": None,
+}
+# Keys of which no compliance is computed: one that all of them share.
+NOT_READ = {
+    "duration",
+    "payload.mass",
+    "payload.inertia.xx",
+    "thrust.peak",
+    "friction.dynamic",
+    "contact.stiffness",
+    "contact.interface_stiffness",
+    "platform.mass",
+    "platform.mass_centre.x",
+    "mass_offset.eccentricity.axial",
+    "gravity.z",
+    "thermal.mean",
+    "rail.material.expansion",
+    "rail.mount_stiffness.factor",
+    "output.interval",
+    "studies.element_size",
+}
+READ = {
+    "contact.clearance",
+    "pads.0.position.1",
+    "pads.0.width",
+    "rail.leg",
+    "rail.end",
+    "rail.mounts.1.start",
+    "rail.mount_stiffness.normal",
+    "rail.material.density",
+    "rail.material.youngs_modulus",
+}
 
 
-@pytest.mark.parametrize("slope, expected", [(1.0, 4e-3), (30.0, REFERENCE)])
-def test_the_coarsest_mesh_within_one_per_cent(monkeypatch, slope, expected):
-    """C(h) = C - slope h: at 4 mm a slope of 1/m leaves 0.2 % to 2 mm, one of 30/m leaves 6 %."""
-    seen = []
-
-    def direct(scene, size):
-        seen.append(size)
-        return np.full((4, 16), 1.0 - slope * size)
-
-    monkeypatch.setattr(rail_compliance, "direct", direct)
-    assert rail_compliance.fine_enough(load("reference"), REFERENCE) == expected
-    assert seen == [8e-3, 4e-3]  # the reference's own mesh is not needed to choose
-
-
-@pytest.mark.slow
-def test_the_estimate_agrees_with_the_mesh_of_the_reference():
-    """The rail of the reference scene at 8 and 4 mm: the predicted change to 2 mm is right to a
-    quarter, and above 1 %."""
-    scene = load("reference")
-    coarsest, coarse, own = (rail_compliance.direct(scene, size) for size in (8e-3, 4e-3, 2e-3))
-    foreseen = 0.5 * np.abs(coarse - coarsest) / coarse
-    assert np.median(foreseen) == pytest.approx(np.median(np.abs(own - coarse) / own), rel=0.25)
-    assert rail_compliance.fine_enough(scene) == REFERENCE
+def numbers(value: Any, key: str = "") -> Iterator[tuple[str, float]]:
+    """Dotted keys and values of all numbers in a scene in SI, conditions apart."""
+    if isinstance(value, dict):
+        for name, item in value.items():
+            if name not in ("conditions", "agreement", "provenance"):
+                yield from numbers(item, f"{key}.{name}" if key else name)
+    elif isinstance(value, list):
+        for place, item in enumerate(value):
+            yield from numbers(item, f"{key}.{place}")
+    elif type(value) is float:
+        yield key, value
 
 
-def test_a_given_size_is_used(monkeypatch):
-    monkeypatch.setattr(rail_compliance, "fine_enough", lambda *_: pytest.fail("chose a mesh"))
+def changed(scene: Scene, key: str, value: float) -> tuple[dict, str] | None:
+    """Overrides, and what a compliance is then kept under, for a little more or less under ``key``; of
+    all pads alike, as the section needs. None where the scene can have neither."""
+    head, _, rest = key.partition(".")
+    keys = {key: value}
+    if head == "pads":
+        name, stated = rest.partition(".")[2], dict(numbers(scene.resolved()))
+        names = [f"pads.{place}.{name}" for place in range(len(scene.pads))]
+        keys = {each: stated[each] for each in names}
+    for factor in (1.02, 0.98):
+        changes = {each: factor * old or 1e-4 for each, old in keys.items()}
+        try:
+            return changes, rail_compliance.made_from(scene.replace(changes))
+        except SceneError:
+            continue
+    return None
+
+
+def found(scene: Scene, size: float) -> str:
+    """Digest of all numbers of a compliance of few places."""
+    few = statics.condense(scene, size, spacing=0.15, modes=2)
+    return replace(few, made_for="").hash
+
+
+def test_a_compliance_is_kept_under_all_that_it_is_computed_from():
+    """Every number of a scene is changed by 2 %. Those that do not change the name under which the
+    compliance is kept do not change a bit of it, all of them together. Control: the digest of rail and
+    pads alone does not change with the clearance either, and the compliance does."""
+    scene = load("tiny").condition("phi15").replace(EVERYTHING)
+    own, apart, alike = rail_compliance.made_from(scene), set(), {}
+    for key, value in numbers(scene.resolved()):
+        if key.startswith("pads.") and not key.startswith("pads.0."):
+            continue  # they change with the first
+        if (found_for := changed(scene, key, value)) is None:
+            continue
+        changes, kept_under = found_for
+        if kept_under == own:
+            alike |= changes
+        else:
+            apart.add(key)
+    assert apart >= READ and set(alike) >= NOT_READ
+    base = found(scene, 16e-3)
+    assert found(scene.replace(alike), 16e-3) == base
+    wider = scene.replace({"contact.clearance": 1.02 * scene.contact.clearance})
+    assert digest(wider) == digest(scene) and found(wider, 16e-3) != base
+
+
+def test_the_faces_of_a_rail_from_a_file_are_part_of_it():
+    """Which walls they are on, and where, whatever moves them there."""
+    scene = channels()
+    own = rail_compliance.made_from(scene)
+    for key in ("contact.clearance", "rail.clearance"):
+        other = scene.replace({key: 2.6e-4})
+        assert rail_compliance.made_from(other) != own
+    assert rail_compliance.made_from(scene.replace({"duration": "30 ms"})) == own
+
+
+def test_the_elements_are_those_that_are_asked_for_or_of_the_scene(monkeypatch):
     monkeypatch.setattr(rail_compliance.statics, "condense", lambda scene, size: size)
-    assert calibration.compliance(load("tiny"), 8e-3) == 8e-3
+    assert calibration.compliance(load("tiny"), 6e-3) == 6e-3
+    assert calibration.compliance(load("tiny")) == 8e-3
+    assert calibration.compliance(load("reference").replace({"name": "tiny"})) == 2e-3
 
 
 def _said(monkeypatch, tmp_path, seconds: float) -> list[str]:

@@ -13,7 +13,8 @@ from tipoff.scenes.reading import CATALOG
 from tipoff.scenes.schema import schema
 from tipoff.scenes.units import to_si
 
-TYPES = {"object": dict, "array": list, "string": str, "number": (int, float), "boolean": bool}
+TYPES = {"object": dict, "array": list, "string": str, "boolean": bool}
+TYPES |= {"number": (int, float), "integer": int}
 ROOT = schema()
 
 

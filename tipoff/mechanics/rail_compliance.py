@@ -379,8 +379,10 @@ def _factor(scene: Scene) -> float:
 
 
 def digest(scene: Scene) -> str:
-    """Hexadecimal digest of what the compliance depends on. The clearance is not part of it: it
-    moves pads across a leg by a hundredth of its width."""
+    """Hexadecimal digest of the rail and pads that a compliance is made for. The clearance is not part
+    of it: one compliance serves the cases of a population, whose clearances vary around that of
+    their scene. A compliance is stored under all that it is computed from, the clearance included
+    (``calibration.rail_compliance.made_from``)."""
     described = scene.model_dump(mode="json", include={"rail", "pads"})
     described["rail"] |= scene.rail.contents()
     described["rail"].pop("damping", None)  # statics

@@ -12,7 +12,7 @@ from tipoff.scenes.overrides import index
 
 USER = "user"
 _PARTLY = ", in part user"
-_NO_QUANTITIES = ("name", "description", "conditions", "agreement", "provenance")
+_NO_QUANTITIES = ("name", "description", "studies", "conditions", "agreement", "provenance")
 
 
 def overridden(

@@ -23,6 +23,12 @@ def faults(raw: dict[str, Any], scene_type: type) -> list[tuple[str, str, str]]:
     }
     found = names.faults(conditions)
     found += [
+        (f"conditions.{name}.{key}", repr(value), "a key of the scene itself, for all conditions")
+        for name, table in list(conditions.items())[:MOST]
+        for key, value in _table(table).items()
+        if key.partition(".")[0] == "studies"
+    ]
+    found += [
         (f"agreement.{role}", repr(name), "a name from [conditions]")
         for role, members in lists.items()
         for name in members

@@ -6,7 +6,6 @@ where its table is present.
 """
 
 from collections.abc import Mapping
-from functools import cached_property
 from operator import attrgetter
 from pathlib import Path
 from typing import Annotated, Any
@@ -36,6 +35,7 @@ from tipoff.scenes.effects.thrust import MeasuredTable, ThrustTable
 from tipoff.scenes.effects.thrust_offset import ThrustOffsetTable
 from tipoff.scenes.faults import Fault, SceneError, close, faults_of, within
 from tipoff.scenes.rail import RailTable
+from tipoff.scenes.studies import StudiesTable
 from tipoff.scenes.table import MOST, Table, at_least_one, is_absent, limited
 from tipoff.scenes.tables import MOST_SAMPLES, AgreementTable, OutputTable, PadTable, PayloadTable
 from tipoff.scenes.units import Duration
@@ -43,8 +43,8 @@ from tipoff.scenes.units import Duration
 CATALOG = reading.CATALOG
 NOMINAL = "nominal"  # the scene itself, named like a condition
 _BESIDE = ("conditions", "agreement", "provenance")
-# the flight after the exit does not change the ejection
-_NOT_PHYSICS = {"name", "description", "flight", *_BESIDE}
+# the flight after the exit does not change the ejection, and no solver reads [studies]
+_NOT_PHYSICS = {"name", "description", "flight", "studies", *_BESIDE}
 
 
 class Scene(shown.Shown, Table):
@@ -92,6 +92,8 @@ class Scene(shown.Shown, Table):
     thermal: ThermalTable | None = Field(None, exclude_if=is_absent)
     #: Sampling of the results.
     output: OutputTable = Field(OutputTable(), validate_default=True)
+    #: What the studies use unless an option replaces it.
+    studies: StudiesTable | None = Field(None, exclude_if=is_absent)
     #: Roles of the conditions, and limits of agreement.
     agreement: AgreementTable = AgreementTable()
     #: Named conditions: under each name dotted keys with the values that differ from the
@@ -222,7 +224,7 @@ class Scene(shown.Shown, Table):
         path = Path(self._source)
         return path.stem if path.parent == CATALOG else self._source
 
-    @cached_property
+    @property  # a copy of the scene, and one that ``Variations`` overwrites, must not keep it
     def hash(self) -> str:
         """SHA-256 of the physical inputs. A file counts by its content and a measured thrust by its
         points, not by its path."""
@@ -234,7 +236,7 @@ class Scene(shown.Shown, Table):
             points = self.thrust.points()
         return content_hash(physics, points)
 
-    @cached_property
+    @property
     def warnings(self) -> list[str]:
         """Values that are allowed but implausible, by field name."""
         return plausibility.warnings(self)

@@ -21,7 +21,7 @@ _BOUNDS = {
     "lt": "exclusiveMaximum",
     "le": "maximum",
 }
-_BESIDE = ("name", "description", "conditions", "agreement", "provenance")
+_BESIDE = ("name", "description", "studies", "conditions", "agreement", "provenance")
 
 
 def schema() -> dict:

@@ -29,9 +29,11 @@ _CONTEXT = {"bare_numbers_are_si": True}
 
 
 class _Leaf(NamedTuple):
-    """A number of a scene that is overwritten: its table, its name, its validator."""
+    """A number of a scene that is overwritten: its table, the same table as it was written, its name,
+    its validator."""
 
     values: dict
+    raw: dict
     name: str
     adapter: TypeAdapter
 
@@ -51,11 +53,8 @@ class Variations:
         if (prepared := self._prepared.get(names)) is None:
             scene = self._by_tables(row)
             if names not in self._prepared:
-                self._prepared[names] = (
-                    self._leaves(names, self._by_tables(row))
-                    if scene._raw is self.scene._raw
-                    else None
-                )
+                copy = self._copy(row)
+                self._prepared[names] = self._leaves(names, copy) if copy else None
             return scene
         scene, leaves = prepared
         try:
@@ -66,24 +65,33 @@ class Variations:
         except ValidationError:
             return self.scene.replace(row)
         for leaf, value in zip(leaves, values):
-            leaf.values[leaf.name] = value
+            leaf.values[leaf.name] = leaf.raw[leaf.name] = value
         return scene if scene.agrees() else self.scene.replace(row)
 
     def _by_tables(self, row: Mapping[str, Any]) -> Scene:
+        return self._copy(row) or self.scene.replace(row)
+
+    def _copy(self, row: Mapping[str, Any]) -> Scene | None:
+        """A copy of the scene with the tables that ``row`` changes; None where ``replace`` has to
+        validate all of it."""
         changed = dict.fromkeys(key.partition(".")[0] for key in row)
         if not changed.keys() <= _TABLES:
-            return self.scene.replace(row)
+            return None
         raw = {
             name: keys.plain(self.scene._raw[name]) for name in changed if name in self.scene._raw
         }
         if keys.apply_all(raw, row, Scene):
-            return self.scene.replace(row)
+            return None
         try:
             tables = {name: self._table(name, raw) for name in changed}
         except (ValidationError, KeyError):
-            return self.scene.replace(row)
+            return None
         found = self.scene.model_copy(update=tables)
-        return found if found.agrees() else self.scene.replace(row)
+        if not found.agrees():
+            return None
+        kept = {name: table for name, table in self.scene._raw.items() if name not in changed}
+        found._raw = kept | raw
+        return found
 
     def _table(self, name: str, raw: dict) -> Any:
         field = Scene.model_fields[name]
@@ -108,7 +116,9 @@ class Variations:
         for name in names:
             *path, last = name.split(".")
             table: Any = scene
+            written: Any = scene._raw
             for part in path:
+                written = written.get(part) if isinstance(written, dict) else None
                 table = (
                     table.__dict__.get(part)
                     if isinstance(table, Table) and _free(type(table), table is scene)
@@ -119,11 +129,13 @@ class Variations:
                 and table is not scene
                 and _free(type(table))
                 and isinstance(getattr(table, last, None), float)
+                and isinstance(written, dict)
             ):
                 return None
             leaves.append(
                 _Leaf(
                     table.__dict__,
+                    written,
                     last,
                     self._adapter((type(table), last), type(table).model_fields[last]),
                 )

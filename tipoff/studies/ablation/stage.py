@@ -14,7 +14,6 @@ from pathlib import Path
 
 import numpy as np
 
-from tipoff.mechanics.rail_compliance import RailCompliance, digest
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.scenes.scene import Scene
@@ -77,20 +76,17 @@ def surrogate_runs(study: Study, name: str, lines: dict[str, dict]) -> list[Run]
     """A run of the surrogate for each line: on the compliance of its rails, unless there is no
     contact. No rail has inertia: a number of modes chosen for each line would be one more change."""
     scenes = {line: study.condition(name).replace(changes) for line, changes in lines.items()}
-    under: dict[str, RailCompliance | None] = {}
-    for scene in scenes.values():
-        if scene.contact is not None and digest(scene) not in under:
-            under[digest(scene)] = study.rail_compliance(scene)
+    under = study.compliances_of(scenes)
     return [
         study.lowfi(
             name,
             None,
             lines[line],
             _tag(line),
-            None if scene.contact is None else under[digest(scene)],
+            under[line],
             modes=0,
         )
-        for line, scene in scenes.items()
+        for line in scenes
     ]
 
 

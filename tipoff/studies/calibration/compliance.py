@@ -1,8 +1,5 @@
 """Stage ``compliance``: compliance of the rail under the pads, from the statics of the finite
-elements, without a run of the reference.
-
-Where agreement is judged, the mesh is that of the reference; elsewhere it is the coarsest mesh whose
-compliance is within 1 % of that.
+elements of the size of the reference's, without a run of the reference.
 """
 
 import itertools

@@ -173,8 +173,9 @@ ElementSize = Annotated[
         "--element-size",
         metavar="LENGTH",
         parser=in_millimetres,
-        help='Element size of the reference and of the rail compliance, "4 mm" or 4; default 2 mm '
-        "(scene tiny: 8 mm). Studies with many runs, or with differences of runs, use twice this size.",
+        help='Element size of the reference and of the rail compliance, "4 mm" or 4; default that '
+        "of [studies] in the scene, else 2 mm. Studies with many runs, or with differences of runs, use "
+        "twice this size.",
     ),
 ]
 Workers = Annotated[

@@ -59,7 +59,7 @@ def study_of(
     loaded = _of_option(named, lambda: scenes.load(scene))
     changes = {key.strip(): value.strip() for key, _, value in pairs}
     found = _of_option({"source": "--set"}, lambda: loaded.replace(changes))
-    chosen = replace(defaults(found.name), **settings)
+    chosen = replace(defaults(found), **settings)
     if element_size is not None:
         chosen = replace(chosen, element_size=1e-3 * element_size)
     if workers is not None:

@@ -1,5 +1,5 @@
-"""Numerical settings of the studies: element sizes, tolerances, repeats. A scene does not contain
-them.
+"""Numerical settings of the studies: element sizes, tolerances, repeats. A scene may state some of them
+in ``[studies]``; options of a command replace these.
 
 The reference mesh of 2 mm is the finest with which `make report` takes half an hour on two cores.
 Effects of a change of clearance, interface stiffness or step are differences of two runs; these
@@ -10,6 +10,8 @@ import os
 from dataclasses import asdict, dataclass
 
 from tipoff.files import content_hash
+from tipoff.scenes.scene import Scene, load
+from tipoff.scenes.studies import ELEMENT_SIZE
 
 _BESIDE_RESULTS = ("workers", "checkpoint_every", "resume")  # these do not change a result
 
@@ -28,7 +30,7 @@ class Settings:
     of them 1; ``safeties`` of the step, from that of every other stage down; ``contact_cells``; and
     factors of the scene's interface stiffness."""
 
-    element_size: float = 0.002
+    element_size: float = ELEMENT_SIZE
     tolerances: tuple[float, ...] = (1e-2, 1e-4, 1e-6, 1e-8)
     highfi_repeats: int = 3
     lowfi_repeats: int = 20
@@ -68,15 +70,8 @@ class Settings:
         )
 
 
-def defaults(scene_name: str) -> Settings:
-    """Settings of a catalogue scene. Those of ``tiny`` are coarse, so that its whole pipeline takes
-    seconds."""
-    if scene_name == "tiny":
-        return Settings(
-            element_size=0.008,
-            mesh_ratios=(2.0, 1.0, 0.5),
-            highfi_repeats=2,
-            lowfi_repeats=5,
-            neighbours=5,
-        )
-    return Settings()
+def defaults(scene: Scene | str) -> Settings:
+    """Settings of a ``scene``, or of the one of this name in the catalogue: those that its ``[studies]``
+    states, else the defaults. Its name does not count."""
+    stated = (load(scene) if isinstance(scene, str) else scene).studies
+    return Settings(**(stated.model_dump(exclude_none=True) if stated else {}))

@@ -8,7 +8,7 @@ stage never uses a damaged one.
 """
 
 import hashlib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -16,7 +16,7 @@ from typing import Any
 
 from tipoff import sources
 from tipoff.files import DamageError, content_hash, read_json, write_json
-from tipoff.mechanics.rail_compliance import RailCompliance, digest
+from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
@@ -141,31 +141,36 @@ class Study:
         )
 
     def rail_compliance(
-        self, scene: Scene, judged: bool = True, element_size: float | None = None
+        self, scene: Scene, element_size: float | None = None
     ) -> RailCompliance | None:
         """Rail compliance under the pads of ``scene``, on elements of ``element_size`` (m; None:
-        those of the reference) where agreement is ``judged``. It is computed once for a rail with
-        its pads and stored in this folder. None without contact."""
+        those of the reference). It is computed once for a rail with its pads and clearance, and
+        stored in this folder. None without contact."""
         if scene.contact is None:
             return None
         from tipoff.calibration import rail_compliance  # slow to load
 
         size = element_size or self.settings.element_size
-        if not judged and not rail_compliance.kept_file(scene, self.folder, size).is_file():
-            size = rail_compliance.fine_enough(scene, size, say)
         return rail_compliance.kept(scene, self.folder, size, say)
 
     def rail_compliances(
         self, names: Iterable[str], element_size: float | None = None
     ) -> dict[str, RailCompliance | None]:
-        """The same for each condition by name; conditions with the same rail and pads share it."""
-        scenes = {name: self.condition(name) for name in names}
-        found = {
-            digest(scene): self.rail_compliance(scene, element_size=element_size)
-            for scene in scenes.values()
-            if scene.contact
-        }
-        return {name: found.get(digest(scene)) for name, scene in scenes.items()}
+        """The same for each condition by name."""
+        return self.compliances_of({name: self.condition(name) for name in names}, element_size)
+
+    def compliances_of(
+        self, scenes: Mapping[str, Scene], element_size: float | None = None
+    ) -> dict[str, RailCompliance | None]:
+        """The same for each of ``scenes``; those from which the same is computed share it."""
+        from tipoff.calibration.rail_compliance import made_from  # slow to load
+
+        found: dict[str, RailCompliance | None] = {"": None}
+        keys = {name: made_from(scene) if scene.contact else "" for name, scene in scenes.items()}
+        for name, key in keys.items():
+            if key not in found:
+                found[key] = self.rail_compliance(scenes[name], element_size)
+        return {name: found[key] for name, key in keys.items()}
 
     def rigid_rails(self, scene: Scene) -> RailCompliance | None:
         """The rails of springs in ``scene``: rigid, with their thermal offset if warm, else None."""

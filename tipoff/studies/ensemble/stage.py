@@ -76,11 +76,7 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
         raise SceneError([Fault("--store", "path", str(options.store), "a folder")])
     models.require_accepted(study, options.model.name)
     springs = options.model.model == SPRINGS
-    found = (
-        study.rigid_rails(study.scene)
-        if springs
-        else study.rail_compliance(study.scene, judged=False)
-    )
+    found = study.rigid_rails(study.scene) if springs else study.rail_compliance(study.scene)
     scene = study.scene
     if fitted is not None and not springs:  # before a case, which may vary a constant
         scene, fitted = fitted.split(scene)

@@ -115,7 +115,7 @@ def surrogate(study: Study, model: str | None = None, condition: str | None = No
         fitted = calibrate.load(study)
         return Surrogate(fitted.apply(scene), fitted, study.rigid_rails(scene))
     require_accepted(study, model, condition)
-    return Surrogate(scene, None, study.rail_compliance(scene, judged=False))
+    return Surrogate(scene, None, study.rail_compliance(scene))
 
 
 def answering(study: Study, model: Surrogate, condition: str | None = None) -> dict[str, Any]:

@@ -37,7 +37,7 @@ def run(
     vibrating = study.lowfi(condition, fitted, modes=options.asked)
     if scene.contact is None:
         return result_of(study, condition, vibrating, quiet)
-    found = study.rail_compliance(scene, judged=False)
+    found = study.rail_compliance(scene)
     request = study.lowfi(condition, fitted, compliance=found, modes=options.asked)
     return result_of(study, condition, request, quiet)
 

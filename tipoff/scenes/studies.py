@@ -1,0 +1,46 @@
+"""``[studies]``: what the studies of a scene use unless an option of a command or an argument replaces
+it. A solver does not read it, so it is no physics of the scene, and it is inherited like any other
+table."""
+
+from typing import Annotated
+
+from pydantic import Field, field_validator
+
+from tipoff.scenes.table import Table, limited
+from tipoff.scenes.units import Dimension, PositiveNumber
+
+ELEMENT_SIZE = 2e-3  # m, of scenes that state none
+_Count = Annotated[int, Field(strict=True, ge=1, le=10_000)]
+_Neighbours = Annotated[int, Field(strict=True, ge=5, le=10_000)]
+
+
+class StudiesTable(Table):
+    """``[studies]``: element size (m) of the reference and of the rail compliance, and what makes the
+    studies of a small scene short."""
+
+    #: Element size of the reference and of the rail compliance; 2 mm where absent.
+    element_size: Dimension | None = None
+    #: Meshes of the convergence study, coarsest first: their element sizes divided by
+    #: element_size, one of them 1.
+    mesh_ratios: Annotated[tuple[PositiveNumber, ...], limited] | None = None
+    #: Neighbours within 1 um that judge a chaotic condition.
+    neighbours: _Neighbours | None = None
+    #: Repeats of timed runs of the reference.
+    highfi_repeats: _Count | None = None
+    #: Repeats of timed runs of the surrogate.
+    lowfi_repeats: _Count | None = None
+
+    @field_validator("mesh_ratios")
+    @classmethod
+    def _coarsest_first(cls, ratios: tuple[float, ...] | None):
+        if ratios is not None and (
+            list(ratios) != sorted(set(ratios), reverse=True) or 1.0 not in ratios
+        ):
+            raise ValueError("falling ratios, one of them 1")
+        return ratios
+
+
+def element_size(table: StudiesTable | None) -> float:
+    """Element size (m) of the reference and of the rail compliance of a scene with this ``table``, where
+    no option or argument gives another."""
+    return (table and table.element_size) or ELEMENT_SIZE
