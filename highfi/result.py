@@ -17,9 +17,7 @@ def trajectory(loop, cost: dict, numerics: Numerics) -> Trajectory:
     total, transverse = samples.ledgers(rows, np.array(loop.work))
     status, result = ending.found(loop.system, loop.book)
     forces = np.array(loop.forces)
-    linear, angular = samples.momentum_errors(
-        rows, moved, loop.system.model.payload.mass, forces, loop.steps
-    )
+    linear, angular = samples.momentum_errors(rows, moved, loop.system, forces, loop.steps)
     friction = (
         np.diff(total[:, ledger.ENTRIES.index("friction")], prepend=0.0)
         / loop.scene.output.interval

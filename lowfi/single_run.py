@@ -136,9 +136,7 @@ class Run:
         """The result of the samples taken so far."""
         moved, rows, forces = self.motion(), self.rows[: self.taken], self.forces[: self.taken]
         total, across = balance.ledgers(rows)
-        checks = balance.checks(
-            rows, moved, forces, self.model.payload.mass, self.loop, self.promised
-        )
+        checks = balance.checks(rows, moved, forces, self.model, self.loop, self.promised)
         broken, seen_from = promises.broken(checks, self.promised), comoving.frame(self.model)
         status, result = ("diverged", outcome.Outcome()) if broken else self.judged()
         pressed = outcome.pressed_at_ignition(self.model.faces, self.forces[0])

@@ -8,6 +8,7 @@ linear system. Plain NumPy: a sample is taken once in a hundred steps, so a kern
 compilation.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +22,9 @@ from tipoff.kernels.memory import zeros
 POSITION, VELOCITY, QUATERNION, RATE = 0, 3, 6, 10
 PLATFORM_POSITION, PLATFORM_VELOCITY, PLATFORM_QUATERNION, PLATFORM_RATE = 13, 16, 19, 23
 KINETIC, AXIAL_KINETIC, STRAIN, CONTACT, LINEAR, ANGULAR, IMPULSE = 26, 27, 28, 29, 30, 33, 36
-SAMPLE_SIZE = 42
+# Sums of the magnitudes of the momenta of all bodies and nodes, as ``momenta.Sizes``.
+SIZES = 42
+SAMPLE_SIZE = 45
 
 
 class Moving(NamedTuple):
@@ -84,7 +87,9 @@ def sample(system, team, state: records.State, before: Moving, after: Moving) ->
     row[IMPULSE : IMPULSE + 6] = middle.impulse
     row[KINETIC], row[AXIAL_KINETIC] = _kinetic(system, turn, base, before, after)
     row[STRAIN], row[CONTACT] = strain(system, state, team), float(state.load[0]["stored"])
-    row[LINEAR : LINEAR + 3], row[ANGULAR : ANGULAR + 3] = _momenta(system, state, base, middle)
+    row[LINEAR : LINEAR + 3], row[ANGULAR : ANGULAR + 3], row[SIZES:] = _momenta(
+        system, state, base, middle
+    )
     return row
 
 
@@ -128,9 +133,9 @@ def _spin_energy(turn, inverse_inertia, before, after) -> float:
     return 0.5 * float((turn.T @ before) @ inverse_inertia @ (turn.T @ after))
 
 
-def _momenta(system, state, base, middle: Moving) -> tuple[np.ndarray, np.ndarray]:
-    """Linear and angular momentum (about the scene origin), summed anew over every node and
-    body."""
+def _momenta(system, state, base, middle: Moving) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Linear and angular momentum (about the scene origin), summed anew over every node and body, and
+    the sums (3,) of the magnitudes of all of them."""
     part, origin = system.nodes, state.platform.position
     px, py, pz = (system.moving_mass[part] * component for component in middle.nodes.T)
     x, y, z = (system.rail.points[part] + state.displacement[part]).T
@@ -139,13 +144,34 @@ def _momenta(system, state, base, middle: Moving) -> tuple[np.ndarray, np.ndarra
     if system.frame is not None:
         origin = origin - base @ system.frame.centre
     own = system.model.payload.mass * middle.velocity
+    bodies = [(state.payload.position, own, middle.spin)]
     linear = own + rails
     angular = _cross(state.payload.position, own) + middle.spin + turning + _cross(origin, rails)
     if system.frame is not None:
         carried = system.frame.mass * middle.platform_velocity
+        bodies.append((state.platform.position, carried, middle.platform_spin))
         linear = linear + carried
         angular = angular + _cross(state.platform.position, carried) + middle.platform_spin
-    return linear, angular
+    # in the axes of the frame, as the nodes are
+    a, b, c = base.T @ origin
+    parts = [_sizes_of_nodes((x + a, y + b, z + c), (px, py, pz))]
+    parts += [_sizes_of_body(*body) for body in bodies]
+    return linear, angular, np.sum(parts, axis=0)
+
+
+def _sizes_of_nodes(place, momentum) -> tuple[float, float, float]:
+    """Sums over nodes of |p|, |r x p| and |r| |p|, of the components (n,) of each."""
+    (x, y, z), (px, py, pz) = place, momentum
+    own = np.sqrt(px * px + py * py + pz * pz)
+    turning = np.sqrt((y * pz - z * py) ** 2 + (z * px - x * pz) ** 2 + (x * py - y * px) ** 2)
+    reach = np.sqrt(x * x + y * y + z * z)
+    return float(own.sum()), float(turning.sum()), float((reach * own).sum())
+
+
+def _sizes_of_body(place, momentum, spin) -> tuple[float, float, float]:
+    own, turning = math.hypot(*momentum), math.hypot(*spin)
+    orbit = math.hypot(*_cross(place, momentum))
+    return own, orbit + turning, math.hypot(*place) * own + turning
 
 
 def _cross(a, b) -> np.ndarray:

@@ -1,8 +1,11 @@
 """Ledgers, momentum checks and the motion of a Trajectory, from sample vectors."""
 
+import math
+
 import numpy as np
 
 from tipoff.highfi.dynamics import observe
+from tipoff.highfi.dynamics.system import System
 from tipoff.highfi.state import records
 from tipoff.kernels import rotation
 from tipoff.mechanics import ledger, momenta
@@ -55,16 +58,24 @@ def ledgers(samples: np.ndarray, work: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def momentum_errors(
-    samples: np.ndarray, moved: Motion, mass: float, forces: np.ndarray, steps: int
+    samples: np.ndarray, moved: Motion, system: System, forces: np.ndarray, steps: int
 ) -> tuple[float, float]:
     """Errors of linear and angular momentum (``mechanics.momenta``) of samples with pad ``forces``
     (n,f,3) N, of ``steps``."""
-    return momenta.errors(
-        moved,
-        mass,
-        samples[:, observe.LINEAR : observe.LINEAR + 6],
-        samples[:, observe.IMPULSE : observe.IMPULSE + 6],
-        forces,
-        FINITE_ELEMENTS,
-        steps,
+    model, drive = system.model, system.drive
+    given = samples[:, observe.IMPULSE : observe.IMPULSE + 6]
+    mass = model.payload.mass + (
+        drive.moving_mass if system.frame is None else system.frame.total_mass
     )
+    levers = momenta.size(model.faces.centre).max() + momenta.size(system.rail.points).max()
+    places = (moved.position, moved.platform_position)
+    sums = momenta.Sums(
+        values=samples[:, observe.LINEAR : observe.LINEAR + 6],
+        given=given,
+        sizes=momenta.Sizes(*samples[:, observe.SIZES :].T),
+        impulses=momenta.impulses(
+            moved.time, given, forces, mass * math.hypot(*(model.body_force or ()))
+        ),
+        reach=float(max(momenta.size(place).max() for place in places) + levers),
+    )
+    return momenta.errors(sums, FINITE_ELEMENTS, steps)

@@ -40,7 +40,7 @@ class Balances(NamedTuple):
 
     total: float  # balance of the total ledger
     transverse: float  # balance of the transverse ledger
-    work: float  # size of the work
+    work: float  # sum of the sizes of the works, which may cancel
     kinetic: float
     energy_transverse: float  # kinetic without its axial part, and stored
     terms: float  # sum of the sizes of all terms
@@ -88,7 +88,7 @@ def _balances(system, loop, surveyed, in_compliance, state):
     return Balances(
         total=total,
         transverse=total - along,
-        work=abs(work),
+        work=abs(state[slot.THRUST]) + abs(state[slot.BODY_FORCE]),
         kinetic=kinetic,
         energy_transverse=abs(kinetic - axial + kept),
         terms=terms,

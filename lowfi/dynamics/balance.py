@@ -1,5 +1,7 @@
 """Motion, ledgers and checks of a Trajectory, from samples."""
 
+import math
+
 import numpy as np
 
 from tipoff.lowfi import state
@@ -16,6 +18,7 @@ from tipoff.lowfi.dynamics.sample import (
     WORKS,
 )
 from tipoff.mechanics import ledger, momenta
+from tipoff.mechanics.model import Model
 from tipoff.mechanics.outcome import Motion
 from tipoff.mechanics.promises import Promises
 
@@ -64,7 +67,12 @@ def ledgers(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def checks(
-    rows: np.ndarray, moved: Motion, forces: np.ndarray, mass: float, loop: Loop, promised: Promises
+    rows: np.ndarray,
+    moved: Motion,
+    forces: np.ndarray,
+    model: Model,
+    loop: Loop,
+    promised: Promises,
 ) -> dict[str, float]:
     """Measured errors of what is ``promised``: of the ledgers at the ends of all steps, of the momenta
     at all samples with pad ``forces`` (n,f,3) N."""
@@ -72,7 +80,7 @@ def checks(
         loop.audit, promised.energy_error, promised.transverse_energy_error
     )
     linear, angular = momenta.errors(
-        moved, mass, rows[:, LINEAR : LINEAR + 6], rows[:, GIVEN : GIVEN + 6], forces, promised
+        _sums(rows, moved, forces, model), promised, int(loop.counts.steps)
     )
     clock = loop.clock
     norms = [
@@ -87,6 +95,26 @@ def checks(
         "friction_power_max": _power(clock.friction_power),
         "damping_power_max": _power(clock.damping_power),
     }
+
+
+def _sums(rows: np.ndarray, moved: Motion, forces: np.ndarray, model: Model) -> momenta.Sums:
+    """Momenta and impulses of both bodies, and the sizes of what they are summed from."""
+    payload, platform = model.payload, model.platform
+    bodies = [(payload.mass, moved.position, moved.velocity, moved.rate @ payload.inertia)]
+    if platform is not None:
+        spin = moved.platform_rate @ platform.inertia
+        bodies.append((platform.mass, moved.platform_position, moved.platform_velocity, spin))
+    given = rows[:, GIVEN : GIVEN + 6]
+    weight = sum(mass for mass, *_ in bodies) * math.hypot(*(model.body_force or ()))
+    levers = (*momenta.size(model.faces.centre), abs(model.thrust_arm))
+    places = (moved.position, moved.platform_position)
+    return momenta.Sums(
+        values=rows[:, LINEAR : LINEAR + 6],
+        given=given,
+        sizes=momenta.of_bodies(bodies),
+        impulses=momenta.impulses(moved.time, given, forces, weight),
+        reach=float(max(momenta.size(place).max() for place in places) + max(levers)),
+    )
 
 
 def _power(value: float) -> float:

@@ -8,7 +8,6 @@ from tests.lowfi.support import PAPER_PAD, corners, scene
 from tipoff import lowfi
 from tipoff.lowfi import oracle
 from tipoff.mechanics import ledger, momenta, promises
-from tipoff.mechanics.outcome import Motion
 from tipoff.scenes import load
 
 SHORT = {
@@ -70,15 +69,10 @@ def test_a_hundredth_of_spurious_contact_energy_is_seen():
 
 def test_a_lost_reaction_is_seen():
     """A force of 1 N for 1 us that has no opposite breaks the momentum balance."""
-    samples, upright = np.zeros((3, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (3, 1))
-    moving = samples + np.array([6.0, 0.0, 0.0])
-    moved = Motion(
-        np.arange(3) * 1e-3, samples, moving, upright, samples, samples, samples, upright, samples
-    )
     values = np.zeros((3, 6))
     values[:, 0] = (60.0, 60.0, 60.0 + 1e-6)
     error, _ = momenta.errors(
-        moved, 10.0, values, np.zeros((3, 6)), np.full((3, 4, 3), 500.0), promises.RIGID
+        sums(10.0, (6.0, 0.0, 0.0), values, forces=np.full((3, 4, 3), 500.0)), promises.RIGID
     )
     assert error == pytest.approx(1e-6 / 60.0, rel=1e-3)
 
@@ -89,21 +83,32 @@ def test_a_sum_of_equal_impulses_may_round():
     steps, impulse = 100_000, 9.80665 * 1e-6
     summed = np.add.accumulate(np.full(steps, impulse))[steps // 4 - 1 :: steps // 4]
     exact = np.arange(1, 5) * (steps // 4) * impulse
-    at_rest, upright = np.zeros((4, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (4, 1))
-    moved = Motion(
-        np.arange(4) * 1e-3, at_rest, at_rest, upright, at_rest, at_rest, at_rest, upright, at_rest
-    )
 
     def error(momentum, steps):
         values, given = np.zeros((4, 6)), np.zeros((4, 6))
         values[:, 2], given[:, 2] = momentum, exact
-        return momenta.errors(
-            moved, 1.0, values, given, np.zeros((4, 1, 3)), promises.FINITE_ELEMENTS, steps
-        )[0]
+        asked = sums(1.0, values[:, :3], values, given)
+        return momenta.errors(asked, promises.FINITE_ELEMENTS, steps)[0]
 
     promised = promises.FINITE_ELEMENTS.linear_momentum_error
     assert error(summed, steps) <= promised < error(summed, 0)
     assert error(exact * (1.0 + 1e-10), steps) > promised  # control
+
+
+def sums(mass, velocity, values, given=None, forces=None, weight=0.0) -> momenta.Sums:
+    """Balance of one body without spin at the origin, at samples 1 ms apart."""
+    samples = len(values)
+    place = np.zeros((samples, 3))
+    given = np.zeros((samples, 6)) if given is None else given
+    forces = np.zeros((samples, 1, 3)) if forces is None else forces
+    moving = np.broadcast_to(velocity, (samples, 3))
+    return momenta.Sums(
+        values=values,
+        given=given,
+        sizes=momenta.of_bodies([(mass, place, moving, place)]),
+        impulses=momenta.impulses(np.arange(samples) * 1e-3, given, forces, weight),
+        reach=0.0,
+    )
 
 
 @pytest.mark.parametrize(

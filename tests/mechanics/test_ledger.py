@@ -61,6 +61,15 @@ def test_one_per_cent_of_spurious_contact_energy_is_seen_only_across():
     assert 5e-3 < ledger.transverse_error(transverse(false)) < 1.1e-2
 
 
+def test_works_that_cancel_are_a_scale():
+    """A thrust lifts a weight slowly: both works are 500 J, and 1e-4 J is their share of 1e-7. Control:
+    an error of a thousandth is seen."""
+    lifted = entries(thrust=PUSH, gravity=-PUSH + 1e-4 * TIME)
+    assert ledger.total_error(lifted) < 1e-6
+    lifted[:, COLUMN["gravity"]] *= 0.999
+    assert ledger.total_error(lifted) > 1e-4
+
+
 def test_every_entry_counts():
     for name in ledger.ENTRIES:
         wrong = transverse(STORED)

@@ -130,6 +130,7 @@ def test_matched_meshes():
             "error_deg_s": error,
             "integration_error_deg_s": integration,
             "wall_s": wall,
+            "reference": error is None,
         }
 
     meshes = [
@@ -161,6 +162,13 @@ def test_matched_meshes():
         second["mesh"],
         second["mesh_error_deg_s"],
     ) == (0.01, "0.0001", "2", None)
+    # a mesh that jammed has no error; it is no reference and matches nothing, however fast it is
+    jammed = meshes[0] | {"error_deg_s": None, "reference": False, "wall_s": 0.1}
+    assert cost.matched([jammed, *meshes[1:], *exact])[0]["mesh"] == "2"
+    assert cost.matched([jammed, *exact]) == []
+    # nor is a surrogate matched that does not settle at its tightest tolerance
+    lost = [exact[0], exact[1] | {"error_deg_s": None}]
+    assert cost.matched([*meshes, *lost]) == []
 
 
 def test_closed_gap_is_only_opened(tmp_path):

@@ -50,9 +50,9 @@ def terms(entries: np.ndarray) -> float:
 
 
 def total_error(entries: np.ndarray, promised: promises.Promises = promises.RIGID) -> float:
-    """Largest residual over max(|work|, largest kinetic energy). The scale is bounded below by
-    ``promises.scale``."""
-    work = np.abs(entries[:, _WORK].sum(axis=1)).max()
+    """Largest residual over max(|work| of each kind, summed; kinetic energy). Works may cancel: that
+    of a thrust that lifts a weight. The scale is bounded below by ``promises.scale``."""
+    work = np.abs(entries[:, _WORK]).sum(axis=1).max()
     largest = max(work, entries[:, ENTRIES.index("kinetic")].max())
     scale = promises.scale(largest, terms(entries), promised.energy_error, promised.rounding)
     return promises.relative(np.abs(residual(entries)).max(), scale)

@@ -6,7 +6,7 @@ import pytest
 
 from tests.lowfi.compliance import reference_compliance
 from tests.lowfi.random_scenes import EFFECTS, independent, scene_of
-from tests.lowfi.support import PAPER_PAD, scene
+from tests.lowfi.support import PAPER_PAD, scene, unwatched
 from tipoff import lowfi
 from tipoff.lowfi.dynamics import audit
 from tipoff.lowfi.single_run import Run, improved
@@ -190,3 +190,25 @@ def test_forces_that_cancel_leave_a_momentum_of_rounding():
     )
     assert_kept(run)
     assert np.abs(run.pad_force).max() > 0.0
+
+
+def test_works_that_cancel_are_the_scale_of_the_ledger():
+    """A thrust carries the weight of a body that rises slowly: its kinetic energy is a thousandth of
+    either work. Control: an error of a millionth of the works is seen."""
+    mass, weight, duration, speed = 20.0, 2e5, 0.05, 1.0
+    run = unwatched(
+        scene(
+            duration,
+            1e-3,
+            mass=mass,
+            thrust={"kind": "constant", "force": weight, "duration": duration},
+            gravity={"x": -weight / mass},
+            initial={"velocity": {"x": speed}},
+        ),
+        lowfi.Numerics(),
+    )
+    works = 2.0 * weight * speed * duration
+    assert run.loop.audit.scale == pytest.approx(works, rel=1e-9) and works > 5e2 * mass * speed**2
+    assert run.trajectory().checks["energy_error"] <= 1e-12
+    run.loop.audit.peak_error = 2e-6 * works
+    assert run.trajectory().status == "diverged"

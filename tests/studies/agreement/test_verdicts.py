@@ -1,5 +1,6 @@
 """Rows of the agreement table: gates, floor, and a reference that is not converged."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -91,7 +92,25 @@ def test_reference_that_is_not_converged_forbids_any_claim():
     assert found["verdict"] == "cannot be judged: reference not converged"
     assert found["reference_uncertainty_deg_s"] == 0.18
     assert found["judgement"] == verdicts.CANNOT
-    assert row(constant(3.0, 0.0, 4.0), [])["verdict"] == verdicts.NOT_CONVERGED
+    assert row(constant(3.0, 0.0, 4.0), [])["verdict"] == verdicts.NOT_KNOWN
+
+
+@pytest.mark.parametrize("steps", [[None], [0.01, None]])
+def test_borrowed_uncertainties_that_are_not_known_stay_unknown(steps):
+    """h1 has its own refinement by the mesh and borrows the one by the step, which did not settle.
+    Controls: a known one is borrowed, and the largest of several counts."""
+    own = replace(refined("mesh", 0.02), condition="h1")
+
+    def judged(*found):
+        borrowed = [refined("step", value) for value in found]
+        return row(constant(3.0, 0.0, 4.0), [own, *borrowed], "h1")
+
+    found = judged(*steps)
+    assert found["reference_uncertainty_deg_s"] is None and not found["reference_converged"]
+    assert found["judgement"] == verdicts.CANNOT
+    assert not found["reference_uncertainty_measured_here"]
+    known = judged(0.01, 0.03)
+    assert known["reference_uncertainty_deg_s"] == 0.03 and known["judgement"] == verdicts.AGREES
 
 
 def test_floor_is_the_own_one_where_measured_else_the_largest():

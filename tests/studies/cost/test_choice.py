@@ -7,6 +7,7 @@ from tipoff import scenes
 from tipoff.studies.cli import app
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.cost import stage as cost_stage
 from tipoff.studies.cost.choice import choose, elsewhere
 from tipoff.studies.runs import single
 
@@ -33,6 +34,7 @@ COST = {
             "setting": 1e-3 * int(name[0]) if "mm" in name else 1e-6,
             "modes": None,
             "error_deg_s": error,
+            "reference": error is None,
             "wall_s": wall,
             "status": "diverged" if name == "lost" else "exited",
         }
@@ -139,6 +141,7 @@ def test_other_modes_are_chosen_only_where_they_were_measured():
         "setting": 1.0,
         "modes": 1,
         "error_deg_s": 0.03,
+        "reference": False,
         "wall_s": 0.0001,
         "status": "exited",
     }
@@ -159,6 +162,7 @@ def test_what_is_not_known_elsewhere_is_never_chosen():
         "setting": 8e-3,
         "modes": None,
         "error_deg_s": 0.03,
+        "reference": False,
         "wall_s": 3.0,
         "status": "exited",
     }
@@ -222,3 +226,15 @@ def test_refusal_of_both_limits_names_the_fastest_of_the_most_exact():
         StudyError, match="(?s)most accurate: compliant fine, - .*fastest: rigid, - "
     ):
         choose(COST, "phi15", None, accuracy=0.001, budget=0.001)
+
+
+def test_a_model_without_an_error_is_no_reference():
+    """One that exits but does not settle has no error, and does not get that of the finest mesh. Without
+    the uncertainty of that mesh no bound is known at all. Control: the finest mesh itself is chosen."""
+    meshes = [point for point in COST["points"] if point["rung"] == "highfi"]
+    restless = meshes[-1] | {"model": "restless", "reference": False, "wall_s": 1e-4}
+    asked = COST | {"points": [*meshes, restless]}
+    assert choose(asked, "phi15", None, budget=60.0)["model"] == "2 mm"
+    with pytest.raises(StudyError, match="error unknown"):
+        choose(asked | {"band_deg_s": None}, "phi15", None, accuracy=1.0)
+    assert not any(point["pareto"] for point in cost_stage.marked(asked["points"], None))

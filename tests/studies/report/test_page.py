@@ -27,6 +27,15 @@ from tipoff.studies.runs import figures
 from tipoff.studies.runs.figures import Runs
 from tipoff.studies.runs.stage import row
 
+COSTS = {
+    "wall_s": 1.0,
+    "compile_s": 0.0,
+    "steps": 1,
+    "dt_s": 1e-6,
+    "elements": 1,
+    "ns_per_element_step": 1.0,
+}
+
 
 @pytest.mark.parametrize(
     "value, unit, shown",
@@ -162,6 +171,56 @@ def test_broken_promise_is_called_broken():
     assert found["total energy ledger, finite elements"].kept is False  # not reported is not kept
 
 
+def promised(rows, documents=None):
+    return {item.text.split(";")[0]: item for item in promises(rows, documents or {})}
+
+
+def test_a_promise_is_kept_only_by_runs_that_keep_it():
+    """No run keeps nothing, a diverged one breaks, and a NaN is found. Control: a sound run keeps it."""
+    name, sound = "no NaN leaves the program", row("phi15", flight(cost=COSTS), "")
+    lost = sound | {"status": "diverged", "settled": None}
+    wild = sound | {"settled": sound["settled"] | {"rate_deg_s": [0.0, float("nan"), 0.0]}}
+    for rows, kept in (([], None), ([lost], False), ([sound, wild], False), ([sound], True)):
+        assert promised({"highfi": rows, "lowfi": []})[name].kept is kept
+    assert "0 of 1 run ended well" in promised({"highfi": [lost], "lowfi": []})[name].worst
+
+
+def test_a_check_that_one_run_does_not_report_is_not_kept():
+    """Nor is one that is no number in one run. Control: all of them report a small error."""
+    name = "linear momentum of the free system, finite elements"
+
+    def found(*errors):
+        one = row("phi15", flight(cost=COSTS), "")
+        rows = [one | {"checks": {"linear_momentum_error": error}} for error in errors]
+        return promised({"highfi": rows, "lowfi": []})[name].kept
+
+    assert found(1e-13, 1e-13) and not found(1e-13, None) and not found(float("nan"), 1e-13)
+
+
+def test_bits_are_the_same_only_where_repeats_were_compared():
+    """One run of each model has no repeat. Control: two have one."""
+    for repeats, same, kept in ((1, None, None), (1, True, None), (2, True, True)):
+        speed = {"repeats_identical": same, "highfi_repeats": repeats, "lowfi_repeats": repeats}
+        documents = {"agreement": {"speedup": speed, "held_out": []}}
+        assert (
+            promised({"highfi": [], "lowfi": []}, documents)["same input, same bits"].kept is kept
+        )
+
+
+def test_agreement_on_held_out_conditions_is_given_where_one_is_judged():
+    calibrated = {"information": [[1.0]], "weak_directions": []}
+    for words, kept in (([verdicts.CANNOT], False), ([verdicts.CANNOT, verdicts.MISSES], True)):
+        held_out = [{"judgement": word} for word in words]
+        speed = {"repeats_identical": None, "highfi_repeats": 1, "lowfi_repeats": 1}
+        documents = {"agreement": {"speedup": speed, "held_out": held_out}}
+        documents["calibration"] = calibrated
+        found = promised({"highfi": [], "lowfi": []}, documents)
+        assert found["calibration reports its information matrix and weak directions"].kept is kept
+    documents = {"calibration": calibrated}
+    found = promised({"highfi": [], "lowfi": []}, documents)
+    assert found["calibration reports its information matrix and weak directions"].kept is None
+
+
 def test_figures_of_one_condition():
     scene = scenes.load("tiny")
     force = np.zeros((601, 16, 3))
@@ -229,6 +288,7 @@ def test_pareto_front_counts_errors_below_the_band_as_the_band():
             "integration_error_deg_s": None,
             "wall_s": wall,
             "status": "exited",
+            "reference": error is None,
             "pareto": pareto,
         }
 

@@ -62,7 +62,7 @@ def words(
     touched = [row for row in found if row["touches"]]
     judged = [row for row in touched if verdicts.is_judged_as_curve(row)]
     if not judged:
-        return "not measured for this scene with this code (tipoff compare measures it)"
+        return _not_judged(study, model, found, touched, modes)
     where = "" if condition in (None, NOMINAL) else f"; {condition} is not one of them"
     errors = [row["settled_rate_error_deg_s"] for row in judged]
     known = [error for error in errors if error is not None]
@@ -75,6 +75,29 @@ def words(
     if lost := len(errors) - len(known):
         parts.append(f"it does not settle on {lost} where the reference does")
     return f"{'; '.join(parts)}{_others(touched)}{where}"
+
+
+def _not_judged(
+    study: Study, model: str, found: list[dict], touched: list[dict], modes: int | str
+) -> str:
+    """Why there is no error: nothing was compared, or nothing of what was compared can be judged."""
+    if not found:
+        from tipoff.studies.agreement import stage as compare
+
+        stored = compare.stored(study.unrestricted())
+        if stored is None or model != COMPLIANT or modes == AUTO:
+            return "not measured for this scene with this code (tipoff compare measures it)"
+        return (
+            f"not measured with {modes} modes: tipoff compare has {AUTO} and {stored['rail_modes']}"
+        )
+    if not touched:
+        return f"not known: no pad touches on any of {counted(len(found), 'compared condition')}"
+    lost = [row["condition"] for row in touched if row["judgement"] == verdicts.CANNOT]
+    why = f"; {', '.join(lost)} cannot be judged" if lost else ""
+    return (
+        f"not known: tipoff compare could judge none of {counted(len(touched), 'condition')} with "
+        f"contact by single runs{why}{_others(touched)}"
+    )
 
 
 def _others(rows: list[dict]) -> str:

@@ -6,6 +6,7 @@ the mesh of the scene; for step and cells, which are refined further on the coar
 finest run and the distance to it. A mesh file that cannot be coarsened is refined instead.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -68,5 +69,9 @@ def _largest(
         None if item.uncertainty is None else item.uncertainty + abs(column[used] - column[-1])
         for item, column in zip(found, columns)
     ]
-    worst = max(range(len(found)), key=lambda axis: total[axis] or 0.0)
+    worst = max(range(len(found)), key=lambda axis: _or_infinite(total[axis]))
     return total[worst], found[worst]
+
+
+def _or_infinite(value: float | None) -> float:
+    return math.inf if value is None else value

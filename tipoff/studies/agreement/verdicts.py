@@ -123,24 +123,24 @@ class Context:
     def uncertainty(self, condition: str) -> tuple[float | None, dict[str, float | None], bool]:
         """Reference uncertainty (deg/s), the same by cause, and whether all of it was measured on
         this very condition."""
-        causes, here = {}, []
+        causes: dict[str, float | None] = {}
+        here = []
         for cause in dict.fromkeys(item.cause for item in self.refinements):
             own, measured = _own(
                 [item for item in self.refinements if item.cause == cause], condition
             )
-            causes[cause] = largest(item.uncertainty_deg_s for item in own)
+            found = [item.uncertainty_deg_s for item in own]
+            # Unknown where the payload did not settle with a refinement, or a mesh is not refined:
+            # what is borrowed of several conditions is unknown where one of them is.
+            causes[cause] = None if None in found else largest(found)
             here.append(measured)
-        # Unknown where the payload did not settle with a refinement, or a mesh is not refined.
-        unknown = not causes or any(
-            item.uncertainty_deg_s is None
-            for item in self.refinements
-            if item.condition == condition
-        )
-        return None if unknown else largest(causes.values()), causes, all(here)
+        unknown = not causes or None in causes.values()
+        return None if unknown else largest(causes.values()), causes, bool(here) and all(here)
 
     def known(self, condition: str) -> bool:
-        """Whether every refinement that was wanted on this condition could be run."""
-        return all(
+        """Whether there are refinements to judge this condition by, own or borrowed ones, and every one
+        that was wanted on it could be run."""
+        return bool(self.refinements) and all(
             item.rate_relative_l2 is not None
             for item in self.refinements
             if item.condition == condition

@@ -39,8 +39,9 @@ def refinements(found: dict) -> list[str]:
             for row in found["quantities"]
             if row["parameter"] == parameter and row["quantity"].startswith(RATE)
         ]
-        worst = max(rows, key=lambda row: row["nominal_uncertainty"] or 0.0)
-        if worst["uncertainty"] is None:
+        unknown = [row for row in rows if None in (row["nominal_uncertainty"], row["uncertainty"])]
+        worst = (unknown or sorted(rows, key=lambda row: row["nominal_uncertainty"]))[-1]
+        if unknown:
             text.append(f"{parameter} on {name}: uncertainty unknown, {worst['method']}")
             continue
         text.append(

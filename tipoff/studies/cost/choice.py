@@ -88,20 +88,15 @@ def elsewhere(agreement: dict | None, condition: str) -> dict[str, float]:
 def trusted(
     points: list[dict], band: float | None, there: dict[str, float] | None = None
 ) -> list[dict]:
-    """The points that have an error, each with its error bound ``trusted_deg_s``, which is at least
-    the bound of its model ``there``."""
+    """The points that have an error, and the reference, each with its error bound ``trusted_deg_s``,
+    which is at least the bound of its model ``there``; infinite where the uncertainty ``band`` of the
+    reference is not known."""
     found = []
     for point in points:
-        error = point["error_deg_s"] if point["error_deg_s"] is not None else band
+        error = 0.0 if point["reference"] else point["error_deg_s"]
         if error is not None and point["status"] == "exited":
-            found.append(
-                point
-                | {
-                    "trusted_deg_s": max(
-                        error, band or 0.0, _elsewhere(point, there) if there else 0.0
-                    )
-                }
-            )
+            bound = max(error, _known(band), _elsewhere(point, there) if there else 0.0)
+            found.append(point | {"trusted_deg_s": bound})
     return found
 
 

@@ -50,9 +50,9 @@ def draw(page: "Page") -> list[Part]:
     return page.shown("cost_study", body, "cost")
 
 
-def _or_reference(key: str) -> Callable[[dict], Any]:
-    """A cell with an error, None for the reference itself."""
-    return lambda point: "reference" if point[key] is None else point[key]
+def _or_reference(key: str, mark: str = "reference") -> Callable[[dict], Any]:
+    """A cell with an error: that of the reference itself has its ``mark``, an unknown one is None."""
+    return lambda point: "reference" if point[mark] else point[key]
 
 
 _ERROR = Column("error", "deg/s", ".2g")
@@ -91,7 +91,7 @@ def tables(document: dict) -> list[Part]:
         (_ERROR, "error_deg_s"),
         ("mesh", "mesh"),
         (Column("wall time", "s"), "mesh_wall_s"),
-        (_ERROR, _or_reference("mesh_error_deg_s")),
+        (_ERROR, _or_reference("mesh_error_deg_s", "mesh_is_reference")),
         (Column("ratio of wall times", form=",.0f"), "ratio"),
     )
     return [
@@ -114,8 +114,14 @@ def picture(cost: dict) -> Chart:
     looks = dict(zip(models, _LOOKS))
     shade = cost["band_deg_s"]
     band = (shade, "uncertainty of the finest mesh") if shade else None
-    settled = _with(cost, "error_deg_s", lambda error: shade if error is None else error)
-    curves = _with(cost, "curve_error", lambda error: error and 100.0 * error)
+    settled = [
+        point | {"error_deg_s": shade if point["reference"] else point["error_deg_s"]}
+        for point in cost["points"]
+    ]
+    curves = [
+        point | {"curve_error": point["curve_error"] and 100.0 * point["curve_error"]}
+        for point in cost["points"]
+    ]
     rates = "error of the settled rates (deg/s)"
     panels = []
     for title, points, error, label, shaded in (
@@ -151,15 +157,13 @@ def picture(cost: dict) -> Chart:
     return Chart("cost", [panel for panel in panels if panel.lines], columns=2, height=420)
 
 
-def _with(cost: dict, key: str, changed: Callable) -> list[dict]:
-    """The points, each with a changed value of ``key``."""
-    return [point | {key: changed(point[key])} for point in cost["points"]]
-
-
 def recommended(cost: dict) -> dict | None:
     """The fastest surrogate whose error is no larger than the uncertainty of the finest mesh, or
-    the limit of agreement if that is larger; without one, the most accurate surrogate."""
-    enough = max(cost["band_deg_s"] or 0.0, verdicts.CONVERGED_DEG_S)
+    the limit of agreement if that is larger; without one, the most accurate surrogate. None where that
+    uncertainty is not known."""
+    if cost["band_deg_s"] is None:
+        return None
+    enough = max(cost["band_deg_s"], verdicts.CONVERGED_DEG_S)
     points = [
         point
         for point in cost["points"]

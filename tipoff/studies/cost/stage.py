@@ -10,6 +10,7 @@ tolerance, with the same modes of the rails; the rest of its error is the error 
 """
 
 import json
+import math
 import statistics
 from collections.abc import Iterable
 from pathlib import Path
@@ -41,7 +42,8 @@ NAME, POINTS = "cost_study", "cost.json"
 
 def run(study: Study) -> dict:
     """``points``: model, rung, numerics, setting (element size in m or relative tolerance), modes
-    (None where they are not varied), error_deg_s, curve_error (rate L2), wall_s, pareto;
+    (None where they are not varied), error_deg_s (None for the reference and where a run did not
+    settle), curve_error (rate L2), wall_s, status, reference (of the finest mesh, if it settled), pareto;
     ``band_deg_s``: uncertainty of the finest mesh; ``matched``; ``scaling`` over ``elements``,
     ``pads`` and ``effects``."""
     name = _condition(study)
@@ -122,6 +124,7 @@ def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None
             "integration_error_deg_s": None,
             "wall_s": wall,
             "status": found.status,
+            "reference": found is finest and found.outcome.rate is not None,
         }
         for size, found, wall in zip(sizes, (coarsest, coarse, finest), _wall_times(wanted))
     ]
@@ -186,6 +189,7 @@ def surrogate_points(
             "integration_error_deg_s": error,
             "wall_s": statistics.median(wall for _, wall, _ in repeats),
             "status": found.status,
+            "reference": False,
         }
         for tolerance, found, error, repeats in zip(
             tolerances, runs, _integration_errors(wanted[0], runs), measured
@@ -212,26 +216,26 @@ def matched(points: list[dict]) -> list[dict]:
     """For each surrogate: the fastest mesh with an error at most as large, and the ratio of wall
     times. The error of a surrogate is that at its tightest tolerance, because step errors can cancel
     it by chance; its time is that of the fastest tolerance that adds at most a tenth to it. The
-    error of the finest mesh is zero by definition. Other numbers of modes are left out, because no
-    tolerance was varied there."""
+    error of the finest mesh, the reference, is zero by definition; a mesh that did not settle has none and
+    matches nothing. A surrogate that did not settle at its tightest tolerance is left out, and so are
+    other numbers of modes, because no tolerance was varied there."""
     points = [point for point in points if point["modes"] is None]
     meshes = [point for point in points if point["model"] == FINITE_ELEMENTS]
     found = []
     for model in dict.fromkeys(
         point["model"] for point in points if point["model"] != FINITE_ELEMENTS
     ):
-        known = [
-            point
-            for point in points
-            if point["model"] == model and point["error_deg_s"] is not None
-        ]
-        if known:
-            error = min(known, key=lambda point: point["setting"])["error_deg_s"]
+        own = [point for point in points if point["model"] == model]
+        tightest = min(own, key=lambda point: point["setting"])
+        error = tightest["error_deg_s"]
+        accurate = [mesh for mesh in meshes if _is_within(mesh, "error_deg_s", error)]
+        if error is not None and accurate:
             enough = [
-                point for point in known if (point["integration_error_deg_s"] or 0.0) <= 0.1 * error
+                point
+                for point in own
+                if point is tightest or _is_within(point, "integration_error_deg_s", 0.1 * error)
             ]
             point = min(enough, key=lambda point: point["wall_s"])
-            accurate = [mesh for mesh in meshes if (mesh["error_deg_s"] or 0.0) <= error]
             mesh = min(accurate, key=lambda point: point["wall_s"])
             found.append(
                 {
@@ -241,6 +245,7 @@ def matched(points: list[dict]) -> list[dict]:
                     "wall_s": point["wall_s"],
                     "mesh": mesh["numerics"],
                     "mesh_error_deg_s": mesh["error_deg_s"],
+                    "mesh_is_reference": mesh["reference"],
                     "mesh_wall_s": mesh["wall_s"],
                     "ratio": mesh["wall_s"] / point["wall_s"],
                 }
@@ -248,9 +253,19 @@ def matched(points: list[dict]) -> list[dict]:
     return found
 
 
+def _is_within(point: dict, key: str, limit: float | None) -> bool:
+    """Whether the error ``key`` of a point is known and at most ``limit``, an unknown one None."""
+    if limit is None:
+        return False
+    return point["reference"] or (point[key] is not None and point[key] <= limit)
+
+
 def marked(points: list[dict], band: float | None) -> list[dict]:
-    """The points with ``pareto``: whether no faster point has an error bound as small."""
-    known = choice.trusted(points, band)
+    """The points with ``pareto``: whether no faster point has an error bound as small. Without a
+    ``band`` no bound is known."""
+    known = [
+        point for point in choice.trusted(points, band) if math.isfinite(point["trusted_deg_s"])
+    ]
 
     def beaten(point: dict) -> bool:
         return any(

@@ -75,18 +75,19 @@ def _speedup(condition: str, slow: list, fast: list) -> dict:
             [run.cost.get("kernel_s") for run, _, _ in fast],
         ),
         "cpu_ratio": _median_ratio([cpu for _, _, cpu in slow], [cpu for _, _, cpu in fast]),
-        "repeats_identical": _identical([run for run, _, _ in slow])
-        and _identical([run for run, _, _ in fast]),
+        "repeats_identical": _identical([[run for run, _, _ in runs] for runs in (slow, fast)]),
         "hardware": machine.describe(),
     }
 
 
-def _identical(runs: list[Trajectory]) -> bool:
-    """Whether all runs agree in every bit of their motion."""
-    first = runs[0]
+def _identical(repeats: list[list[Trajectory]]) -> bool | None:
+    """Whether all repeats of each model agree in every bit of their motion; None without any."""
+    pairs = [(run, first) for first, *others in repeats for run in others]
+    if not pairs:
+        return None
     return all(
         np.array_equal(getattr(run, name), getattr(first, name))
-        for run in runs[1:]
+        for run, first in pairs
         for name in ("velocity", "rate", "quaternion", "pad_force", "transverse_energy")
     )
 

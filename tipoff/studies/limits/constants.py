@@ -82,7 +82,13 @@ def margin(study: Study, model: str) -> Margin:
         for row in (read(study.path("calibration.json")) or {}).get("residuals", {}).values()
     ]
     if model == COMPLIANT or not left or None in left:
-        return Margin(None, "not measured (tipoff compare measures it)")
+        if not rows:
+            return Margin(None, "not measured (tipoff compare measures it)")
+        return Margin(
+            None,
+            f"not known: tipoff compare could judge none of {counted(len(rows), 'held-out condition')} by "
+            "single runs that settle",
+        )
     worst = max(left)
     return Margin(
         {"x": worst, "y": worst, "z": worst, "total": 3**0.5 * worst},

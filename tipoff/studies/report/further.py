@@ -49,7 +49,7 @@ def _cost(found: dict) -> Table:
         ("mesh", "mesh"),
         (
             Column("its error, deg/s", form=".2g"),
-            lambda row: "reference" if row["mesh_error_deg_s"] is None else row["mesh_error_deg_s"],
+            lambda row: "reference" if row["mesh_is_reference"] else row["mesh_error_deg_s"],
         ),
         ("wall time, s", "mesh_wall_s"),
         (Column("times as long", form=",.0f"), "ratio"),

@@ -1,9 +1,11 @@
 """The promises of the project: for each its limit and the worst value over all stored runs."""
 
+import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
 from tipoff.mechanics.promises import FINITE_ELEMENTS, RIGID
+from tipoff.studies.agreement import verdicts
 from tipoff.studies.core.words import counted
 from tipoff.studies.render.table import Table, number
 
@@ -34,6 +36,7 @@ _CHECKS = tuple(
         ("lowfi", RIGID, "surrogate"),
     )
 )
+_WELL = "no NaN leaves the program; every run ends well"
 _NOT_MEASURED = (
     "orders of accuracy are as stated",
     "mirror image, contact order and turned frames give the same answer",
@@ -65,11 +68,14 @@ def promises(rows: dict[str, list[dict]], documents: dict[str, dict | None]) -> 
 
 def _check(name: str, rows: list[dict], limit: float, words: str) -> Promise:
     worst, where = _worst(rows, name)
+    silent = [row["condition"] for row in rows if row["checks"].get(name) is None]
+    said = [] if worst is None else [f"{number(worst, '.2g')} ({where})"]
+    said += [f"not reported ({', '.join(silent)})"] if silent else []
     return Promise(
         words,
-        "not reported" if worst is None else f"{number(worst, '.2g')} ({where})",
+        ", ".join(said),
         f"{limit:g}",
-        worst is not None and worst <= limit,
+        worst is not None and not silent and worst <= limit,
     )
 
 
@@ -79,7 +85,8 @@ def _worst(rows: Iterable[dict], name: str) -> tuple[float | None, str]:
         for row in rows
         if row["checks"].get(name) is not None
     ]
-    return max(measured) if measured else (None, "")
+    # a number that is none is the worst
+    return max(measured, key=lambda pair: (pair[0] != pair[0], pair)) if measured else (None, "")
 
 
 def _step(rows: list[dict]) -> Promise | None:
@@ -131,42 +138,50 @@ def _friction(rows: list[dict]) -> Promise | None:
 
 def _finite(rows: dict[str, list[dict]]) -> Promise:
     every = [row for found in rows.values() for row in found]
+    if not every:
+        return Promise(_WELL, "no run", "all", None)
     bad = [row["condition"] for row in every if row["status"] in ("diverged", "refused")]
+    wild = [row["condition"] for row in every if not _is_finite(row.get("settled"))]
+    lost = f" ({', '.join(dict.fromkeys(bad))})" if bad else ""
     return Promise(
-        "no NaN leaves the program; every run asked for is accounted for",
+        _WELL,
         f"{len(every) - len(bad)} of {counted(len(every), 'run')} ended well, {len(bad)} diverged or "
-        "refused",
+        f"refused{lost}" + (f"; NaN: {', '.join(dict.fromkeys(wild))}" if wild else ""),
         "all",
-        True,
+        not bad and not wild,
     )
 
 
-def _same_bits(speedup: dict) -> Promise | None:
+def _is_finite(found) -> bool:
+    """Whether each number of nested values is finite; None stands for a missing one."""
+    if isinstance(found, dict):
+        return all(map(_is_finite, found.values()))
+    if isinstance(found, (list, tuple)):
+        return all(map(_is_finite, found))
+    return not isinstance(found, float) or math.isfinite(found)
+
+
+def _same_bits(speedup: dict) -> Promise:
     same = speedup.get("repeats_identical")
-    return (
-        None
-        if same is None
-        else Promise(
-            "same input, same bits",
-            f"{speedup['highfi_repeats']} reference and "
-            f"{speedup['lowfi_repeats']} surrogate repeats compared",
-            "identical",
-            same,
-        )
-    )
+    counts = {"reference": speedup["highfi_repeats"], "surrogate": speedup["lowfi_repeats"]}
+    compared = [f"{count} {name} runs" for name, count in counts.items() if count > 1]
+    words = f"{' and '.join(compared)} compared" if compared else "no repeats to compare"
+    return Promise("same input, same bits", words, "identical", same if compared else None)
 
 
 def _calibration(calibration: dict | None, agreement: dict | None) -> Promise | None:
     if not calibration:
         return None
-    reported = (
-        bool(calibration["information"]) and agreement is not None and bool(agreement["held_out"])
-    )
+    held_out = agreement["held_out"] if agreement else []
+    judged = [row for row in held_out if row["judgement"] != verdicts.CANNOT]
+    informed = bool(calibration["information"])
+    # without a judged condition no agreement is given, and without one compared it is not known
+    reported = False if not informed else bool(judged) if held_out else None
     return Promise(
         "calibration reports its information matrix and weak directions; agreement is given on "
         "held-out conditions",
         f"{counted(len(calibration['weak_directions']), 'weak direction')} named, "
-        f"{counted(len(agreement['held_out']) if agreement else 0, 'held-out condition')}",
+        f"{len(judged)} of {counted(len(held_out), 'held-out condition')} judged",
         "",
         reported,
     )

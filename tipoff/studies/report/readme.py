@@ -250,7 +250,7 @@ def _ladder(found: dict) -> list[Part]:
     for point in found["points"]:
         wall = point["wall_s"]
         errors = [
-            "reference" if value is None else scale * value
+            "reference" if point["reference"] else value if value is None else scale * value
             for value, scale in ((point["error_deg_s"], 1.0), (point["curve_error"], 100.0))
         ]
         time = f"{wall:.3g} s" if wall >= 0.1 else f"{1e3 * wall:.2g} ms"
