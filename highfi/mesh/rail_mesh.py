@@ -151,7 +151,7 @@ def _elements(mesh: meshio.Mesh, wanted: Kind) -> np.ndarray:
 
 def _named_facets(mesh: meshio.Mesh, wanted: Kind) -> dict[str, np.ndarray]:
     """Facets of each contact or mount group, from cell sets, or from physical tags where a mesh made
-    in memory or a VTU file has them."""
+    in memory has them."""
     blocks = [
         (index, block.data) for index, block in enumerate(mesh.cells) if block.type == wanted.facet
     ]

@@ -26,7 +26,7 @@ def warning(mesh: RailMesh) -> tuple[str, ...]:
     spans = zip("xyz", points.min(axis=0), points.max(axis=0))
     place = ", ".join(f"{axis} {low:.6g} to {high:.6g} m" for axis, low, high in spans)
     return (
-        f"{len(found)} facets ({1e6 * facets.area(mesh.points, found):,.4g} mm2) touch others "
+        f"{len(found)} facets on both sides ({1e6 * facets.area(mesh.points, found):,.4g} mm2) touch others "
         f"without shared nodes, {place}: nothing joins the two sides, and they can pass through each "
         "other; merge the nodes in the mesh generator if the rail is one piece there",
     )

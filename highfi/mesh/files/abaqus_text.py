@@ -64,10 +64,11 @@ def _keyword(header: str, line: int) -> Keyword:
         key, _, value = parameter.partition("=")
         given[key.strip().upper()] = value.strip().strip('"')
     name = " ".join(name.upper().split())
-    if name in _MAKERS or (name in ("NODE", "ELEMENT", "ELSET") and "INPUT" in given):
+    is_elsewhere = name in ("NODE", "ELEMENT", "ELSET", "SURFACE") and "INPUT" in given
+    if name in _MAKERS or is_elsewhere:
         raise Unreadable(
-            f"line {line}: *{name}{' with INPUT' if 'INPUT' in given else ''} is not read; write the "
-            "file with all nodes, elements and sets in it"
+            f"line {line}: *{name}{' with INPUT' * is_elsewhere} is not read; write the file with all "
+            "nodes, elements and sets in it"
         )
     return Keyword(name, given, [], line)
 

@@ -69,6 +69,8 @@ class _File:
         self.is_text, self.size, self.order = header[2] == b"0", int(header[3]), "<"
         if self.size not in _SIZES:
             raise Unreadable(f"{self.size} bytes for a size; gmsh writes 8")
+        if not self.is_text and self.version == "4.0":
+            raise Unreadable("format 4.0 of gmsh in binary; save it in format 4.1")
         if not self.is_text:
             one = content[header.end() : header.end() + 4]
             orders = {(1).to_bytes(4, order): order for order in ("little", "big")}
@@ -262,9 +264,9 @@ def _size(file: _File) -> str:
 
 
 def _physical(file: _File, section: Section, found: Entities, is_part: bool) -> None:
-    size, counts = _size(file), section.take(4, _size(file))
+    size, counts = _size(file), section.counts(4, _size(file))
     for dimension, count in enumerate(counts):
-        for _ in range(int(count)):
+        for _ in range(count):
             tag = section.one()
             if is_part:
                 section.take(2)  # dimension and tag of the whole entity
@@ -278,8 +280,8 @@ def _physical(file: _File, section: Section, found: Entities, is_part: bool) -> 
 def _nodes_41(file: _File) -> tuple[np.ndarray, np.ndarray]:
     section, size = file.needed("Nodes"), _size(file)
     labels, points = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))]
-    count = section.take(4, size)[0]
-    for _ in range(int(count)):
+    count = section.counts(4, size)[0]
+    for _ in range(count):
         dimension, _, parametric = section.take(3)
         number = section.one(size)
         labels.append(section.take(number, size))
@@ -292,8 +294,8 @@ def _nodes_41(file: _File) -> tuple[np.ndarray, np.ndarray]:
 def _nodes_40(file: _File) -> tuple[np.ndarray, np.ndarray]:
     section, size = file.needed("Nodes"), _size(file)
     labels, points = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))]
-    count = section.take(2, size)[0]
-    for _ in range(int(count)):
+    count = section.counts(2, size)[0]
+    for _ in range(count):
         _, dimension, parametric = section.take(3)
         width = 3 + (int(dimension) if parametric else 0)
         label, place = section.rows(section.one(size), (INT, 1), (REAL, width))
@@ -306,8 +308,8 @@ def _elements(file: _File) -> tuple[list[Block], list[tuple[int, int]]]:
     """Blocks of elements, and the dimension and tag of the entity each one belongs to."""
     section, size, is_first = file.needed("Elements"), _size(file), file.version == "4.0"
     blocks, owners = [], []
-    count = section.take(2 if is_first else 4, size)[0]
-    for _ in range(int(count)):
+    count = section.counts(2 if is_first else 4, size)[0]
+    for _ in range(count):
         dimension, entity, number = section.take(3)
         if is_first:
             dimension, entity = entity, dimension

@@ -29,6 +29,13 @@ class Section:
         """The next number, which counts or names something."""
         return int(self.take(1, kind)[0])
 
+    def counts(self, number: int, kind: str = INT) -> list[int]:
+        """The next ``number`` counts. Raises Unreadable for a negative one."""
+        found = self.take(number, kind).tolist()
+        if min(found) < 0:
+            raise Unreadable(f"${self.name} has a negative count")
+        return found
+
     def _short(self) -> Unreadable:
         return Unreadable(f"${self.name} is shorter than its counts say")
 
