@@ -210,7 +210,9 @@ def _content_faults(
 
 
 def _inverted(points: np.ndarray, cells: np.ndarray) -> list[str]:
-    jacobian, _ = jacobians(points, cells)
+    # places that are too far apart for their products are no valid element either
+    with np.errstate(over="ignore", invalid="ignore"):
+        jacobian, _ = jacobians(points, cells)
     inverted = np.flatnonzero(~(jacobian > 0.0).all(axis=1))
     return [f"inverted or flat elements: {listed(inverted)}"] if len(inverted) else []
 

@@ -240,7 +240,7 @@ def _reference_curve(rng: random.Random, folder: Path) -> None:
 def _reference() -> str:
     """A table of curves of another code."""
     rows = ["time,velocity_x,rate_x,rate_y,rate_z", "ms,m/s,deg/s,deg/s,deg/s"]
-    rows += [f"{step},{0.02 * step:.3f},{0.04 * step:.3f},-1.5,{step % 3}" for step in range(100)]
+    rows += [f"{step / 2},{step / 50:.3f},{step / 25:.3f},-1.5,{step % 3}" for step in range(200)]
     return "\n".join(rows) + "\n"
 
 
