@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.meshes import bricks, generator, imprint
+from tipoff.meshes import bricks, generator, iges, imprint
 from tipoff.meshes.tetrahedra import Cost, filled
 
 _SAME = 1e-9  # m: two planes closer than this are one
@@ -58,9 +58,14 @@ def build(
     with generator.session("solid") as gmsh:
         gmsh.option.setString("Geometry.OCCTargetUnit", "M")
         try:
-            gmsh.model.occ.importShapes(str(path))
+            if path.suffix.lower() in iges.SUFFIXES:
+                iges.load(gmsh, path)
+            else:
+                gmsh.model.occ.importShapes(str(path))
             gmsh.model.occ.removeAllDuplicates()  # solids that touch share the face between them
             gmsh.model.occ.synchronize()
+        except ValueError:
+            raise
         except Exception as fault:  # gmsh knows no other class
             raise ValueError(f"gmsh does not read it ({fault})") from fault
         if not gmsh.model.getEntities(3):

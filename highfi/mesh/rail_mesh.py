@@ -1,4 +1,4 @@
-"""Rail mesh as plain arrays, read from a file with meshio and checked.
+"""Rail mesh as plain arrays, read from a file (``highfi.mesh.files``) and checked.
 
 A mesh needs 8-node hexahedra or 10-node tetrahedra, at least one named group of their faces that
 starts with `contact` (the walls pads touch) and one named `mount` (fixed to the platform). Nodes
@@ -11,8 +11,6 @@ which is stricter than checking it where it is integrated, and everywhere in a t
 editors do.
 """
 
-import contextlib
-import io
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -28,7 +26,8 @@ from tipoff.highfi.mesh.cells import (
     kind,
     thickness,
 )
-from tipoff.highfi.mesh.memory_limit import limited
+from tipoff.highfi.mesh.files.opened import opened
+from tipoff.highfi.mesh.files.tables import Unreadable, is_surface
 from tipoff.scenes.faults import InputError
 
 _LISTED = 20  # element numbers printed in one message
@@ -36,9 +35,6 @@ _THIN = 0.25  # of the median: thinner elements set the time step of the whole m
 # scaled Jacobian, 1 for a brick and 0.71 for corners of 45 degrees, where bending of thin layers is
 # lost
 _SKEW = 0.85
-# bytes of memory that reading a mesh takes at most: numbers as text in lists of Python, per byte of
-# the file, and what any file takes
-_PER_BYTE, _BESIDE = 100, 2**29
 
 
 class MeshError(InputError):
@@ -64,11 +60,12 @@ class RailMesh:
 
 
 def read(source) -> RailMesh:
-    """Check and convert a meshio mesh, or the path of a file meshio can read.
+    """Check and convert a meshio mesh, or the path of a file in a format of ``files.opened``.
 
-    Points no element uses are dropped. Raises MeshError for a file that meshio does not read, and
-    with one line per fault: no elements of a supported kind, two kinds or others beside them, missing
-    surfaces, facets that are not on the boundary of the solid or appear twice, inverted elements.
+    Points no element uses are dropped. Raises MeshError for a file that is not read, and with one
+    line per fault: no elements of a supported kind, two kinds or others beside them, missing
+    surfaces, facets that are not on the boundary of the solid or appear twice, elements that are
+    inverted or appear twice.
     """
     mesh = source if isinstance(source, meshio.Mesh) else _opened(Path(source))
     found = _kinds(mesh)
@@ -76,7 +73,7 @@ def read(source) -> RailMesh:
     surfaces = _named_facets(mesh, found[0])
     faults = _content_faults(mesh, found, len(cells), surfaces)
     if len(cells):
-        faults += _inverted(mesh.points, cells)
+        faults += _inverted(mesh.points, cells) + _repeated(cells)
         boundary = boundary_facets(cells)
         surfaces, facet_faults = _matched(surfaces, boundary)
         faults += facet_faults
@@ -135,20 +132,10 @@ def listed(elements: np.ndarray) -> str:
 
 
 def _opened(path: Path) -> meshio.Mesh:
-    output = io.StringIO()
     try:
-        most = _PER_BYTE * path.stat().st_size + _BESIDE
-        # meshio prints what is wrong with a file, and then asks the whole program to exit.
-        with (
-            contextlib.redirect_stdout(output),
-            contextlib.redirect_stderr(output),
-            limited(most),
-        ):
-            return meshio.read(path)
-    # each format's reader fails in its own way on damaged bytes
-    except (Exception, SystemExit) as fault:
-        why = " ".join(output.getvalue().split()) or f"{type(fault).__name__}: {fault}"
-        raise MeshError(f"{path} cannot be used: meshio does not read it ({why})") from fault
+        return opened(path)
+    except (Unreadable, OSError) as fault:
+        raise MeshError(f"{path} cannot be used: {fault}") from fault
 
 
 def _kinds(mesh: meshio.Mesh) -> list[Kind]:
@@ -162,13 +149,9 @@ def _elements(mesh: meshio.Mesh, wanted: Kind) -> np.ndarray:
     return np.concatenate(blocks).astype(np.int64) if blocks else np.empty((0, 8), dtype=np.int64)
 
 
-def _is_surface(name: str) -> bool:
-    return name.startswith("contact") or name == "mount"
-
-
 def _named_facets(mesh: meshio.Mesh, wanted: Kind) -> dict[str, np.ndarray]:
-    """Facets of each contact or mount group, from gmsh's physical tags or from the cell sets of
-    other formats."""
+    """Facets of each contact or mount group, from cell sets, or from physical tags where a mesh made
+    in memory has them."""
     blocks = [
         (index, block.data) for index, block in enumerate(mesh.cells) if block.type == wanted.facet
     ]
@@ -180,16 +163,15 @@ def _named_facets(mesh: meshio.Mesh, wanted: Kind) -> dict[str, np.ndarray]:
                 if dimension == 2:
                     groups.setdefault(name, []).append(facets[physical[index] == tag])
         for name, members in mesh.cell_sets.items():
-            # A format that gives both (gmsh 4.1) gives the same group twice. Other sets, such as
-            # the entities that bound another one, are no lists of facets.
-            if _is_surface(name) and name not in mesh.field_data and members[index] is not None:
+            # Where both are there they give the same group.
+            if is_surface(name) and name not in mesh.field_data and members[index] is not None:
                 groups.setdefault(name, []).append(
                     facets[np.asarray(members[index], dtype=np.int64)]
                 )
     merged = {
         name: np.concatenate(parts).astype(np.int64)
         for name, parts in groups.items()
-        if _is_surface(name)
+        if is_surface(name)
     }
     return {name: facets for name, facets in merged.items() if len(facets)}
 
@@ -228,9 +210,18 @@ def _content_faults(
 
 
 def _inverted(points: np.ndarray, cells: np.ndarray) -> list[str]:
-    jacobian, _ = jacobians(points, cells)
+    # places that are too far apart for their products are no valid element either
+    with np.errstate(over="ignore", invalid="ignore"):
+        jacobian, _ = jacobians(points, cells)
     inverted = np.flatnonzero(~(jacobian > 0.0).all(axis=1))
     return [f"inverted or flat elements: {listed(inverted)}"] if len(inverted) else []
+
+
+def _repeated(cells: np.ndarray) -> list[str]:
+    """Elements with the nodes of an earlier one: the solid would be twice as stiff there."""
+    _, first = np.unique(np.sort(cells, axis=1), axis=0, return_index=True)
+    again = np.delete(np.arange(len(cells)), first)
+    return [f"elements that appear twice: {listed(again)}"] if len(again) else []
 
 
 def _matched(

@@ -4,7 +4,7 @@ file."""
 from dataclasses import replace
 
 from tipoff.files import content_hash
-from tipoff.highfi.mesh import split
+from tipoff.highfi.mesh import split, touching
 from tipoff.highfi.mesh.rail_mesh import MeshError, RailMesh, along_x, read
 from tipoff.highfi.rail import memory_fault, solid_process, step_cost
 from tipoff.highfi.rail.fit import check_areas, check_frame, check_held
@@ -46,6 +46,7 @@ def make_mesh(scene: Scene, element_size: float) -> RailMesh:
     mesh = read(scene.rail.path())
     check_frame(scene, scene.rail, mesh)  # a mesh in millimetres would fill the memory
     check_held(scene.rail, mesh)
+    mesh = replace(mesh, warnings=(*mesh.warnings, *touching.warning(mesh)))
     # before the split, because its messages give the element numbers of the file
     mesh = step_cost.with_sliver_steps(mesh, scene.rail.material)
     memory_fault.require_split(scene, element_size, mesh)

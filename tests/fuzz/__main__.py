@@ -38,7 +38,7 @@ def worker() -> None:
     _, hard = resource.getrlimit(resource.RLIMIT_DATA)
     print(json.dumps({"ready": True}), file=answers, flush=True)
     for line in sys.stdin:
-        kind, seed = line.split()
+        kind, seed = line.rsplit(maxsplit=1)
         resource.setrlimit(resource.RLIMIT_DATA, (used + 2 * BYTES, hard))
         before, why = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024, ""
         with tempfile.TemporaryDirectory() as folder:

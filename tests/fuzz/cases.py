@@ -12,7 +12,10 @@ import numpy as np
 import typer
 
 from tests.fuzz import mutants
+from tests.highfi.mesh import seeds
 from tipoff import scenes
+from tipoff.calibration.curves import Curves
+from tipoff.highfi.mesh import touching
 from tipoff.highfi.mesh.rail_mesh import read
 from tipoff.highfi.rail import fit, step_cost
 from tipoff.lowfi.ensemble.table import TableFile
@@ -139,12 +142,11 @@ def _dotted(table: dict) -> list:
 
 
 def _mesh(rng: random.Random, folder: Path) -> None:
-    form = rng.choice(("values", "binary", "text", "vtu", "inp"))
-    file = folder / f"mesh.{form if form in ('vtu', 'inp') else 'msh'}"
-    if form == "values":
+    file = folder / "mesh.msh"
+    if rng.random() < 0.4:
         meshio.gmsh.write(file, mutants.of_mesh(rng, _original()), "2.2", binary=True)
     else:
-        _write(form, file)
+        meshio.gmsh.write(file, _original(), "2.2", binary=rng.random() < 0.5)
         file.write_bytes(mutants.of_bytes(rng, file.read_bytes()))
     scene = scenes.load("channel").replace({"rail.mesh": str(file)})
     mesh = read(file)
@@ -158,22 +160,27 @@ def _original() -> meshio.Mesh:
     return meshio.read(reading.CATALOG / "channel.msh")
 
 
-def _write(form: str, file: Path) -> None:
-    """The mesh of the catalogue in another format."""
-    mesh = _original()
-    if form in ("binary", "text"):
-        meshio.gmsh.write(file, mesh, "2.2", binary=form == "binary")
-        return
-    mesh.field_data, mesh.cell_data = {}, {}
-    mesh.write(file)
+def _mesh_file(rng: random.Random, folder: Path) -> None:
+    """A small rail in each format of mesh files; text is edited by lines too, so that keywords and
+    sets meet each other in other orders."""
+    form = rng.choice(list(seeds.FORMS))
+    file = seeds.write(form, folder / "rail")
+    content = file.read_bytes()
+    if not form.endswith("binary") and rng.random() < 0.7:
+        text = mutants.of_text(rng, content.decode())
+        file.write_bytes(text.encode("utf-8", "surrogatepass"))
+    else:
+        file.write_bytes(mutants.of_bytes(rng, content))
+    touching.warning(read(file))
 
 
 def _solid(rng: random.Random, folder: Path) -> None:
-    """A plate in a STEP file, held at one face."""
+    """A plate in a file of CAD, held at one face."""
     from tipoff import highfi
 
-    file = folder / "plate.step"
-    file.write_bytes(mutants.of_text(rng, _plate()).encode("utf-8", "surrogatepass"))
+    suffix = rng.choice(("step", "step", "igs", "brep"))
+    file = folder / f"plate.{suffix}"
+    file.write_bytes(mutants.of_text(rng, _plate(suffix)).encode("utf-8", "surrogatepass"))
     raw, _ = reading.read("tiny")
     rail = raw["rail"]
     box = [{"low": ["-88 mm", "-1 m", "-1 m"], "high": ["-88 mm", "1 m", "1 m"]}]
@@ -186,14 +193,18 @@ def _solid(rng: random.Random, folder: Path) -> None:
 
 
 @cache
-def _plate() -> str:
-    """Text of a STEP file in millimetres."""
+def _plate(suffix: str) -> str:
+    """Text of a file of CAD; STEP and IGES are in millimetres, BREP has no unit."""
     with tempfile.TemporaryDirectory() as folder, generator.session("plate") as gmsh:
-        gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
+        if suffix == "step":
+            gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
         gmsh.model.occ.addBox(-88.0, 100.25, 80.0, 224.0, 4.0, 24.0)
         gmsh.model.occ.synchronize()
-        gmsh.write(f"{folder}/plate.step")
-        return Path(folder, "plate.step").read_text(encoding="utf-8")
+        if suffix == "brep":
+            gmsh.model.occ.dilate(gmsh.model.occ.getEntities(3), 0, 0, 0, 1e-3, 1e-3, 1e-3)
+            gmsh.model.occ.synchronize()
+        gmsh.write(f"{folder}/plate.{suffix}")
+        return Path(folder, f"plate.{suffix}").read_text(encoding="utf-8")
 
 
 def _table(rng: random.Random, folder: Path) -> None:
@@ -217,6 +228,20 @@ def _curve(rng: random.Random, folder: Path) -> None:
     raw.pop("provenance")
     found = scenes.parse(raw | {"thrust": thrust})
     found.thrust.describe(found.duration)
+
+
+def _reference_curve(rng: random.Random, folder: Path) -> None:
+    file = folder / "reference.csv"
+    file.write_bytes(mutants.of_text(rng, _reference()).encode("utf-8", "surrogatepass"))
+    Curves.read_csv(file, rng.choice((None, 0.05)))
+
+
+@cache
+def _reference() -> str:
+    """A table of curves of another code."""
+    rows = ["time,velocity_x,rate_x,rate_y,rate_z", "ms,m/s,deg/s,deg/s,deg/s"]
+    rows += [f"{step / 2},{step / 50:.3f},{step / 25:.3f},-1.5,{step % 3}" for step in range(200)]
+    return "\n".join(rows) + "\n"
 
 
 def _log(rng: random.Random, folder: Path) -> None:
@@ -255,9 +280,11 @@ KINDS: dict[str, Callable[[random.Random, Path], None]] = {
     "override": _override,
     "step": _step,
     "mesh": _mesh,
+    "mesh file": _mesh_file,
     "solid": _solid,
     "table": _table,
     "curve": _curve,
+    "reference curve": _reference_curve,
     "log": _log,
     "distributions": _distributions,
     "calibration": _calibration,

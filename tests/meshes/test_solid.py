@@ -165,6 +165,69 @@ def test_a_solid_with_a_hole_is_filled_to_its_volume(tmp_path):
     assert len(np.unique(facets)) - len(edges) + len(facets) == 0
 
 
+def in_iges(path, shapes):
+    """A file of IGES in millimetres, whose faces share no edges."""
+    with generator.session("drawing") as gmsh:
+        shapes(gmsh.model.occ)
+        gmsh.model.occ.synchronize()
+        gmsh.write(str(path))
+    return path
+
+
+def two_bars(occ):
+    """Two bars apart from each other."""
+    occ.addBox(0, 0, 0, 40, 20, 8)
+    occ.addBox(0, 0, 50, 40, 20, 8)
+
+
+@pytest.mark.parametrize("shapes", [two_bars, l_sections, drilled, tube, tilted_plate])
+def test_a_solid_in_iges_is_the_solid_in_step(tmp_path, shapes):
+    """Volume, and the areas in a box on one side; bricks have the same nodes."""
+    boxes = {"mount": np.array([[[-1.0, -1.0, -1.0], [0.0, 1.0, 1.0]]])}
+    if shapes is drilled:
+        boxes = {"mount": np.array([[[-1.0, -1.0, -1.0], [0.02, 1.0, 1.0]]])}
+    there = solid.build(drawn(tmp_path / "a.step", shapes), 0.004, boxes)
+    here = solid.build(in_iges(tmp_path / "a.igs", shapes), 0.004, boxes)
+    assert here.areas == pytest.approx(there.areas, rel=1e-6)
+    volumes = [hexahedron.basis(made.points[made.cells]).dx.sum() for made in (here, there)]
+    assert volumes[0] == pytest.approx(volumes[1], rel=5e-3 if shapes is drilled else 1e-6)
+    if shapes in (two_bars, l_sections):
+        assert np.allclose(ordered(here.points), ordered(there.points), atol=1e-9)
+        assert len(here.cells) == len(there.cells)
+
+
+def without_a_face(occ):
+    """The faces of a bar but one."""
+    occ.addBox(0, 0, 0, 40, 20, 8)
+    occ.remove([(3, 1)])
+    occ.remove([(2, 1)])
+
+
+def touching_bars(occ):
+    """Two bars side by side."""
+    occ.addBox(0, 0, 0, 40, 20, 8)
+    occ.addBox(40, 0, 0, 40, 20, 8)
+
+
+def hollow(occ):
+    """A bar with a cavity inside."""
+    cavity = occ.addBox(10, 5, 2, 20, 10, 4)
+    occ.cut([(3, occ.addBox(0, 0, 0, 40, 20, 8))], [(3, cavity)])
+
+
+@pytest.mark.parametrize(
+    "shapes, why",
+    [
+        (without_a_face, "4 edges open"),
+        (touching_bars, "4 edges belong to more than two faces"),
+        (hollow, "lies inside another"),
+    ],
+)
+def test_faces_of_iges_that_are_no_solids_are_refused(tmp_path, shapes, why):
+    with pytest.raises(ValueError, match=f"{why}.*export the solid as STEP"):
+        solid.build(in_iges(tmp_path / "a.igs", shapes), 0.004, NONE)
+
+
 def test_split_tetrahedra_give_a_warning_of_skew(tmp_path):
     surfaces = {
         "contact_top": [flat(2, 0.008, [(0, 0), (0.04, 0.02)])],

@@ -200,11 +200,11 @@ def _readable(file: str) -> str:
 
 
 class MeshTable(_FileTable):
-    """``[rail] mesh``: 8-node hexahedra or 10-node tetrahedra in any format meshio reads, with
-    named surfaces ``contact...`` and ``mount`` (``highfi.mesh.rail_mesh``)."""
+    """``[rail] mesh``: 8-node hexahedra or 10-node tetrahedra in a file of gmsh, Abaqus or
+    Nastran, with named surfaces ``contact...`` and ``mount`` (``highfi.mesh.rail_mesh``)."""
 
     GIVEN_BY = "mesh"
-    #: Mesh file in any format that meshio reads, in scene axes and metres.
+    #: Mesh file of gmsh, Abaqus or Nastran, in scene axes and metres.
     mesh: Annotated[str, AfterValidator(_readable)]
 
 

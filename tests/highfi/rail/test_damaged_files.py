@@ -28,14 +28,22 @@ def lines(tmp_path):
     return (tmp_path / "channel.msh").read_text().split("\n")
 
 
-@pytest.mark.parametrize("place, text", [(2, "2147483647 0 0 0"), (1, "999999999999")])
-def test_a_number_in_a_mesh_does_not_ask_for_all_memory(tmp_path, lines, place, text):
+@pytest.mark.parametrize(
+    "place, text, why",
+    [
+        (2, "2147483647 0 0 0", "no coordinates for nodes 1,"),
+        (1, "999999999999", "Nodes is shorter than its counts say"),
+    ],
+)
+def test_a_number_in_a_mesh_does_not_ask_for_all_memory(tmp_path, lines, place, text, why):
     """The number of a node, and of all nodes: gigabytes. The limit is lifted afterwards."""
     before = resource.getrlimit(resource.RLIMIT_AS)
     lines[lines.index("$Nodes") + place] = text
     (tmp_path / "bad.msh").write_text("\n".join(lines))
-    with pytest.raises(MeshError, match="MemoryError"):
+    used = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    with pytest.raises(MeshError, match=why):
         read(tmp_path / "bad.msh")
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - used < 2**19  # kB
     assert resource.getrlimit(resource.RLIMIT_AS) == before
 
 

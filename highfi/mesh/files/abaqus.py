@@ -1,0 +1,163 @@
+"""Meshes in input files of Abaqus and CalculiX: nodes, elements, element sets and surfaces, in the
+file itself or in parts that instances place.
+
+A set has all members that any line of the file gives it: elements under its ``*ELEMENT``, numbers,
+ranges and other sets under ``*ELSET``. Names of sets do not depend on capitals. A ``*SURFACE`` of
+element faces is a named group as well. See "Keywords reference" of the Abaqus guides.
+"""
+
+import meshio
+import numpy as np
+
+from tipoff.highfi.mesh.files import abaqus_types
+from tipoff.highfi.mesh.files.abaqus_groups import gathered
+from tipoff.highfi.mesh.files.abaqus_model import ROOT, Body, Model, Reference
+from tipoff.highfi.mesh.files.abaqus_text import Keyword, keywords, real, whole
+from tipoff.highfi.mesh.files.tables import Unreadable
+
+
+def read(content: bytes) -> meshio.Mesh:
+    """The mesh in the ``content`` of a file. Raises Unreadable."""
+    model = Model()
+    for keyword in keywords(content.decode("utf-8", "replace")):
+        _take(model, keyword)
+    if not any(body.labels for body in model.bodies.values()):
+        raise Unreadable("no *NODE, which an input file of Abaqus has")
+    return gathered(model)
+
+
+def _take(model: Model, keyword: Keyword) -> None:
+    match keyword.name:
+        case "NODE":
+            _nodes(model.current, keyword)
+        case "ELEMENT":
+            _elements(model, keyword)
+        case "ELSET":
+            _set(model, keyword)
+        case "SURFACE":
+            _surface(model, keyword)
+        case "PART":
+            model.scope = keyword.of("NAME").upper()
+            model.current = model.parts[model.scope] = Body()
+        case "INSTANCE":
+            _instance(model, keyword)
+        case "END PART" | "END INSTANCE":
+            model.current, model.scope = model.bodies[ROOT], ROOT
+
+
+def _nodes(body: Body, keyword: Keyword) -> None:
+    if keyword.given.get("SYSTEM", "R").upper() != "R":
+        raise Unreadable(f"line {keyword.line}: *NODE in a system that is not rectangular")
+    for line, fields in keyword.data:
+        body.labels.append(whole(fields[0], line))
+        places = [real(field, line) for field in fields[1:4]]
+        body.points.append(places + [0.0] * (3 - len(places)))
+
+
+def _elements(model: Model, keyword: Keyword) -> None:
+    body, found = model.current, abaqus_types.known(keyword.of("TYPE"))
+    labels = []
+    if found is None:
+        labels = [whole(fields[0], line) for line, fields in keyword.data]
+        body.others.update(labels)
+    else:
+        kind, nodes = found
+        members = body.elements.setdefault(kind, {})
+        row: list[int] = []
+        for line, fields in keyword.data:
+            row += [whole(field, line) for field in fields]
+            if len(row) > nodes + 1:
+                raise Unreadable(
+                    f"line {line}: {len(row) - 1} nodes of an element of {nodes} ({kind})"
+                )
+            if len(row) == nodes + 1:
+                label, own = row[0], tuple(row[1:])
+                if body.has(label) and members.get(label) != own:
+                    raise Unreadable(f"line {line}: a second element {label}")
+                members[label] = own
+                labels.append(label)
+                row = []
+        if row:
+            raise Unreadable(f"the last element of *ELEMENT in line {keyword.line} lacks nodes")
+    if name := keyword.given.get("ELSET"):
+        lines = [Reference(model.scope, range(one, one + 1), "", keyword.line) for one in labels]
+        body.sets.setdefault(model.named(name), []).extend(lines)
+
+
+def _set(model: Model, keyword: Keyword) -> None:
+    members = model.current.sets.setdefault(model.named(keyword.of("ELSET")), [])
+    scope = keyword.given.get("INSTANCE", model.scope).upper()
+    for line, fields in keyword.data:
+        if "GENERATE" in keyword.given:
+            numbers = [whole(field, line) for field in fields]
+            first, last, step = (*numbers, 1)[:3] if len(numbers) in (2, 3) else (0, 0, 0)
+            if step < 1 or last < first:
+                raise Unreadable(f"line {line}: GENERATE needs first, last and step")
+            members.append(Reference(scope, range(first, last + 1, step), "", line))
+        else:
+            members += [_reference(field, scope, line) for field in fields if field]
+
+
+def _reference(field: str, scope: str, line: int) -> Reference:
+    """An element or a set, in front of which an instance may stand."""
+    owner, _, rest = field.strip('"').rpartition(".")
+    if rest.isdigit():
+        number = whole(rest, line)
+        return Reference(owner.upper() or scope, range(number, number + 1), "", line)
+    if owner:
+        return Reference(owner.upper(), range(0), rest.upper(), line)
+    return Reference(scope, range(0), field.strip('"').upper(), line)
+
+
+def _surface(model: Model, keyword: Keyword) -> None:
+    if keyword.given.get("TYPE", "ELEMENT").upper() != "ELEMENT" or "COMBINE" in keyword.given:
+        return
+    members = model.current.surfaces.setdefault(model.named(keyword.of("NAME")), [])
+    for line, fields in keyword.data:
+        if fields and fields[0]:
+            face = fields[1].upper() if len(fields) > 1 else ""
+            members.append((_reference(fields[0], model.scope, line), face))
+
+
+def _instance(model: Model, keyword: Keyword) -> None:
+    model.scope, part = keyword.of("NAME").upper(), keyword.given.get("PART", "").upper()
+    if part and part not in model.parts:
+        raise Unreadable(f"line {keyword.line}: no part {part}")
+    model.current = model.bodies[model.scope] = body = Body()
+    if not part:
+        return
+    source = model.parts[part]
+    numbers = [[real(field, line) for field in fields] for line, fields in keyword.data]
+    points = _placed(np.reshape(source.points, (-1, 3)), numbers, keyword.line)
+    body.labels, body.points = list(source.labels), points.tolist()
+    body.elements = {kind: dict(found) for kind, found in source.elements.items()}
+    body.others = set(source.others)
+    here = model.scope
+    body.sets = {
+        name: [one._replace(scope=here) for one in found] for name, found in source.sets.items()
+    }
+    body.surfaces = {
+        name: [(one._replace(scope=here), face) for one, face in found]
+        for name, found in source.surfaces.items()
+    }
+
+
+def _placed(points: np.ndarray, numbers: list[list[float]], line: int) -> np.ndarray:
+    """Points moved by the first line of an instance, then turned about an axis between two points by
+    degrees in the second."""
+    if [len(each) for each in numbers] not in ([], [3], [3, 7]):
+        raise Unreadable(f"line {line}: an instance has three numbers, then seven")
+    if numbers:
+        points = points + numbers[0]
+    if len(numbers) == 2:
+        start, end, angle = np.array(numbers[1][:3]), np.array(numbers[1][3:6]), numbers[1][6]
+        axis = (end - start) / (np.linalg.norm(end - start) or np.nan)
+        turned, radians = points - start, np.deg2rad(angle)
+        # Rodrigues' formula
+        points = (
+            start
+            + turned * np.cos(radians)
+            + np.cross(axis, turned) * np.sin(radians)
+            + np.outer(turned @ axis, axis) * (1.0 - np.cos(radians))
+        )
+    return points

@@ -1,0 +1,158 @@
+"""Members of the sets and surfaces of an Abaqus input file, and the mesh they are groups of."""
+
+import meshio
+import numpy as np
+
+from tipoff.highfi.mesh.files.abaqus_model import Model, Reference
+from tipoff.highfi.mesh.files.abaqus_types import FACES
+from tipoff.highfi.mesh.files.tables import Block, Unreadable, any_case, mesh, shown
+
+_SIDES = ("", "SPOS", "SNEG")  # of a shell
+
+
+class _Members:
+    """Elements of each set by the name of their body, worked out once for each set."""
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self._found: dict[tuple[str, str], dict[str, set[int]] | None] = {}
+        self._labels = {
+            name: np.array(
+                sorted({*body.others, *(one for found in body.elements.values() for one in found)}),
+                dtype=np.int64,
+            )
+            for name, body in model.bodies.items()
+        }
+
+    def of_set(self, scope: str, name: str, line: int) -> dict[str, set[int]]:
+        """Members of a set of a body. Raises Unreadable for a set or an element that is not there,
+        and for a set that contains itself."""
+        body = self._model.bodies.get(scope)
+        if body is None or name not in body.sets:
+            raise Unreadable(f"line {line}: no element set {name} {f'in {scope}' * bool(scope)}")
+        key = (scope, name)
+        if key not in self._found:
+            self._found[key] = None
+            gathered: dict[str, set[int]] = {}
+            for one in body.sets[name]:
+                for owner, labels in self.of(one).items():
+                    gathered.setdefault(owner, set()).update(labels)
+            self._found[key] = gathered
+        found = self._found[key]
+        if found is None:
+            raise Unreadable(f"line {line}: element set {name} contains itself")
+        return found
+
+    def of(self, reference: Reference) -> dict[str, set[int]]:
+        """Elements that a line names. Of a range they are those that exist."""
+        scope, numbers, name, line = reference
+        if name:
+            return self.of_set(scope, name, line)
+        labels = self._labels.get(scope)
+        if labels is None:
+            raise Unreadable(f"line {line}: no instance {scope}")
+        low, high = np.searchsorted(labels, [numbers.start, numbers.stop])
+        there = {one for one in labels[low:high].tolist() if one in numbers}
+        if len(numbers) == 1 and not there:
+            raise Unreadable(f"line {line}: no element {numbers.start}")
+        return {scope: there}
+
+
+def gathered(model: Model) -> meshio.Mesh:
+    """The mesh of a model, with the named groups of surfaces. Raises Unreadable."""
+    members, blocks, owners = _Members(model), [], []
+    labels, points, shift = [], [], 0
+    for name, body in model.bodies.items():
+        own = np.array(body.labels, dtype=np.int64)
+        labels.append(own + shift)
+        points.append(np.reshape(np.array(body.points, dtype=float), (-1, 3)))
+        for kind, found in body.elements.items():
+            nodes = np.array(list(found.values()), dtype=np.int64)
+            if not len(nodes):
+                continue
+            if not (known := np.isin(nodes, own)).all():
+                missing = np.unique(nodes[~known])
+                raise Unreadable(f"no coordinates for nodes {shown(missing)}, which elements use")
+            blocks.append(Block(kind, np.array(list(found), dtype=np.int64), nodes + shift))
+            owners.append(name)
+        # numbers of nodes are those of the body
+        shift += int(np.abs(own).max(initial=0)) + 1
+        if shift >= 2**62:
+            raise Unreadable("numbers of nodes that are too large")
+    groups = _Groups(blocks, owners)
+    for scope, body in model.bodies.items():
+        for name, given in body.sets.items():
+            shown_name = groups.add(model.written[name])
+            if any_case(name):
+                line = given[0].line if given else 0
+                groups.extend(shown_name, members.of_set(scope, name, line))
+        for name, lines in body.surfaces.items():
+            shown_name = groups.add(model.written[name])
+            for reference, face in lines if any_case(name) else ():
+                groups.extend_by_faces(shown_name, members.of(reference), face, reference.line)
+    every, parts = groups.finished()
+    return mesh(np.concatenate(labels), np.concatenate(points), every, parts)
+
+
+class _Groups:
+    """Members of groups in each block; faces of solids become blocks of their own."""
+
+    def __init__(self, blocks: list[Block], owners: list[str]) -> None:
+        self._blocks, self._owners = blocks, owners
+        self._inside: dict[str, list[np.ndarray]] = {}
+        self._faces: dict[str, dict[str, list[np.ndarray]]] = {}
+
+    def add(self, written: str) -> str:
+        """Name of a group as the checks of rails know it."""
+        name = any_case(written) or written
+        self._inside.setdefault(
+            name, [np.zeros(len(block.labels), dtype=bool) for block in self._blocks]
+        )
+        return name
+
+    def extend(self, name: str, members: dict[str, set[int]], kinds: tuple[str, ...] = ()) -> None:
+        """Add elements, of all types or of some, to a group."""
+        for inside, block, owner in zip(self._inside[name], self._blocks, self._owners):
+            if wanted := members.get(owner):
+                if not kinds or block.kind in kinds:
+                    inside |= np.isin(block.labels, np.array(sorted(wanted)))
+
+    def extend_by_faces(
+        self, name: str, members: dict[str, set[int]], face: str, line: int
+    ) -> None:
+        """Add a face of each element: a shell itself, or S1, S2, ... of a solid. Raises
+        Unreadable for a face that an element does not have."""
+        if face in _SIDES:
+            self.extend(name, members)
+        for block, owner in zip(self._blocks, self._owners):
+            chosen = np.isin(block.labels, np.array(sorted(members.get(owner, ())), dtype=np.int64))
+            if not chosen.any() or (face in _SIDES and block.kind not in FACES):
+                continue
+            kind, faces = FACES.get(block.kind, ("", []))
+            number = int(face[1:]) if face[:1] == "S" and face[1:].isdigit() else 0
+            if not 0 < number <= len(faces):
+                raise Unreadable(
+                    f"line {line}: face {face or 'of no name'} of {block.kind} elements; S1 to "
+                    f"S{len(faces)} are read"
+                )
+            self._faces.setdefault(name, {}).setdefault(kind, []).append(
+                block.nodes[chosen][:, faces[number - 1]]
+            )
+
+    def finished(self) -> tuple[list[Block], dict[str, list[np.ndarray]]]:
+        """All blocks, and the places of the members of each group in them."""
+        blocks = list(self._blocks)
+        groups = {
+            name: [np.flatnonzero(one) for one in inside] for name, inside in self._inside.items()
+        }
+        nothing = np.array([], dtype=np.int64)
+        for name, kinds in self._faces.items():
+            for kind, rows in kinds.items():
+                _, first = np.unique(
+                    np.sort(np.concatenate(rows), axis=1), axis=0, return_index=True
+                )
+                nodes = np.concatenate(rows)[np.sort(first)]
+                blocks.append(Block(kind, np.arange(len(nodes)), nodes))
+                for other, parts in groups.items():
+                    parts.append(np.arange(len(nodes)) if other == name else nothing)
+        return blocks, groups

@@ -1,0 +1,44 @@
+"""A mesh file read by its format, which the end of its name gives."""
+
+from pathlib import Path
+
+import meshio
+
+from tipoff.files import open_input
+from tipoff.highfi.mesh.files import abaqus, gmsh_msh, nastran
+from tipoff.highfi.mesh.files.tables import Unreadable
+from tipoff.highfi.mesh.memory_limit import limited
+
+_READERS = {
+    ".msh": ("gmsh", gmsh_msh.read),
+    ".inp": ("Abaqus", abaqus.read),
+    ".bdf": ("Nastran", nastran.read),
+    ".nas": ("Nastran", nastran.read),
+    ".fem": ("Nastran", nastran.read),
+    ".dat": ("Nastran", nastran.read),
+}
+SUFFIXES = tuple(_READERS)
+# bytes of memory that reading a mesh takes at most: numbers as text in lists of Python, per byte of
+# the file, and what any file takes
+_PER_BYTE, _BESIDE = 100, 2**29
+
+
+def opened(path: Path) -> meshio.Mesh:
+    """The mesh in a file. Raises Unreadable, and OSError where it cannot be opened."""
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise Unreadable(
+            f"a mesh file ends in one of {', '.join(SUFFIXES)}; let the mesh generator write one of "
+            "these, with its groups"
+        )
+    name, reader = _READERS[suffix]
+    with open_input(path) as stream:
+        content = stream.read()
+    try:
+        with limited(_PER_BYTE * len(content) + _BESIDE):
+            return reader(content)
+    except Unreadable as fault:
+        raise Unreadable(f"as a file of {name}: {fault}") from fault
+    except Exception as fault:  # what no check foresaw
+        why = f"{type(fault).__name__}: {fault}"
+        raise Unreadable(f"the reader of {name} files fails on it ({why})") from fault

@@ -1,0 +1,70 @@
+"""What the readers of all formats share: the fault they raise, numbers of nodes turned into places
+in a list, and blocks of elements with named groups turned into a mesh."""
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+import meshio
+import numpy as np
+
+_LISTED = 5  # numbers in one message
+
+
+class Unreadable(ValueError):
+    """A file that its format does not allow, or that says what is not read here; the message names
+    the place and the remedy."""
+
+
+class Block(NamedTuple):
+    """Elements of one type."""
+
+    kind: str  # name of the type in meshio
+    labels: np.ndarray  # (e,) numbers of the elements in the file
+    nodes: np.ndarray  # (e,k) numbers of their nodes in the file
+
+
+def is_surface(name: str) -> bool:
+    """Whether a group is a wall or the clamped surface of a rail."""
+    return name.startswith("contact") or name == "mount"
+
+
+def any_case(name: str) -> str:
+    """Name of a surface in a format that does not tell capitals apart; empty for other groups."""
+    lower = name.lower()
+    return lower if is_surface(lower) else ""
+
+
+def shown(numbers: Iterable) -> str:
+    """The first of some numbers of a file, and how many more there are."""
+    every = list(numbers)
+    text = ", ".join(str(number) for number in every[:_LISTED])
+    return text if len(every) <= _LISTED else f"{text} and {len(every) - _LISTED} more"
+
+
+def mesh(
+    labels: np.ndarray,
+    points: np.ndarray,
+    blocks: Sequence[Block],
+    groups: dict[str, list[np.ndarray]],
+) -> meshio.Mesh:
+    """Mesh of nodes with numbers ``labels`` (n,) at ``points`` (n,3), and of ``blocks``; ``groups``
+    has the members of each name by their places in each block.
+
+    Raises Unreadable for nodes that have two places or none.
+    """
+    order = np.argsort(labels, kind="stable")
+    ordered = labels[order]
+    again = np.flatnonzero(ordered[1:] == ordered[:-1])
+    differ = (points[order[again]] != points[order[again + 1]]).any(axis=1)
+    if differ.any():
+        raise Unreadable(f"two places for nodes {shown(ordered[again[differ]])}")
+    cells = []
+    for block in blocks:
+        place = np.searchsorted(ordered, block.nodes)
+        known = place < len(ordered)
+        known[known] = ordered[place[known]] == block.nodes[known]
+        if not known.all():
+            missing = np.unique(block.nodes[~known])
+            raise Unreadable(f"no coordinates for nodes {shown(missing)}, which elements use")
+        cells.append((block.kind, order[place]))
+    return meshio.Mesh(points, cells, cell_sets=groups)
