@@ -17,14 +17,15 @@ import numpy as np
 
 from tipoff.files import open_input
 from tipoff.scenes import units
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.faults import MOST_ALIKE, Fault, SceneError
 
 Line = tuple[int, list[str]]  # its number in the file, and its cells
 _HEAD = re.compile(r"\s*(.*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
 _LONGEST = 2**20  # characters of a line
 _MOST_COLUMNS = 1000
 MOST_LINES = 1_000_000  # of a curve or a log, which is held in memory as text
-_SHOWN = 5  # lines with one fault that are listed; the rest is counted
+_SHOWN = 3  # lines with one fault that are listed; the rest is counted
+_CELL = 80  # characters of a cell that a fault shows
 
 
 def lines(
@@ -131,12 +132,12 @@ def numbers(
         else:
             sound = gaps or np.isfinite(values[index])
         if not sound:
-            wrong.setdefault(repr(text) if text else "nothing", []).append(number)
+            wrong.setdefault(_quoted(text), []).append(number)
     expected = "a number" if gaps else "a finite number in each line"
-    return values, [
-        Fault(source, name, f"{text} in {_listed(where)}", expected)
-        for text, where in wrong.items()
-    ]
+    shown = [f"{text} in {_listed(where)}" for text, where in list(wrong.items())[:MOST_ALIKE]]
+    if rest := [number for where in list(wrong.values())[MOST_ALIKE:] for number in where]:
+        shown.append(f"other text in {_listed(rest)}")
+    return values, [Fault(source, name, given, expected) for given in shown]
 
 
 def factor_to_si(
@@ -162,6 +163,12 @@ def _head(cell: str) -> tuple[str, str | None]:
 
 def _cell(row: list[str], place: int) -> str:
     return row[place].strip() if place < len(row) else ""
+
+
+def _quoted(text: str) -> str:
+    if len(text) > _CELL:
+        text = f"{text[:_CELL]} ..."
+    return repr(text) if text else "nothing"
 
 
 def _listed(where: list[int]) -> str:

@@ -2,6 +2,7 @@
 expected one."""
 
 import difflib
+import re
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
@@ -40,6 +41,8 @@ class Fault(NamedTuple):
 
 NO_SUCH_KEY = "no such key"
 MOST_NAMES = 3  # that a message proposes
+MOST_ALIKE = 3  # faults of one kind that a message lists
+_NUMBERS = re.compile(r"[+-]?\d+(?:\.\d*)?(?:[eE][+-]?\d+)?")
 _ALIKE = 0.7  # of difflib: one or two letters in ten differ
 
 
@@ -70,12 +73,27 @@ class SceneError(InputError):
         places = {fault.place for fault in faults}
         place = places.pop() if len(places) == 1 else "input"
         super().__init__(
-            "\n".join([f"{count} in the {place}"] + [f"  {fault}" for fault in faults])
+            "\n".join([f"{count} in the {place}"] + [f"  {line}" for line in listed(faults)])
         )
 
     def __reduce__(self):
         # As it comes back from another process; by default it would take the message for the faults.
         return type(self), (self.faults,)
+
+
+def listed(faults: list[Fault]) -> list[str]:
+    """The faults as lines: of each kind ``MOST_ALIKE``, and how many more there are. Faults of one
+    kind have the same source, and keys and expected values that differ in numbers alone."""
+    kinds: dict[tuple[str, ...], list[Fault]] = {}
+    for fault in faults:
+        kind = tuple(_NUMBERS.sub("#", part) for part in (fault.source, fault.key, fault.expected))
+        kinds.setdefault(kind, []).append(fault)
+    found = []
+    for alike in kinds.values():
+        found += map(str, alike[:MOST_ALIKE])
+        if more := len(alike) - MOST_ALIKE:
+            found += [f"{alike[0].source}: and {more:,} more of this kind"] if more > 0 else []
+    return found
 
 
 def within(key: str, given: str, expected: str) -> PydanticCustomError:

@@ -171,7 +171,7 @@ def test_cases_that_do_not_settle(tiny, tmp_path, monkeypatch):
     """A few are counted and left out with their base points; too many are a StudyError. Figures are
     drawn in another test."""
     run = population.run
-    monkeypatch.setattr(sensitivity, "to_files", lambda *_: [])
+    monkeypatch.setattr(sensitivity, "with_figures", lambda found, *_: (found, []))
 
     def spoilt(cases):
         def one(*arguments):

@@ -11,6 +11,7 @@ from tipoff.scenes import csv_file
 from tipoff.scenes.faults import SceneError
 
 _HEADER = ["time_s", "force_N"]
+FIT_IMPULSE = 0.02  # of the impulse of a curve: a larger error of its fit is refused
 
 
 class MeasuredCurve(NamedTuple):
@@ -31,6 +32,13 @@ class GaussianFit(NamedTuple):
     relative_residual: float
     impulse: float
     curve_impulse: float
+
+    @property
+    def impulse_error(self) -> float:
+        """Relative error of the impulse that acts: of the Gaussian after ignition, where a scene
+        begins."""
+        before = 0.5 * math.erfc(self.centre / (math.sqrt(2.0) * self.width))
+        return self.impulse * (1.0 - before) / self.curve_impulse - 1.0
 
 
 def read_curve(path: str | Path) -> MeasuredCurve:

@@ -21,7 +21,13 @@ from pydantic import (
     model_validator,
 )
 
-from tipoff.scenes.effects.measured import GaussianFit, MeasuredCurve, fit_gaussian, read_curve
+from tipoff.scenes.effects.measured import (
+    FIT_IMPULSE,
+    GaussianFit,
+    MeasuredCurve,
+    fit_gaussian,
+    read_curve,
+)
 from tipoff.scenes.effects.thrust_law import (
     ROOT_TWO_PI,
     Curve,
@@ -37,10 +43,12 @@ from tipoff.scenes.effects.thrust_law import (
     sample,
     shortest_feature,
 )
+from tipoff.scenes.faults import within
 from tipoff.scenes.table import Table, at_least_one, limited
 from tipoff.scenes.units import (
     Force,
     Impulse,
+    NonNegativeNumber,
     NonNegativeTime,
     PositiveLength,
     PositiveNumber,
@@ -256,6 +264,8 @@ class MeasuredTable(_ThrustTable):
     file: str
     #: "curve": the points act; "fit": their Gaussian fit acts.
     use: Literal["curve", "fit"] = "curve"
+    #: Largest relative error of the impulse of the fit, with use = "fit".
+    fit_impulse_tolerance: NonNegativeNumber = FIT_IMPULSE
     _curve: MeasuredCurve = PrivateAttr()
 
     @field_validator("file")
@@ -268,13 +278,28 @@ class MeasuredTable(_ThrustTable):
     def _usable(self):
         self._curve = read_curve(self.file)
         if self.use == "fit":
-            self.fit()
+            fit = fit_gaussian(self._curve)
+            if abs(fit.impulse_error) > self.fit_impulse_tolerance:
+                raise within(
+                    "use",
+                    f"'fit', whose impulse after ignition differs by {100.0 * fit.impulse_error:+.3g} % from "
+                    f"the {fit.curve_impulse:.5g} N s of the curve, relative residual "
+                    f"{100.0 * fit.relative_residual:.3g} %",
+                    f"a difference of at most {100.0 * self.fit_impulse_tolerance:g} %: "
+                    f'use = "curve", or a larger thrust.fit_impulse_tolerance',
+                )
         return self
 
-    def fit(self) -> GaussianFit:
-        """Least-squares Gaussian of the curve, with residual and impulses. Raises ValueError where
-        none fits."""
-        return fit_gaussian(self._curve)
+    def fit(self) -> GaussianFit | None:
+        """Least-squares Gaussian of the curve, with residual and impulses; None where none fits."""
+        try:
+            return fit_gaussian(self._curve)
+        except ValueError:
+            return None
+
+    def curve(self) -> MeasuredCurve:
+        """Times (s) and forces (N) as they were measured."""
+        return self._curve
 
     def points(self) -> list[list[float]]:
         """Times (s) and forces (N) of the curve."""
@@ -283,7 +308,7 @@ class MeasuredTable(_ThrustTable):
     def record(self) -> Thrust:
         """Kernel record: the curve, or one pulse."""
         if self.use == "fit":
-            fit = self.fit()
+            fit = fit_gaussian(self._curve)
             pulses = Pulses(
                 peaks=np.array([fit.peak]),
                 centres=np.array([fit.centre]),
@@ -301,9 +326,8 @@ class MeasuredTable(_ThrustTable):
     def usage(self) -> str:
         """Whether the points or the fit act, and how well the two agree."""
         acting = "the points act" if self.use == "curve" else "the Gaussian fit acts"
-        try:
-            fit = self.fit()
-        except ValueError:
+        fit = self.fit()
+        if fit is None:
             return f"{acting}, no Gaussian fits"
         return (
             f"{acting}; fit peak {fit.peak:.6g} N, centre {fit.centre:.6g} s, width "
@@ -315,9 +339,8 @@ class MeasuredTable(_ThrustTable):
     def details(self) -> dict[str, float | str]:
         """Which of curve and fit is used, and the fit."""
         used: dict[str, float | str] = {"use": self.use}
-        try:
-            fit = self.fit()
-        except ValueError:
+        fit = self.fit()
+        if fit is None:
             return used
         return used | {
             "fit_peak_N": fit.peak,

@@ -174,20 +174,28 @@ def guarded(work: Callable[[], Output], as_json: bool = False) -> None:
         from tipoff.studies.core import words
 
         print(json.dumps({"quantities": words.QUANTITIES, **output.result}, indent=1))
+        unshown = ""
     else:
-        _print(output)
-    if failed := output.result.get("failed"):
+        unshown = _print(output)
+    failed = [*output.result.get("failed", ()), *([f"text: {unshown}"] if unshown else [])]
+    if failed:
         stop("failed:\n  " + "\n  ".join(failed), 1)
 
 
-def _print(output: Output) -> None:
+def _print(output: Output) -> str:
+    """Print the result and its files. Returns the reason where the former cannot be shown."""
     result, shown, out = output
+    reason = ""
     if shown is not None:
+        from tipoff.studies.core.attempt import attempt
         from tipoff.studies.render import document
 
-        print(document.terminal(shown(result)))
+        text, reason = attempt("the text of the result", lambda: document.terminal(shown(result)))
+        if text is not None:
+            print(text)
     if out is not None:
         print("\n".join(files(result, out)))
+    return reason
 
 
 def files(result: dict, out: Path) -> list[str]:

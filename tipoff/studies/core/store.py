@@ -19,9 +19,15 @@ from pathlib import Path
 
 from tipoff.files import discard
 from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.faults import InputError
 from tipoff.studies.core import kernel_marks
-from tipoff.studies.core.progress import Board, say, team
+from tipoff.studies.core.attempt import attempt
+from tipoff.studies.core.errors import StudyError
+from tipoff.studies.core.progress import Board, Interrupted, say, team
 from tipoff.studies.core.run import Run, execute, prepare
+
+# what stops all runs: bad input, Ctrl-C, and what this machine refuses
+_STOPPING = (InputError, StudyError, Interrupted, OSError, MemoryError)
 
 
 def _surrogate(
@@ -73,7 +79,8 @@ class Store:
         """Results of ``runs`` in their order; those missing are run, ``workers`` at a time, with
         progress on standard error.
 
-        Ctrl-C stops the runs in progress and raises KeyboardInterrupt; finished results stay.
+        Ctrl-C stops the runs in progress and raises KeyboardInterrupt; finished results stay. An
+        error of the program in one run leaves the others; then StudyError is raised.
         """
         found = {run.key: trajectory for run in runs if (trajectory := self.load(run)) is not None}
         missing = list({run.key: run for run in runs if run.key not in found}.values())
@@ -89,8 +96,16 @@ class Store:
         threads = None if min(self.workers, len(runs)) == 1 else 1
         with Board(title, len(runs)) as board, team(board, self.workers) as pool:
             pending = {pool.submit(self._one, run, board, threads): run for run in runs}
+            failed = []
             for future in as_completed(pending):
-                made[pending[future].key] = future.result()
+                run = pending[future]
+                found, reason = attempt(run.label, future.result, _STOPPING)
+                if found is None:
+                    failed.append(f"{run.label}: {reason}")
+                else:
+                    made[run.key] = found
+        if failed:
+            raise StudyError("these runs failed:\n  " + "\n  ".join(failed))
         return made
 
     def _one(self, run: Run, board: Board, threads: int | None) -> Trajectory:

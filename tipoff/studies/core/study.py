@@ -22,16 +22,13 @@ from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import NOMINAL, Scene
 from tipoff.studies.core import words
+from tipoff.studies.core.errors import StudyError as StudyError
 from tipoff.studies.core.progress import say
 from tipoff.studies.core.run import Run
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.store import Store
 
 FAILED = ("diverged", "refused")
-
-
-class StudyError(RuntimeError):
-    """A study cannot continue because runs that it needs failed; the message names them and why."""
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,7 @@ _JOINED = 0.002  # s between samples of one burn
 _IMPULSE = 0.3  # m/s; less is no ejection
 _AT_REST = 0.05  # relative error of g while hanging, beyond which units or scale are wrong
 _SHORTEST = 0.03  # s of a window
+_ROUNDING = 1e-6  # of an interval: instants are sums of times in decimal digits
 
 
 class Events(NamedTuple):
@@ -146,9 +147,12 @@ def spans(sheet: Sheet, found: Calibrated, events: Events, source: str) -> Spans
         left + SETTLE_DELAY + 0.5 * SETTLE_WINDOW,
     )
     faults = []
+    # Less than half an interval outside the log, a window holds the same samples.
+    slack = 0.5 * float(found.time[1] - found.time[0])
+    first, last = found.time[0] - slack, found.time[-1] + slack
     for name in WINDOWS:
         begin, end = getattr(spans_, name)
-        if end - begin < _SHORTEST or begin < found.time[0] or end > found.time[-1]:
+        if end - begin < _SHORTEST - _ROUNDING * slack or begin < first or end > last:
             faults.append(
                 Fault(
                     source,
@@ -165,4 +169,5 @@ def spans(sheet: Sheet, found: Calibrated, events: Events, source: str) -> Spans
 
 def inside(time: np.ndarray, span: tuple[float, float]) -> np.ndarray:
     """Places (k,) of the instants (n,) that lie in a window."""
-    return np.flatnonzero((time >= span[0]) & (time <= span[1]))
+    slack = _ROUNDING * float(time[1] - time[0]) if time.size > 1 else 0.0
+    return np.flatnonzero((time >= span[0] - slack) & (time <= span[1] + slack))

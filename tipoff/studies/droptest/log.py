@@ -19,6 +19,7 @@ from tipoff.scenes.units import to_si
 from tipoff.studies.core.words import counted
 from tipoff.studies.droptest import sheet as sheets
 from tipoff.studies.droptest.channel_class import SAMPLES_PER_CLASS
+from tipoff.studies.droptest.saturation import saturated
 from tipoff.studies.droptest.sheet import Sheet
 
 _BRIDGED = 2  # samples that a straight line may stand for
@@ -201,23 +202,34 @@ def _drifting(time, values, grid, source: str, notes: list[str]) -> np.ndarray:
 
 def _marked(sheet: Sheet, filled: dict, doubtful: np.ndarray, notes: list[str]) -> Log:
     rate, force, temperature = filled["rate"], filled.get("acceleration"), filled.get("temperature")
-    at_end = (np.abs(rate) >= sheet.gyro.range * (1.0 - 1e-9)).any(axis=1)
-    clipped = np.zeros(doubtful.size, dtype=bool)
+    at_end = saturated(rate, sheet.gyro.range, sheet.gyro.resolution)
+    clipped = np.zeros_like(at_end)
     if at_end.any():
+        where = _level(np.degrees(rate), at_end, np.degrees(sheet.gyro.range), "deg/s")
         notes.append(
-            f"rate: {counted(at_end.sum(), 'sample')} clipped at the range of "
-            f"{np.degrees(sheet.gyro.range):.4g} deg/s: left out of "
+            f"rate: {counted(at_end.any(axis=1).sum(), 'sample')} clipped at {where}: left out of "
             "every window"
         )
     if force is not None:
         assert sheet.accelerometer is not None  # as a sheet with accelerations has to have it
         largest = sheet.accelerometer.range
-        clipped = (np.abs(force) >= largest * (1.0 - 1e-9)).any(axis=1)
+        clipped = saturated(force, largest)
         if clipped.any():
+            where = _level(force, clipped, largest, "m/s2")
             notes.append(
-                f"acceleration: {counted(clipped.sum(), 'sample')} clipped at the range of {largest:.4g} m/s2"
+                f"acceleration: {counted(clipped.any(axis=1).sum(), 'sample')} clipped at {where}"
             )
-    return Log(filled["time"], rate, force, temperature, doubtful | at_end, clipped, notes)
+    gone = doubtful | at_end.any(axis=1)
+    clipped = clipped.any(axis=1)
+    return Log(filled["time"], rate, force, temperature, gone, clipped, notes)
+
+
+def _level(values: np.ndarray, at_end: np.ndarray, largest: float, unit: str) -> str:
+    """The range, or the level where the samples ``at_end`` are if that is not the range."""
+    level = float(np.median(np.abs(values[at_end])))
+    if abs(level / largest - 1.0) < 0.02:
+        return f"the range of {largest:.4g} {unit}"
+    return f"{level:.6g} {unit}, below the range of {largest:.4g} {unit}"
 
 
 def runs(flags: np.ndarray) -> list[tuple[int, int]]:

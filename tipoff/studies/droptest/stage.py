@@ -60,7 +60,7 @@ def run(study: Study, options: Options = Options()) -> dict:
 
     def make() -> tuple[dict, list[Path]]:
         from tipoff.studies.droptest import page
-        from tipoff.studies.render.document import to_files
+        from tipoff.studies.render.document import with_figures
 
         model = population.surrogate(study, options.model, options.condition)
         cases = population.run(study, NAME, model, drawn)
@@ -72,7 +72,7 @@ def run(study: Study, options: Options = Options()) -> dict:
         }
         data = study.path(f"{NAME}.nc")
         signals.write(data, drops)
-        pictures = to_files(page.figures(found), study.path("figures"))
+        found, pictures = with_figures(found, page.figures, study.path("figures"))
         return found | {"data": study.relative(data)}, [data, *pictures]
 
     return STAGE.run(study, options, make)

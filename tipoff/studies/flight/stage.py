@@ -55,7 +55,7 @@ def run(study: Study, options: Options = Options()) -> dict:
 
     def make() -> tuple[dict, list[Path]]:
         from tipoff.studies.flight import page
-        from tipoff.studies.render.document import to_files
+        from tipoff.studies.render.document import with_figures
 
         rows, shapes, single, exits = _conditions(study, options)
         whole = population.run(study, NAME, population.surrogate(study, options.model), drawn)
@@ -73,7 +73,7 @@ def run(study: Study, options: Options = Options()) -> dict:
             [row["condition"] for row in rows if row["flown"]], single, exits, many, left
         )
         write_netcdf(data, labelled)
-        pictures = to_files(page.figures(found), study.path("figures"))
+        found, pictures = with_figures(found, page.figures, study.path("figures"))
         return found | {"data": study.relative(data)}, [data, *pictures]
 
     return STAGE.run(study, options, make)

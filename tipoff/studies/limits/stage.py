@@ -48,12 +48,12 @@ def run(study: Study, options: Options = Options()) -> dict:
 
     def make() -> tuple[dict, list[Path]]:
         from tipoff.studies.limits import page
-        from tipoff.studies.render.document import to_files
+        from tipoff.studies.render.document import with_figures
 
         with Board(NAME, 1) as board:
             found = Search(study, options, limits, cases, model, margin, board.callback(NAME)).all()
             board.finished(NAME, f"{found['evaluations']:,} sets of {cases:,} cases")
-        return found, to_files(page.figures(found), study.path("figures"))
+        return with_figures(found, page.figures, study.path("figures"))
 
     return STAGE.run(study, options, make)
 

@@ -55,7 +55,7 @@ def run(study: Study, options: Options = Options()) -> dict:
 
     def make() -> tuple[dict, list[Path]]:
         from tipoff.studies.montecarlo import page
-        from tipoff.studies.render.document import to_files
+        from tipoff.studies.render.document import with_figures
 
         found = population.run(study, NAME, population.surrogate(study, options.model), source)
         if (settled := int(found.settled.sum())) < _FEWEST:
@@ -82,7 +82,7 @@ def run(study: Study, options: Options = Options()) -> dict:
             "readings": _readings(study, options, found),
             "models": compared(study, options, found),
         }
-        return made, to_files(page.figures(made), study.path("figures"))
+        return with_figures(made, page.figures, study.path("figures"))
 
     return STAGE.run(study, options, make)
 

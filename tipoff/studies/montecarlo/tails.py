@@ -67,7 +67,7 @@ def run(study: Study, options: Options = Options()) -> dict:
 
     def make() -> tuple[dict, list[Path]]:
         from tipoff.studies.montecarlo import tails_page
-        from tipoff.studies.render.document import to_files
+        from tipoff.studies.render.document import with_figures
 
         whole = population.run(
             study, montecarlo.NAME, population.surrogate(study, asked.model), source
@@ -99,7 +99,7 @@ def run(study: Study, options: Options = Options()) -> dict:
             ],
             "pairs": paired_statistics.pairs(drawn, whole),
         }
-        return made, to_files([tails_page.figure(made)], study.path("figures"))
+        return with_figures(made, lambda found: [tails_page.figure(found)], study.path("figures"))
 
     return STAGE.run(study, options, make)
 

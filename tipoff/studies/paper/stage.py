@@ -34,7 +34,7 @@ from tipoff.studies.paper import (
     summary,
 )
 from tipoff.studies.paper import page as drawn
-from tipoff.studies.render.document import to_files
+from tipoff.studies.render.document import with_figures
 
 NAME = "paper"
 SCENE = "paper_like.toml"
@@ -88,7 +88,7 @@ def run(study: Study, options: Options = Options()) -> dict:
             "scene_file": study.relative(path),
             "data": study.relative(data),
         }
-        pictures = to_files(drawn.figures(result), study.path("figures"))
+        result, pictures = with_figures(result, drawn.figures, study.path("figures"))
         return result, [path, data, *pictures]
 
     return _with_present(study, STAGE.run(study, options, make))

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from markupsafe import Markup
 
+from tipoff.studies.core.attempt import attempt
 from tipoff.studies.render import chart as charts
 from tipoff.studies.render import table as tables
 from tipoff.studies.render.chart import Chart, Picture
@@ -166,9 +167,19 @@ def _data(path: Path) -> str:
     return f"data:{_MIME[path.suffix]};base64,{base64.b64encode(path.read_bytes()).decode()}"
 
 
-def to_files(figures: Iterable[Figure], folder: Path) -> list[Path]:
-    """Every figure as PNG and SVG files in ``folder``; their paths."""
-    return [path for figure in figures for path in charts.to_files(figure.chart, folder)]
+def with_figures(
+    found: dict, figures: Callable[[dict], Iterable[Figure]], folder: Path
+) -> tuple[dict, list[Path]]:
+    """The result ``found`` of a stage, and the PNG and SVG files of its ``figures`` in ``folder``.
+    Where they cannot be drawn, ``failed`` of the result says why: hours of runs are not lost."""
+
+    def drawn() -> list[Path]:
+        return [path for item in figures(found) for path in charts.to_files(item.chart, folder)]
+
+    paths, reason = attempt("drawing the figures", drawn)
+    if paths is None:
+        return found | {"failed": [*found.get("failed", ()), f"figures: {reason}"]}, []
+    return found, paths
 
 
 def markdown(parts: Sequence[Part]) -> str:

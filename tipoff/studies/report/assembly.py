@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from tipoff.mechanics.trajectory import versions
 from tipoff.scenes import plausibility
 from tipoff.studies.core import machine
+from tipoff.studies.core.attempt import attempt
+from tipoff.studies.question import Section
 from tipoff.studies.registry import sections
 from tipoff.studies.render.document import Caption, Missing, Notice, Part
 from tipoff.studies.render.table import Table
@@ -41,7 +43,11 @@ _GROUPS = {
 
 
 def render(page: Page) -> str:
-    """The whole ``page`` as HTML. Writes every figure as PNG and SVG."""
+    """The whole ``page`` as HTML. Writes every figure as PNG and SVG.
+
+    A section that raises an exception is shown as failed, with its reason; ``page.failures`` has
+    them.
+    """
     from plotly.offline import get_plotlyjs
 
     drawn: dict[str, list[Drawn]] = {title: [] for title in (*_GROUPS, _STUDIES)}
@@ -49,18 +55,15 @@ def render(page: Page) -> str:
     ranked = {name: place for place, name in enumerate(order)}
     for item in sorted(sections(), key=lambda item: ranked.get(item.anchor, len(order))):
         group = next((title for title, names in _GROUPS.items() if item.anchor in names), _STUDIES)
-        parts = item.draw(page)
-        if not (parts and all(isinstance(part, Missing) for part in parts)):
-            drawn[group].append(_drawn(page, item.anchor, item.link, item.title, parts))
-    kept = table(promises(page.rows(), page.documents))
-    drawn[_EVIDENCE].append(
-        _drawn(page, "promises", "Promises", "Promises", [kept, Caption(_VALIDATION)])
-    )
-    first = _drawn(page, "answer", "Answer", "Velocity and rates after exit", _answer(page))
+        drawn[group].append(_drawn(page, item))
+    drawn[_EVIDENCE].append(_drawn(page, Section("promises", "Promises", _promises, "Promises")))
     last = [
-        _drawn(page, "scene", "Inputs", "Inputs", inputs.scene_tables(page.scene)),
-        _drawn(page, "colophon", "Origin", "Origin of the results", _colophon(page)),
+        _drawn(page, Section("scene", "Inputs", _inputs, "Inputs")),
+        _drawn(page, Section("colophon", "Origin", _colophon, "Origin of the results")),
     ]
+    answered = Section("answer", "Answer", answer.draw, "Velocity and rates after exit")
+    # Drawn after the others, whose failures it names.
+    first = _drawn(page, answered, [Notice(text) for text in _warnings(page)])
     groups = [
         Group("", [first]),
         *(Group(title, [item for item in found if item.html]) for title, found in drawn.items()),
@@ -72,17 +75,37 @@ def render(page: Page) -> str:
     )
 
 
-def _answer(page: Page) -> list[Part]:
-    """Warnings, then the answer, and the launcher with its axes."""
-    warnings = [f"Implausible: {warning}" for warning in plausibility.of_all_conditions(page.scene)]
-    warnings += [f"{stage}: {reason}" for stage, reason in page.problems.items()]
-    return [*map(Notice, warnings), *answer.draw(page)]
+def _warnings(page: Page) -> list[str]:
+    """What the reader must know before the answer."""
+    found = [f"Implausible: {warning}" for warning in plausibility.of_all_conditions(page.scene)]
+    found += [f"{stage}: {reason}" for stage, reason in page.problems.items()]
+    return found + [f"Section {name} failed: {reason}" for name, reason in page.failures.items()]
 
 
-def _drawn(page: Page, anchor: str, link: str, title: str, parts: Sequence[Part]) -> Drawn:
-    """A section of ``parts``; empty where there are none."""
-    html = template.section(anchor, title, page.parts(parts)) if parts else ""
-    return Drawn(anchor, link, html)
+def _drawn(page: Page, item: Section, before: Sequence[Part] = ()) -> Drawn:
+    """A section, with the parts ``before`` it below its heading; empty where there is nothing to show,
+    its reason where it fails."""
+
+    def made() -> str:
+        parts = item.draw(page)
+        if all(isinstance(part, Missing) for part in parts):
+            return ""
+        return template.section(item.anchor, item.title, page.parts([*before, *parts]))
+
+    html, reason = attempt(f"section {item.anchor}", made)
+    if html is None:
+        page.failures[item.anchor] = reason
+        failed = page.parts([*before, Notice(f"This section failed: {reason}")])
+        html = template.section(item.anchor, item.title, failed)
+    return Drawn(item.anchor, item.link, html)
+
+
+def _promises(page: Page) -> list[Part]:
+    return [table(promises(page.rows(), page.documents)), Caption(_VALIDATION)]
+
+
+def _inputs(page: Page) -> list[Part]:
+    return inputs.scene_tables(page.scene)
 
 
 def _not_made(page: Page) -> list[Part]:

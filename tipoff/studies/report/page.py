@@ -35,6 +35,7 @@ class Page:
         self.runs, self.problems = runs, problems
         self.limits = limits
         self.lacking: list[str] = []  # commands of results that are missing
+        self.failures: dict[str, str] = {}  # reasons of sections that failed, by anchor
         self.pictures: list[Path] = []
 
     def shown(self, result: str, body: Callable[[dict], Sequence[Part]], target: str) -> list[Part]:

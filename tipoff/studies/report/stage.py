@@ -1,13 +1,16 @@
 """Stage ``report``: makes the stages that compare both models, then one page of their results and of
 all other stored results."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 from tipoff import sources
 from tipoff.files import content_hash, write_text
 from tipoff.scenes.faults import InputError
 from tipoff.studies.agreement import stage as compare
+from tipoff.studies.core.attempt import attempt
 from tipoff.studies.core.progress import say
 from tipoff.studies.core.run import Run
 from tipoff.studies.core.study import Study, StudyError
@@ -19,8 +22,10 @@ from tipoff.studies.runs import stage as runs
 
 def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict:
     """Make missing results and write report.html; ``verdict`` is one sentence on the agreement of
-    both models, ``failed`` contains the failures of all stages.
+    both models, ``failed`` contains the failures of all stages and sections.
 
+    A result or a section that fails leaves the others on the page. Raises InputError where the scene
+    cannot be used for one of the results that every page has.
     With ``every``, each study without a present result is made too; the page gives the reason where
     the scene does not allow one. The page says whether the rates are within ``limits``.
     """
@@ -30,22 +35,28 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
     for name, make_result, stored in listed:
         if make_result is None or stored is not None:
             continue
-        try:
-            documents[name] = make_result(study)
-        except StudyError as fault:
-            documents[name], problems[name] = None, str(fault)
-    absent = _made(study, listed) if every else {}
-    there = {name: stored(study) for name, _, stored in listed if stored is not None}
+        documents[name], reason = attempt(name, partial(make_result, study), InputError)
+        problems |= {name: reason} if reason else {}
+    absent, failed = _made(study, listed) if every else ({}, {})
+    problems |= failed
+    there: dict[str, Any] = {}
+    for name, _, stored in listed:
+        if stored is not None:
+            there[name], reason = attempt(f"the stored result of {name}", partial(stored, study))
+            problems |= {name: reason} if reason else {}
+    runs_, reason = attempt("stored runs", lambda: _trajectories(study, documents))
+    problems |= {"stored runs": reason} if reason else {}
 
     def make() -> tuple[dict, list[Path]]:
         from tipoff.studies.report.assembly import render
         from tipoff.studies.report.page import Page
+        from tipoff.studies.runs.figures import Runs
 
         page = Page(
             study.scene,
             study.folder,
             documents | there,
-            _trajectories(study, documents),
+            runs_ or Runs({}, {}),
             problems | absent,
             limits,
         )
@@ -54,7 +65,8 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
         found = {
             "report": study.relative(path),
             "verdict": _verdict(documents.get("agreement")),
-            "failed": _failed(documents, problems),
+            "failed": _failed(documents, problems)
+            + [f"section {name}: {reason}" for name, reason in page.failures.items()],
         }
         return found, [path, *page.pictures]
 
@@ -79,20 +91,29 @@ def _verdict(agreement: dict | None) -> str:
     return found + (f"; {speed['ratio']:,.0f} times faster." if speed else ".")
 
 
-def _made(study: Study, listed: list[Result]) -> dict[str, str]:
-    """Make every missing optional result. Returns the reasons, by name, where the scene or its
-    settings do not allow one."""
-    reasons = {}
+def _made(study: Study, listed: list[Result]) -> tuple[dict[str, str], dict[str, str]]:
+    """Make every missing optional result. Returns reasons by name: where the scene or its settings
+    do not allow one, and where one failed."""
+    refused: dict[str, str] = {}
+    failed: dict[str, str] = {}
     for name, make, stored in listed:
         if make is None or stored is None:
             continue
         try:
-            if stored(study) is None:
-                make(study)
+            missing = partial(_missing, study, make, stored)
+            _, reason = attempt(name, missing, (StudyError, InputError))
+            failed |= {name: reason} if reason else {}
         except (StudyError, InputError) as fault:
-            reasons[name] = str(fault)
+            refused[name] = str(fault)
             say(f"{name}: not made\n{fault}")
-    return reasons
+    return refused, failed
+
+
+def _missing(
+    study: Study, make: Callable[[Study], dict], stored: Callable[[Study], Any]
+) -> dict | None:
+    """The new result of a stage; None where there is a stored one."""
+    return make(study) if stored(study) is None else None
 
 
 def _failed(documents: dict, problems: dict[str, str]) -> list[str]:

@@ -1,13 +1,16 @@
 """One run of one condition in one model; prints the result."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
+from tipoff.scenes.faults import InputError
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.core import kernel_marks, models, words
+from tipoff.studies.core.attempt import attempt
 from tipoff.studies.core.progress import say
 from tipoff.studies.core.run import Run
 from tipoff.studies.core.study import Study, StudyError
@@ -44,11 +47,19 @@ def run(
 
 def several(names: Sequence[str], make: Callable[[str], dict]) -> dict:
     """The result that ``make`` has for one condition; of more than one, ``conditions`` holds a
-    result each and ``failed`` the failures of all."""
+    result each and ``failed`` the failures of all. An error of the program in one leaves the
+    others."""
     if len(names) == 1:
         return make(names[0])
-    found = [make(name) for name in names]
-    return {"conditions": found, "failed": [line for item in found for line in item["failed"]]}
+    rows, failed = [], []
+    for name in names:
+        found, reason = attempt(name, partial(make, name), (InputError, StudyError))
+        if found is None:
+            failed.append(f"{name}: {reason}")
+        else:
+            rows.append(found)
+            failed += found["failed"]
+    return {"conditions": rows, "failed": failed}
 
 
 def chosen(

@@ -16,7 +16,7 @@ from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate
-from tipoff.studies.render.document import to_files
+from tipoff.studies.render.document import with_figures
 from tipoff.studies.sensitivity import contact_table, indices, tolerances
 from tipoff.studies.sensitivity import page as drawing
 
@@ -55,7 +55,7 @@ def run(study: Study, options: Options = Options()) -> dict:
             "paper": _paper(),
             "sobol": sobol,
         }
-        return found, to_files(drawing.figures(found), study.path("figures"))
+        return with_figures(found, drawing.figures, study.path("figures"))
 
     return STAGE.run(study, options, make)
 

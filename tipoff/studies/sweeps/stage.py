@@ -14,7 +14,7 @@ from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate
-from tipoff.studies.render.document import to_files
+from tipoff.studies.render.document import with_figures
 from tipoff.studies.sweeps import burnout, factors, knee, sides
 from tipoff.studies.sweeps import figures as drawing
 from tipoff.studies.sweeps.factors import FACTORS, SIZES, Factor
@@ -62,7 +62,7 @@ def run(study: Study, options: Options = Options()) -> dict:
             "citation": published.CITATION,
             "launches": launches,
         }
-        return found, to_files(drawing.figures(found), study.path("figures"))
+        return with_figures(found, drawing.figures, study.path("figures"))
 
     return STAGE.run(study, options, make)
 
