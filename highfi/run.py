@@ -294,7 +294,9 @@ class Loop:
 
         def part(thread):
             began = clock.thread_time()
-            return self._perform(ADVANCE, thread, count * self.substeps), clock.thread_time() - began
+            return self._perform(
+                ADVANCE, thread, count * self.substeps
+            ), clock.thread_time() - began
 
         others = [self.pool.submit(part, thread) for thread in range(1, self.team_now.size)]
         (taken, damping), _ = part(0)

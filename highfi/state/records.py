@@ -155,7 +155,9 @@ class Constants(NamedTuple):
     exit: Exit
     milestones: Milestones
     dt: float  # s
-    substeps: int  # into which friction splits a step (``dynamics.substeps``); ``dt`` is one of them
+    substeps: (
+        int  # into which friction splits a step (``dynamics.substeps``); ``dt`` is one of them
+    )
 
 
 @by_reference
