@@ -5,7 +5,7 @@ import numpy as np
 
 from tipoff.highfi.contact.pads import FASTEST_APPROACH
 from tipoff.highfi.contact.surface import magnification
-from tipoff.highfi.dynamics import samples
+from tipoff.highfi.dynamics import samples, substeps
 from tipoff.highfi.state.records import TOTAL
 from tipoff.kernels import rotation
 from tipoff.mechanics import ledger, outcome
@@ -36,10 +36,10 @@ def fault(loop, row: np.ndarray) -> str:
                 f"payload and rails approach at up to {speed:.3g} m/s, contact search allows "
                 f"{FASTEST_APPROACH:g} m/s, {now}"
             )
-    if loop.stepping.used() + 0.5 * loop.damping > 1.0:
+    if substeps.too_many(loop):
         return (
-            f"friction damps nodes faster than the step of {loop.stepping.dt_s:.4g} s can "
-            f"follow, {now}; lower safety"
+            f"friction damps nodes faster than {substeps.MOST} parts of the step of "
+            f"{loop.stepping.dt_s:.4g} s can follow, {now}; raise friction.static_speed"
         )
     return ""
 
@@ -47,9 +47,9 @@ def fault(loop, row: np.ndarray) -> str:
 def _strike(loop) -> str:
     """The face that struck an edge of a wall first, where and when."""
     struck = loop.active.struck
-    face = int(max(np.flatnonzero(struck["depth"]), key=lambda each: struck["steps"][each]))
-    depth, x, since = struck[face]
-    time = (loop.steps - since) * loop.stepping.dt_s
+    face = int(max(np.flatnonzero(struck["depth"]), key=lambda each: struck["age"][each]))
+    depth, x, age = struck[face]
+    time = loop.steps * loop.stepping.dt_s - age
     return outcome.strike(
         loop.system.model.faces,
         face,

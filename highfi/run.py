@@ -11,7 +11,7 @@ import numpy as np
 
 from tipoff.files import tell
 from tipoff.highfi import result
-from tipoff.highfi.dynamics import ending, jolts, linear_range, observe, resting
+from tipoff.highfi.dynamics import ending, jolts, linear_range, observe, resting, substeps
 from tipoff.highfi.dynamics.checkpoint import Checkpoint, restore
 from tipoff.highfi.dynamics.resting import Rails
 from tipoff.highfi.dynamics.step import ADVANCE, EVALUATE, KICK, OPEN, Task, perform
@@ -145,6 +145,7 @@ class Loop:
         self.watch = None if rails is None else Watch(system, rails)
         self.rests = np.zeros(0 if rails is None else len(rails.blocks), dtype=np.bool_)
         self.stride = 1  # steps in one long step
+        self.substeps = 1  # parts of a step
         self.jolts = jolts.begin(rails)
         self.team, self.pool = team_of(threads), ThreadPoolExecutor(threads)
         self.state, self.active = initial_state(system)
@@ -157,8 +158,9 @@ class Loop:
         self.most = int(scene.duration / stepping.dt_s * (1.0 + _ROUNDING))  # steps
         self.wall, self.cpu, self.other_cpu = 0.0, 0.0, 0.0  # s
         self.steps, self.checks = 0, 0  # done
-        self.taken, self.block_steps = 0, 0  # long steps, and blocks in them that were stepped
+        self.taken, self.block_steps = 0, 0  # long steps or substeps, and blocks that were stepped
         self.damping = 0.0  # largest step * friction damping / mass of a node
+        self.friction = substeps.begin()
         self.scale = 0.0  # J, largest transverse energy
         self.message = ""  # why the run stopped
         # At every sample:
@@ -189,6 +191,7 @@ class Loop:
             exit=self.exit,
             milestones=self.milestones,
             dt=self.step,
+            substeps=self.substeps,
         )
 
     @property
@@ -198,12 +201,14 @@ class Loop:
 
     @property
     def step(self) -> float:
-        """Length (s) of a long step, or of a step where none is taken."""
-        return self.stride * self.stepping.dt_s
+        """Length (s) of a long step, of a substep, or of a step where neither is taken."""
+        return self.stride * self.stepping.dt_s / self.substeps
 
-    def set_stride(self, stride: int) -> None:
-        """Go on with steps ``stride`` times as long; velocities are set back by half of one."""
+    def set_stride(self, stride: int, parts: int | None = None) -> None:
+        """Go on with steps ``stride`` times as long, or divided into ``parts`` (None: as many as
+        now); velocities are set back by half of one."""
         before, self.stride = self.step, stride
+        self.substeps = 1 if stride > 1 else parts or self.substeps
         if before != self.step:
             self.kick(0.5 * (before - self.step))
             self.active.wait[:] = 0
@@ -273,6 +278,7 @@ class Loop:
         per_sample, left = self.stepping.steps_per_sample, self.most - self.steps
         there = per_sample - self.steps % per_sample
         count = min(there, STEPS_PER_CHECK, left if left > 0 else there)
+        count = min(count, substeps.adapt(self))
         if self.watch is not None:
             count = min(count, self.watch.adapt(self))
         if count < self.stride:
@@ -283,20 +289,24 @@ class Loop:
 
     def advance_steps(self, count: int) -> None:
         """``count`` steps, by all threads of the team; fewer where a pad comes near a rail that
-        rests."""
+        rests, or friction needs shorter ones."""
         count //= self.stride
 
         def part(thread):
             began = clock.thread_time()
-            return self._perform(ADVANCE, thread, steps=count), clock.thread_time() - began
+            return self._perform(
+                ADVANCE, thread, count * self.substeps
+            ), clock.thread_time() - began
 
         others = [self.pool.submit(part, thread) for thread in range(1, self.team_now.size)]
         (taken, damping), _ = part(0)
-        self.damping = max(self.damping, damping)
+        self.damping = max(self.damping, self.step * damping)
         self.other_cpu += sum(other.result()[1] for other in others)
-        self.steps += taken * self.stride
+        whole = taken // self.substeps
+        substeps.note(self, damping, whole)
+        self.steps += whole * self.stride
         self.taken += taken
-        self.block_steps += taken * int(self.state.stepped.in_use[0])
+        self.block_steps += whole * int(self.state.stepped.in_use[0])
 
     def _check(self, keep: bool) -> None:
         """Check whether the run may go on, and ``keep`` a sample."""
@@ -349,10 +359,11 @@ class Loop:
         return self.state.displacement if warm is None else self.state.displacement + warm
 
     def resting(self) -> dict[str, float]:
-        """What resting rails saved, and what it left out."""
+        """What resting rails saved, what it left out, and what friction cost."""
         whole = max(self.steps, 1) * self.state.stepped.block.size
         return {
             "steps_taken": self.taken,
+            **substeps.cost(self),
             "stepped_share": self.block_steps / whole,
             "left_out_m": float(self.jolts.most[0]),
         }
@@ -366,7 +377,8 @@ class Loop:
         self._perform(KICK, span=span)
 
     def _perform(self, kind: int, thread: int = 0, steps: int = 0, span: float = 0.0) -> float:
-        task = Task(kind, self.steps, steps, span, self.stride)
+        first, most = self.steps * self.substeps, substeps.most_damping(self)
+        task = Task(kind, first, steps, span, self.stride, most)
         return perform(*self.arguments(), thread, task)
 
     def trajectory(self, cost: dict, numerics: Numerics) -> Trajectory:

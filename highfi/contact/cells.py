@@ -31,6 +31,7 @@ class Touch(NamedTuple):
     pose: Pose
     interface_stiffness: float  # N/m3
     dt: float  # s
+    substeps: int  # in a step
 
 
 class Face(NamedTuple):
@@ -308,12 +309,12 @@ def probe(touch, face):
 
 @inlined
 def rate_damping(touch, friction):
-    """Largest step * damping / mass of a node, for the stability check."""
+    """Largest damping / mass (1/s) of a node, for the stability check."""
     if friction is not None:
         active, load = touch.active, touch.load
         first = touch.surface.groups.first_node[touch.group]
         for k in range(first, first + active.node_count[touch.group]):
             node = active.node[k]
-            load.damping_ratio = max(
-                load.damping_ratio, touch.dt * active.node_damping[node] * touch.inverse_mass[node]
+            load.damping_rate = max(
+                load.damping_rate, active.node_damping[node] * touch.inverse_mass[node]
             )

@@ -94,6 +94,7 @@ def _forces_of_group(constants, state, active, pose, group):
         pose=pose,
         interface_stiffness=constants.interface_stiffness,
         dt=constants.dt,
+        substeps=constants.substeps,
     )
     _clear(touch.load)
     first, last = groups.first_clamped[group], groups.first_clamped[group + 1]
@@ -109,7 +110,7 @@ def _clear(load):
     for i in range(3):
         load.normal_force[i] = load.friction_force[i] = 0.0
         load.moment[i] = load.moment_on_rail[i] = load.friction_moment[i] = 0.0
-    load.stored = load.damping_ratio = 0.0
+    load.stored = load.damping_rate = 0.0
 
 
 @inlined
@@ -131,7 +132,7 @@ def _forces_of_face(touch, friction, face):
     active = touch.active
     touch.face_force[face, 0], touch.face_force[face, 1], touch.face_force[face, 2] = 0.0, 0.0, 0.0
     if active.struck[face].depth > 0.0:
-        active.struck[face].steps += 1.0
+        active.struck[face].age += touch.dt
     elif active.wait[face] > 0:
         active.wait[face] -= 1
     elif touch.surface.search.wall[face] >= 0:
@@ -142,7 +143,8 @@ def _forces_of_face(touch, friction, face):
             active.wait[face] = int(-overlap / (FASTEST_SLIDE * touch.dt))
         elif active.struck[face].depth == 0.0:
             gap = _forces_of_cells(touch, friction, here)
-            active.wait[face] = max(0, int(gap / (FASTEST_APPROACH * touch.dt)) - 1)
+            # The loop returns after whole steps alone, so a near face must be seen a step ahead.
+            active.wait[face] = max(0, int(gap / (FASTEST_APPROACH * touch.dt)) - touch.substeps)
             if active.wait[face] == 0 and active.rests[touch.group]:
                 active.near[touch.group] = True
 
@@ -216,7 +218,7 @@ def _add_load(total, part):
         total.moment_on_rail[i] += part.moment_on_rail[i]
         total.friction_moment[i] += part.friction_moment[i]
     total.stored += part.stored
-    total.damping_ratio = max(total.damping_ratio, part.damping_ratio)
+    total.damping_rate = max(total.damping_rate, part.damping_rate)
 
 
 @inlined

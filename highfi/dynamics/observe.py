@@ -85,7 +85,7 @@ def sample(system, team, state: records.State, before: Moving, after: Moving) ->
         row[PLATFORM_POSITION : PLATFORM_POSITION + 3] -= base @ system.frame.centre
         row[PLATFORM_VELOCITY : PLATFORM_VELOCITY + 3] -= base @ _cross(rate, system.frame.centre)
     row[IMPULSE : IMPULSE + 6] = middle.impulse
-    row[KINETIC], row[AXIAL_KINETIC] = _kinetic(system, turn, base, before, after)
+    row[KINETIC], row[AXIAL_KINETIC] = kinetic_energy(system, state, before, after)
     row[STRAIN], row[CONTACT] = strain(system, state, team), float(state.load[0]["stored"])
     row[LINEAR : LINEAR + 3], row[ANGULAR : ANGULAR + 3], row[SIZES:] = _momenta(
         system, state, base, middle
@@ -108,9 +108,13 @@ def strain(system, state: records.State, team) -> float:
     return 0.5 * float((state.displacement * force).sum())
 
 
-def _kinetic(system, turn, base, before: Moving, after: Moving) -> tuple[float, float]:
-    """Kinetic energy (J) of everything, and its axial part."""
+def kinetic_energy(
+    system, state: records.State, before: Moving, after: Moving
+) -> tuple[float, float]:
+    """Kinetic energy (J) of everything, and its axial part, from the velocities half a step before
+    and after the present places."""
     payload, frame = system.model.payload, system.frame
+    turn, base = (rotation.single(body.quaternion) for body in (state.payload, state.platform))
     mass = system.moving_mass[system.nodes]
     nodes = sum((mass * (a * b)).sum() for a, b in zip(before.nodes.T, after.nodes.T))
     kinetic = 0.5 * (payload.mass * before.velocity @ after.velocity + nodes)

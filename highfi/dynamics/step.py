@@ -26,6 +26,8 @@ takes a second to compile.
 
 from typing import NamedTuple
 
+import numpy as np
+
 from tipoff.highfi.contact.pads import collect_contact, contact_forces
 from tipoff.highfi.dynamics.damping import begin_damping, collect_damping
 from tipoff.highfi.dynamics.elastic import elastic_force, finish_load, hold_blocks, move_and_load
@@ -55,6 +57,7 @@ class Task(NamedTuple):
     steps: int = 0  # to advance by at most, of length ``Constants.dt``
     span: float = 0.0  # s, of a kick
     stride: int = 1  # what a step adds to the number of the step
+    most_damping: float = np.inf  # 1/s, friction damping / mass that such steps can follow
 
 
 @entry
@@ -64,8 +67,9 @@ def perform(constants, state, active, book, team, thread, task):
     EVALUATE: all forces at the present places of rails at rest in their frame. KICK: advance all
     velocities, but no place, by the present forces. OPEN: begin the ``book`` (``mechanics.ending``)
     at ignition, with the velocities of half a step before. ADVANCE: take steps; all threads of the
-    team must be called, and return early where a pad comes near a rail that rests. Returns the steps
-    taken, and the largest step * friction damping / mass of a node in them.
+    team must be called, and return early, after whole steps of ``Constants.substeps``, where a pad
+    comes near a rail that rests or friction damps a node faster than ``Task.most_damping``. Returns
+    the steps taken, and the largest friction damping / mass (1/s) of a node before any of them.
     """
     if task.kind == ADVANCE:
         return _advance(constants, state, active, book, team, thread, task)
@@ -209,9 +213,12 @@ def _advance(constants, state, active, book, team, thread, task):
     present places and work is counted up to the present time."""
     rail, frame, dt = constants.rail, constants.frame, constants.dt
     unit, damping, taken = dt / task.stride, 0.0, 0
-    while taken < task.steps and not _is_near(active):
+    while taken < task.steps and not (
+        taken % constants.substeps == 0 and _ends_early(state, active, task.most_damping)
+    ):
         n = task.first_step + taken * task.stride
         if thread == 0:
+            damping = max(damping, state.load[0].damping_rate)
             pose = pose_in_frame(state, constants.payload, frame)
             thrust = thrust_load(constants, state, n * unit)
             _kick_bodies(constants, state, pose, thrust, dt)
@@ -230,16 +237,15 @@ def _advance(constants, state, active, book, team, thread, task):
             collect(constants.interface_stiffness, constants, state, active)
             thrust = thrust_load(constants, state, (n + task.stride) * unit)
             add_work(constants, state, active, pose, thrust, 0.0)
-            damping = max(damping, state.load[0].damping_ratio)
         taken += 1
     return taken, damping
 
 
 @kernel
-def _is_near(active):
-    """Whether a pad is near a rail that rests. Threads agree on it: it changes between the two
-    barriers of a step alone."""
+def _ends_early(state, active, most_damping):
+    """Whether a pad is near a rail that rests, or friction damps a node too fast. Threads agree on
+    it: both change between the two barriers of a step alone."""
     for group in range(active.near.size):
-        if active.near[group]:
+        if active.near[group] or state.loads[group].damping_rate > most_damping:
             return True
     return False

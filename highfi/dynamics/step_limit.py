@@ -28,9 +28,9 @@ With C = alpha M + beta K of the rail, and friction c at the nodes, a step is st
 where c of a node is bounded by the same sum with each cell's damping in place of its area. Every
 term grows with lambda_rail, so its upper bound alone decides, however the damping ratio runs below
 it. The first two make the limit of a run: that of w^2 = lambda_rail + lambda_contact with the ratio
-(alpha + beta lambda_rail) / 2w. The third is checked during the run. Rail frequencies are those of
-a rail whose mounts do not move: a free platform may raise them by the share m_rail / m_platform,
-which the safety factor covers.
+(alpha + beta lambda_rail) / 2w. The third divides steps during the run (``dynamics.substeps``).
+Rail frequencies are those of a rail whose mounts do not move: a free platform may raise them by the
+share m_rail / m_platform, which the safety factor covers.
 """
 
 import numpy as np

@@ -113,6 +113,8 @@ class Watch:
         """Take long steps where that is possible."""
         if not loop.rests.all() or loop.stride == self.rails.stride or self._jumps(loop):
             return
+        if loop.substeps > 1:
+            return
         if loop.system.model.interface_stiffness is not None:
             self._look(loop)
             loop.active.near[:] = False

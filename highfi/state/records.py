@@ -155,6 +155,9 @@ class Constants(NamedTuple):
     exit: Exit
     milestones: Milestones
     dt: float  # s
+    substeps: (
+        int  # into which friction splits a step (``dynamics.substeps``); ``dt`` is one of them
+    )
 
 
 @by_reference
@@ -254,7 +257,7 @@ LOAD = np.dtype(
         ("moment_on_rail", float, 3),  # N m, about the frame's origin
         ("friction_moment", float, 3),  # N m, about the payload's mass centre
         ("stored", float),  # J
-        ("damping_ratio", float),  # largest step * friction damping / mass of a node
+        ("damping_rate", float),  # 1/s, largest friction damping / mass of a node
     ]
 )
 
@@ -268,6 +271,6 @@ STRUCK = np.dtype(
     [
         ("depth", float),  # m
         ("x", float),  # m, of the middle of the face
-        ("steps", float),  # since then
+        ("age", float),  # s, since then
     ]
 )
