@@ -64,7 +64,7 @@ def run(
         model: ``compliant``, ``springs`` or ``finite-elements``.
         compliance: rail compliance, for the model ``compliant``; computed where it is not given.
         calibration: constants that were fitted on the same model.
-        progress: called with the fraction of the duration done, 0 to 1.
+        progress: called with the fraction of the expected time done, 0 to 1.
         numerics: fields of ``lowfi.Numerics`` or ``highfi.Numerics``, such as ``element_size=2e-3``
             (m) or ``modes=4``.
 

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from functools import cached_property
 from operator import attrgetter
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Annotated, Any
 
 from pydantic import (
@@ -21,7 +22,17 @@ from pydantic import (
 )
 
 from tipoff.files import content_hash
-from tipoff.scenes import names, pads, plausibility, provenance, reading, roles, shown, suggestions
+from tipoff.scenes import (
+    ends,
+    names,
+    pads,
+    plausibility,
+    provenance,
+    reading,
+    roles,
+    shown,
+    suggestions,
+)
 from tipoff.scenes import overrides as keys
 from tipoff.scenes.effects.contact import ContactTable
 from tipoff.scenes.effects.flight import FlightTable
@@ -61,9 +72,9 @@ class Scene(shown.Shown, Table):
     name: Annotated[str, AfterValidator(names.of_scene)]
     #: One line for lists and reports.
     description: str = ""
-    #: Time that is simulated from ignition on. It must contain the exit and the settled
-    #: window.
-    duration: Duration
+    #: Longest time that is simulated from ignition on. Without it a run goes on until its
+    #: rates have settled or the payload is jammed.
+    duration: Duration | None = None
     #: The rigid body that leaves the rail.
     payload: PayloadTable
     #: The blocks on the payload that slide along the rail.
@@ -118,7 +129,10 @@ class Scene(shown.Shown, Table):
     @field_validator("output")
     @classmethod
     def _of_fitting_interval(cls, output: OutputTable, info: ValidationInfo):
-        if "duration" in info.data and not output.fits(duration := info.data["duration"]):
+        duration = info.data.get("duration")
+        if duration is None:
+            _require_an_end(info.data, output)
+        elif not output.fits(duration):
             raise within(
                 "interval",
                 f"{output.interval:g} s",
@@ -241,10 +255,33 @@ class Scene(shown.Shown, Table):
 
     def agrees(self) -> bool:
         """Whether tables that are each valid fit each other: rails have an expansion where there is
-        a temperature, and the sampling interval fits the duration."""
-        return (
-            self.thermal is None or self.rail.material.expansion is not None
-        ) and self.output.fits(self.duration)
+        a temperature, and the sampling interval fits the duration, or the thrust without one."""
+        if self.thermal is not None and self.rail.material.expansion is None:
+            return False
+        if self.duration is None:
+            return ends.burns_too_long(self) is None
+        return self.output.fits(self.duration)
+
+    @property
+    def time_limit(self) -> float:
+        """Time (s) at which a run ends at the latest: the duration, or without one a bound
+        that follows from rail, thrust, friction and gravity. A run that has settled or is jammed
+        ends before.
+
+        Example:
+            >>> scene = tipoff.load("tiny")
+            >>> scene.time_limit == scene.duration
+            True
+            >>> scene.replace({"duration": None}).time_limit  # s
+            32.768
+        """
+        return ends.limit(self)
+
+    @property
+    def expected_end(self) -> float:
+        """Estimate of the end of a run (s), for plots, progress and costs: the duration, or without
+        one that of a payload without friction."""
+        return ends.expected(self)
 
     def absent_effects(self) -> list[str]:
         """Dotted keys of the effect tables that this scene does not have.
@@ -279,7 +316,7 @@ def parse(
         >>> tipoff.parse({"name": "mine"})
         Traceback (most recent call last):
         ...
-        tipoff.scenes.faults.SceneError: 5 faults in the scene
+        tipoff.scenes.faults.SceneError: 4 faults in the scene
         ...
     """
     keys.require_shallow(raw, source)
@@ -318,6 +355,20 @@ def catalog() -> list[str]:
 
 
 _Faults = list[tuple[str, str, str]]
+
+
+def _require_an_end(tables: dict[str, Any], output: OutputTable) -> None:
+    """Refuse a thrust that lasts longer than a run without a duration can be sampled."""
+    if "duration" not in tables or "thrust" not in tables:  # they have faults of their own
+        return
+    needed = ends.burns_too_long(SimpleNamespace(**tables, output=output))
+    if needed is not None:
+        raise within(
+            "interval",
+            f"{output.interval:g} s, no duration, and a thrust whose rates settle at {needed:.6g} s",
+            f"at least {needed / MOST_SAMPLES:.3g} s (at most {MOST_SAMPLES:,} samples), a thrust "
+            f"that ends within {ends.longest(SimpleNamespace(output=output)):g} s, or a duration",
+        )
 
 
 def _validated(raw: Any, bare_numbers_are_si: bool) -> tuple[Scene | None, _Faults]:

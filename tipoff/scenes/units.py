@@ -180,7 +180,8 @@ Angle = quantity("rad")
 Time = quantity("s")
 NonNegativeTime = quantity("s", ge=0.0)
 PositiveTime = quantity("s", gt=0.0)
-Duration = quantity("s", gt=0.0, le=3600.0)  # an ejection takes milliseconds, a slow one minutes
+LONGEST = 3600.0  # s, of a run
+Duration = quantity("s", gt=0.0, le=LONGEST)  # an ejection takes milliseconds, a slow one minutes
 Mass = quantity("kg", gt=0.0)
 Density = quantity("kg/m**3", gt=0.0)
 Pressure = quantity("Pa", gt=0.0)
