@@ -148,7 +148,7 @@ def _burnt(record: thrust_law.Thrust) -> float:
 def _forces(record: thrust_law.Thrust) -> tuple[np.ndarray, np.ndarray]:
     """Times (s) from ignition to the end of the thrust, corners among them, and forces (N)."""
     last = thrust_end(record)
-    corners = thrust_law.corners(record, last)
+    corners = np.append(thrust_law.corners(record, last), last)
     both_sides = np.append(corners, np.nextafter(corners, -np.inf))  # of a jump
     time = np.unique(np.concatenate([np.linspace(0.0, last, _POINTS), both_sides]))
     return time, thrust_law.sample(record, time)
