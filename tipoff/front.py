@@ -9,7 +9,7 @@ from tipoff import scenes, sources
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.scenes import Calibration, Fault, Scene, SceneError, reading, uncertainty
+from tipoff.scenes import Calibration, Fault, Scene, SceneError, arguments, reading, uncertainty
 from tipoff.scenes import catalog as catalog
 from tipoff.scenes import parse as parse
 from tipoff.scenes.uncertainty import Uncertainty
@@ -49,7 +49,7 @@ def load(name_or_path: str | Path) -> Scene:
 
 
 def run(
-    scene: Scene,
+    scene: Scene | str | Path,
     model: str = COMPLIANT,
     *,
     compliance: RailCompliance | None = None,
@@ -60,13 +60,14 @@ def run(
     """Solve a scene in a model.
 
     Args:
-        scene: the scene, or one of its conditions (``Scene.condition``).
+        scene: the scene, or one of its conditions (``Scene.condition``); or a name or path as in
+            ``load``.
         model: ``compliant``, ``springs`` or ``finite-elements``.
         compliance: rail compliance, for the model ``compliant``; computed where it is not given.
         calibration: constants that were fitted on the same model.
         progress: called with the fraction of the expected time done, 0 to 1.
         numerics: fields of ``lowfi.Numerics`` or ``highfi.Numerics``, such as ``element_size=2e-3``
-            (m) or ``modes=4``.
+            (m), ``element_size="2 mm"`` or ``modes=4``.
 
     Returns:
         Trajectory: motion over time. A failure of the run is its ``status``.
@@ -83,20 +84,18 @@ def run(
         >>> [round(math.degrees(rate)) for rate in run.outcome.rate]  # deg/s
         [5, 2, 9]
     """
+    from tipoff import highfi, lowfi
     from tipoff.studies.core import kernel_marks
     from tipoff.studies.core.run import Run
 
+    scene = arguments.scene_of(scene)
     _require(scene, model, MODELS)
     if model == FINITE_ELEMENTS:
-        from tipoff import highfi
-
         _require_none(scene, model, compliance=compliance, calibration=calibration)
-        sizes = highfi.Numerics(**numerics)
+        sizes = arguments.numerics(highfi.Numerics, numerics, lowfi.Numerics, model)
         with kernel_marks.first_use(Run("highfi", scene.name, scene, sizes)):
             return highfi.run(scene, sizes, progress)
-    from tipoff import lowfi
-
-    chosen = lowfi.Numerics(**numerics)
+    chosen = arguments.numerics(lowfi.Numerics, numerics, highfi.Numerics, model)
     found = _pressed(scene, model, compliance, calibration)
     asked = Run("lowfi", scene.name, scene, chosen, calibration, found)
     with kernel_marks.first_use(asked), kernel_marks.chosen_modes(asked) as vibrates:
@@ -112,8 +111,8 @@ def run(
 
 
 def ensemble(
-    scene: Scene,
-    cases: Sequence[Mapping[str, Any]] | Uncertainty | str | Path = "paper",
+    scene: Scene | str | Path,
+    cases: Any = "paper",
     model: str = COMPLIANT,
     *,
     compliance: RailCompliance | None = None,
@@ -126,9 +125,10 @@ def ensemble(
     """Run a scene once for each of many cases in a surrogate model.
 
     Args:
-        scene: the scene, or one of its conditions.
-        cases: rows of dotted overrides as in ``Scene.replace``; or distributions, by the name or
-            path of their file.
+        scene: as in ``run``.
+        cases: rows of dotted overrides as in ``Scene.replace``: a list of mappings, a mapping of
+            columns, a table of pandas, a data set of xarray or a structured array; or
+            distributions, by the name or path of their file.
         model: ``compliant`` or ``springs``.
         compliance: as in ``run``.
         calibration: as in ``run``.
@@ -156,10 +156,11 @@ def ensemble(
         >>> tipoff.ensemble(tipoff.load("tiny"), heavier, "springs").sizes["case"]
         2
     """
-    from tipoff import lowfi
+    from tipoff import highfi, lowfi
     from tipoff.studies.core import kernel_marks
     from tipoff.studies.core.run import Run
 
+    scene = arguments.scene_of(scene)
     _require(scene, model, SURROGATES)
     drawn = {"cases": options.pop("count", None), "seed": options.pop("seed", None)}
     drawn = {key: value for key, value in drawn.items() if value is not None}
@@ -167,7 +168,9 @@ def ensemble(
         cases = uncertainty.load(cases, scene, **drawn)
     elif drawn:
         raise SceneError([Fault(scene.name, "count, seed", "given", "none with a list of cases")])
-    chosen = lowfi.Numerics(**options)
+    if not isinstance(cases, Uncertainty):
+        cases = arguments.rows(cases)
+    chosen = arguments.numerics(lowfi.Numerics, options, highfi.Numerics, model)
     found = _pressed(scene, model, compliance, calibration)
     like = Run("lowfi", scene.name, scene, chosen, calibration, found)
     with kernel_marks.first_use(like, many=True):
@@ -184,7 +187,9 @@ def ensemble(
         )
 
 
-def compliance(scene: Scene, element_size: float | None = None) -> RailCompliance:
+def compliance(
+    scene: Scene | str | Path, element_size: float | str | None = None
+) -> RailCompliance:
     """Rail compliance under the pads of a scene, from the statics of its finite elements.
 
     Takes seconds to minutes, once for a rail and its pads: it is stored in the cache folder of the
@@ -192,7 +197,7 @@ def compliance(scene: Scene, element_size: float | None = None) -> RailComplianc
 
     Args:
         scene: the scene; its rail and pads count.
-        element_size: size of the elements (m); without it the coarsest mesh that is within 1 % of
+        element_size: size of the elements (m, or text with a unit); without it the coarsest mesh that is within 1 % of
             the reference's own.
 
     Returns:
@@ -210,6 +215,9 @@ def compliance(scene: Scene, element_size: float | None = None) -> RailComplianc
     from tipoff.studies.core.progress import say
     from tipoff.studies.core.settings import defaults
 
+    scene = arguments.scene_of(scene)
+    if element_size is not None:
+        element_size = arguments.length("element_size", element_size)
     folder = sources.cache_folder() / "compliance"
     if element_size is not None:
         return rail_compliance.kept(scene, folder / "of-a-size", element_size, say)
@@ -221,7 +229,7 @@ def compliance(scene: Scene, element_size: float | None = None) -> RailComplianc
 
 
 def calibrate(
-    scene: Scene,
+    scene: Scene | str | Path,
     references: "Mapping[str, Trajectory | Curves]",
     progress: Callable[[float], None] | None = None,
     seed: int = 0,
@@ -262,6 +270,7 @@ def calibrate(
     from tipoff import calibration
     from tipoff.lowfi import models
 
+    scene = arguments.scene_of(scene)
     model = model or (SPRINGS if fit is None else COMPLIANT)
     _require(scene, model, SURROGATES)
     calibration.require_model(scene, model, fit)
@@ -297,6 +306,12 @@ def compare(reference: Trajectory, surrogate: Trajectory) -> "Difference":
     """
     from tipoff.studies.agreement import metrics
 
+    for name, given in (("reference", reference), ("surrogate", surrogate)):
+        if not isinstance(given, Trajectory):
+            kind = "None" if given is None else f"a {type(given).__name__}"
+            raise SceneError(
+                [Fault("arguments", name, kind, "a Trajectory, which tipoff.run returns")]
+            )
     return metrics.compare(reference, surrogate)
 
 

@@ -13,13 +13,15 @@ impulse alone.
 """
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
 from tipoff.scenes.body import tensor
 from tipoff.scenes.effects import thrust_law
-from tipoff.scenes.tables import MOST_SAMPLES
+from tipoff.scenes.faults import within
+from tipoff.scenes.tables import MOST_SAMPLES, OutputTable
 from tipoff.scenes.units import LONGEST
 
 SETTLE_DELAY = 1e-3  # s, from the exit to the settled window
@@ -33,6 +35,31 @@ _REACH = 8.0  # widths of a Gaussian beyond which it is below 2e-14 of its peak
 _MARGIN = 1.25  # of the expected end: friction delays the exit
 _POINTS = 4001  # of the thrust
 _ROUNDING = 1e-12
+
+
+class Timed:
+    """Base of ``scenes.scene.Scene``: when its runs end."""
+
+    @property
+    def time_limit(self: Any) -> float:
+        """Time (s) at which a run ends at the latest: the duration, or without one a bound
+        that follows from rail, thrust, friction and gravity. A run that has settled or is jammed
+        ends before.
+
+        Example:
+            >>> scene = tipoff.load("tiny")
+            >>> scene.time_limit == scene.duration
+            True
+            >>> scene.replace({"duration": None}).time_limit  # s
+            32.768
+        """
+        return limit(self)
+
+    @property
+    def expected_end(self: Any) -> float:
+        """Estimate of the end of a run (s), for plots, progress and costs: the duration, or without
+        one that of a payload without friction."""
+        return expected(self)
 
 
 def limit(scene: Any) -> float:
@@ -68,6 +95,28 @@ def burns_too_long(scene: Any) -> float | None:
         return None
     needed = _burnt(record) + SETTLE_WINDOW
     return needed if needed > most else None
+
+
+def require(tables: dict[str, Any], output: OutputTable) -> None:
+    """Refuse a thrust that lasts longer than a run without a duration can be sampled: ``tables`` of
+    a scene that are valid so far, and its ``output``."""
+    if not {"duration", "thrust"} <= tables.keys():  # they have faults of their own
+        return
+    needed = burns_too_long(SimpleNamespace(**tables, output=output))
+    if needed is not None:
+        raise within(
+            "interval",
+            f"{output.interval:g} s, no duration, and a thrust whose rates settle at {needed:.6g} s",
+            f"at least {needed / MOST_SAMPLES:.3g} s (at most {MOST_SAMPLES:,} samples), a thrust "
+            f"that ends within {longest(SimpleNamespace(output=output)):g} s, or a duration",
+        )
+
+
+def fits(scene: Any) -> bool:
+    """Whether the sampling interval fits the duration, or the thrust without one."""
+    if scene.duration is None:
+        return burns_too_long(scene) is None
+    return scene.output.fits(scene.duration)
 
 
 def expected(scene: Any) -> float:

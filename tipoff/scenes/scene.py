@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from functools import cached_property
 from operator import attrgetter
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Annotated, Any
 
 from pydantic import (
@@ -58,7 +57,7 @@ _BESIDE = ("conditions", "agreement", "provenance")
 _NOT_PHYSICS = {"name", "description", "flight", *_BESIDE}
 
 
-class Scene(shown.Shown, Table):
+class Scene(shown.Shown, ends.Timed, Table):
     """Everything a run needs. Fields are SI; an absent effect is None. Use ``replace`` for
     variations.
 
@@ -72,8 +71,7 @@ class Scene(shown.Shown, Table):
     name: Annotated[str, AfterValidator(names.of_scene)]
     #: One line for lists and reports.
     description: str = ""
-    #: Longest time that is simulated from ignition on. Without it a run goes on until its
-    #: rates have settled or the payload is jammed.
+    #: Longest time that is simulated. Without it a run ends when it is settled or jammed.
     duration: Duration | None = None
     #: The rigid body that leaves the rail.
     payload: PayloadTable
@@ -130,9 +128,8 @@ class Scene(shown.Shown, Table):
     @classmethod
     def _of_fitting_interval(cls, output: OutputTable, info: ValidationInfo):
         duration = info.data.get("duration")
-        if duration is None:
-            _require_an_end(info.data, output)
-        elif not output.fits(duration):
+        ends.require(info.data, output)
+        if duration is not None and not output.fits(duration):
             raise within(
                 "interval",
                 f"{output.interval:g} s",
@@ -255,33 +252,9 @@ class Scene(shown.Shown, Table):
 
     def agrees(self) -> bool:
         """Whether tables that are each valid fit each other: rails have an expansion where there is
-        a temperature, and the sampling interval fits the duration, or the thrust without one."""
-        if self.thermal is not None and self.rail.material.expansion is None:
-            return False
-        if self.duration is None:
-            return ends.burns_too_long(self) is None
-        return self.output.fits(self.duration)
-
-    @property
-    def time_limit(self) -> float:
-        """Time (s) at which a run ends at the latest: the duration, or without one a bound
-        that follows from rail, thrust, friction and gravity. A run that has settled or is jammed
-        ends before.
-
-        Example:
-            >>> scene = tipoff.load("tiny")
-            >>> scene.time_limit == scene.duration
-            True
-            >>> scene.replace({"duration": None}).time_limit  # s
-            32.768
-        """
-        return ends.limit(self)
-
-    @property
-    def expected_end(self) -> float:
-        """Estimate of the end of a run (s), for plots, progress and costs: the duration, or without
-        one that of a payload without friction."""
-        return ends.expected(self)
+        a temperature, and the sampling interval fits the duration."""
+        expands = self.thermal is None or self.rail.material.expansion is not None
+        return expands and ends.fits(self)
 
     def absent_effects(self) -> list[str]:
         """Dotted keys of the effect tables that this scene does not have.
@@ -355,20 +328,6 @@ def catalog() -> list[str]:
 
 
 _Faults = list[tuple[str, str, str]]
-
-
-def _require_an_end(tables: dict[str, Any], output: OutputTable) -> None:
-    """Refuse a thrust that lasts longer than a run without a duration can be sampled."""
-    if "duration" not in tables or "thrust" not in tables:  # they have faults of their own
-        return
-    needed = ends.burns_too_long(SimpleNamespace(**tables, output=output))
-    if needed is not None:
-        raise within(
-            "interval",
-            f"{output.interval:g} s, no duration, and a thrust whose rates settle at {needed:.6g} s",
-            f"at least {needed / MOST_SAMPLES:.3g} s (at most {MOST_SAMPLES:,} samples), a thrust "
-            f"that ends within {ends.longest(SimpleNamespace(output=output)):g} s, or a duration",
-        )
 
 
 def _validated(raw: Any, bare_numbers_are_si: bool) -> tuple[Scene | None, _Faults]:

@@ -95,7 +95,7 @@ def _require_time(study) -> None:
     from tipoff.scenes.faults import Fault, SceneError
 
     asked = {name: study.scene.condition(name) for name in study.conditions}
-    faults = {}
+    faults: dict[tuple[str, str], Fault] = {}
     for name, scene in asked.items():
         if words := unfinished.foreseen(scene):
             given = f"{1e3 * scene.duration:.6g} ms"
