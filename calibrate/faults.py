@@ -64,7 +64,7 @@ def _unfit(scene: Scene, reference: Trajectory | Curves) -> list[str]:
             if reference.status == "exited"
             else [f"is {reference.status}, expected exited: no settled rate can be fitted"]
         )
-    (burnt,) = thrust.burnouts(scene.thrust.record(), (1e-3,), scene.duration)
+    (burnt,) = thrust.burnouts(scene.thrust.record(), (1e-3,), scene.time_limit)
     # a record ends with a sample, seldom with the window
     last_step = float(reference.time[-1] - reference.time[-2])
     found = []
@@ -74,9 +74,9 @@ def _unfit(scene: Scene, reference: Trajectory | Curves) -> list[str]:
             f"{1e3 * burnt:.6g} ms, when "
             "thrust falls below 0.1 % of its peak: the record is too short"
         )
-    if reference.time[-1] > scene.duration * (1.0 + 1e-12):
+    if reference.time[-1] > scene.time_limit * (1.0 + 1e-12):
         found.append(
             f"lasts {1e3 * reference.time[-1]:.6g} ms, expected at most the scene's duration of "
-            f"{1e3 * scene.duration:.6g} ms: settle earlier, or raise the duration"
+            f"{1e3 * scene.time_limit:.6g} ms: settle earlier, or raise the duration"
         )
     return found

@@ -3,6 +3,8 @@
 import math
 from dataclasses import asdict, dataclass
 
+from tipoff.scenes.units import COARSEST_ELEMENTS, FINEST_ELEMENTS
+
 LEAST_CELLS = 16  # along each edge of a pad face, by default
 _MOST_CELLS = 1000
 
@@ -25,9 +27,10 @@ class Numerics:
 
     def __post_init__(self):
         faults = []
-        if not (math.isfinite(self.element_size) and self.element_size > 0.0):
+        if not FINEST_ELEMENTS <= self.element_size <= COARSEST_ELEMENTS:
             faults.append(
-                f"element_size: given {self.element_size!r}, expected a length above zero (m)"
+                f"element_size: given {self.element_size!r}, expected {FINEST_ELEMENTS:g} to "
+                f"{COARSEST_ELEMENTS:g} (m)"
             )
         if self.cells is not None and not 1 <= self.cells <= _MOST_CELLS:
             faults.append(

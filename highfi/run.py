@@ -75,9 +75,9 @@ def run(
     observer: Callable[["Loop"], None] | None = None,
 ) -> Trajectory:
     """Solve ``scene`` with flexible rails until the settled window is complete, a jam, or the
-    scene's duration.
+    scene's time limit.
 
-    ``progress`` is called with the fraction of the duration done. ``threads`` share the run (None:
+    ``progress`` is called with the fraction of the expected time done. ``threads`` share the run (None:
     as many as there are processors, ``OMP_NUM_THREADS`` at most, and elements enough for them); the
     result does not depend on their number. The run is written to the file ``checkpoint`` every
     ``checkpoint_every`` seconds (wall clock), and the file stays. With ``resume`` the run continues
@@ -154,8 +154,9 @@ class Loop:
         self.small = linear_range.small(system)  # m
         self.slow = spin.rate_never_checked(scene, system.mesh)  # rad/s, of the platform
         self.milestones = outcome.milestones(scene, system.model)
-        self.last = scene.output.last(scene.duration)
-        self.most = int(scene.duration / stepping.dt_s * (1.0 + _ROUNDING))  # steps
+        self.last = scene.output.last(scene.time_limit)
+        self.most = int(scene.time_limit / stepping.dt_s * (1.0 + _ROUNDING))  # steps
+        self.expected = min(self.most * stepping.dt_s, scene.expected_end)  # s
         self.wall, self.cpu, self.other_cpu = 0.0, 0.0, 0.0  # s
         self.steps, self.checks = 0, 0  # done
         self.taken, self.block_steps = 0, 0  # long steps or substeps, and blocks that were stepped
@@ -251,7 +252,7 @@ class Loop:
             if observer and len(self.rows) > taken:
                 observer(self)
             if progress and self.checks % _REPORT_EVERY == 0:
-                end = min(self.most * self.stepping.dt_s, self.book[WINDOW] + outcome.SETTLE_WINDOW)
+                end = min(self.expected, self.book[WINDOW] + outcome.SETTLE_WINDOW)
                 progress(min(1.0, self.steps * self.stepping.dt_s / end))
             self.wall, self.cpu = clock.perf_counter() - began, clock.thread_time() - cpu
             if kept:

@@ -62,7 +62,7 @@ def solve(
     """Motion of the payload of ``scene`` with ``steps_per_sample`` equal steps between samples, to
     the scene's duration; a warm scene needs a rigid ``compliance``."""
     interval = interval or scene.output.interval
-    samples = samples if samples is not None else round(scene.duration / interval)
+    samples = samples if samples is not None else round(scene.time_limit / interval)
     job, rows = prepared(scene, steps_per_sample, samples, interval, compliance)
     integrate(*job, rows)
     return Samples(

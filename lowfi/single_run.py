@@ -19,6 +19,7 @@ from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
 
+_ROWS = 65_536  # samples for which there is room at first
 _STRIDE = 5e-3  # s, from one report of progress to the next
 _REASONS = {
     integrate.UNDERFLOW: "no step is short enough: the state is no longer finite or its equations too "
@@ -53,8 +54,9 @@ class Run:
         self.model = model = models.build(scene)
         self.marks = outcome.milestones(scene, model)
         self.interval = scene.output.interval
-        self.end = scene.output.last(scene.duration)
-        self.plan = plan.make(model, scene.duration, used)
+        self.end = scene.output.last(scene.time_limit)
+        self.expected = scene.output.last(scene.expected_end)
+        self.plan = plan.make(model, scene.time_limit, used)
         reach = float(np.sqrt((model.faces.centre**2).sum(axis=1).max()))
         self.tolerance = local_error.tolerance(used, self.promised, reach)
         self.system = system.build(
@@ -64,9 +66,10 @@ class Run:
             neglected=neglected.watched(scene, model, compliance, self.modes, watches),
         )
         self.loop = integrate.ready(self.system, state.initial(model), self.plan.first)
+        first = min(self.end + 1, _ROWS)
         self.rows, self.forces = (
-            np.zeros((self.end + 1, SAMPLE_SIZE)),
-            np.zeros((self.end + 1, model.faces.axis.size, 3)),
+            np.zeros((first, SAMPLE_SIZE)),
+            np.zeros((first, model.faces.axis.size, 3)),
         )
         self.last, self.taken, self.whole, self.message = self.end, 0, False, ""
 
@@ -79,9 +82,17 @@ class Run:
         each call of the kernel costs some microseconds for its records."""
         stride = max(1, round(_STRIDE / self.interval)) if progress else self.end + 1
         while self.taken <= self.end and not self.message:
-            self.advance(min(self.taken - 1 + stride, self.end))
+            if self.taken == len(self.rows):
+                self._grow()
+            self.advance(min(self.taken - 1 + stride, len(self.rows) - 1))
             if progress:
-                progress(self.taken / (self.end + 1))
+                progress(min(1.0, self.taken / (min(self.end, self.expected) + 1)))
+
+    def _grow(self) -> None:
+        """Room for twice as many samples: few runs last as long as they may."""
+        more = min(len(self.rows), self.end + 1 - len(self.rows))
+        self.rows = np.concatenate([self.rows, np.zeros((more, *self.rows.shape[1:]))])
+        self.forces = np.concatenate([self.forces, np.zeros((more, *self.forces.shape[1:]))])
 
     def advance(self, number: int) -> None:
         """Take samples up to ``number``, fewer where exit or jam end the run."""

@@ -9,7 +9,16 @@ from tipoff import scenes, sources
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.scenes import Calibration, Fault, Scene, SceneError, reading, studies, uncertainty
+from tipoff.scenes import (
+    Calibration,
+    Fault,
+    Scene,
+    SceneError,
+    arguments,
+    reading,
+    studies,
+    uncertainty,
+)
 from tipoff.scenes import catalog as catalog
 from tipoff.scenes import parse as parse
 from tipoff.scenes.uncertainty import Uncertainty
@@ -49,7 +58,7 @@ def load(name_or_path: str | Path) -> Scene:
 
 
 def run(
-    scene: Scene,
+    scene: Scene | str | Path,
     model: str = COMPLIANT,
     *,
     compliance: RailCompliance | None = None,
@@ -60,13 +69,15 @@ def run(
     """Solve a scene in a model.
 
     Args:
-        scene: the scene, or one of its conditions (``Scene.condition``).
+        scene: the scene, or one of its conditions (``Scene.condition``); or a name or path as in
+            ``load``.
         model: ``compliant``, ``springs`` or ``finite-elements``.
         compliance: rail compliance, for the model ``compliant``; computed where it is not given.
         calibration: constants that were fitted on the same model.
-        progress: called with the fraction of the duration done, 0 to 1.
+        progress: called with the fraction of the expected time done, 0 to 1.
         numerics: fields of ``lowfi.Numerics`` or ``highfi.Numerics``, such as ``element_size=2e-3``
-            (m) or ``modes=4``. Elements are those that the scene states (``[studies]``) without it.
+            (m), ``element_size="2 mm"`` or ``modes=4``. Elements are those that the scene states
+            (``[studies]``) without it.
 
     Returns:
         Trajectory: motion over time. A failure of the run is its ``status``.
@@ -83,20 +94,19 @@ def run(
         >>> [round(math.degrees(rate)) for rate in run.outcome.rate]  # deg/s
         [5, 2, 9]
     """
+    from tipoff import highfi, lowfi
     from tipoff.studies.core import kernel_marks
     from tipoff.studies.core.run import Run
 
+    scene = arguments.scene_of(scene)
     _require(scene, model, MODELS)
     if model == FINITE_ELEMENTS:
-        from tipoff import highfi
-
         _require_none(scene, model, compliance=compliance, calibration=calibration)
-        sizes = highfi.Numerics(**{"element_size": studies.element_size(scene.studies)} | numerics)
+        given = {"element_size": studies.element_size(scene.studies)} | numerics
+        sizes = arguments.numerics(highfi.Numerics, given, lowfi.Numerics, model)
         with kernel_marks.first_use(Run("highfi", scene.name, scene, sizes)):
             return highfi.run(scene, sizes, progress)
-    from tipoff import lowfi
-
-    chosen = lowfi.Numerics(**numerics)
+    chosen = arguments.numerics(lowfi.Numerics, numerics, highfi.Numerics, model)
     found = _pressed(scene, model, compliance, calibration)
     asked = Run("lowfi", scene.name, scene, chosen, calibration, found)
     with kernel_marks.first_use(asked), kernel_marks.chosen_modes(asked) as vibrates:
@@ -112,8 +122,8 @@ def run(
 
 
 def ensemble(
-    scene: Scene,
-    cases: Sequence[Mapping[str, Any]] | Uncertainty | str | Path = "paper",
+    scene: Scene | str | Path,
+    cases: Any = "paper",
     model: str = COMPLIANT,
     *,
     compliance: RailCompliance | None = None,
@@ -126,9 +136,10 @@ def ensemble(
     """Run a scene once for each of many cases in a surrogate model.
 
     Args:
-        scene: the scene, or one of its conditions.
-        cases: rows of dotted overrides as in ``Scene.replace``; or distributions, by the name or
-            path of their file.
+        scene: as in ``run``.
+        cases: rows of dotted overrides as in ``Scene.replace``: a list of mappings, a mapping of
+            columns, a table of pandas, a data set of xarray or a structured array; or
+            distributions, by the name or path of their file.
         model: ``compliant`` or ``springs``.
         compliance: as in ``run``.
         calibration: as in ``run``.
@@ -156,10 +167,11 @@ def ensemble(
         >>> tipoff.ensemble(tipoff.load("tiny"), heavier, "springs").sizes["case"]
         2
     """
-    from tipoff import lowfi
+    from tipoff import highfi, lowfi
     from tipoff.studies.core import kernel_marks
     from tipoff.studies.core.run import Run
 
+    scene = arguments.scene_of(scene)
     _require(scene, model, SURROGATES)
     drawn = {"cases": options.pop("count", None), "seed": options.pop("seed", None)}
     drawn = {key: value for key, value in drawn.items() if value is not None}
@@ -167,7 +179,9 @@ def ensemble(
         cases = uncertainty.load(cases, scene, **drawn)
     elif drawn:
         raise SceneError([Fault(scene.name, "count, seed", "given", "none with a list of cases")])
-    chosen = lowfi.Numerics(**options)
+    if not isinstance(cases, Uncertainty):
+        cases = arguments.rows(cases)
+    chosen = arguments.numerics(lowfi.Numerics, options, highfi.Numerics, model)
     found = _pressed(scene, model, compliance, calibration)
     like = Run("lowfi", scene.name, scene, chosen, calibration, found)
     with kernel_marks.first_use(like, many=True):
@@ -184,7 +198,9 @@ def ensemble(
         )
 
 
-def compliance(scene: Scene, element_size: float | None = None) -> RailCompliance:
+def compliance(
+    scene: Scene | str | Path, element_size: float | str | None = None
+) -> RailCompliance:
     """Rail compliance under the pads of a scene, from the statics of its finite elements.
 
     Takes seconds to minutes, once for a rail and its pads: it is stored in the cache folder of the
@@ -192,8 +208,8 @@ def compliance(scene: Scene, element_size: float | None = None) -> RailComplianc
 
     Args:
         scene: the scene; its rail and pads count.
-        element_size: size of the elements (m); without it that of the reference, which the scene
-            may state (``[studies]``).
+        element_size: size of the elements (m, or text with a unit); without it that of the
+            reference, which the scene may state (``[studies]``).
 
     Returns:
         RailCompliance: flexibility and lowest modes at stations along the rail.
@@ -209,12 +225,15 @@ def compliance(scene: Scene, element_size: float | None = None) -> RailComplianc
     from tipoff.calibration import rail_compliance
     from tipoff.studies.core.progress import say
 
-    size = studies.element_size(scene.studies) if element_size is None else element_size
+    scene = arguments.scene_of(scene)
+    size = studies.element_size(scene.studies)
+    if element_size is not None:
+        size = arguments.length("element_size", element_size)
     return rail_compliance.kept(scene, sources.cache_folder() / "compliance", size, say)
 
 
 def calibrate(
-    scene: Scene,
+    scene: Scene | str | Path,
     references: "Mapping[str, Trajectory | Curves]",
     progress: Callable[[float], None] | None = None,
     seed: int = 0,
@@ -255,6 +274,7 @@ def calibrate(
     from tipoff import calibration
     from tipoff.lowfi import models
 
+    scene = arguments.scene_of(scene)
     model = model or (SPRINGS if fit is None else COMPLIANT)
     _require(scene, model, SURROGATES)
     calibration.require_model(scene, model, fit)
@@ -290,6 +310,12 @@ def compare(reference: Trajectory, surrogate: Trajectory) -> "Difference":
     """
     from tipoff.studies.agreement import metrics
 
+    for name, given in (("reference", reference), ("surrogate", surrogate)):
+        if not isinstance(given, Trajectory):
+            kind = "None" if given is None else f"a {type(given).__name__}"
+            raise SceneError(
+                [Fault("arguments", name, kind, "a Trajectory, which tipoff.run returns")]
+            )
     return metrics.compare(reference, surrogate)
 
 

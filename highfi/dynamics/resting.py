@@ -79,7 +79,7 @@ def build(scene: Scene, system: System, stepping: Stepping) -> Rails | None:
         # Samples may lie at any multiple of the raster, so long steps must not pass it.
         stride=_stride(system.model.thrust, stepping.dt_s, raster),
         interval=raster * max(1, STEPS_PER_CHECK // raster),
-        jumps=_jumps(system.model.thrust, scene.duration),
+        jumps=_jumps(system.model.thrust, scene.time_limit),
     )
 
 

@@ -45,7 +45,7 @@ def expected_rate(scene: Scene) -> float:
     offset = model.thrust_offset
     place = np.array([-model.thrust_arm, 0.0, 0.0]) if offset is None else np.array(offset.arm)
     direction = np.array([1.0, 0.0, 0.0]) if offset is None else np.array(offset.direction)
-    impulse = thrust.impulse(model.thrust, scene.duration)
+    impulse = thrust.impulse(model.thrust, scene.time_limit)
     moment = np.cross(place + model.payload.mass_centre - model.platform.mass_centre, direction)
     kick = model.platform.inverse_inertia @ (moment * float(impulse))
     return rate + float(np.linalg.norm(kick))

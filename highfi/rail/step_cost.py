@@ -71,18 +71,18 @@ def with_run_time(mesh: RailMesh, scene: Scene, size: float) -> RailMesh:
     if times <= MOST:
         return mesh
     step, seconds = run_time(mesh, scene)
-    steps = scene.duration / step
+    steps = scene.expected_end / step
     words = (
         f"thin or bent elements need {times:.3g} times the steps of cubes of {1e3 * size:.3g} mm: "
-        f"{steps:.3g} steps of {step:.3g} s for all of {scene.duration:.3g} s, with "
+        f"{steps:.3g} steps of {step:.3g} s for all of {scene.expected_end:.3g} s, with "
         f"{len(mesh.cells):,} elements about {in_words(seconds)} on one core"
     )
     return replace(mesh, warnings=(*mesh.warnings, words))
 
 
 def run_time(mesh: RailMesh, scene: Scene) -> tuple[float, float]:
-    """Estimate of the step (s) on a mesh and of the time (s) that one core takes for the whole
-    duration of ``scene``."""
+    """Estimate of the step (s) on a mesh and of the time (s) that one core takes until the
+    expected end of ``scene``."""
     jacobian, _ = jacobians(mesh.points, mesh.cells)
     worst = mesh.cells[_worst(mesh.points, mesh.cells, jacobian.min(axis=1))]
     limit = largest_step(RailMesh(mesh.points, worst, {}), scene.rail.material)
@@ -96,8 +96,8 @@ def long_run(mesh: RailMesh, scene: Scene, step: float) -> str:
     if (seconds := _seconds(mesh, scene, step)) <= _LONG:
         return ""
     return (
-        f"{scene.name}: {scene.duration / step:.3g} steps of {step:.3g} s for all of "
-        f"{scene.duration:.3g} s, with {len(mesh.cells):,} elements about {in_words(seconds)} on one "
+        f"{scene.name}: {scene.expected_end / step:.3g} steps of {step:.3g} s for all of "
+        f"{scene.expected_end:.3g} s, with {len(mesh.cells):,} elements about {in_words(seconds)} on one "
         "core"
     )
 
@@ -106,7 +106,7 @@ def _seconds(mesh: RailMesh, scene: Scene, step: float) -> float:
     count = len(mesh.cells)
     is_shared = len(assembly.shape_classes(mesh)[1]) < _FEW * count
     nanoseconds = (_SHARED if is_shared else _OWN)[mesh.cells.shape[1]]
-    return 1e-9 * nanoseconds * scene.duration / step * count
+    return 1e-9 * nanoseconds * scene.expected_end / step * count
 
 
 def spacing(mesh: RailMesh) -> float:

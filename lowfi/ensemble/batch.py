@@ -137,26 +137,24 @@ class Family:
 
     def _group(self, groups: dict, built: Built) -> _Group:
         scene, model = built.scene, built.model
+        limit, base = scene.time_limit, self.base.scene
         # The damping of rails that vibrate and the stiffness of mounts are no part of a model.
         key = (
             self._shared(built),
             scene.thrust.kind,
-            scene.duration,
+            limit,
             scene.rail.damping and scene.rail.damping.record(),
             scene.rail.joint(),
         )
         if key not in groups:
-            same = (
-                scene.thrust is self.base.scene.thrust
-                and scene.duration == self.base.scene.duration
-            )
+            same = scene.thrust is base.thrust and limit == base.time_limit
             marks = self.marks if same else outcome.milestones(scene, model)
             # The next row may overwrite the tables of this one.
             kept = Built(scene.model_copy(deep=True), model, built.nominal)
             groups[key] = _Group(
                 kept,
                 marks._replace(jam_speed=outcome.jam_speed(model)),
-                plan.make(model, scene.duration, self.numerics),
+                plan.make(model, limit, self.numerics),
                 [],
                 [],
             )

@@ -260,7 +260,7 @@ def test_an_empty_effect_would_be_present_and_do_nothing(table):
     assert [fault.key for fault in refused(small(**{table: {}}))] == [table]
 
 
-@pytest.mark.parametrize("table", ["payload", "rail", "thrust", "pads", "duration"])
+@pytest.mark.parametrize("table", ["payload", "rail", "thrust", "pads"])
 def test_missing_tables(table):
     raw = small()
     del raw[table]

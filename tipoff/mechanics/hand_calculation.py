@@ -45,7 +45,7 @@ def rates(scene: Scene, run: "Trajectory") -> ByHand | None:
         return None
     moment = np.zeros(3)
     if model.thrust_offset is not None:
-        offset, impulse = model.thrust_offset, thrust_law.impulse(model.thrust, scene.duration)
+        offset, impulse = model.thrust_offset, thrust_law.impulse(model.thrust, scene.time_limit)
         moment += impulse * np.cross(offset.arm, offset.direction)
     for face in touching:
         # scene axes to body axes

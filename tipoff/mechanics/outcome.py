@@ -4,7 +4,7 @@ definitions.
 * **Exit**: first instant at which the trailing edge of the last pad face is past the rail end.
 * **Settled window**: 2 ms from the later of exit + 1 ms and thrust below 0.1 % of its peak; settled
   values are means over it.
-* **Jammed**: after thrust fell below 1 % of its peak, or under constant thrust, relative axial
+* **Jammed**: after thrust fell below 1 % of its peak, or under a brisk constant thrust, relative axial
   speed below the friction transition speed (10 mm/s where friction has none) for 5 ms.
 
 All of it is found from the steps of a run (``mechanics.ending``), whatever the sampling interval.
@@ -16,13 +16,13 @@ import numpy as np
 
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
+from tipoff.scenes import ends
 from tipoff.scenes.effects import thrust
 from tipoff.scenes.effects.friction import Friction
+from tipoff.scenes.ends import JAM_DURATION as JAM_DURATION
+from tipoff.scenes.ends import JAM_SPEED, SETTLE_DELAY
+from tipoff.scenes.ends import SETTLE_WINDOW as SETTLE_WINDOW
 from tipoff.scenes.scene import Scene
-
-SETTLE_DELAY = 1e-3
-SETTLE_WINDOW = 2e-3
-JAM_DURATION = 5e-3
 
 
 class Motion(NamedTuple):
@@ -61,7 +61,8 @@ class Outcome(NamedTuple):
 
 class Milestones(NamedTuple):
     """Values that the scene alone determines: times (s) from which on the thrust is below 0.1 % and
-    1 % of its peak, the jam speed (m/s), whether the thrust is constant."""
+    1 % of its peak, the latter no earlier than gravity can set a payload in motion; the jam speed
+    (m/s); whether a constant thrust is so strong that a payload that is slow under it is jammed."""
 
     settled_thrust: float
     spent_thrust: float
@@ -71,18 +72,19 @@ class Milestones(NamedTuple):
 
 def milestones(scene: Scene, model) -> Milestones:
     """Milestones of a run of ``scene``."""
-    settled, spent = thrust.burnouts(model.thrust, (1e-3, 1e-2), scene.duration)
+    settled, spent = thrust.burnouts(model.thrust, (1e-3, 1e-2), scene.time_limit)
+    slow = jam_speed(model)
     return Milestones(
         settled_thrust=settled,
-        spent_thrust=spent,
-        jam_speed=jam_speed(model),
-        constant_thrust=scene.thrust.kind == "constant",
+        spent_thrust=max(spent, ends.slides(scene, slow)),
+        jam_speed=slow,
+        constant_thrust=ends.starts_briskly(scene, slow),
     )
 
 
 def jam_speed(model) -> float:
     """Relative axial speed (m/s) below which a payload may be jammed."""
-    return model.friction.static_speed if isinstance(model.friction, Friction) else 0.01
+    return model.friction.static_speed if isinstance(model.friction, Friction) else JAM_SPEED
 
 
 def relative_motion(motion) -> dict[str, np.ndarray]:

@@ -8,6 +8,7 @@ import math
 from typing import TYPE_CHECKING
 
 from tipoff.mechanics.outcome import SETTLE_DELAY, SETTLE_WINDOW, relative_motion
+from tipoff.scenes import ends
 from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.scene import Scene
 
@@ -26,22 +27,39 @@ def advice(scene: Scene, run: "Trajectory") -> str:
     for any other status."""
     if run.status != "time_limit":
         return ""
-    ends = thrust_law.burnout(scene.thrust.record(), _BURNT, _HORIZON * scene.duration)
-    if ends >= _HORIZON * scene.duration:
+    burnt = thrust_law.burnout(scene.thrust.record(), _BURNT, _HORIZON * scene.time_limit)
+    if burnt >= _HORIZON * scene.time_limit:
         return (
             "the thrust does not end within the scene, so no rate settles: state a thrust that ends"
         )
     if run.outcome.exit_time is not None:
-        return _before_settling(run.outcome.exit_time, ends)
-    return _on_the_rail(scene, run, ends)
+        return _before_settling(run.outcome.exit_time, burnt) + _without(scene)
+    return _on_the_rail(scene, run, burnt)
+
+
+def foreseen(scene: Scene) -> str:
+    """Why no run of ``scene`` can settle within its stated duration, whatever friction is, and what
+    helps; empty where that cannot be said beforehand."""
+    if not ends.is_too_short(scene):
+        return ""
+    least = ends.earliest(scene)
+    if not math.isfinite(least):
+        return "a thrust that moves the payload: without friction it does not leave the rail either"
+    return (
+        f"at least {_ms(_up(least))}: without friction its rates settle no earlier{_without(scene)}"
+    )
 
 
 def way_to_exit(scene: Scene) -> float:
-    """Travel (m) along the rail from ignition to the exit: the trailing edge of the rearmost pad
-    reaches the end of the rail. A payload that turns has a little more or less to go."""
-    rearmost = min(pad.position[0] - 0.5 * pad.length for pad in scene.pads)
-    begun = scene.initial.position.x if scene.initial is not None else 0.0
-    return scene.rail.end - rearmost - begun
+    """``scenes.ends.way``."""
+    return ends.way(scene)
+
+
+def _without(scene: Scene) -> str:
+    """The way out that needs no number."""
+    if scene.duration is None:
+        return ""
+    return "; without duration a run ends by itself, once its rates have settled"
 
 
 def _before_settling(exit_time: float, thrust_ends: float) -> str:
@@ -60,11 +78,13 @@ def _on_the_rail(scene: Scene, run: "Trajectory", thrust_ends: float) -> str:
     way, whole = float(place[-1] - place[0]), way_to_exit(scene)
     text = f"still on the rail: {1e3 * way:.3g} of {1e3 * whole:.3g} mm"
     if speed < _SLOW:
-        lasts = f" (it lasts until {_ms(thrust_ends)})" if thrust_ends > scene.duration else ""
-        return f"{text}, at {speed:.2g} m/s: it needs more thrust{lasts}, or less friction"
+        lasts = f" (it lasts until {_ms(thrust_ends)})" if thrust_ends > scene.time_limit else ""
+        back = ", gravity pulls it back" if speed < -_SLOW else ""
+        return f"{text}, at {speed:.2g} m/s{back}: it needs more thrust{lasts}, or less friction"
     exit_time = float(run.time[-1]) + (whole - way) / speed
     settled = max(exit_time + SETTLE_DELAY, thrust_ends) + SETTLE_WINDOW + _MARGIN
-    return f"{text}, at {speed:.3g} m/s; at this speed a duration of {_ms(_up(settled))} is enough"
+    enough = f"at this speed a duration of {_ms(_up(settled))} is enough"
+    return f"{text}, at {speed:.3g} m/s; {enough}{_without(scene)}"
 
 
 def _up(time: float) -> float:

@@ -20,7 +20,17 @@ from pydantic import (
 )
 
 from tipoff.files import content_hash
-from tipoff.scenes import names, pads, plausibility, provenance, reading, roles, shown, suggestions
+from tipoff.scenes import (
+    ends,
+    names,
+    pads,
+    plausibility,
+    provenance,
+    reading,
+    roles,
+    shown,
+    suggestions,
+)
 from tipoff.scenes import overrides as keys
 from tipoff.scenes.effects.contact import ContactTable
 from tipoff.scenes.effects.flight import FlightTable
@@ -47,7 +57,7 @@ _BESIDE = ("conditions", "agreement", "provenance")
 _NOT_PHYSICS = {"name", "description", "flight", "studies", *_BESIDE}
 
 
-class Scene(shown.Shown, Table):
+class Scene(shown.Shown, ends.Timed, Table):
     """Everything a run needs. Fields are SI; an absent effect is None. Use ``replace`` for
     variations.
 
@@ -61,9 +71,8 @@ class Scene(shown.Shown, Table):
     name: Annotated[str, AfterValidator(names.of_scene)]
     #: One line for lists and reports.
     description: str = ""
-    #: Time that is simulated from ignition on. It must contain the exit and the settled
-    #: window.
-    duration: Duration
+    #: Longest time that is simulated. Without it a run ends when it is settled or jammed.
+    duration: Duration | None = None
     #: The rigid body that leaves the rail.
     payload: PayloadTable
     #: The blocks on the payload that slide along the rail.
@@ -120,7 +129,9 @@ class Scene(shown.Shown, Table):
     @field_validator("output")
     @classmethod
     def _of_fitting_interval(cls, output: OutputTable, info: ValidationInfo):
-        if "duration" in info.data and not output.fits(duration := info.data["duration"]):
+        duration = info.data.get("duration")
+        ends.require(info.data, output)
+        if duration is not None and not output.fits(duration):
             raise within(
                 "interval",
                 f"{output.interval:g} s",
@@ -244,9 +255,8 @@ class Scene(shown.Shown, Table):
     def agrees(self) -> bool:
         """Whether tables that are each valid fit each other: rails have an expansion where there is
         a temperature, and the sampling interval fits the duration."""
-        return (
-            self.thermal is None or self.rail.material.expansion is not None
-        ) and self.output.fits(self.duration)
+        expands = self.thermal is None or self.rail.material.expansion is not None
+        return expands and ends.fits(self)
 
     def absent_effects(self) -> list[str]:
         """Dotted keys of the effect tables that this scene does not have.
@@ -281,7 +291,7 @@ def parse(
         >>> tipoff.parse({"name": "mine"})
         Traceback (most recent call last):
         ...
-        tipoff.scenes.faults.SceneError: 5 faults in the scene
+        tipoff.scenes.faults.SceneError: 4 faults in the scene
         ...
     """
     keys.require_shallow(raw, source)

@@ -45,7 +45,7 @@ class Shown(Carded):
         """
         from tipoff import plots  # slow to load
 
-        time = np.linspace(0.0, self.duration, _PLOTTED)
+        time = np.linspace(0.0, self.expected_end, _PLOTTED)
         force = thrust_law.sample(self.thrust.record(), time)
         across = ("time after ignition (ms)", 1e3 * time)
         return plots.lines(across, "thrust (N)", [("thrust", force)], self.name, axes)
@@ -68,7 +68,7 @@ def facts(scene: "Scene") -> dict[str, str]:
         "platform": "rails are fixed"
         if scene.platform is None
         else f"free, {scene.platform.mass:g} kg",
-        "duration": f"{1e3 * scene.duration:g} ms",
+        "duration": _duration(scene),
         "conditions": _names(list(scene.conditions)),
     }
     if absent := scene.absent_effects():
@@ -80,8 +80,14 @@ def facts(scene: "Scene") -> dict[str, str]:
 
 def _thrust(scene: "Scene") -> str:
     record = scene.thrust.record()
-    peak, whole = (law(record, scene.duration) for law in (thrust_law.peak, thrust_law.impulse))
+    peak, whole = (law(record, scene.time_limit) for law in (thrust_law.peak, thrust_law.impulse))
     return f"{scene.thrust.kind}, peak {peak:.4g} N, impulse {whole:.4g} N*s within the duration"
+
+
+def _duration(scene: "Scene") -> str:
+    if scene.duration is not None:
+        return f"{1e3 * scene.duration:g} ms"
+    return f"until settled or jammed, at most {scene.time_limit:.4g} s"
 
 
 def _gaps(contact) -> str:

@@ -123,6 +123,9 @@ def parse(value: Any, unit: str, bare_numbers_are_si: bool) -> float:
     """
     if isinstance(value, str):
         return to_si(value, unit)
+    if hasattr(value, "magnitude") and hasattr(value, "units"):  # of pint, of any registry
+        return to_si(f"{_single(value.magnitude)!r} {value.units}", unit)
+    value = _single(value)
     # checks of abstract types are slow
     if type(value) is not float and (isinstance(value, bool) or not isinstance(value, Real)):
         raise ValueError(named(unit))
@@ -133,6 +136,11 @@ def parse(value: Any, unit: str, bare_numbers_are_si: bool) -> float:
     if unit != "dimensionless" and not bare_numbers_are_si:
         raise ValueError(f'text with a unit of dimension {unit}, for example "{value} {unit}"')
     return number
+
+
+def _single(value: Any) -> Any:
+    """The number in an array without dimensions, as Python has it; anything else as it is."""
+    return value.item() if getattr(value, "shape", None) == () else value
 
 
 def sized(value: float, unit: str, is_positive: bool = False) -> float:
@@ -180,7 +188,9 @@ Angle = quantity("rad")
 Time = quantity("s")
 NonNegativeTime = quantity("s", ge=0.0)
 PositiveTime = quantity("s", gt=0.0)
-Duration = quantity("s", gt=0.0, le=3600.0)  # an ejection takes milliseconds, a slow one minutes
+LONGEST = 3600.0  # s, of a run
+FINEST_ELEMENTS, COARSEST_ELEMENTS = 5e-5, 0.1  # m
+Duration = quantity("s", gt=0.0, le=LONGEST)  # an ejection takes milliseconds, a slow one minutes
 Mass = quantity("kg", gt=0.0)
 Density = quantity("kg/m**3", gt=0.0)
 Pressure = quantity("Pa", gt=0.0)

@@ -1,6 +1,5 @@
 """A scene from a few numbers holds them, is plausible, and its payload leaves the rail and settles."""
 
-import math
 import tomllib
 
 import pytest
@@ -19,6 +18,7 @@ LAUNCHERS = {
     "reference": Numbers(),
     "slow": Numbers(mass=12.0, thrust=1500.0),
     "small": Numbers(0.8, (0.10, 0.05, 0.06), 0.10, 0.1e-3, 300.0, 0.010),
+    "far slower": Numbers(thrust=60.0),
     "large": Numbers(150.0, (1.2, 0.6, 0.5), 1.0, 0.5e-3, 40_000.0, 0.1),
     "three stations": Numbers(pads=12),
 }
@@ -49,37 +49,12 @@ def test_it_holds_the_numbers_and_is_plausible(launcher):
 
 
 @pytest.mark.parametrize("name", LAUNCHERS)
-def test_it_runs_to_settled_rates_within_its_duration(name, tmp_path):
+def test_it_runs_to_settled_rates_without_a_duration(name, tmp_path):
     path = tmp_path / "new.toml"
     path.write_text(template.text("new", LAUNCHERS[name]))
+    assert "duration" not in tomllib.loads(path.read_text())
     run = lowfi.run(scenes.load(path), "springs")
     assert run.status == "exited", unfinished.advice(scenes.load(path), run)
-
-
-def test_the_duration_is_that_of_the_pulse_alone():
-    """A payload far slower than its pulse coasts at impulse / mass."""
-    numbers = Numbers(mass=100.0, thrust=100.0, rail_length=1.0)
-    # the pulse begins three widths before its peak
-    impulse = 100.0 * 0.004 * math.sqrt(math.pi / 2.0) * (1.0 + math.erf(3.0 / math.sqrt(2.0)))
-    coasting = numbers.rail_length / (impulse / numbers.mass)  # after the middle of the pulse
-    expected = 1.25 * (coasting + 0.012 + 0.003)
-    assert template.duration(numbers) == pytest.approx(expected, rel=1e-5)
-
-
-def test_the_duration_is_that_of_the_curve_alone(tmp_path):
-    """A constant push of 20 ms, then a pull back of 10 ms, then the exit by coasting: in three
-    pieces with a closed form. Control: the duration of the default pulse is another one."""
-    path = tmp_path / "firing.csv"
-    path.write_text("time_s,force_N\n0,100\n0.02,100\n0.02,-50\n0.03,-50\n")
-    numbers = Numbers(mass=10.0, rail_length=0.05, thrust_curve=path)
-    speed = 100.0 * 0.02 / 10.0
-    way = 0.5 * speed * 0.02 + speed * 0.01 - 0.5 * 5.0 * 0.01**2
-    exits = 0.03 + (0.05 - way) / (speed - 5.0 * 0.01)
-    assert template.duration(numbers) == pytest.approx(1.25 * (exits + 0.003), rel=1e-6)
-    assert template.duration(numbers._replace(thrust_curve=None)) < 0.5 * exits
-    # on a rail this short it leaves before it is pulled back, at t = sqrt(2 m s / F)
-    short = 1.25 * (0.03 + 0.002)  # the thrust ends later than the exit
-    assert template.duration(numbers._replace(rail_length=1e-3)) == pytest.approx(short, rel=1e-6)
 
 
 def test_a_scene_refers_to_the_curve_of_its_thrust(tmp_path, monkeypatch):

@@ -177,7 +177,7 @@ def reference_seconds(run: Run, speed: Pace) -> tuple[float, str] | None:
         steps = speed.steps * speed.element_size / size
     else:
         material = run.scene.rail.material
-        steps = run.scene.duration / (
+        steps = run.scene.expected_end / (
             _STEP * size * math.sqrt(material.density / material.youngs_modulus)
         )
     return 1e-9 * elements * steps * speed.ns, speed.source

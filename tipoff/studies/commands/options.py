@@ -63,23 +63,24 @@ def _beginning_with(incomplete: str) -> list[Path]:
 
 def in_millimetres(text: str) -> float:
     """A length with its unit, or a number of millimetres, in mm. Raises typer.BadParameter."""
+    from tipoff.scenes.units import COARSEST_ELEMENTS, FINEST_ELEMENTS, to_si
+
     try:
         value = float(text)
     except ValueError:
-        from tipoff.scenes.units import to_si
-
         try:
             value = 1e3 * to_si(text, "m")
         except ValueError:
             raise typer.BadParameter(
                 f'given {text!r}, expected a length, for example "4 mm", or a number of mm'
             ) from None
-    if not _FINEST <= value < float("inf"):
-        raise typer.BadParameter(f"given {text!r}, expected at least {_FINEST:g} mm")
+    least, most = 1e3 * FINEST_ELEMENTS, 1e3 * COARSEST_ELEMENTS
+    if not least <= value <= most:
+        raise typer.BadParameter(
+            f"given {text!r}, expected at least {least:g} mm, at most {most:g}"
+        )
     return value
 
-
-_FINEST = 0.05  # mm, an element size
 
 SceneName = Annotated[
     str,

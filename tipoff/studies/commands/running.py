@@ -72,6 +72,7 @@ def study_of(
     # a bad override or an unknown condition, before anything runs
     asked = {"source": "--condition", "key": "name"} if names else {}
     _of_option(asked, lambda: study.conditions)
+    _require_time(study)
     doubtful = plausibility.of_all_conditions(found)
     if doubtful and strict:
         raise SceneError(
@@ -86,6 +87,23 @@ def study_of(
     for warning in [*reading.replaced_by_conditions(scene), *replaced]:
         say(f"warning: {warning}")
     return study
+
+
+def _require_time(study) -> None:
+    """Refuse a stated duration in which no payload can settle, before anything is compiled."""
+    from tipoff.mechanics import unfinished
+    from tipoff.scenes.faults import Fault, SceneError
+
+    asked = {name: study.scene.condition(name) for name in study.conditions}
+    faults: dict[tuple[str, str], Fault] = {}
+    for name, scene in asked.items():
+        if words := unfinished.foreseen(scene):
+            given = f"{1e3 * scene.duration:.6g} ms"
+            faults.setdefault(
+                (given, words), Fault(f"{scene.name}, {name}", "duration", given, words)
+            )
+    if faults:
+        raise SceneError(list(faults.values()))
 
 
 def _replaced(changes: dict[str, str], study) -> list[str]:

@@ -20,7 +20,9 @@ def warm_up(run: Run) -> None:
     """Compile or load the kernels of ``run`` by its first milliseconds. A run that chooses its modes of
     the rails begins without any; kernels with modes are compiled when it needs them."""
     prepare(run)
-    execute(replace(run, scene=run.scene.replace({"duration": min(run.scene.duration, 1e-3)})))
+    scene = run.scene
+    first = min(scene.time_limit, max(scene.output.interval, 1e-3))
+    execute(replace(run, scene=scene.replace({"duration": first})))
 
 
 def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:

@@ -5,7 +5,6 @@ measured one, that is tilted by 0.1 deg. What is not given has the proportions o
 ``reference``; its provenance is "assumed".
 """
 
-import math
 import os
 from pathlib import Path
 from typing import NamedTuple
@@ -13,14 +12,10 @@ from typing import NamedTuple
 import numpy as np
 import tomlkit
 
-from tipoff.mechanics.outcome import SETTLE_DELAY, SETTLE_WINDOW
-from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.effects.measured import read_curve
-from tipoff.scenes.effects.thrust import GaussianTable
 from tipoff.scenes.faults import Fault, SceneError
 
 _WIDTH = 0.2  # m, of the payload of the scene ``reference``, whose sections are scaled
-_MARGIN = 1.25  # of the duration: friction delays the exit
 _RAILS = 4  # one along each edge of the payload, with one pad at each station
 
 
@@ -103,46 +98,6 @@ def curve_faults(file: Path | None) -> list[Fault]:
     return []
 
 
-def _law(numbers: Numbers) -> tuple[thrust_law.Thrust, np.ndarray]:
-    """The thrust, and times (s) from ignition until it is over that contain its corners."""
-    if numbers.thrust_curve is not None:
-        times, forces = read_curve(numbers.thrust_curve)
-        both_sides = np.append(times, np.nextafter(times, -np.inf))  # of a jump
-        grid = np.append(np.linspace(0.0, times[-1], 4001), both_sides[both_sides >= 0.0])
-        return thrust_law.Thrust(None, thrust_law.Curve(times, forces)), np.unique(grid)
-    law = GaussianTable.model_validate(
-        {
-            "kind": "gaussian",
-            "peak": numbers.thrust,
-            "width": numbers.burn_time / 6.0,
-            "centre": numbers.burn_time / 2.0,
-        },
-        context={"bare_numbers_are_si": True},
-    ).record()
-    return law, np.linspace(0.0, 2.0 * numbers.burn_time, 4001)
-
-
-def duration(numbers: Numbers) -> float:
-    """Duration (s) in which the rates settle: the exit of a payload that the thrust alone moves, and
-    the settled window after it (``mechanics.outcome``), with a margin."""
-    law, time = _law(numbers)
-    speed = _integral(thrust_law.sample(law, time) / numbers.mass, time)
-    place = _integral(speed, time)
-    past = np.flatnonzero(place >= numbers.rail_length)
-    if past.size:
-        until = past[0] + 1  # a curve may push back later
-        exits = float(np.interp(numbers.rail_length, place[:until], time[:until]))
-    else:
-        exits = float(time[-1] + (numbers.rail_length - place[-1]) / speed[-1])
-    burnt = thrust_law.burnout(law, 1e-3, float(time[-1]))
-    return _MARGIN * (max(exits + SETTLE_DELAY, burnt) + SETTLE_WINDOW)
-
-
-def _integral(values: np.ndarray, time: np.ndarray) -> np.ndarray:
-    steps = 0.5 * (values[1:] + values[:-1]) * np.diff(time)
-    return np.concatenate([[0.0], np.cumsum(steps)])
-
-
 def text(name: str, numbers: Numbers, folder: Path = Path()) -> str:
     """The scene as TOML, for a file in ``folder``. Raises SceneError, every fault listed."""
     if faults := numbers.faults():
@@ -159,7 +114,6 @@ def text(name: str, numbers: Numbers, folder: Path = Path()) -> str:
     )
     return _TEXT.format(
         name=name,
-        duration=math.ceil(1e3 * duration(numbers)),
         mass=_n(numbers.mass),
         sizes=", ".join(f'"{_n(1e3 * side)} mm"' for side in numbers.size),
         xx=_n(numbers.mass * (b**2 + c**2) / 12.0),
@@ -229,7 +183,6 @@ _TEXT = """\
 # [provenance] lists the values that "tipoff new" assumed: replace them by your values.
 name = "{name}"
 description = "Made by tipoff new."
-duration = "{duration} ms"  # until the payload has left the rail and its rates have settled
 
 [payload]
 mass = "{mass} kg"

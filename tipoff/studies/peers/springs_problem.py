@@ -94,7 +94,7 @@ def problem(condition: str, law: str, friction: bool) -> Problem:
         width=float(pulses.widths[0]),
         direction=tuple(offset.direction) if offset else (1.0, 0.0, 0.0),
         arm=tuple(offset.arm) if offset else (0.0, 0.0, 0.0),
-        duration=chosen.duration,
+        duration=chosen.time_limit,
     )
 
 

@@ -143,7 +143,7 @@ def _role(scene: Scene, name: str) -> str:
 def thrust_facts(scene: Scene) -> Table:
     """Impulse, its share outside the duration or the cutoff, and the fit of a measured curve."""
     record = scene.thrust.record()
-    delivered = thrust_law.impulse(record, scene.duration)
+    delivered = thrust_law.impulse(record, scene.time_limit)
     rows = [
         ("impulse delivered within the scene", f"{delivered:.6g} N s"),
         ("velocity change of the payload alone", f"{delivered / scene.payload.mass:.5g} m/s"),

@@ -40,8 +40,8 @@ _COLOURS = {"highfi": NAVY, "compliant": VERMILION, "calibrated": AMBER}
 
 
 def thrust_curve(scene: Scene) -> Chart:
-    """Thrust over the duration of the scene."""
-    time = np.linspace(0.0, scene.duration, 600)
+    """Thrust until the expected end of the run."""
+    time = np.linspace(0.0, scene.expected_end, 600)
     force = thrust_law.sample(scene.thrust.record(), time)
     line = Line(1e3 * time, 1e-3 * force, "thrust", NAVY, 2.0, legend=False)
     return Chart("thrust", [Panel("", _MILLISECONDS, "thrust (kN)", [line])], height=260)

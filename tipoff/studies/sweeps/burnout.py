@@ -35,13 +35,13 @@ def exit_of(model: Surrogate) -> Exit | None:
     ).outcome.exit_time
     if time is None:
         return None
-    record, duration = model.scene.thrust.record(), model.scene.duration
+    record, duration = model.scene.thrust.record(), model.scene.time_limit
     after = 1.0 - thrust.impulse(record, time) / thrust.impulse(record, duration)
     return Exit(time, after if after > _ROUNDING else 0.0)
 
 
 def stretched(scene: Scene, factor: float) -> dict[str, float] | None:
-    """Overrides (SI) that stretch the thrust, and with a longer thrust the duration of the scene.
+    """Overrides (SI) that stretch the thrust, and with a longer thrust a stated duration.
     None for a kind of thrust without such numbers."""
     table = scene.thrust
     if table.kind == "constant":
@@ -61,6 +61,8 @@ def stretched(scene: Scene, factor: float) -> dict[str, float] | None:
             found |= {f"{head}.peak": pulse.peak / factor} if pulse.peak is not None else {}
     else:
         return None
+    if scene.duration is None:
+        return found
     return found | {"duration": scene.duration * max(factor, 1.0)}
 
 

@@ -65,7 +65,7 @@ def free_rates(scene: Scene, rows: list[dict[str, float]]) -> np.ndarray:
     """Rates (n,3), rad/s, of a free payload of ``scene`` with ``rows`` of overrides of a factor."""
     table = Listed(rows)
     inputs = dict(zip(table.keys, numbers(table.keys, rows).T))
-    impulse = float(thrust.impulse(scene.thrust.record(), scene.duration))
+    impulse = float(thrust.impulse(scene.thrust.record(), scene.time_limit))
     return (
         moments.moment_impulses(scene, inputs, impulse)
         @ models.build(scene).payload.inverse_inertia.T

@@ -1,0 +1,132 @@
+"""What Python callers pass: scenes, numbers with or without units, tables of cases. Faults are those of
+files: all at once, each with the name of the argument."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, TypeVar
+
+from tipoff.scenes import units
+from tipoff.scenes.faults import Fault, SceneError, close
+from tipoff.scenes.scene import Scene, load
+
+_T = TypeVar("_T")
+_LENGTHS = {"element_size": "m", "step": "s", "speed_floor": "m/s"}  # numerics with a unit
+
+
+def scene_of(given: Any) -> Scene:
+    """``given`` itself, or the scene of a name or path. Raises SceneError."""
+    if isinstance(given, Scene):
+        return given
+    if isinstance(given, (str, Path)):
+        return load(given)
+    expected = "a scene of tipoff.load, or its name or path"
+    raise SceneError([Fault("arguments", "scene", _kind(given), expected)])
+
+
+def numerics(kind: Callable[..., _T], given: Mapping[str, Any], other: type, model: str) -> _T:
+    """Numerics of a ``kind`` from the options ``given``; ``other`` is that of other models. Text and
+    quantities have their units. Raises SceneError, every option that ``model`` does not have or
+    that is no number listed, and ValueError for values out of range."""
+    known = [field.name for field in fields(kind)]  # type: ignore[arg-type]
+    theirs = {field.name for field in fields(other)}
+    values, faults = {}, []
+    for name, value in given.items():
+        if name not in known:
+            expected = (
+                "none: it is an option of another model"
+                if name in theirs
+                else f"one of {', '.join(known)}{close(name, known)}"
+            )
+            faults.append(Fault(f"model {model}", name, repr(value), expected))
+        else:
+            try:
+                values[name] = _number(name, value)
+            except ValueError as fault:
+                faults.append(Fault(f"model {model}", name, repr(value), str(fault)))
+    if faults:
+        raise SceneError(faults)
+    return kind(**values)
+
+
+def length(name: str, given: Any) -> float:
+    """An element size (m) of the argument ``name``. Raises SceneError."""
+    try:
+        value = units.parse(given, "m", bare_numbers_are_si=True)
+    except ValueError as fault:
+        raise SceneError([Fault("arguments", name, repr(given), str(fault))]) from None
+    if not units.FINEST_ELEMENTS <= value <= units.COARSEST_ELEMENTS:
+        between = f"{units.FINEST_ELEMENTS:g} to {units.COARSEST_ELEMENTS:g} m"
+        raise SceneError([Fault("arguments", name, repr(given), between)])
+    return value
+
+
+def rows(given: Any) -> list[Mapping[str, Any]]:
+    """Cases as a list of overrides: a list of mappings, a mapping of columns, a table of pandas, a
+    data set of xarray, or a structured array of numpy. Raises SceneError."""
+    if hasattr(given, "data_vars"):  # xarray
+        given = {str(name): given[name].values for name in given.data_vars}
+    elif hasattr(given, "columns") and hasattr(given, "iloc"):  # pandas, which is not imported
+        given = {str(name): given[name].tolist() for name in given.columns}
+    elif names := getattr(getattr(given, "dtype", None), "names", None):
+        given = {name: given[name] for name in names}
+    if isinstance(given, Mapping):
+        return _of_columns(given)
+    expected = (
+        "overrides by dotted key: a list of mappings, a mapping of columns, a table of pandas, a data "
+        "set of xarray, a structured array; or distributions by name or path"
+    )
+    if not isinstance(given, Sequence) or isinstance(given, (str, bytes)):
+        raise SceneError([Fault("arguments", "cases", _kind(given), expected)])
+    wrong = [place for place, row in enumerate(given) if not isinstance(row, Mapping)]
+    if wrong:
+        found = f"{_kind(given[wrong[0]])} as case {wrong[0]}"
+        raise SceneError([Fault("arguments", "cases", found, expected)])
+    if not given:
+        raise SceneError([Fault("arguments", "cases", "no case", "at least one")])
+    return list(given)
+
+
+def _of_columns(columns: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    lengths: dict[str, int] = {}
+    faults = []
+    for name, column in columns.items():
+        if isinstance(column, (str, bytes, Mapping)) or getattr(column, "shape", (0,)) == ():
+            faults.append(Fault("arguments", f"cases.{name}", repr(column), "a list of values"))
+            continue
+        try:
+            lengths[name] = len(column)
+        except TypeError:
+            faults.append(Fault("arguments", f"cases.{name}", repr(column), "a list of values"))
+    if len(set(lengths.values())) > 1:
+        found = ", ".join(f"{count} of {name}" for name, count in lengths.items())
+        faults.append(Fault("arguments", "cases", found, "columns of one length"))
+    if not faults and not any(lengths.values()):
+        faults.append(Fault("arguments", "cases", "no case", "at least one"))
+    if faults:
+        raise SceneError(faults)
+    items = [[_plain(value) for value in column] for column in columns.values()]
+    return [dict(zip(columns, values)) for values in zip(*items)]
+
+
+def _plain(value: Any) -> Any:
+    """A scalar of numpy as Python has it."""
+    return (
+        value.item() if getattr(value, "shape", None) == () and hasattr(value, "dtype") else value
+    )
+
+
+def _number(name: str, value: Any) -> Any:
+    if name in _LENGTHS and value is not None:
+        return units.parse(value, _LENGTHS[name], bare_numbers_are_si=True)
+    value = _plain(value)
+    if name in ("relative_tolerance", "safety"):
+        return units.parse(value, "dimensionless", bare_numbers_are_si=True)
+    whole = name in ("cells", "maximum_steps")
+    if whole and value is not None and (isinstance(value, bool) or not isinstance(value, int)):
+        raise ValueError("a whole number")
+    return value
+
+
+def _kind(given: Any) -> str:
+    return "None" if given is None else f"a {type(given).__name__}"

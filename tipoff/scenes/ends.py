@@ -1,0 +1,276 @@
+"""When a run of a scene ends: the limit where the scene states no duration, the expected end, and
+the earliest instant at which rates can be settled.
+
+A run ends by itself once its rates have settled or the payload is jammed (``mechanics.outcome``). After the
+thrust a payload is either faster than the jam speed and leaves within rail length / jam speed, or
+slower and is jammed. So without a stated duration a run ends at the latest at::
+
+    end of thrust + way / v + jam + settled window,     v = max(jam speed, 10 mm/s)
+
+rounded up to a power of two of 1 ms, so that variations of a scene share one limit. Gravity that
+pulls a payload back on fixed rails ends its way forward after v_max / g, with v_max from the
+impulse alone.
+"""
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from tipoff.scenes.body import tensor
+from tipoff.scenes.effects import thrust_law
+from tipoff.scenes.faults import within
+from tipoff.scenes.tables import MOST_SAMPLES, OutputTable
+from tipoff.scenes.units import LONGEST
+
+SETTLE_DELAY = 1e-3  # s, from the exit to the settled window
+SETTLE_WINDOW = 2e-3  # s
+JAM_DURATION = 5e-3  # s
+JAM_SPEED = 0.01  # m/s, where friction has no transition speed
+_AFTER = 1e-3  # s, that a run goes on after its end
+_BURNT = 1e-3  # of the peak
+_UNIT = 1e-3  # s
+_REACH = 8.0  # widths of a Gaussian beyond which it is below 2e-14 of its peak
+_MARGIN = 1.25  # of the expected end: friction delays the exit
+_POINTS = 4001  # of the thrust
+_ROUNDING = 1e-12
+
+
+class Timed:
+    """Base of ``scenes.scene.Scene``: when its runs end."""
+
+    @property
+    def time_limit(self: Any) -> float:
+        """Time (s) at which a run ends at the latest: the duration, or without one a bound
+        that follows from rail, thrust, friction and gravity. A run that has settled or is jammed
+        ends before.
+
+        Example:
+            >>> scene = tipoff.load("tiny")
+            >>> scene.time_limit == scene.duration
+            True
+            >>> scene.replace({"duration": None}).time_limit  # s
+            32.768
+        """
+        return limit(self)
+
+    @property
+    def expected_end(self: Any) -> float:
+        """Estimate of the end of a run (s), for plots, progress and costs: the duration, or without
+        one that of a payload without friction."""
+        return expected(self)
+
+
+def limit(scene: Any) -> float:
+    """Time (s) at which a run of ``scene`` ends at the latest: its duration, or the bound of the module
+    docstring, at most ``longest``."""
+    if scene.duration is not None:
+        return scene.duration
+    record = scene.thrust.record()
+    slowest = JAM_SPEED
+    if scene.friction is not None:
+        slowest = max(slowest, getattr(scene.friction, "static_speed", 0.0))
+    coasting = max(way(scene), 0.0) / slowest
+    if (pull := -_gravity(scene)) > 0.0:
+        fastest = max(_begun(scene), 0.0) + _pushed(record) / scene.payload.mass
+        coasting = min(coasting, 2.0 * fastest / pull)
+    end = thrust_end(record) + coasting + JAM_DURATION + SETTLE_DELAY + SETTLE_WINDOW + _AFTER
+    rounded = _UNIT * 2.0 ** math.ceil(math.log2(end / _UNIT))
+    return min(max(rounded, scene.output.interval), longest(scene))
+
+
+def longest(scene: Any) -> float:
+    """Longest run (s) without a stated duration: that of the most samples, an hour at most."""
+    return min(MOST_SAMPLES * scene.output.interval, LONGEST)
+
+
+def burns_too_long(scene: Any) -> float | None:
+    """Time (s) that a scene without a duration needs until its thrust is over and rates settle,
+    where that is longer than the longest run; else None."""
+    if scene.duration is not None:
+        return None
+    record, most = scene.thrust.record(), longest(scene)
+    if thrust_end(record) + SETTLE_WINDOW <= most:
+        return None
+    needed = _burnt(record) + SETTLE_WINDOW
+    return needed if needed > most else None
+
+
+def require(tables: dict[str, Any], output: OutputTable) -> None:
+    """Refuse a thrust that lasts longer than a run without a duration can be sampled: ``tables`` of
+    a scene that are valid so far, and its ``output``."""
+    if not {"duration", "thrust"} <= tables.keys():  # they have faults of their own
+        return
+    needed = burns_too_long(SimpleNamespace(**tables, output=output))
+    if needed is not None:
+        raise within(
+            "interval",
+            f"{output.interval:g} s, no duration, and a thrust whose rates settle at {needed:.6g} s",
+            f"at least {needed / MOST_SAMPLES:.3g} s (at most {MOST_SAMPLES:,} samples), a thrust "
+            f"that ends within {longest(SimpleNamespace(output=output)):g} s, or a duration",
+        )
+
+
+def fits(scene: Any) -> bool:
+    """Whether the sampling interval fits the duration, or the thrust without one."""
+    if scene.duration is None:
+        return burns_too_long(scene) is None
+    return scene.output.fits(scene.duration)
+
+
+def expected(scene: Any) -> float:
+    """Estimate (s) of the end of a run, for plots, progress and costs: the stated duration, or a
+    payload without friction until it has settled, with a margin of a quarter."""
+    if scene.duration is not None:
+        return scene.duration
+    record = scene.thrust.record()
+    exits = _exit(scene, record, _fixed_gain(scene), _gravity(scene), forwards=False)
+    if not math.isfinite(exits):  # it falls back, or nothing moves it
+        exits = thrust_end(record) + JAM_DURATION
+    settled = max(exits + SETTLE_DELAY, _burnt(record)) + SETTLE_WINDOW
+    return min(_MARGIN * settled, limit(scene))
+
+
+def earliest(scene: Any) -> float:
+    """Lower bound (s) of the end of the settled window, infinite if the payload cannot leave in an
+    hour: no friction, no thrust and no gravity backwards, and a platform that recoils along the
+    rail with all of its freedom. Zero where bodies turn at ignition, which moves the rail too."""
+    record = scene.thrust.record()
+    initial = scene.initial
+    turns = initial is not None and any(
+        any((rate.x, rate.y, rate.z)) for rate in (initial.rate, initial.platform_rate)
+    )
+    gravity = scene.gravity.x if scene.gravity is not None else 0.0
+    exits = (
+        0.0
+        if turns
+        else _exit(scene, record, _freest_gain(scene), max(gravity, 0.0), forwards=True)
+    )
+    return max(exits + SETTLE_DELAY, _burnt(record)) + SETTLE_WINDOW
+
+
+def is_too_short(scene: Any) -> bool:
+    """Whether no run of ``scene`` can settle within its stated duration, whatever friction is."""
+    return scene.duration is not None and earliest(scene) > scene.duration * (1.0 + _ROUNDING)
+
+
+def way(scene: Any) -> float:
+    """Travel (m) along the rail from ignition to the exit: the trailing edge of the rearmost pad
+    reaches the end of the rail. A payload that turns has a little more or less to go."""
+    rearmost = min(pad.position[0] - 0.5 * pad.length for pad in scene.pads)
+    initial = scene.initial
+    begun = initial.position.x if initial is not None else 0.0
+    return scene.rail.end - rearmost - begun
+
+
+def starts_briskly(scene: Any, speed: float) -> bool:
+    """Whether a constant thrust from ignition on would bring a payload without friction to ``speed``
+    (m/s) in half the duration of a jam, so that one that is slow then is held by friction."""
+    return (
+        scene.thrust.kind == "constant"
+        and scene.thrust.start <= 0.0
+        and 0.5 * JAM_DURATION * scene.thrust.force * _fixed_gain(scene) >= speed
+    )
+
+
+def slides(scene: Any, speed: float) -> float:
+    """Time (s) in which gravity along fixed rails brings a payload without friction from rest to
+    twice this ``speed`` (m/s); zero without such gravity."""
+    pull = _gravity(scene)
+    return 2.0 * speed / pull if pull > 0.0 and abs(_begun(scene)) < speed else 0.0
+
+
+def thrust_end(record: thrust_law.Thrust) -> float:
+    """Time (s) from which on the thrust is zero, or a share of 2e-14 of a pulse's peak."""
+    if record.pulses is not None:
+        last = float((record.pulses.centres + _REACH * record.pulses.widths).max())
+        return max(0.0, min(last, record.pulses.end))
+    return max(0.0, float(record.curve.times[-1])) if record.curve is not None else 0.0
+
+
+def _burnt(record: thrust_law.Thrust) -> float:
+    """Time (s) from which on the thrust is below 0.1 % of its peak."""
+    return thrust_law.burnout(record, _BURNT, 2.0 * thrust_end(record) + _UNIT)
+
+
+def _forces(record: thrust_law.Thrust) -> tuple[np.ndarray, np.ndarray]:
+    """Times (s) from ignition to the end of the thrust, corners among them, and forces (N)."""
+    last = thrust_end(record)
+    corners = np.append(thrust_law.corners(record, last), last)
+    both_sides = np.append(corners, np.nextafter(corners, -np.inf))  # of a jump
+    time = np.unique(np.concatenate([np.linspace(0.0, last, _POINTS), both_sides]))
+    return time, thrust_law.sample(record, time)
+
+
+def _pushed(record: thrust_law.Thrust) -> float:
+    """Impulse (N s) of the parts of the thrust that push forwards."""
+    time, force = _forces(record)
+    return float(np.trapezoid(np.maximum(force, 0.0), time))
+
+
+def _exit(
+    scene: Any, record: thrust_law.Thrust, gain: float, gravity: float, forwards: bool
+) -> float:
+    """Time (s) at which a payload without friction has gone its way; infinite if it never does.
+    ``gain`` is its acceleration relative to the rail per force (1/kg); with ``forwards`` only what
+    pushes it forwards counts."""
+    time, force = _forces(record)
+    force = np.maximum(force, 0.0) if forwards else force
+    begun = max(_begun(scene), 0.0) if forwards else _begun(scene)
+    distance = way(scene)
+    if distance <= 0.0:
+        return 0.0
+    speed = begun + _integral(gain * force + gravity, time)
+    place = _integral(speed, time)
+    past = np.flatnonzero(place >= distance)
+    if past.size:
+        after = past[0]
+        return float(np.interp(distance, place[after - 1 : after + 1], time[after - 1 : after + 1]))
+    left, last = distance - float(place[-1]), float(speed[-1])
+    if gravity == 0.0:
+        return float(time[-1]) + left / last if last > 0.0 else math.inf
+    root = last * last + 2.0 * gravity * left
+    if root < 0.0 or (gravity < 0.0 and last <= 0.0):
+        return math.inf
+    return float(time[-1]) + 2.0 * left / (last + math.sqrt(root))
+
+
+def _integral(values: np.ndarray, time: np.ndarray) -> np.ndarray:
+    steps = 0.5 * (values[1:] + values[:-1]) * np.diff(time)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def _begun(scene: Any) -> float:
+    """Speed (m/s) along the rail at ignition."""
+    if scene.initial is None:
+        return 0.0
+    carried = scene.initial.platform_velocity.x if scene.platform is not None else 0.0
+    return scene.initial.velocity.x - carried
+
+
+def _gravity(scene: Any) -> float:
+    """Acceleration (m/s2) along the rail relative to it: a free platform falls as the payload
+    does."""
+    return scene.gravity.x if scene.gravity is not None and scene.platform is None else 0.0
+
+
+def _fixed_gain(scene: Any) -> float:
+    """Acceleration of the payload relative to the rail per thrust (1/kg); the platform does not
+    turn."""
+    recoil = 0.0
+    if scene.platform is not None and scene.thrust.reaction == "platform":
+        recoil = 1.0 / scene.platform.mass
+    return 1.0 / scene.payload.mass + recoil
+
+
+def _freest_gain(scene: Any) -> float:
+    """The largest such gain: the platform turns too, about the axis of its smallest inertia."""
+    gain = _fixed_gain(scene)
+    platform = scene.platform
+    if platform is None or scene.thrust.reaction != "platform":
+        return gain
+    across = math.hypot(platform.mass_centre.y, platform.mass_centre.z)
+    aside = max(math.hypot(pad.position[1], pad.position[2]) for pad in scene.pads)
+    least = float(np.linalg.eigvalsh(tensor(platform.inertia))[0])
+    return gain + (across + aside) ** 2 / least
