@@ -130,9 +130,15 @@ def provenance(
         "scene_hash": scene.hash,
         "contact_law": law,
         "references": ", ".join(f"{name}: {item.source}" for name, item in references.items()),
-        "search": f"{plan.points} Sobol' points, {plan.starts} starts of CMA-ES, least squares; "
+        "search": f"{plan.points} Sobol' points, {_starts(found, plan)}, least squares; "
         f"{evaluations} evaluations; "
         f"seed {plan.seed}",
         "intervals": f"95 %, linear, {intervals}",
         "basins": f"each start ended at objective and shares of the bounds: {basins}",
     }
+
+
+def _starts(found: Found, plan: Plan) -> str:
+    if found.shares.size > 1:
+        return f"{plan.starts} starts of CMA-ES"
+    return f"scalar searches from {len(found.basins) - 1} local minima"

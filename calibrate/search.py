@@ -6,13 +6,17 @@
 3. Trust-region least squares from the end of each, and from the scene's own constants, converges
    faster than CMA-ES near the minimum.
    Starts that end in one point show that there is one basin.
+
+One parameter needs no evolution strategy, and CMA-ES fails in one dimension. The points scan the
+interval then, and a bounded scalar search (Brent) descends between the neighbours of the lowest
+local minima of the scan.
 """
 
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import least_squares
+from scipy.optimize import least_squares, minimize_scalar
 
 from tipoff.calibration.information import jacobian
 
@@ -22,7 +26,8 @@ class Plan(NamedTuple):
 
     ``points``: Sobol' points, a power of two; ``starts`` of CMA-ES, at least ``apart`` from each
     other, with first step ``step`` and ``evaluations`` each; ``polish``: iterations of least
-    squares from each; ``seed`` of the points and of CMA-ES.
+    squares from each; ``seed`` of the points and of CMA-ES. With one parameter, ``starts`` are the
+    local minima from which the scalar search descends, with ``evaluations`` each.
     """
 
     points: int = 128
@@ -61,10 +66,14 @@ def search(
     )
     values = np.array([counted.square(point) for point in points])
     generator = np.random.default_rng([plan.seed, 1])
-    starts: list[tuple[float, np.ndarray]] = [(float(values[0]), points[0])] + [
-        _evolve(counted.square, float(values[index]), points[index], plan, generator)
-        for index in _apart(points, values, plan)
-    ]
+    starts: list[tuple[float, np.ndarray]] = [(float(values[0]), points[0])]
+    if first.size == 1:
+        starts += _scalar(counted.square, points[:, 0], values, plan)
+    else:
+        starts += [
+            _evolve(counted.square, float(values[index]), points[index], plan, generator)
+            for index in _apart(points, values, plan)
+        ]
     ends = [_polish(counted, *start, plan) for start in starts]
     basins = sorted(ends, key=lambda item: item[0])
     if progress:
@@ -107,6 +116,29 @@ def _apart(points: np.ndarray, values: np.ndarray, plan: Plan) -> list[int]:
         if len(chosen) == plan.starts:
             break
     return chosen
+
+
+def _scalar(
+    objective, points: np.ndarray, values: np.ndarray, plan: Plan
+) -> list[tuple[float, np.ndarray]]:
+    """Values and points that a bounded scalar search reaches from the lowest local minima of a scan
+    at ``points`` (n,) with ``values`` (n,). It searches between the neighbours of each minimum."""
+    places, index = np.unique(points, return_index=True)
+    heights = np.concatenate([[np.inf], values[index], [np.inf]])
+    around = np.concatenate([[0.0], places, [1.0]])
+    # a plateau, where a parameter has no effect, counts once, by its first point
+    lowest = np.flatnonzero((heights[1:-1] < heights[:-2]) & (heights[1:-1] <= heights[2:])) + 1
+    found = []
+    for place in lowest[np.argsort(heights[lowest], kind="stable")][: plan.starts].tolist():
+        end = minimize_scalar(
+            lambda share: objective(np.array([share])),
+            bounds=(around[place - 1], around[place + 1]),
+            method="bounded",
+            options={"maxiter": plan.evaluations, "xatol": 1e-6},
+        )
+        start = (float(heights[place]), np.array([around[place]]))
+        found.append((float(end.fun), np.array([float(end.x)])) if end.fun < start[0] else start)
+    return found
 
 
 def _evolve(

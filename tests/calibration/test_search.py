@@ -80,3 +80,33 @@ def test_weak_direction_names_the_combination_and_its_ratio():
     assert information.left_alone(matrix, 0) == pytest.approx(0.0, abs=1e-12 * matrix[0, 0])
     assert information.weak_directions(np.diag([1.0, 0.5]), ["a", "b"]) == []
     assert information.left_alone(np.diag([1.0, 0.5]), 1) == pytest.approx(0.5)
+
+
+def wavy(x: np.ndarray) -> np.ndarray:
+    """Zero at 0.71 only; a basin every quarter, and a jump where x crosses 0.6."""
+    away = x[0] - 0.71
+    return np.array([away, 0.5 * (1.0 - np.cos(8.0 * np.pi * away)), 0.3 * (x[0] < 0.6)])
+
+
+def test_one_parameter_finds_the_deepest_of_its_basins():
+    """CMA-ES, which has no spread in one dimension, ended in a ValueError. Control: least squares from
+    the same start ends in a basin next to it."""
+    for seed in range(3):
+        plan = Plan(points=32, starts=2, evaluations=80, seed=seed)
+        found = search(wavy, np.array([0.2]), plan)
+        assert found.shares == pytest.approx([0.71], abs=1e-6)
+        again = search(wavy, np.array([0.2]), plan)
+        assert (again.shares == found.shares).all() and again.value == found.value
+    alone = least_squares(wavy, [0.2], lambda x: information.jacobian(wavy, x), bounds=(0.0, 1.0))
+    assert 2.0 * alone.cost > 0.1
+
+
+@pytest.mark.parametrize("end", [0.0, 1.0])
+def test_one_parameter_finds_a_minimum_at_a_bound(end):
+    found = search(lambda x: 1.0 + np.abs(x - end), np.array([0.4]), Plan(points=8))
+    assert found.shares == pytest.approx([end], abs=1e-4)
+
+
+def test_one_parameter_without_effect_stays_where_it_starts():
+    found = search(lambda x: np.array([3.0]), np.array([0.4]), Plan(points=8))
+    assert found.shares == [0.4]
