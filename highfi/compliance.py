@@ -209,7 +209,7 @@ def of_mesh(
         raise ValueError(f"patterns: given {patterns!r}, expected 1 to {PATTERNS}")
     stations = np.asarray(travel, dtype=float)
     count, pattern = faces.axis.size, np.arange(patterns)
-    across, half = 3 - faces.axis, scene_model.half_sizes(faces)
+    half = scene_model.half_sizes(faces)
     matrix, gram = (
         np.zeros((stations.size, count, patterns, count, patterns)),
         np.zeros((stations.size, count, patterns, patterns)),

@@ -24,7 +24,9 @@ from tipoff.mechanics.model import Faces
 SAME = 1e-6  # m: below what a rail is made to, above the rounding of any mesh format
 _SAMPLES = 6  # places across the width of a face, the middles of so many strips
 _TOGETHER = 64  # places along the rail that are located at once; bounds the memory
-_SINGULAR = 1e-6  # of the largest eigenvalue: powers of eta that hardly differ on what wall there is
+_SINGULAR = (
+    1e-6  # of the largest eigenvalue: powers of eta that hardly differ on what wall there is
+)
 
 
 class Track(NamedTuple):

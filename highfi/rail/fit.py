@@ -141,7 +141,8 @@ def _wall_faults(
     another clearance than the scene's."""
     faces = model.in_scene_axes(scene, model.built(scene).nominal)
     drawn, file, ends = rail.gap(clearance), rail.path().name, (rail.start, rail.end)
-    faults, spans = [], []
+    faults: list[tuple[str, str, str]] = []
+    spans: list[tuple[float, ...]] = []
     for face in range(faces.axis.size):
         axis, sign, pad = faces.axis[face], faces.sign[face], faces.pad[face]
         name = f"{'+' if sign > 0.0 else '-'}{'xyz'[axis]}"
@@ -163,7 +164,9 @@ def _wall_faults(
             spans.append((drawn, drawn, drawn))
             continue
         found = drawn_walls.track(near, faces, face, faces.half_width[face], ends)
-        spans.append(drawn + np.array([away.min(), away.max(), found.gap.mean()]))
+        spans.append(
+            tuple(drawn + float(each) for each in (away.min(), away.max(), found.gap.mean()))
+        )
         faults += _shape_faults(near, found, faces, face, name, max(SAME, _WAVE * drawn))
     return list(dict.fromkeys(faults)) + _clearance_faults(rail, drawn, spans)
 

@@ -75,9 +75,9 @@ def wall_force(compliance, faces, face, body, base):
         along += stored(compliance, face)[1]
     ahead, aside = push_of_drawn_slopes(compliance, face)
     along += ahead
-    size = (
-        u[2] * force[0] + u[4] * force[1] + 2.0 * u[5] * force[2] + aside
-    ) / compliance.half[face, 1]
+    size = (u[2] * force[0] + u[4] * force[1] + 2.0 * u[5] * force[2] + aside) / compliance.half[
+        face, 1
+    ]
     across = along_width(faces[face], size)
     turned = rotation.rotate(base.turn, (along, across[1], across[2]))
     return turned, pad_point(faces[face], body)
