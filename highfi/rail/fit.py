@@ -140,7 +140,9 @@ def _wall_faults(
     """Pad faces without a wall, and walls that the offset of a wall does not describe or that have
     another clearance than the scene's."""
     faces = model.in_scene_axes(scene, model.built(scene).nominal)
-    drawn, file, ends = rail.gap(clearance), rail.path().name, (rail.start, rail.end)
+    drawn, file = rail.gap(clearance), rail.path().name
+    # wrong ends are faults of their own
+    ends = max(rail.start, corners[..., 0].min()), min(rail.end, corners[..., 0].max())
     faults: list[tuple[str, str, str]] = []
     spans: list[tuple[float, ...]] = []
     for face in range(faces.axis.size):
