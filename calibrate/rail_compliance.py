@@ -32,6 +32,17 @@ def compliance(scene: Scene, element_size: float | None = None) -> RailComplianc
     return statics.condense(scene, element_size or own_size(scene.studies))
 
 
+def walls(scene: Scene, element_size: float | None = None) -> RailCompliance | None:
+    """The rigid walls that springs of ``scene`` need where they are offset: warm, with the statics of
+    ``compliance``, or not straight as drawn in the file of the rail. None where they are straight,
+    and without contact. ``element_size`` (m) is that of a solid. Raises SceneError or MeshError."""
+    if scene.contact is None:
+        return None
+    if scene.thermal is not None:
+        return compliance(scene, element_size).rigid()
+    return statics.walls(scene, element_size or 2.0 * REFERENCE_SIZE)
+
+
 def kept(
     scene: Scene, folder: Path, element_size: float, say: Callable[[str], None] | None = None
 ) -> RailCompliance:

@@ -30,6 +30,7 @@ from tipoff.highfi.contact import surface
 from tipoff.highfi.mesh import pieces
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.rail import drawn_walls
 from tipoff.highfi.run import prepare
 from tipoff.highfi.state.threads import processors
 from tipoff.highfi.statics import assembly, inputs, joint_terms, thermal, vibration
@@ -40,7 +41,7 @@ from tipoff.mechanics.joint_terms import JointTerms
 from tipoff.mechanics.rail_compliance import MODES, PATTERNS, RailCompliance, digest
 from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from tipoff.scenes.effects.thermal import FIELDS
-from tipoff.scenes.rail import MaterialTable
+from tipoff.scenes.rail import MaterialTable, SectionTable
 from tipoff.scenes.scene import Scene
 
 BATCH = 64  # loads solved for at once; bounds the memory
@@ -100,9 +101,7 @@ def condense(
     Raises SceneError or MeshError.
     """
     scene = nominal(scene)
-    own = inputs.of(scene)
-    way = own.reach[1] - own.faces.half_length - own.faces.centre[:, 0]
-    stations = np.linspace(0.0, way.max(), int(np.ceil(way.max() / spacing)) + 1)
+    stations = _stations(scene, spacing)
     found = along(scene, element_size, stations, PATTERNS, modes)
     inverse = np.linalg.pinv(found.gram, rcond=_SINGULAR, hermitian=True)
     flexibility = np.einsum("siab,sibjc,sjcd->siajd", inverse, found.matrix, inverse, optimize=True)
@@ -120,6 +119,45 @@ def condense(
         and found.joints._replace(
             moved=inverse @ found.joints.moved, shape=inverse @ found.joints.shape
         ),
+        _drawn(scene, element_size),
+    )
+
+
+def _stations(scene: Scene, spacing: float) -> np.ndarray:
+    own = inputs.of(scene)
+    way = own.reach[1] - own.faces.half_length - own.faces.centre[:, 0]
+    return np.linspace(0.0, way.max(), int(np.ceil(way.max() / spacing)) + 1)
+
+
+def _drawn(scene: Scene, element_size: float) -> np.ndarray | None:
+    """Offset (n,f,3) m of walls from a file as drawn, None where they are straight. Raises SceneError
+    or MeshError."""
+    if isinstance(scene.rail, SectionTable):
+        return None
+    own = inputs.of(scene)
+    mesh = prepare(scene, Numerics(element_size=element_size))
+    half = scene_model.half_sizes(own.faces)[:, 1]
+    return drawn_walls.offsets(mesh, own.faces, half, own.reach)
+
+
+def walls(scene: Scene, element_size: float, spacing: float = _SPACING) -> RailCompliance | None:
+    """Rigid walls of ``scene`` with their offset as drawn, without temperatures, at stations about
+    ``spacing`` (m) apart; None where they are straight. Statics are not solved. The size of elements
+    (m) counts only for a solid with curved walls. Raises SceneError or MeshError."""
+    drawn = _drawn(scene, element_size)
+    if drawn is None:
+        return None
+    stations, nominal = _stations(scene, spacing), scene_model.built(scene).nominal
+    faces = nominal.axis.size
+    return RailCompliance(
+        travel=stations,
+        flexibility=None,
+        rail=np.zeros(faces, dtype=np.int64),
+        half=scene_model.half_sizes(nominal),
+        frequency=np.zeros((1, 0)),
+        shape=np.zeros((stations.size, faces, PATTERNS, 0)),
+        made_for=digest(scene),
+        drawn=drawn,
     )
 
 
@@ -168,10 +206,7 @@ def of_mesh(
         raise ValueError(f"patterns: given {patterns!r}, expected 1 to {PATTERNS}")
     stations = np.asarray(travel, dtype=float)
     count, pattern = faces.axis.size, np.arange(patterns)
-    across = faces.centre[np.arange(count), 3 - faces.axis]
-    half = np.column_stack(
-        [faces.half_length, np.where(across >= 0.0, 1.0, -1.0) * faces.half_width]
-    )
+    half = scene_model.half_sizes(faces)
     matrix, gram = (
         np.zeros((stations.size, count, patterns, count, patterns)),
         np.zeros((stations.size, count, patterns, patterns)),

@@ -325,15 +325,21 @@ def _pressed(
     given: RailCompliance | None,
     calibration: Calibration | None = None,
 ) -> RailCompliance | None:
-    """The rail compliance that ``model`` needs; rigid walls with a thermal offset for springs at warm
-    rails."""
+    """The rail compliance that ``model`` needs; rigid walls for springs at walls that are warm or not
+    straight as drawn."""
     if scene.contact is None:
         return given
     if model == COMPLIANT:
         if calibration is not None and calibration.is_of_springs:  # before seconds of statics
             _require_none(scene, model, calibration=calibration)
         return given or compliance(scene)
-    return compliance(scene).rigid() if given is None and scene.thermal is not None else given
+    if given is not None:
+        return given
+    if scene.thermal is not None:
+        return compliance(scene).rigid()
+    from tipoff.calibration import rail_compliance  # slow to load
+
+    return rail_compliance.walls(scene)
 
 
 def _require(scene: Scene, model: str, models: Sequence[str]) -> None:

@@ -1,20 +1,28 @@
 """Checks that the walls of a rail file are those of its scene, and that each solid is held.
 
-The reference uses the file, the surrogate only the scene. So the walls of a file must end where the
-scene says, lie under every pad face, and have the clearance of the scene from it, to a micrometre.
+The reference takes the walls of a file as they are drawn, and so do the surrogates: draft, bow, steps
+and joints are an offset of the wall along the rail (``highfi.rail.drawn_walls``). So the walls of a
+file must end where the scene says, lie under the whole track of every pad face, and have the clearance
+of the scene somewhere along it, to a micrometre. Every facet under the track is checked: none may be
+steeper than ``STEEPEST`` or wave across the face.
 """
 
 import numpy as np
 
-from tipoff.highfi.contact import surface
 from tipoff.highfi.mesh import facets, pieces
 from tipoff.highfi.mesh.rail_mesh import MeshError, RailMesh
-from tipoff.mechanics import model as scene_model
+from tipoff.highfi.rail import drawn_walls
+from tipoff.highfi.rail.drawn_walls import SAME
+from tipoff.mechanics import model
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import GeometryTable, MeshTable, SectionTable
 from tipoff.scenes.scene import Scene
 
-_SAME = 1e-6  # m: below what a rail is made to, above the rounding of any mesh format
+# Degrees. Both solvers measure penetration along an axis of the scene, not along the normal of the
+# wall, which makes pads stiffer by the square of half the slope: 0.2 % here.
+STEEPEST = 5.0
+_WAVE = 0.02  # of the clearance: a wall may deviate so far from a parabola across a face
+_GAP = 0.1  # of the length of a face: a longer piece of its track without wall is refused
 _LIKE = 1e-3  # relative: a length that is the rail's in another unit, or along another axis
 _AREA = 0.05  # relative: more than facets of a curved face lose, less than a box cuts off
 _UNITS = {"millimetres": 1e3, "centimetres": 1e2, "inches": 1.0 / 0.0254}  # of them in a metre
@@ -23,7 +31,7 @@ _UNITS = {"millimetres": 1e3, "centimetres": 1e2, "inches": 1.0 / 0.0254}  # of 
 def check_frame(scene: Scene, rail: MeshTable | GeometryTable, mesh: RailMesh) -> None:
     """Raise SceneError where the walls of a file have the length of the scene's in another unit or
     along another axis."""
-    lengths = np.ptp(_corners(mesh).reshape(-1, 3), axis=0)
+    lengths = np.ptp(drawn_walls.corners(mesh).reshape(-1, 3), axis=0)
     longest = int(lengths.argmax())
     unit, along_x = _unit(rail, lengths)
     key, faults = f"rail.{rail.GIVEN_BY}", []
@@ -98,21 +106,12 @@ def _reach(points: np.ndarray) -> str:
     return ", ".join(f"{axis} {low:.6g} to {high:.6g} m" for axis, low, high in spans)
 
 
-def _corners(mesh: RailMesh) -> np.ndarray:
-    """Nodes (m,k,3) m of all facets of the walls."""
-    return mesh.points[
-        np.concatenate(
-            [group for name, group in mesh.surfaces.items() if name.startswith("contact")]
-        )
-    ]
-
-
 def check_fit(scene: Scene, mesh: RailMesh) -> None:
     """Raise SceneError with every difference between the walls of a mesh or CAD file and those of the
     scene."""
     if isinstance(scene.rail, SectionTable) or scene.contact is None:
         return
-    corners = _corners(mesh)
+    corners = drawn_walls.corners(mesh)
     rail, clearance = scene.rail, scene.contact.clearance
     faults = _end_faults(rail, corners) + _wall_faults(scene, rail, clearance, corners)
     if faults:
@@ -131,41 +130,114 @@ def _end_faults(rail: MeshTable | GeometryTable, corners: np.ndarray) -> list[tu
             f"{found:.9g} m, where the contact surfaces of {rail.path().name} end",
         )
         for key, (stated, found) in ends.items()
-        if abs(stated - found) > _SAME
+        if abs(stated - found) > SAME
     ]
 
 
 def _wall_faults(
     scene: Scene, rail: MeshTable | GeometryTable, clearance: float, corners: np.ndarray
 ) -> list[tuple[str, str, str]]:
-    """Pad faces without a wall, and walls with another clearance than the scene's."""
-    model, drawn = scene_model.build(scene), rail.gap(clearance)
-    faces, file = model.faces, rail.path().name
-    seen = corners - np.array(model.platform.mass_centre if model.platform else (0.0, 0.0, 0.0))
-    faults, gaps = [], []
+    """Pad faces without a wall, and walls that the offset of a wall does not describe or that have
+    another clearance than the scene's."""
+    faces = model.in_scene_axes(scene, model.built(scene).nominal)
+    drawn, file = rail.gap(clearance), rail.path().name
+    # wrong ends are faults of their own
+    ends = max(rail.start, corners[..., 0].min()), min(rail.end, corners[..., 0].max())
+    faults: list[tuple[str, str, str]] = []
+    spans: list[tuple[float, ...]] = []
     for face in range(faces.axis.size):
         axis, sign, pad = faces.axis[face], faces.sign[face], faces.pad[face]
         name = f"{'+' if sign > 0.0 else '-'}{'xyz'[axis]}"
-        near = seen[surface.in_reach(seen, faces, face)]
-        if len(near):
-            gaps.append(drawn + sign * (np.median(near[..., axis]) - faces.wall[face]))
+        near = drawn_walls.under(corners, faces, face, ends)
+        if not len(near):
+            wall = scene.pads[pad].position[axis] + sign * drawn
+            faults.append(
+                (
+                    f"pads.{pad}",
+                    f"a face {name} with no wall under its track",
+                    f"a pad whose wall, at {name[1]} = {wall:.9g} m, is among the contact surfaces "
+                    f"of {file}",
+                )
+            )
             continue
-        wall = scene.pads[pad].position[axis] + sign * drawn
+        faults += _hole_faults(near, faces, face, name, ends)
+        away = drawn_walls.away(near, faces, face)
+        if np.abs(away).max() <= SAME:
+            spans.append((drawn, drawn, drawn))
+            continue
+        found = drawn_walls.track(near, faces, face, faces.half_width[face], ends)
+        spans.append(
+            tuple(drawn + float(each) for each in (away.min(), away.max(), found.gap.mean()))
+        )
+        faults += _shape_faults(near, found, faces, face, name, max(SAME, _WAVE * drawn))
+    return list(dict.fromkeys(faults)) + _clearance_faults(rail, drawn, spans)
+
+
+def _hole_faults(
+    near: np.ndarray, faces: model.Faces, face: int, name: str, ends: tuple[float, float]
+) -> list[tuple[str, str, str]]:
+    """Pieces of the track of a face along which it has no wall at all."""
+    low, high = near[:, :, 0].min(axis=1), near[:, :, 0].max(axis=1)
+    order = np.argsort(low)
+    reached = np.maximum.accumulate(np.r_[ends[0], high[order]])
+    starts, longest = np.r_[low[order], ends[1]], 2.0 * _GAP * faces.half_length[face]
+    return [
+        (
+            f"pads.{faces.pad[face]}",
+            f"a face {name} with no wall from x = {before:.6g} m to {after:.6g} m",
+            f"a wall along its whole track, with gaps of at most {longest:.3g} m, a tenth of its "
+            "length",
+        )
+        for before, after in zip(reached, starts)
+        if after - before > longest
+    ]
+
+
+def _shape_faults(
+    near: np.ndarray,
+    found: drawn_walls.Track,
+    faces: model.Faces,
+    face: int,
+    name: str,
+    most: float,
+) -> list[tuple[str, str, str]]:
+    """The steepest place of a wall, and where it deviates by more than ``most`` (m) from a parabola
+    across a face."""
+    faults, key = [], f"pads.{faces.pad[face]}"
+    cosines = -faces.sign[face] * facets.normals(near)[:, faces.axis[face]]
+    slopes = np.degrees(np.arccos(cosines.clip(-1.0, 1.0)))
+    if slopes.max() > STEEPEST:
+        place = near[int(slopes.argmax())].mean(axis=0)
         faults.append(
             (
-                f"pads.{pad}",
-                f"a face {name} with no wall under its track",
-                f"a pad whose wall, at {name[1]} = {wall:.9g} m, is among the contact surfaces of "
-                f"{file}",
+                key,
+                f"a face {name} whose wall has a slope of {slopes.max():.3g} deg at "
+                f"x = {place[0]:.6g} m",
+                f"at most {STEEPEST:g} deg: contact acts along {name[1]}",
             )
         )
-    if any(abs(gap - drawn) > _SAME for gap in gaps):
-        found = " to ".join(f"{gap:.9g}" for gap in sorted({min(gaps), max(gaps)}))
+    if found.missed.max() > most:
+        where = found.place[int(found.missed.argmax())]
         faults.append(
             (
-                "rail.clearance",
-                "nothing, hence that of contact" if rail.clearance is None else f"{drawn:.9g} m",
-                f"{found} m, at which the walls of {file} stand off the pads",
+                key,
+                f"a face {name} whose wall deviates by {1e6 * found.missed.max():.3g} um from a "
+                f"parabola across the face at x = {where:.6g} m",
+                f"at most {1e6 * most:.3g} um, 2 % of the clearance",
             )
         )
     return faults
+
+
+def _clearance_faults(
+    rail: MeshTable | GeometryTable, drawn: float, spans: list
+) -> list[tuple[str, str, str]]:
+    """Walls that have the clearance of the scene nowhere; ``spans`` (f,3) m, least, largest and mean
+    clearance of each. The mean is that along the track, whatever the elements."""
+    if not any(low > drawn + SAME or high < drawn - SAME for low, high, _ in spans):
+        return []
+    means = [round(each[2], 9) for each in spans]
+    found = " to ".join(f"{gap:.6g}" for gap in sorted({min(means), max(means)}))
+    given = "nothing, hence that of contact" if rail.clearance is None else f"{drawn:.9g} m"
+    walls = f"{found} m, at which the walls of {rail.path().name} stand off the pads"
+    return [("rail.clearance", given, walls)]

@@ -41,8 +41,7 @@ def of(scene: Scene) -> Inputs:
     """The record of ``scene``. Raises SceneError where pads do not fit the built-in section or
     nothing holds it."""
     nominal = scene_model.built(scene).nominal
-    origin = np.array(scene.platform.record().mass_centre if scene.platform else (0.0, 0.0, 0.0))
-    wall = np.round(nominal.wall + origin[nominal.axis], _DIGITS)
+    wall = np.round(scene_model.in_scene_axes(scene, nominal).wall, _DIGITS)
     # the thermal offset is that of a unit of each field
     material = scene.rail.material.model_copy(update={"yield_strength": None, "expansion": None})
     return Inputs(

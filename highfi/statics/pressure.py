@@ -49,7 +49,7 @@ def pressed(
     if (high - low < _SAME).any():
         return None
     place, area = _gauss(low, high, np.median(np.ptp(plane, axis=1), axis=0) / _CELLS_PER_FACET)
-    found, facet, weight = _located(plane, control, place)
+    found, facet, weight = located(plane, control, place)
     local = (place[found] - middle) / half
     phi = (local[:, None] ** POWERS[:patterns]).prod(axis=2)
     part = area / (4.0 * np.abs(half).prod())
@@ -69,11 +69,12 @@ def _gauss(low: np.ndarray, high: np.ndarray, size: np.ndarray) -> tuple[np.ndar
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2), 0.25 * width.prod()
 
 
-def _located(
+def located(
     plane: np.ndarray, control: np.ndarray, place: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Numbers of the places (q,2) that lie in a facet, of that facet, and the values of its nodal
-    functions there."""
+    """Numbers of the places (q,2) m that lie in a facet, of that facet, and the values of its nodal
+    functions there; ``plane`` and ``control`` (m,k,2) m are nodes and control points of the
+    facets."""
     slack = geometry.INSIDE * np.ptp(control, axis=1)
     low, high = control.min(axis=1) - slack, control.max(axis=1) + slack
     near = np.flatnonzero(((low < place.max(axis=0)) & (place.min(axis=0) < high)).all(axis=1))

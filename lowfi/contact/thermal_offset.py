@@ -1,4 +1,4 @@
-"""Thermal offset of warm walls, for contact springs with one point per face.
+"""Offset of walls that are warm or not straight as drawn, for contact springs with one point per face.
 
 With W(x) the offset of the wall away from the payload, as a mean over a face whose centre is at x
 along the rail, in platform axes, n the outward normal of the straight wall and e the unit vector
@@ -8,15 +8,18 @@ along the rail::
 
 Contact pushes along dp/dx and friction acts across it, so a wall that recedes ahead pushes forward,
 and no energy is lost. W is the cubic spline through the statics of the rail
-(``mechanics.rail_compliance``), and continues straight beyond its ends.
+(``mechanics.rail_compliance``) and through means of the wall as drawn (``mechanics.drawn_walls``), and
+continues straight beyond its ends.
 """
 
 from typing import NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from tipoff.kernels.jit import kernel
 from tipoff.kernels.reference import by_reference
+from tipoff.mechanics import drawn_walls
 from tipoff.mechanics.model import Model
 from tipoff.mechanics.rail_compliance import GRAM, RailCompliance, cubic
 from tipoff.scenes.faults import Fault, SceneError
@@ -25,7 +28,7 @@ from tipoff.scenes.scene import Scene
 
 @by_reference
 class ThermalOffset(NamedTuple):
-    """Thermal offset W of the walls under f faces, between s stations along the rail."""
+    """Offset W of the walls under f faces, between s stations along the rail."""
 
     cubic: np.ndarray  # (s-1, f, 4) W (m) as powers of the distance (m) from the station before
     spacing: float  # m, between stations
@@ -35,21 +38,42 @@ class ThermalOffset(NamedTuple):
 def under_pads(
     scene: Scene, model: Model, compliance: RailCompliance | None
 ) -> ThermalOffset | None:
-    """Record for the kernels; None without temperatures or contact, and for compliant contact, which
-    holds the offset itself. Raises SceneError as ``require`` does."""
+    """Record for the kernels; None without contact, for walls that are neither warm nor drawn with an
+    offset, and for compliant contact, which holds the offset itself. Raises SceneError as ``require``
+    does."""
     require(scene, compliance)
-    if model.thermal is None or model.contact is None:
+    if compliance is None or model.contact is None or compliance.flexibility is not None:
         return None
-    assert compliance is not None  # by require
-    if compliance.flexibility is not None:
-        return None
-    mean = compliance.of(scene).moved(model.thermal.amounts) @ GRAM[0]
     platform = model.platform.mass_centre[0] if model.platform is not None else 0.0
     origin = model.faces.centre[:, 0] + (model.payload.mass_centre[0] - platform)
+    travel, mean = compliance.travel, None
+    if model.thermal is not None:
+        mean = compliance.of(scene).moved(model.thermal.amounts) @ GRAM[0]
+    if compliance.drawn is not None:
+        compliance.require(scene)
+        fine = drawn_walls.grid(travel[0], travel[-1])
+        warm = 0.0 if mean is None else CubicSpline(travel, mean)(fine)
+        travel, mean = fine, warm + _drawn_mean(compliance.drawn, model, fine, origin)
+    if mean is None:
+        return None
     return ThermalOffset(
-        cubic(compliance.travel, mean),
-        float(compliance.travel[1] - compliance.travel[0]),
+        cubic(travel, mean),
+        float(travel[1] - travel[0]),
         np.ascontiguousarray(origin),
+    )
+
+
+def _drawn_mean(
+    drawn: np.ndarray, model: Model, travel: np.ndarray, origin: np.ndarray
+) -> np.ndarray:
+    """Means (s,f) m of the walls as drawn under faces whose middles are at X = ``origin`` (f,) m plus
+    the ``travel`` (s,) m."""
+    places = np.linspace(model.rail_start, model.rail_end, len(drawn))
+    return np.column_stack(
+        [
+            drawn_walls.mean(places, drawn[:, face], first + travel, half)
+            for face, (first, half) in enumerate(zip(origin, model.faces.half_length))
+        ]
     )
 
 

@@ -170,6 +170,21 @@ def built(scene: Scene, earlier: Built | None = None) -> Built:
     return Built(scene, model, nominal)
 
 
+def in_scene_axes(scene: Scene, nominal: Faces) -> Faces:
+    """``nominal`` faces with the coordinates of their walls in scene axes."""
+    origin = np.array(scene.platform.record().mass_centre if scene.platform else (0.0, 0.0, 0.0))
+    return nominal._replace(wall=nominal.wall + origin[nominal.axis])
+
+
+def half_sizes(faces: Faces) -> np.ndarray:
+    """Half size (f,2) m of ``nominal`` faces along xi and eta, negative where eta runs against the
+    axis, as on mirrored pads."""
+    across = faces.centre[np.arange(faces.axis.size), 3 - faces.axis]
+    return np.column_stack(
+        [faces.half_length, np.where(across >= 0.0, 1.0, -1.0) * faces.half_width]
+    )
+
+
 def _payload(scene: Scene) -> Payload:
     inertia = tensor(scene.payload.inertia)
     return Payload(scene.payload.mass, inertia, np.linalg.inv(inertia), (0.0, 0.0, 0.0))

@@ -18,7 +18,8 @@ is static::
 
 F_res is positive semidefinite: it is the part of the other modes. A warm rail
 (``scenes.effects.thermal``) has the thermal offset T = sum_t amount_t warm_t of the same patterns,
-to which U is added. Warm and rigid walls have T but no F. On joints of finite stiffness all of this
+to which U is added. Walls from a file that are not straight as drawn have an offset W beside it
+(``mechanics.drawn_walls``). Warm and rigid walls have T and W but no F. On joints of finite stiffness all of this
 holds for the nominal stiffness, and ``RailCompliance.of`` gives it for the factor of a scene
 (``mechanics.joint_terms``).
 """
@@ -34,7 +35,7 @@ from pathlib import Path
 import numpy as np
 
 from tipoff.files import DamageError, content_hash, require_whole, sealed
-from tipoff.mechanics import joint_terms
+from tipoff.mechanics import drawn_walls, joint_terms
 from tipoff.mechanics.compliance_shown import Shown
 from tipoff.mechanics.joint_terms import LEAST, MOST, JointTerms
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
@@ -65,8 +66,9 @@ class RailCompliance(Shown):
     along xi and eta, negative where eta runs against the axis; frequency (r,n) rad/s of the lowest
     modes of each rail, ascending, and their shape W (s,f,p,n) 1/kg^0.5; made_for, digest of the
     rail and pads; warm (t,s,f,p) m away from the payload under one of each field of temperature,
-    or None; joints, what a factor on the stiffness of the mounts changes, or None. Rigid walls have
-    no flexibility (None).
+    or None; joints, what a factor on the stiffness of the mounts changes, or None; drawn (n,f,3) m,
+    offset of walls that are not straight as drawn, at places from end to end of the rail
+    (``mechanics.drawn_walls``), or None. Rigid walls have no flexibility (None).
 
     Example:
         >>> rail = tipoff.compliance(tipoff.load("tiny"), 8e-3)
@@ -82,6 +84,7 @@ class RailCompliance(Shown):
     made_for: str
     warm: np.ndarray | None = None
     joints: JointTerms | None = None
+    drawn: np.ndarray | None = None
 
     def of(self, scene: Scene) -> "RailCompliance":
         """This compliance at the factor that ``scene`` has on the stiffness of its mounts. Raises
@@ -190,6 +193,7 @@ class RailCompliance(Shown):
             self.shape,
             self.warm,
             *(self.joints or ()),
+            self.drawn,
         ):
             if array is not None:
                 digest.update(np.ascontiguousarray(array).tobytes())
@@ -201,7 +205,7 @@ class RailCompliance(Shown):
         return (GRAM @ self._flexibility().transpose(0, 1, 3, 2, 4) @ GRAM)[..., 0, 0]
 
     def rigid(self) -> "RailCompliance":
-        """The same walls without flexibility: the thermal offset alone, for springs."""
+        """The same walls without flexibility: their offsets alone, for springs."""
         return replace(self, flexibility=None)
 
     def moved(self, amounts: np.ndarray) -> np.ndarray:
@@ -322,6 +326,8 @@ class RailCompliance(Shown):
         }
         if self.warm is not None:
             expected["warm"] = (FIELDS, stations, faces, PATTERNS)
+        if self.drawn is not None:
+            expected["drawn"] = (max(len(self.drawn), 2), faces, drawn_walls.ACROSS)
         for name, shape in expected.items():
             array = getattr(self, name)
             if array.shape != shape or not np.isfinite(array).all():

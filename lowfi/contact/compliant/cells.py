@@ -3,10 +3,11 @@
 With the lever (p_0, a, b) of the rigid face, the displacement U of its wall
 (``mechanics.rail_compliance``) and the interface stiffness k (N/m3), in the middle of each cell::
 
-    p = p_0 + a xi + b eta - relief (xi^4 + eta^4) - sum_a U_a phi_a(xi', eta')
+    p = p_0 + a xi + b eta - relief (xi^4 + eta^4) - sum_a U_a phi_a(xi', eta') - W(X, eta')
     pressure = k max(0, p)
 
-where the crown is its mean over the cell, and xi' = xi + shift, eta' = eta + aside is the place on
+where W is the offset of a wall that is not straight as drawn (``drawn_walls``) at the place X of the
+cell, the crown is its mean over the cell, and xi' = xi + shift, eta' = eta + aside is the place on
 the wall. The compliance belongs to pads midway between all rails; 0.25 mm aside, the leg of an L,
 held along one edge only, is three percent softer or stiffer. Of rows of cells that overhang an end
 of the rail only the part over the wall counts, with sums piecewise linear between the middles of
@@ -16,6 +17,7 @@ the rows.
 import numpy as np
 
 from tipoff.kernels.jit import kernel
+from tipoff.lowfi.contact.compliant import drawn_walls
 from tipoff.lowfi.contact.compliant.record import (
     ASIDE,
     BY_ETA,
@@ -96,7 +98,18 @@ def row_depth(compliance, face, xi, displacement):
     lever, u = compliance.workspace.lever[face], displacement
     x = xi + lever[SHIFT]
     rigid = lever[DEPTH] + lever[BY_XI] * xi - lever[BY_ETA] * lever[ASIDE]
-    return (rigid - u[0] - x * (u[1] + x * u[3]), lever[BY_ETA] - u[2] - x * u[4], -u[5])
+    w = drawn_walls.height(compliance.drawn, face, _place(compliance, face, xi))
+    return (
+        rigid - u[0] - x * (u[1] + x * u[3]) - w[0],
+        lever[BY_ETA] - u[2] - x * u[4] - w[1],
+        -u[5] - w[2],
+    )
+
+
+@kernel
+def _place(compliance, face, xi):
+    """X (m) of a row of cells."""
+    return compliance.workspace.lever[face, MIDDLE] + compliance.half[face, 0] * xi
 
 
 @kernel
@@ -280,3 +293,54 @@ def stored(compliance, face):
             energy += 0.5 * stiffness * share * squares
             fading += 0.5 * stiffness * lost * squares
     return energy, fading
+
+
+@kernel
+def push_of_drawn_slopes(compliance, face):
+    """Force (N) along the rail, and generalised force (N m) per eta, on the face by the slopes of a
+    wall that is not straight as drawn; zeros where all are straight."""
+    if compliance.drawn is not None:
+        return _push_of_slopes(compliance, face)
+    return 0.0, 0.0
+
+
+@kernel
+def _push_of_slopes(compliance, face):
+    lever, relief, half = (
+        compliance.workspace.lever[face],
+        compliance.relief[face],
+        compliance.half[face],
+    )
+    count, along, across = compliance.node.size, 0.0, 0.0
+    stiffness = compliance.interface_stiffness * 4.0 * half[0] * abs(half[1]) / (count * count)
+    for row in range(count):
+        xi = compliance.node[row]
+        share = cover(compliance, half[0], lever[MIDDLE], row)[0]
+        if share > 0.0:
+            level, tilt, bend = row_depth(
+                compliance, face, xi, compliance.workspace.displacement[face]
+            )
+            x, f0, f1, f2 = _place(compliance, face, xi), 0.0, 0.0, 0.0
+            for column in range(count):
+                eta = compliance.node[column] + lever[ASIDE]
+                p = max(
+                    0.0,
+                    level
+                    + eta * (tilt + eta * bend)
+                    - relief * (compliance.crown[row] + compliance.crown[column]),
+                )
+                f0, f1, f2 = f0 + p, f1 + p * eta, f2 + p * eta * eta
+            ahead = drawn_walls.slope(compliance.drawn, face, x)
+            aside = drawn_walls.height(compliance.drawn, face, x)
+            along += stiffness * share * (ahead[0] * f0 + ahead[1] * f1 + ahead[2] * f2)
+            across += stiffness * share * (aside[1] * f0 + 2.0 * aside[2] * f1)
+    return along, across
+
+
+@kernel
+def drawn_slope(compliance, face, xi, eta):
+    """Slope along the rail of the wall as drawn under a point of the face; zero where all walls are
+    straight."""
+    ahead = drawn_walls.slope(compliance.drawn, face, _place(compliance, face, xi))
+    aside = eta + compliance.workspace.lever[face, ASIDE]
+    return ahead[0] + aside * (ahead[1] + aside * ahead[2])

@@ -13,12 +13,15 @@ that xi' moves with the pad and cells leave the wall; and across, where the wall
 
     X = sum of pressure d(xi')/dx du/dxi' - dE/dx of the shares of the cells over the wall
     Y = sum of pressure d(eta')/dy du/deta'
+
+where u is the displacement of the wall, with its offset W as drawn, which moves with the pad all
+along the rail.
 """
 
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi.contact.compliant import thermal_offset
-from tipoff.lowfi.contact.compliant.cells import stored
+from tipoff.lowfi.contact.compliant.cells import push_of_drawn_slopes, stored
 from tipoff.lowfi.contact.compliant.modes import offset, slope
 from tipoff.lowfi.contact.compliant.record import ASIDE, DRIFT, SHIFT
 from tipoff.lowfi.contact.springs import (
@@ -70,7 +73,11 @@ def wall_force(compliance, faces, face, body, base):
     if drift != 0.0:  # else all of it is over the wall
         along = drift * (u[1] * force[0] + 2.0 * u[3] * force[1] + u[4] * force[2])
         along += stored(compliance, face)[1]
-    size = (u[2] * force[0] + u[4] * force[1] + 2.0 * u[5] * force[2]) / compliance.half[face, 1]
+    ahead, aside = push_of_drawn_slopes(compliance, face)
+    along += ahead
+    size = (u[2] * force[0] + u[4] * force[1] + 2.0 * u[5] * force[2] + aside) / compliance.half[
+        face, 1
+    ]
     across = along_width(faces[face], size)
     turned = rotation.rotate(base.turn, (along, across[1], across[2]))
     return turned, pad_point(faces[face], body)

@@ -6,6 +6,7 @@ import numpy as np
 
 from tipoff.kernels.memory import zeros
 from tipoff.kernels.reference import by_reference
+from tipoff.mechanics import drawn_walls
 from tipoff.mechanics import rail_compliance as data
 from tipoff.mechanics.model import Model
 from tipoff.scenes.effects.friction import require_two_step
@@ -66,6 +67,17 @@ class ThermalOffset(NamedTuple):
 
 
 @by_reference
+class DrawnWalls(NamedTuple):
+    """Offset of walls that are not straight as drawn (``mechanics.drawn_walls``)."""
+
+    # (n-1, f, ACROSS, 4) m, between places along the rail, as powers of the distance (m) from the
+    # place before
+    cubic: np.ndarray
+    spacing: float  # m, between places
+    start: float  # m, X of the first place, the rear end of the rail
+
+
+@by_reference
 class Compliance(NamedTuple):
     """Compliant contact of f faces on r rails, with its statics at s stations."""
 
@@ -84,6 +96,7 @@ class Compliance(NamedTuple):
     crown: np.ndarray  # (c,) means of xi^4 over the cells
     modes: Modes | None  # None for rails without inertia
     thermal_offset: ThermalOffset | None  # None for rails that are not warm
+    drawn: DrawnWalls | None  # None for walls that are straight as drawn
     workspace: Workspace
 
 
@@ -152,6 +165,7 @@ def build(
         crown=crown,
         modes=vibrating,
         thermal_offset=_thermal_offset(found, model),
+        drawn=_drawn(found, model),
         workspace=_workspace(faces.axis.size, members.shape[1], shape.shape[2]),
     )
 
@@ -164,6 +178,18 @@ def _thermal_offset(found: data.RailCompliance, model: Model) -> ThermalOffset |
         cubic=data.cubic(found.travel, found.moved(model.thermal.amounts)).swapaxes(-1, -2).copy(),
         offset=zeros(by_pattern),
         slope=zeros(by_pattern),
+    )
+
+
+def _drawn(found: data.RailCompliance, model: Model) -> DrawnWalls | None:
+    if found.drawn is None:
+        return None
+    start, end = float(model.rail_start), float(model.rail_end)
+    places = np.linspace(start, end, len(found.drawn))
+    return DrawnWalls(
+        cubic=drawn_walls.cubic(places, found.drawn),
+        spacing=(end - start) / (places.size - 1),
+        start=start,
     )
 
 

@@ -6,7 +6,12 @@ import numpy as np
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant import thermal_offset
-from tipoff.lowfi.contact.compliant.cells import deepest, deepest_at_rest, take_lever
+from tipoff.lowfi.contact.compliant.cells import (
+    deepest,
+    deepest_at_rest,
+    drawn_slope,
+    take_lever,
+)
 from tipoff.lowfi.contact.compliant.free_vibration import note_reach
 from tipoff.lowfi.contact.compliant.loads import energy as energy_of_rail
 from tipoff.lowfi.contact.compliant.modes import speed_at
@@ -54,7 +59,9 @@ def _deepest(compliance, faces, face, count, touching, place, turn, state):
         take_lever(compliance, faces, face, place, turn)
         if count == 0 and compliance.modes is None and compliance.thermal_offset is None:
             displacement[:] = 0.0
-            return deepest_at_rest(compliance, face)
+            if compliance.drawn is None:
+                return deepest_at_rest(compliance, face)
+            return deepest(compliance, face, displacement)
         follow(compliance, face, place[0] + faces[0, 0], count, state, displacement)
     return deepest(compliance, face, displacement)
 
@@ -68,6 +75,7 @@ def _approach(compliance, faces, face, xi, eta, drift, swing):
     )
     along, across = _on_wall(compliance, face, xi, eta)
     away = thermal_offset.slope(compliance.thermal_offset, face, along, across) * drift[0]
+    away += drawn_slope(compliance, face, xi, eta) * forward(faces[face], drift, swing)
     return approach(None, faces[face], None, None, drift, swing) + turning - away
 
 

@@ -211,7 +211,7 @@ WEDGED = {
 
 def test_promises_of_a_jam_on_a_free_platform():
     """Slips, stops, touches and recoil: both ledgers, both momenta, no energy back, and the mirror
-    image."""
+    image at a tolerance at which a stop that rounding moves to another step changes nothing."""
     asked = load("sensitive").condition("phi35").replace(WEDGED)
     mirror = asked.replace(
         {
@@ -219,8 +219,9 @@ def test_promises_of_a_jam_on_a_free_platform():
             "payload.inertia.xy": -asked.payload.inertia.xy,
         }
     )
-    run, other = lowfi.run(asked, "springs"), lowfi.run(mirror, "springs")
-    assert run.status == other.status == "jammed" and passive(run)
+    run = lowfi.run(asked, "springs")
+    fine, other = (lowfi.run(each, "springs", numerics=numerics(1e-9)) for each in (asked, mirror))
+    assert run.status == fine.status == other.status == "jammed" and passive(run)
     assert run.checks["energy_error"] <= 1e-6 and run.checks["transverse_energy_error"] <= 1e-4
     assert (
         run.checks["linear_momentum_error"] <= 1e-12
@@ -229,7 +230,7 @@ def test_promises_of_a_jam_on_a_free_platform():
     assert run.checks["quaternion_error"] <= 1e-12 and 0.0 < run.cost["limit_used"] <= 1.0 + 1e-9
     assert run.cost["events"] < 1000
     assert other.rate * (-1.0, 1.0, -1.0) == pytest.approx(
-        run.rate, abs=1e-6 * np.abs(run.rate).max()
+        fine.rate, abs=1e-6 * np.abs(fine.rate).max()
     )
     # Control: a hundredth less of the loss is seen.
     false = run.energy.copy()

@@ -20,6 +20,7 @@ from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import NOMINAL, Scene
 from tipoff.studies.core import words
 from tipoff.studies.core.errors import StudyError as StudyError
@@ -170,9 +171,16 @@ class Study:
         return {name: found[key] for name, key in keys.items()}
 
     def rigid_rails(self, scene: Scene) -> RailCompliance | None:
-        """The rails of springs in ``scene``: rigid, with their thermal offset if warm, else None."""
-        found = self.rail_compliance(scene) if scene.thermal is not None else None
-        return found and found.rigid()
+        """The rails of springs in ``scene``: rigid, with their offset if they are warm or not
+        straight as drawn, else None."""
+        if scene.thermal is not None:
+            found = self.rail_compliance(scene)
+            return found and found.rigid()
+        if isinstance(scene.rail, SectionTable):
+            return None
+        from tipoff.calibration import rail_compliance  # slow to load
+
+        return rail_compliance.walls(scene, self.settings.element_size)
 
     def path(self, name: str) -> Path:
         """A file in the folder of this scene."""

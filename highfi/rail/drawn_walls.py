@@ -1,0 +1,120 @@
+"""The walls of a rail file as drawn: their offset from the straight walls of the scene, along the
+track of each pad face.
+
+With h the coordinate of the wall along its axis, n = +-1 the sign of the face's normal and ``wall``
+the place of the straight wall, the offset away from the payload at a place X of the rail is
+
+    W(X, eta) = n h - n wall  =  w_0(X) + w_1(X) eta + w_2(X) eta^2
+
+by least squares over the width of the face, eta from -1 to 1 (``mechanics.drawn_walls``). Along the
+rail nothing is fitted: draft, bow, steps and joints are followed at places ``SPACING`` apart.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.highfi.contact import surface
+from tipoff.highfi.mesh import facets as geometry
+from tipoff.highfi.mesh.rail_mesh import RailMesh
+from tipoff.highfi.statics.pressure import located
+from tipoff.mechanics.drawn_walls import ACROSS, grid
+from tipoff.mechanics.model import Faces
+
+SAME = 1e-6  # m: below what a rail is made to, above the rounding of any mesh format
+_SAMPLES = 6  # places across the width of a face, the middles of so many strips
+_TOGETHER = 64  # places along the rail that are located at once; bounds the memory
+_SINGULAR = (
+    1e-6  # of the largest eigenvalue: powers of eta that hardly differ on what wall there is
+)
+
+
+class Track(NamedTuple):
+    """The wall under the track of one pad face, at n places along the rail."""
+
+    place: np.ndarray  # (n,) m, X
+    offset: np.ndarray  # (n, ACROSS) m, w_0, w_1 and w_2
+    gap: np.ndarray  # (n,) m, mean of W
+    missed: np.ndarray  # (n,) m, largest distance of the wall from the powers of eta
+
+
+def corners(mesh: RailMesh) -> np.ndarray:
+    """Nodes (m,k,3) m of all facets of the walls."""
+    return mesh.points[
+        np.concatenate(
+            [group for name, group in sorted(mesh.surfaces.items()) if name.startswith("contact")]
+        )
+    ]
+
+
+def under(nodes: np.ndarray, faces: Faces, face: int, reach: tuple[float, float]) -> np.ndarray:
+    """Nodes (m,k,3) m of the facets, of those with ``nodes``, that lie under the track of a face
+    between the X (m) of ``reach``; all in the axes of ``faces.wall``."""
+    near = nodes[surface.in_reach(nodes, faces, face)]
+    across = 3 - faces.axis[face]
+    side = np.abs(near[:, :, across] - faces.centre[face, across]).min(axis=1)
+    low, high = near[:, :, across].min(axis=1), near[:, :, across].max(axis=1)
+    middle, half = faces.centre[face, across], faces.half_width[face] - SAME
+    beside = (low < middle + half) & (high > middle - half)
+    beside |= side < half
+    ahead = (near[:, :, 0].max(axis=1) > reach[0]) & (near[:, :, 0].min(axis=1) < reach[1])
+    return near[beside & ahead]
+
+
+def away(near: np.ndarray, faces: Faces, face: int) -> np.ndarray:
+    """Offset (m,k) m, away from the payload, of facets with nodes ``near`` (m,k,3) m."""
+    return faces.sign[face] * (near[:, :, faces.axis[face]] - faces.wall[face])
+
+
+def track(
+    near: np.ndarray, faces: Faces, face: int, half: float, reach: tuple[float, float]
+) -> Track:
+    """The wall of facets with nodes ``near`` (m,k,3) m under the track of a face whose half width is
+    ``half`` (m), negative where eta runs against the axis. Where it has no facet, the wall goes on
+    between its neighbours."""
+    x, eta = grid(*reach), (np.arange(_SAMPLES) + 0.5) * 2.0 / _SAMPLES - 1.0
+    across = 3 - faces.axis[face]
+    plane, height = near[:, :, [0, across]], away(near, faces, face)
+    control = geometry.hull(plane)
+    side = faces.centre[face, across] + half * eta
+    found = np.full((x.size, _SAMPLES), np.nan)
+    for first in range(0, x.size, _TOGETHER):
+        part = x[first : first + _TOGETHER]
+        place = np.stack(np.meshgrid(part, side, indexing="ij"), axis=-1).reshape(-1, 2)
+        number, facet, weight = located(plane, control, place)
+        values = np.full(len(place), np.nan)
+        values[number] = (weight * height[facet]).sum(axis=1)
+        found[first : first + part.size] = values.reshape(-1, _SAMPLES)
+    return _fitted(x, found, eta)
+
+
+def _fitted(x: np.ndarray, found: np.ndarray, eta: np.ndarray) -> Track:
+    powers = eta[:, None] ** np.arange(ACROSS)
+    has = np.isfinite(found)
+    values = np.where(has, found, 0.0)
+    gram = np.einsum("xq,qa,qb->xab", has.astype(float), powers, powers)
+    inverse = np.linalg.pinv(gram, rcond=_SINGULAR, hermitian=True)
+    offset = np.einsum("xab,qb,xq->xa", inverse, powers, values)
+    missed = (np.abs(values - offset @ powers.T) * has).max(axis=1)
+    count = has.sum(axis=1)
+    gap = values.sum(axis=1) / np.maximum(count, 1)
+    known, places = np.flatnonzero(count), np.arange(len(found))
+    if known.size and known.size < len(found):
+        for column in (*offset.T, gap):
+            column[:] = np.interp(places, known, column[known])
+    return Track(x, offset, gap, missed)
+
+
+def offsets(
+    mesh: RailMesh, faces: Faces, half: np.ndarray, reach: tuple[float, float]
+) -> np.ndarray | None:
+    """Offset (n,f,ACROSS) m of the walls under f faces at the places ``grid`` of ``reach`` (m), in
+    the axes of ``faces.wall``; ``half`` (f,) m is as in ``track``. A wall that lies within ``SAME``
+    of the straight one has none; None where all do."""
+    nodes = corners(mesh)
+    found = np.zeros((grid(*reach).size, faces.axis.size, ACROSS))
+    for face in range(faces.axis.size):
+        near = under(nodes, faces, face, reach)
+        if len(near) and np.abs(away(near, faces, face)).max() > SAME:
+            found[:, face] = track(near, faces, face, half[face], reach).offset
+    return found if found.any() else None
