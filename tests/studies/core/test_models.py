@@ -65,6 +65,24 @@ def test_a_model_that_does_not_settle_has_no_error_there(study, monkeypatch):
         assert said in words and "does not settle on 1" in words
 
 
+def test_what_could_not_be_judged_is_not_called_unmeasured(study, monkeypatch):
+    """Control: without a table it is not measured, and the command that measures it is named."""
+    lost = ROW | {"condition": "h8", "judgement": "cannot be judged"}
+    for rows, said in (
+        (
+            [lost],
+            "could judge none of 1 condition with contact by single runs; h8 cannot be judged",
+        ),
+        ([ROW | {"touches": False}], "no pad touches on any of 1 compared condition"),
+    ):
+        found = TABLE | {"compliant": rows}
+        monkeypatch.setattr("tipoff.studies.agreement.stage.stored", lambda _, found=found: found)
+        words = kept.words(study, COMPLIANT)
+        assert words.startswith("not known: ") and said in words
+    monkeypatch.setattr("tipoff.studies.agreement.stage.stored", lambda _: None)
+    assert "tipoff compare measures it" in kept.words(study, COMPLIANT)
+
+
 def test_the_command_line_has_the_names_of_the_models():
     assert tuple(item.value for item in options.ModelName) == MODELS
     assert tuple(item.value for item in options.SurrogateName) == SURROGATES

@@ -163,3 +163,17 @@ def test_assumptions_stand_first_in_the_appendix():
     table = inputs.scene_tables(scenes.load("reference"))[0]
     doubtful = [row[2].startswith(("assumed", "inferred", "not stated")) for row in table.rows]
     assert doubtful == sorted(doubtful, reverse=True) and True in doubtful and False in doubtful
+
+
+def test_a_spread_condition_has_its_range_over_neighbours(page):
+    """The value with an uncertainty as large as itself is left out. Control: without the neighbours it
+    stands there."""
+    assert "-28 ± 13" in html(answer.draw(page))
+    rates = [[-31.0, 3.0, 4.0], [-12.0, 0.0, 2.0], [-25.0, 6.0, 8.0]]
+    page.documents["agreement"]["distributions"] = [
+        {"condition": "phi15", "reference_deg_s": rates}
+    ]
+    shown = html(answer.draw(page))
+    assert "± 13" not in shown and "-31.0 to -12.0" in shown and "2.00 to 10.00" in shown
+    assert "<b>12.0 to 31.0</b><span>largest roll rate (deg/s): phi15, over 3 neighbours" in shown
+    assert "moved by less than 1 µm" in shown

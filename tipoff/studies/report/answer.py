@@ -12,11 +12,19 @@ from tipoff.scenes import provenance
 from tipoff.scenes.overrides import is_drop
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.page import counts
+from tipoff.studies.core.words import counted
 from tipoff.studies.populations.exceedance import TOTAL, Limit
 from tipoff.studies.render.document import Bullets, Heading, KeyFigures, Part
 from tipoff.studies.render.table import Column, Table
-from tipoff.studies.render.uncertain import LEAST, STEPS, Measured, number, rounded, uncertain
-from tipoff.studies.report import drawing, inputs
+from tipoff.studies.render.uncertain import (
+    LEAST,
+    STEPS,
+    Measured,
+    number,
+    rounded,
+    uncertain,
+)
+from tipoff.studies.report import drawing, inputs, neighbours
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
@@ -57,6 +65,11 @@ def transverse(settled: dict) -> float:
     return math.hypot(*settled["rate_deg_s"][1:])
 
 
+def roll(settled: dict) -> float:
+    """Rate (deg/s) about the payload's axis, with its sign."""
+    return settled["rate_deg_s"][0]
+
+
 def above(settled: dict, limits: Sequence[Limit]) -> list[str]:
     """The axes of the limits that the rates of a condition are above."""
     rates = settled["rate_deg_s"]
@@ -69,7 +82,8 @@ def above(settled: dict, limits: Sequence[Limit]) -> list[str]:
 
 
 def _figures(page: "Page", rows: list[dict], compared: dict[str, dict]) -> list[tuple[str, str]]:
-    rates = [*_speed(page, rows), *_largest(rows, compared)]
+    spreads = neighbours.of(page.documents.get("agreement"))
+    rates = [*_speed(page, rows), *_largest(rows, compared, spreads)]
     return [*rates, *_limits(rows, page.limits), *_models(page)]
 
 
@@ -94,7 +108,9 @@ def _speed(page: "Page", rows: list[dict]) -> list[tuple[str, str]]:
     ]
 
 
-def _largest(rows: list[dict], compared: dict[str, dict]) -> list[tuple[str, str]]:
+def _largest(
+    rows: list[dict], compared: dict[str, dict], spreads: dict[str, neighbours.Spread]
+) -> list[tuple[str, str]]:
     settled = {row["condition"]: row["settled"] for row in rows if row["settled"]}
     if not settled:
         return [("–", "no condition settled")]
@@ -105,14 +121,22 @@ def _largest(rows: list[dict], compared: dict[str, dict]) -> list[tuple[str, str
     }
     for words, measure in measures.items():
 
-        def shown(names: Iterable[str], measure=measure) -> tuple[str, str]:
-            name = max(names, key=lambda name: measure(settled[name]))
+        def most(name: str, measure=measure) -> float:
+            own = measure(settled[name])
+            return max(own, spreads[name].within(measure)[1]) if name in spreads else own
+
+        def shown(names: Iterable[str], measure=measure, most=most) -> tuple[str, str]:
+            name = max(names, key=most)
+            if name in spreads:
+                return neighbours.text(*spreads[name].within(measure)), name
             return uncertain(measure(settled[name]), _uncertainty(compared.get(name))), name
 
         value, name = shown(settled)
         sure = [one for one in settled if compared.get(one, {}).get("reference_converged", True)]
         words = f"{words}: {name}"
-        if name not in sure:
+        if name in spreads:
+            words += f", over {counted(spreads[name].settled, 'neighbour')} within 1 µm"
+        elif name not in sure:
             words += ", not converged"
             words += "; of the converged ones {} ({})".format(*shown(sure)) if sure else ""
         figures.append((value, words))
@@ -166,13 +190,18 @@ def _conditions(page: "Page", rows: list[dict], compared: dict[str, dict]) -> Ta
         "verdict",
     )
     found, kinds = [], []
+    spreads = neighbours.of(page.documents.get("agreement"))
     for row in rows:
         settled, other = row["settled"], compared.get(row["condition"])
         found.append(
             [
                 row["condition"],
                 stated(page, row["condition"]),
-                *(_rates(settled, _uncertainty(other)) if settled else [None] * 3),
+                *(
+                    _rates(settled, _uncertainty(other), spreads.get(row["condition"]))
+                    if settled
+                    else [None] * 3
+                ),
                 *([_hand(row)] if _by_hand(rows) else []),
                 settled and settled["direction_error_deg"],
                 other
@@ -182,11 +211,20 @@ def _conditions(page: "Page", rows: list[dict], compared: dict[str, dict]) -> Ta
             ]
         )
         kinds.append(_kind(other))
-    notes = (_NOTE, *([_HAND_NOTE] if _by_hand(rows) else []))
+    notes = (
+        _NOTE,
+        *([neighbours.NOTE] if spreads else []),
+        *([_HAND_NOTE] if _by_hand(rows) else []),
+    )
     return Table(columns, found, notes=notes, kinds=kinds, name="answer-table")
 
 
-def _rates(settled: dict, uncertainty: float | None) -> list:
+def _rates(
+    settled: dict, uncertainty: float | None, spread: neighbours.Spread | None = None
+) -> list:
+    if spread is not None:
+        ranges = (spread.within(measure) for measure in (roll, transverse))
+        return [settled["velocity_m_s"][0], *(neighbours.text(*ends) for ends in ranges)]
     return [
         settled["velocity_m_s"][0],
         uncertain(settled["rate_deg_s"][0], uncertainty),
