@@ -210,9 +210,11 @@ def _content_faults(
 
 
 def _inverted(points: np.ndarray, cells: np.ndarray) -> list[str]:
-    # places that are too far apart for their products are no valid element either
+    # The products of coordinates that are too large are no numbers.
     with np.errstate(over="ignore", invalid="ignore"):
-        jacobian, _ = jacobians(points, cells)
+        jacobian, scaled = jacobians(points, cells)
+    if np.isfinite(points).all() and not (np.isfinite(jacobian) & np.isfinite(scaled)).all():
+        return [f"coordinates up to {np.abs(points).max():.3g} m, too large for any element"]
     inverted = np.flatnonzero(~(jacobian > 0.0).all(axis=1))
     return [f"inverted or flat elements: {listed(inverted)}"] if len(inverted) else []
 

@@ -278,6 +278,13 @@ def test_counts_of_any_size_are_refused_at_once(tmp_path):
         read(tmp_path / "rail.msh")
 
 
+def test_coordinates_too_large_to_multiply_are_a_fault(tmp_path):
+    """Without a warning of numpy, which tests turn into an error."""
+    text = seeds.abaqus().replace("0.01", "1e200")
+    with pytest.raises(MeshError, match="coordinates up to 1e.200 m"):
+        read_text(tmp_path, text)
+
+
 def test_elements_that_appear_twice_are_a_fault(tmp_path):
     text = seeds.abaqus()
     first = text.split("C3D8R\n1, ")[1].split("\n")[0]
