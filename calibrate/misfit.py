@@ -133,7 +133,7 @@ def _misfits(wanted: Target, model: np.ndarray, keep: np.ndarray) -> np.ndarray 
 
 def velocity_faults(name: str, wanted: Target, run: Trajectory) -> list[str]:
     """Sentences on a v_x that is not that of the model after the thrust."""
-    if run.status != "exited":
+    if run.status != "exited" or run.outcome.velocity is None:
         return []
     late = wanted.time >= wanted.window_start
     mean, model = float(wanted.velocity[late].mean()), float(run.outcome.velocity[0])

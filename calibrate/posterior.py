@@ -46,8 +46,8 @@ def of(
     if not vectors.size:
         none = np.full(shares.size, np.inf)
         words = "the curves determine none of these parameters; the scene's values are kept"
-        lost = np.full(nuisances.shape[1], np.inf)
-        return Posterior(none, none, False, words, "without information", lost)
+        unknown = np.full(nuisances.shape[1], np.inf)
+        return Posterior(none, none, False, words, "without information", unknown)
     ends = np.cumsum([curve.time.size for curve in curves])[:-1]
     seen = [
         curve._replace(slope=np.hstack([curve.slope @ vectors, more]))
