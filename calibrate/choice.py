@@ -55,6 +55,14 @@ def most(scene: Scene, fit: Sequence[str] | None) -> int:
     return len(_candidates(scene, fit))
 
 
+def moves_free_flight(scene: Scene, fit: Sequence[str] | None, springs: bool = False) -> bool:
+    """Whether a fit may contain errors of mounting, which change the rates before any contact."""
+    if springs:
+        return False
+    names = [item.name for item in _candidates(scene, fit)] if fit in (None, [ALL]) else list(fit)
+    return not set(alignment.NAMES).isdisjoint(names)
+
+
 def _candidates(scene: Scene, fit: Sequence[str] | None) -> list[Parameter]:
     contact = compliant.free(scene)
     return contact if contact and fit is None else [*contact, *alignment.free(scene)]

@@ -122,7 +122,7 @@ def _time_faults(source: str, time: np.ndarray, settled_from: float | None) -> l
         found.append(
             (
                 f"a gap from {_ms(time[gap])} to {_ms(time[gap + 1])}",
-                f"steps of {_ms(LONGEST_STEP)} at most",
+                f"steps of {_ms(LONGEST_STEP)} at most{_likely_unit(steps[gap])}",
             )
         )
     if latest < time[0] - _ROUNDING:
@@ -144,3 +144,11 @@ def _time_faults(source: str, time: np.ndarray, settled_from: float | None) -> l
 
 def _ms(time: float) -> str:
     return f"{1e3 * time:.6g} ms"
+
+
+def _likely_unit(step: float) -> str:
+    """The unit that the time column has by the size of a ``step`` (s), as the end of a message."""
+    for factor, words in ((1e-3, "ms with the unit s"), (1e-6, "us with the unit s")):
+        if LONGEST_STEP < step and factor * step <= 0.5 * LONGEST_STEP and step >= 10e-3:
+            return f" (likely cause: values in {words})"
+    return ""

@@ -12,12 +12,15 @@ The settled rates are what the payload leaves with; a late contact has little ti
 integrals. J is rough: where a contact is just missed, everything after it jumps. An amplitude below
 a hundredth of the largest of all conditions is taken as that hundredth: nothing is gained by
 fitting the rounding of a condition without rates.
+
+A curve may be late: y(t) = f(t - offset), with one offset for each condition (``offsets``).
 """
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
+import scipy  # its parts load when they are first used
 
 from tipoff import lowfi
 from tipoff.calibration import alignment
@@ -39,7 +42,8 @@ FAILED = 10.0
 
 class Target(NamedTuple):
     """One condition: its scene, times (n,) s, reference v_x (n,) m/s, rates (n,3) and settled rates
-    (3,) rad/s, and the amplitudes sqrt(int v_x^2 dt), sqrt(int |w|^2 dt), |w_s|."""
+    (3,) rad/s, and the amplitudes sqrt(int v_x^2 dt), sqrt(int |w|^2 dt), |w_s|; start of the settled
+    window (s)."""
 
     scene: Scene
     time: np.ndarray
@@ -48,6 +52,7 @@ class Target(NamedTuple):
     settled: np.ndarray
     weights: np.ndarray
     amplitudes: tuple[float, float, float]
+    window_start: float
 
 
 def target(scene: Scene, reference: Curves) -> Target:
@@ -65,7 +70,7 @@ def target(scene: Scene, reference: Curves) -> Target:
         float(np.sqrt(weights @ (rate**2).sum(axis=1))),
         float(np.linalg.norm(settled)),
     )
-    return Target(scene, time, velocity, rate, settled, weights, amplitudes)
+    return Target(scene, time, velocity, rate, settled, weights, amplitudes, reference.window_start)
 
 
 def targets(scene: Scene, references: dict[str, Curves]) -> dict[str, Target]:
@@ -100,8 +105,17 @@ class Parts(NamedTuple):
         return np.concatenate([VELOCITY_WEIGHT * self.velocity, self.rate.ravel(), self.settled])
 
 
-def compare(target: Target, result: Trajectory) -> Parts:
-    """Residuals of a surrogate's run of the target's condition."""
+def sampled(result: Trajectory, time: np.ndarray) -> np.ndarray:
+    """v_x (m/s) and rates (rad/s) of a run, (n,4), at times (n,): at rest before ignition, and as at
+    its end after it. Cubic between samples, so that a shift of time keeps the shape of a curve."""
+    columns = np.column_stack([result.velocity[:, 0], result.rate])
+    curve = scipy.interpolate.CubicSpline(result.time, columns)
+    return curve(np.clip(time, result.time[0], result.time[-1]))
+
+
+def compare(target: Target, result: Trajectory, offset: float = 0.0) -> Parts:
+    """Residuals of a surrogate's run of the target's condition, whose curves are late by ``offset``
+    (s)."""
     root = np.sqrt(target.weights)
     moving, turning, leaving = target.amplitudes
     if result.status != "exited":
@@ -111,15 +125,20 @@ def compare(target: Target, result: Trajectory) -> Parts:
             np.outer(share, np.full(3, FAILED / np.sqrt(3.0))),
             np.full(3, FAILED / np.sqrt(3.0)),
         )
-    velocity = np.interp(target.time, result.time, result.velocity[:, 0])
-    rate = np.column_stack(
-        [np.interp(target.time, result.time, column) for column in result.rate.T]
-    )
+    found = sampled(result, target.time - offset)
+    velocity, rate = found[:, 0], found[:, 1:]
     return Parts(
         root * (velocity - target.velocity) / moving,
         root[:, None] * (rate - target.rate) / turning,
         (np.array(result.outcome.rate) - target.settled) / leaving,
     )
+
+
+class Library(Protocol):
+    """What a search leaves for the judgement of its curves."""
+
+    def add(self, runs: dict[str, Trajectory], offsets: dict[str, float]) -> None:
+        """Keep runs (by condition) of one point of the search."""
 
 
 class Objective:
@@ -150,7 +169,10 @@ class Objective:
             compliance,
         )
         self.variations = {name: Variations(wanted.scene) for name, wanted in targets.items()}
+        self.offsets = dict.fromkeys(targets, 0.0)
+        self.library: Library | None = None
         self.evaluations = 0
+        self._last: tuple[bytes, dict[str, Trajectory]] | None = None
 
     def values(self, shares: np.ndarray) -> dict[str, float]:
         """Values (SI) of the parameters by name."""
@@ -159,27 +181,37 @@ class Objective:
             for item, share in zip(self.parameters, shares, strict=True)
         }
 
-    def parts(self, shares: np.ndarray) -> dict[str, Parts]:
-        """Residuals by condition."""
+    def runs(self, shares: np.ndarray) -> dict[str, Trajectory]:
+        """The surrogate's runs by condition. Those of the last shares are kept: an offset needs no
+        other run."""
+        if self._last is not None and self._last[0] == shares.tobytes():
+            return self._last[1]
         self.evaluations += 1
         values = self.values(shares)
         constants, changes = overrides(self.scene, values), alignment.changes(values)
         if self.compliance is not None and self.model == COMPLIANT:
             self.compliance.of(self.scene.replace(constants))  # once, and not in each thread
 
-        def one(name: str) -> Parts:
-            wanted = self.targets[name]
-            return compare(
-                wanted,
-                lowfi.run(
-                    self.variations[name].of(constants | added.overrides(wanted.scene, changes)),
-                    self.model,
-                    numerics=self.numerics,
-                    compliance=self.compliance,
-                ),
-            )
+        def one(name: str) -> Trajectory:
+            change = added.overrides(self.targets[name].scene, changes)
+            return self.alone(self.variations[name].of(constants | change))
 
-        return dict(zip(self.targets, self.over(one, self.targets)))
+        found = dict(zip(self.targets, self.over(one, self.targets)))
+        self._last = (shares.tobytes(), found)
+        if self.library is not None:
+            self.library.add(found, self.offsets)
+        return found
+
+    def alone(self, scene: Scene) -> Trajectory:
+        """A run of a ``scene`` of a condition, with the model and numerics of the objective."""
+        return lowfi.run(scene, self.model, numerics=self.numerics, compliance=self.compliance)
+
+    def parts(self, shares: np.ndarray) -> dict[str, Parts]:
+        """Residuals by condition, of curves that are late by ``offsets`` (s)."""
+        return {
+            name: compare(self.targets[name], run, self.offsets[name])
+            for name, run in self.runs(shares).items()
+        }
 
     def __call__(self, shares: np.ndarray) -> np.ndarray:
         """Residual vector r with J = r'r."""

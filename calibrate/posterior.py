@@ -18,30 +18,49 @@ from tipoff.calibration.intervals import LEVEL, PART
 
 class Posterior(NamedTuple):
     """Half widths (p,) in shares, infinite where the curves do not determine a parameter; whether the
-    curves ask for other values than the scene's, in ``words`` too; what the intervals rest on."""
+    curves ask for other values than the scene's, in ``words`` too; what the intervals rest on; half
+    widths (c,) of the nuisances, with model error."""
 
     half: np.ndarray
     half_with_model_error: np.ndarray
     asks: bool
     words: str
     source: str
+    half_of_nuisances: np.ndarray
 
 
 def of(
-    curves: Sequence[discrepancy.Curve], matrix: np.ndarray, shares: np.ndarray, own: np.ndarray
+    curves: Sequence[discrepancy.Curve],
+    matrix: np.ndarray,
+    shares: np.ndarray,
+    own: np.ndarray,
+    nuisances: np.ndarray | None = None,
 ) -> Posterior:
     """The posterior about the fitted ``shares`` (p,), with the ``curves`` and the information
-    ``matrix`` (p,p) there; ``own`` (p,) are the scene's values."""
+    ``matrix`` (p,p) there; ``own`` (p,) are the scene's values. ``nuisances`` (n,c) are slopes of all
+    curves, one after the other, to what is fitted too but not asked for, in any unit."""
+    if nuisances is None:
+        nuisances = np.zeros((sum(curve.time.size for curve in curves), 0))
     weak = information.weak(matrix, information.ROUNDING)
     vectors = np.linalg.eigh(matrix)[1][:, len(weak) :]
     if not vectors.size:
         none = np.full(shares.size, np.inf)
         words = "the curves determine none of these parameters; the scene's values are kept"
-        return Posterior(none, none, False, words, "without information")
-    seen = [curve._replace(slope=curve.slope @ vectors) for curve in curves]
+        unknown = np.full(nuisances.shape[1], np.inf)
+        return Posterior(none, none, False, words, "without information", unknown)
+    ends = np.cumsum([curve.time.size for curve in curves])[:-1]
+    seen = [
+        curve._replace(slope=np.hstack([curve.slope @ vectors, more]))
+        for curve, more in zip(curves, np.split(nuisances, ends))
+    ]
     errors = discrepancy.likeliest(seen)
-    scatter, whole = discrepancy.deviations(seen, errors, vectors)
-    along = discrepancy.deviations(seen, errors, np.eye(vectors.shape[1]))[1]
+    count = vectors.shape[1]
+    whole_space = np.eye(count + nuisances.shape[1])
+    scatter, whole = discrepancy.deviations(
+        seen, errors, np.hstack([vectors, np.zeros((shares.size, nuisances.shape[1]))])
+    )
+    deviation = discrepancy.deviations(seen, errors, whole_space)[1]
+    along, beside = deviation[:count], deviation[count:]
     lost = np.any([np.abs(item.vector) >= PART for item in weak], axis=0) if weak else False
     scatter, whole = (np.where(lost, np.inf, found) for found in (scatter, whole))
     wide = scipy.stats.norm.ppf(1.0 - 0.5 * (1.0 - LEVEL) / along.size)
@@ -57,4 +76,5 @@ def of(
         "error, and are kept",
         f"from what the fit leaves as white noise; with model error of {100.0 * errors[0]:.2g} % in "
         f"v_x and {100.0 * errors[1]:.2g} % in the rates at the end of a curve",
+        usual * beside,
     )

@@ -3,6 +3,9 @@ curve.
 
 The objective of the search wants v_x to 0.1 % and rates to 5 %. Noise seldom has this ratio. With
 every curve weighted by its scatter, least squares uses all information in curves with white noise.
+
+The time of ignition is seldom known to a sample, so the offset of each condition is a nuisance of this
+fit. v_x during the thrust determines it, whatever the contact.
 """
 
 import numpy as np
@@ -14,30 +17,68 @@ from tipoff.calibration.objective import Objective
 
 ROUNDS = 2  # the weights follow from what the round before leaves
 ITERATIONS = 6
+UNIT = 1e-3  # s, of an offset among the coordinates of the fit
+STEP = 1e-3  # of UNIT, for slopes
 
 
 def refined(objective: Objective, shares: np.ndarray) -> np.ndarray:
-    """Shares (p,) of the weighted fit next to ``shares``."""
+    """Shares (p,) of the weighted fit next to ``shares``. The offsets of the curves are fitted
+    together with them, and are left in ``objective.offsets``."""
+    count = shares.size
+    point = np.append(shares, [value / UNIT for value in objective.offsets.values()])
+    free = np.full(len(objective.offsets), np.inf)
     for _ in range(ROUNDS):
-        flat = np.zeros((0, shares.size))
+        flat = np.zeros((0, count))
         root = np.concatenate(
             [
                 np.full(curve.time.size, np.sqrt(curve.weight))
-                for curve in curves(objective, left(objective, shares), flat)
+                for curve in curves(objective, shifted(objective, point), flat)
             ]
         )
 
         def weighted(at: np.ndarray, root: np.ndarray = root) -> np.ndarray:
-            return root * left(objective, at)
+            return root * shifted(objective, at)
 
-        shares = least_squares(
+        def slopes(at: np.ndarray, root: np.ndarray = root) -> np.ndarray:
+            set_offsets(objective, at[count:])
+            late = root[:, None] * offset_slopes(objective, at[:count])
+            own = jacobian(lambda share: root * left(objective, share), at[:count])
+            return np.hstack([own, late])
+
+        point = least_squares(
             weighted,
-            shares,
-            lambda at: jacobian(weighted, at),
-            bounds=(0.0, 1.0),
+            point,
+            slopes,
+            bounds=(np.append(np.zeros(count), -free), np.append(np.ones(count), free)),
             max_nfev=ITERATIONS,
         ).x
-    return shares
+    set_offsets(objective, point[count:])
+    return point[:count]
+
+
+def set_offsets(objective: Objective, values: np.ndarray) -> None:
+    """Offsets of all conditions from ``values`` (c,), in units of ``UNIT``."""
+    objective.offsets = dict(zip(objective.offsets, (UNIT * values).tolist()))
+
+
+def shifted(objective: Objective, point: np.ndarray) -> np.ndarray:
+    """As ``left``, at shares (p,) and offsets (c,) together."""
+    count = point.size - len(objective.offsets)
+    set_offsets(objective, point[count:])
+    return left(objective, point[:count])
+
+
+def offset_slopes(objective: Objective, shares: np.ndarray) -> np.ndarray:
+    """Slopes (n,c) of ``left`` to the offset of each condition, in units of ``UNIT``."""
+    own, columns = np.array(list(objective.offsets.values())) / UNIT, []
+    for index in range(own.size):
+        ahead, behind = own.copy(), own.copy()
+        ahead[index] += STEP
+        behind[index] -= STEP
+        both = [shifted(objective, np.append(shares, at)) for at in (ahead, behind)]
+        columns.append((both[0] - both[1]) / (2.0 * STEP))
+    set_offsets(objective, own)
+    return np.column_stack(columns)
 
 
 def evaluations(parameters: int) -> int:

@@ -12,6 +12,7 @@ from tipoff.calibration import (
     evidence,
     faults,
     information,
+    judgement,
     parameters,
     posterior,
     refine,
@@ -19,6 +20,7 @@ from tipoff.calibration import (
 from tipoff.calibration.curves import Curves
 from tipoff.calibration.information import jacobian
 from tipoff.calibration.objective import Objective, Parts, targets
+from tipoff.calibration.offset import Offset
 from tipoff.calibration.parameters import Parameter
 from tipoff.calibration.search import Found, Plan, search
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
@@ -49,7 +51,8 @@ def run(
     done, ``plan`` sizes the search; the same plan gives the same bits, however many ``workers`` run
     conditions in parallel. Springs on warm rails need their rigid ``compliance`` (``lowfi.run``).
     Raises CalibrationError for references that are missing, did not exit, are too short or do not
-    turn, and for names that cannot be fitted; SceneError for an unknown condition.
+    turn, for names that cannot be fitted, and for curves that the model does not explain, with the
+    likely cause (``judgement``); SceneError for an unknown condition.
     """
     faults.check(scene, references)
     curves = {
@@ -61,18 +64,26 @@ def run(
         make = partial(
             Objective, scene, wanted, numerics=numerics, over=pool.map, compliance=compliance
         )
-        if model_of(scene, compliance) == COMPLIANT:
-            return _of_compliant_contact(make, curves, plan, progress, fit)
-        faults.require_model(scene, SPRINGS, fit)
-        return _of_springs(make, curves, plan, progress)
+        springs = model_of(scene, compliance) != COMPLIANT
+        if springs:
+            faults.require_model(scene, SPRINGS, fit)
+        elif fit is not None and list(fit) != [choice.ALL]:
+            choice.named(scene, curves, fit)
+        bench = judgement.before(make([]), choice.moves_free_flight(scene, fit, springs))
+        if springs:
+            return _of_springs(make, curves, plan, progress, bench)
+        return _of_compliant_contact(make, curves, plan, progress, fit, bench)
 
 
-def _of_springs(make: Callable, curves: dict[str, Curves], plan: Plan, progress) -> Calibration:
+def _of_springs(
+    make: Callable, curves: dict[str, Curves], plan: Plan, progress, bench: judgement.Bench
+) -> Calibration:
     scene = make([]).scene
     free, held = parameters.free(scene), parameters.held(scene)
-    objective, wide = make(free), make(free + held)
+    objective, wide = bench.ready(make(free)), bench.ready(make(free + held))
     found = search(objective, shares_in(scene, free), plan, progress)
     residuals = objective.parts(found.shares)
+    bench.require_sound(objective, found.shares)
     at = np.append(found.shares, shares_in(scene, held))
     matrix = information.information(jacobian(wide, at))
     inner = matrix[: len(free), : len(free)]
@@ -83,6 +94,7 @@ def _of_springs(make: Callable, curves: dict[str, Curves], plan: Plan, progress)
         residuals,
         inner,
         intervals=ends,
+        verdict="; ".join(bench.words(objective, found.shares)),
         weak_directions=evidence.weak_directions(scene, free, held, found.shares, matrix),
         provenance=evidence.provenance(
             scene,
@@ -98,45 +110,71 @@ def _of_springs(make: Callable, curves: dict[str, Curves], plan: Plan, progress)
 
 
 def _of_compliant_contact(
-    make: Callable, curves: dict[str, Curves], plan: Plan, progress, fit: Sequence[str] | None
+    make: Callable,
+    curves: dict[str, Curves],
+    plan: Plan,
+    progress,
+    fit: Sequence[str] | None,
+    bench: judgement.Bench,
 ) -> Calibration:
     scene = make([]).scene
-    free, held, stated = choice.parameters(scene, curves, fit, make)
-    objective, wide = make(free), make(free + held)
+    free, held, stated = choice.parameters(
+        scene, curves, fit, lambda items: bench.ready(make(items))
+    )
+    objective, wide = bench.ready(make(free)), bench.ready(make(free + held))
     own = shares_in(scene, free)
     found = search(objective, own, plan, progress)
     found = found._replace(shares=refine.refined(objective, found.shares))
+    wide.offsets = objective.offsets
     residuals = objective.parts(found.shares)
     vector = objective.joined(residuals)
     found = found._replace(value=float(vector @ vector))
+    bench.require_sound(objective, found.shares)
     at = np.append(found.shares, np.clip(shares_in(scene, held), 0.0, 1.0))
     slopes = jacobian(partial(refine.both, wide), at)
     matrix = information.information(slopes[: vector.size])
     inner = matrix[: len(free), : len(free)]
     left = np.concatenate(objective.curves(residuals))
     judged = posterior.of(
-        refine.curves(objective, left, slopes[vector.size :, : len(free)]), inner, found.shares, own
+        refine.curves(objective, left, slopes[vector.size :, : len(free)]),
+        inner,
+        found.shares,
+        own,
+        refine.offset_slopes(objective, found.shares),
     )
     weak = evidence.weak_directions(scene, free, held, found.shares, matrix, information.ROUNDING)
+    optimum = found
+    if not judged.asks:  # then the residuals are those of the values that are kept
+        residuals = objective.parts(own)
+        vector = objective.joined(residuals)
+        found = found._replace(shares=own, value=float(vector @ vector))
+    offsets = {
+        name: Offset(value, refine.UNIT * half, bench.offsets[name].step)
+        for (name, value), half in zip(
+            objective.offsets.items(), judged.half_of_nuisances.tolist(), strict=True
+        )
+    }
     return _record(
         objective,
-        found if judged.asks else found._replace(shares=own),
+        found,
         residuals,
         inner,
         changed=judged.asks,
-        intervals=evidence.ends(free, found.shares, judged.half),
-        with_model_error=evidence.ends(free, found.shares, judged.half_with_model_error),
-        verdict=judged.words,
+        fitted=[item.value(share) for item, share in zip(free, optimum.shares.tolist())],
+        intervals=evidence.ends(free, optimum.shares, judged.half),
+        with_model_error=evidence.ends(free, optimum.shares, judged.half_with_model_error),
+        verdict=bench.verdict(objective, found.shares, judged, offsets),
         weak_directions=weak + stated,
         provenance=evidence.provenance(
             scene,
             curves,
             {},
-            found,
+            optimum,
             plan,
             objective.evaluations + wide.evaluations,
             judged.source,
-        ),
+        )
+        | {"offsets in time": "; ".join(item.words(name) for name, item in offsets.items())},
     )
 
 

@@ -11,7 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 from tests.calibration.support import CONDITIONS, SMALL, TRUTH, own_curves, scene, write_curves
-from tipoff import calibration
+from tipoff import calibration, lowfi
 from tipoff.calibration import Curves, parameters
 from tipoff.calibration.objective import Objective, targets
 from tipoff.scenes import Calibration, SceneError
@@ -126,6 +126,7 @@ def test_the_window_begins_at_the_given_time(tmp_path):
         ("2.0,0.4", "1.5,0.4", ["1.5 ms after 1.5 ms", "rise"]),
         ("2.0,0.4", "0.7,0.4", ["0.7 ms after 1.5 ms", "rise"]),
         ("4.0,0.8", "4.8,0.8", ["a gap from 3.5 ms to 4.8 ms", "steps of 1 ms"]),
+        ("time [ms]", "time [s]", ["steps of 1 ms", "likely cause: values in ms with the unit s"]),
         ("0.0,0.0", "-0.2,0.0", ["-0.2 ms first", "since ignition"]),
         ("\n".join(["", *LINES[4:]]), "", ["a record of 1.5 ms", "2 ms"]),
         ("\n".join(["", *LINES[1:]]), "", ["1 samples"]),
@@ -227,7 +228,7 @@ def test_command_fits_files_and_names_them(tmp_path, quick):
 
 
 def test_a_file_without_a_name_is_the_scene_itself(tmp_path, quick):
-    run = own_curves()["phi60"]
+    run = lowfi.run(scene().replace(TRUTH), "springs")
     path = write_curves(tmp_path / "a.csv", run)
     found = json.loads(call("--reference", path, "--json", "--out", tmp_path / "out").stdout)
     assert found["conditions"] == ["nominal"]

@@ -41,7 +41,9 @@ class Calibration(Carded):
     the intervals that contain it, of a fit on compliant contact; ``information`` is the matrix (p,p)
     of the scaled parameters; ``weak_directions`` describe what the curves do not determine;
     ``residuals`` are per condition. ``verdict`` says whether the curves ask for other values than
-    the scene's, empty where that is not judged.
+    the scene's, empty where that is not judged. ``fitted`` are the values that the intervals belong
+    to: those of the fit, also where ``values`` are the scene's, which are kept; empty where both are
+    the same.
 
     Example:
         >>> found = tipoff.Calibration.load("calibration.toml")  # written by tipoff calibrate
@@ -65,6 +67,12 @@ class Calibration(Carded):
     changes: dict[str, float] = field(default_factory=dict)
     with_model_error: list[list[float]] = field(default_factory=list)
     verdict: str = ""
+    fitted: list[float] = field(default_factory=list)
+
+    @property
+    def estimates(self) -> list[float]:
+        """The values that the intervals belong to."""
+        return self.fitted or self.values
 
     def __repr__(self) -> str:
         fitted = ", ".join(
@@ -77,9 +85,11 @@ class Calibration(Carded):
         found = {}
         ends: list[list[float] | None] = [*self.intervals]
         ends += [None] * (len(self.parameters) - len(ends))
-        for name, value, unit, interval in zip(self.parameters, self.values, self.units, ends):
+        columns = zip(self.parameters, self.values, self.estimates, self.units, ends)
+        for name, value, estimate, unit, interval in columns:
             between = "" if interval is None else f" ({interval[0]:.4g} to {interval[1]:.4g})"
-            found[name] = f"{value:.4g}{between}{'' if unit == '1' else f' {unit}'}"
+            kept = "" if value == estimate else f", kept at {value:.4g}"
+            found[name] = f"{estimate:.4g}{between}{'' if unit == '1' else f' {unit}'}{kept}"
         found["fitted to"] = ", ".join(self.conditions)
         if self.weak_directions:
             found["weak"] = "; ".join(self.weak_directions)

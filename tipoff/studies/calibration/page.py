@@ -34,13 +34,20 @@ def terminal(document: dict, folder: Path) -> list[Part]:
         return both
     wide = document["with_model_error"]
     heads: list[Column | str] = ["constant", Column("value", form=".5g"), "unit", "95 % interval"]
-    keys = ("parameters", "values", "units", "intervals")
+    # a value that is kept is not that of the fit, and the interval is not its own
+    keys = ("parameters", "fitted", "units", "intervals")
     rows = [list(row) for row in zip(*(document[key] for key in keys))]
+    kept = document["values"] != document["fitted"]
+    if kept:
+        heads[1] = Column("fitted", form=".5g")
     for row in rows:
         row[1], row[3] = constant(row[1], row[3]), interval(row[3])
     if wide:
         heads.append("with model error")
         rows = [[*row, interval(ends)] for row, ends in zip(rows, wide)]
+    if kept:
+        heads.append(Column("kept, the scene's", form=".5g"))
+        rows = [[*row, value] for row, value in zip(rows, document["values"])]
     fitted = (
         f"Fitted to {', '.join(document['conditions'])}: objective {document['objective']:.4g}."
     )
@@ -108,7 +115,8 @@ def calibration(document: dict) -> list[Part]:
         Column("upper bound", form=".4g"),
         "reasons for fit and bounds",
     )
-    keys = ("parameters", "values", "intervals", "units", "lower", "upper", "justification")
+    # of springs, whose fitted values are never replaced by the scene's
+    keys = ("parameters", "fitted", "intervals", "units", "lower", "upper", "justification")
     rows = [
         (name, constant(value, ends), interval(ends), *rest)
         for name, value, ends, *rest in zip(*(document[key] for key in keys))

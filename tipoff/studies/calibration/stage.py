@@ -220,6 +220,7 @@ def as_dict(found: Calibration) -> dict:
         "verdict": found.verdict,
         "parameters": found.parameters,
         "values": list(found.values),
+        "fitted": list(found.estimates),
         "intervals": _finite(found.intervals),
         "with_model_error": _finite(found.with_model_error),
         "units": found.units,

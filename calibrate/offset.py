@@ -1,0 +1,75 @@
+"""Offset in time of measured curves: y(t) = f(t - offset).
+
+v_x during the thrust determines the offset, since the contact hardly changes v_x. The estimate is the
+least squares of v_x over the offset, first on a grid. Its uncertainty contains noise and model error
+(``discrepancy``).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import scipy  # its parts load when they are first used
+
+from tipoff.calibration.discrepancy import VELOCITY, Curve, deviations, likeliest
+from tipoff.calibration.objective import Target, sampled
+from tipoff.calibration.refine import STEP, UNIT
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.effects import thrust
+
+_GRID = 201
+_LEVEL = 1.96  # standard deviations of a 95 % interval
+
+
+class Offset(NamedTuple):
+    """Offset (s), positive for late curves, with the half width of its 95 % interval (s), and the
+    median step of the samples (s)."""
+
+    value: float
+    half: float
+    step: float
+
+    @property
+    def is_seen(self) -> bool:
+        """Whether it is larger than its uncertainty and than a sample interval."""
+        return abs(self.value) > max(self.half, self.step)
+
+    def words(self, name: str) -> str:
+        """A sentence on a condition ``name``."""
+        late = "late" if self.value > 0.0 else "early"
+        return f"the curves of {name} are {1e3 * abs(self.value):.4g} +- {1e3 * self.half:.2g} ms {late}"
+
+
+def estimate(wanted: Target, run: Trajectory) -> Offset:
+    """The offset of the curves ``wanted`` from a run, at most the time until the thrust is over,
+    either way."""
+    (limit,) = thrust.burnouts(wanted.scene.thrust.record(), (1e-3,), wanted.scene.duration)
+    limit = float(min(limit, 0.5 * wanted.time[-1]))
+
+    def squares(offset: float) -> float:
+        left = wanted.velocity - sampled(run, wanted.time - offset)[:, 0]
+        return float(wanted.weights @ left**2)
+
+    grid = np.linspace(-limit, limit, _GRID)
+    best = int(np.argmin([squares(value) for value in grid]))
+    around = grid[max(best - 1, 0)], grid[min(best + 1, _GRID - 1)]
+    value = float(
+        scipy.optimize.minimize_scalar(
+            squares, bounds=around, method="bounded", options={"xatol": 1e-9}
+        ).x
+    )
+    if squares(0.0) <= squares(value):
+        value = 0.0
+    step = UNIT * STEP
+    ahead, own, behind = (
+        sampled(run, wanted.time - value - shift)[:, 0] for shift in (step, 0.0, -step)
+    )
+    size = wanted.amplitudes[0] / np.sqrt(wanted.weights.sum())
+    slope = ((ahead - behind) / (2.0 * STEP))[:, None]
+    curve = Curve(wanted.time, wanted.velocity - own, slope, float(size), VELOCITY)
+    deviation = deviations([curve], likeliest([curve]), np.eye(1))[1][0]
+    return Offset(value, _LEVEL * UNIT * float(deviation), step_of(wanted))
+
+
+def step_of(wanted: Target) -> float:
+    """Median step (s) of the samples."""
+    return float(np.median(np.diff(wanted.time)))
