@@ -40,7 +40,7 @@ def walls(scene: Scene, element_size: float | None = None) -> RailCompliance | N
         return None
     if scene.thermal is not None:
         return compliance(scene, element_size).rigid()
-    return statics.walls(scene, element_size or 2.0 * REFERENCE_SIZE)
+    return statics.walls(scene, element_size or own_size(scene.studies))
 
 
 def kept(

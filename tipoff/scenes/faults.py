@@ -88,7 +88,7 @@ def listed(faults: list[Fault]) -> list[str]:
     for fault in faults:
         kind = tuple(_NUMBERS.sub("#", part) for part in (fault.source, fault.key, fault.expected))
         kinds.setdefault(kind, []).append(fault)
-    found = []
+    found: list[str] = []
     for alike in kinds.values():
         found += map(str, alike[:MOST_ALIKE])
         if more := len(alike) - MOST_ALIKE:
