@@ -226,7 +226,7 @@ def objective_touch(objective: Objective, name: str) -> float:
     clearance than the scene's."""
     scene = objective.targets[name].scene
     if scene.contact is None:
-        return scene.duration
+        return scene.time_limit
     keys = ("clearance", "clearance_y", "clearance_z")
     gaps = {key: getattr(scene.contact, key) for key in keys}
     near = scene.replace({f"contact.{k}": 0.5 * gap for k, gap in gaps.items() if gap is not None})

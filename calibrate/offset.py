@@ -42,7 +42,7 @@ class Offset(NamedTuple):
 def estimate(wanted: Target, run: Trajectory) -> Offset:
     """The offset of the curves ``wanted`` from a run, at most the time until the thrust is over,
     either way."""
-    (limit,) = thrust.burnouts(wanted.scene.thrust.record(), (1e-3,), wanted.scene.duration)
+    (limit,) = thrust.burnouts(wanted.scene.thrust.record(), (1e-3,), wanted.scene.time_limit)
     limit = float(min(limit, 0.5 * wanted.time[-1]))
 
     def squares(offset: float) -> float:
