@@ -25,10 +25,12 @@ import math
 import numpy as np
 import scipy  # its parts load when they are first used
 
+from tipoff.calibration import rivals
 from tipoff.calibration.faults import CalibrationError
 from tipoff.calibration.intervals import independent
 from tipoff.calibration.misfit import (
     KINDS,
+    NEAR,
     Kind,
     Misfits,
     first_touch,
@@ -44,7 +46,6 @@ from tipoff.mechanics.trajectory import Trajectory
 HALF = math.sqrt(0.5)  # misfit from which on more is left than explained
 SAID = 0.1  # misfit that a verdict states
 _PROBABILITY = 1e-3
-_NEAR = 1.5  # misfits within this factor are equal: the simplest transformation is taken
 
 
 class Library:
@@ -63,30 +64,19 @@ class Library:
             }
         )
 
-    def faults(
-        self, runs: dict[str, Trajectory], offsets: dict[str, float], flight: bool = True
-    ) -> list[str]:
-        """Sentences on the rates that do not fit the ``runs`` of the end of the search. ``flight`` is
-        False where errors of mounting are fitted, which change free flight too."""
-        best = self._together()
-        found = []
+    def reasons(
+        self, runs: dict[str, Trajectory], offsets: dict[str, float], flight: bool
+    ) -> dict[str, tuple[float, Kind, float]]:
+        """Of each condition whose rates do not fit the ``runs`` of the end of the search: the misfit,
+        the likely transformation, and the misfit that it leaves. ``flight`` is False where errors of
+        mounting are fitted, which change free flight too."""
+        best, found = self._together(), {}
         for name, wanted in self.targets.items():
             own = misfits(wanted, runs[name], offsets[name], self.touch[name])
             count = self._count(name, runs[name], offsets[name])
             reason = self._reason(own, best[name], count, flight)
-            if reason is None:
-                continue
-            misfit, kind, other = reason
-            words = (
-                f"Likely cause: {kind.words}, which leaves {100.0 * other:.3g} %"
-                if kind.changes
-                else "No other unit, sign or axis explains them: thrust, mounting or mass properties "
-                "are not those of the scene, or another code or test was recorded"
-            )
-            found.append(
-                f"rates of {name} differ from the model by {100.0 * misfit:.3g} % of their root mean "
-                f"square. {words}"
-            )
+            if reason is not None:
+                found[name] = reason
         return found
 
     def _together(self) -> dict[str, tuple[Kind, Misfits]]:
@@ -142,7 +132,7 @@ def _simplest(found: Misfits) -> int:
     """Number of the transformation with the fewest changes among those of about the least misfit."""
     values = [_both(found, index) for index in range(len(KINDS))]
     least = max(min(values), 1e-9)
-    near = [index for index, value in enumerate(values) if value <= _NEAR * least]
+    near = [index for index, value in enumerate(values) if value <= NEAR * least]
     return min(near, key=lambda index: (KINDS[index].changes, values[index]))
 
 
@@ -166,7 +156,11 @@ class Bench:
         runs, found = objective.runs(shares), []
         for name, wanted in objective.targets.items():
             found += shape_faults(name, wanted, runs[name], objective.offsets[name])
-        found += self.library.faults(runs, objective.offsets, self.flight)
+        reasons = self.library.reasons(runs, objective.offsets, self.flight)
+        for name, (misfit, kind, left) in reasons.items():
+            if not self.flight and objective.parameters:
+                kind, left = rivals.likely(objective, name, kind)
+            found.append(_sentence(name, misfit, kind if left <= HALF * misfit else KINDS[0], left))
         _refuse(objective, found)
 
     def words(self, objective: Objective, shares: np.ndarray) -> list[str]:
@@ -243,6 +237,19 @@ def _left(objective: Objective, runs: dict[str, Trajectory]) -> list[str]:
                 "mean square, which is model error or an input that is not fitted"
             )
     return found
+
+
+def _sentence(name: str, misfit: float, kind: Kind, left: float) -> str:
+    words = (
+        f"Likely cause: {kind.words}, which leaves {100.0 * left:.3g} %"
+        if kind.changes
+        else "No other unit, sign or axis explains them: thrust, mounting or mass properties are not "
+        "those of the scene, or another code or test was recorded"
+    )
+    return (
+        f"rates of {name} differ from the model by {100.0 * misfit:.3g} % of their root mean square. "
+        f"{words}"
+    )
 
 
 def _refuse(objective: Objective, found: list[str]) -> None:

@@ -13,6 +13,7 @@ from tipoff.mechanics.trajectory import Trajectory
 
 VELOCITY = 0.05  # largest relative error of v_x: thrust and mass of a test are known better
 _SIGNAL = 5.0  # standard deviations of the noise's power, above which a segment is judged
+NEAR = 1.5  # misfits within this factor are equal: the simplest transformation is taken
 _FEWEST = 8  # samples of a segment that is judged
 
 _TURN = 180.0 / math.pi

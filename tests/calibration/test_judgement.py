@@ -15,6 +15,7 @@ from tipoff.calibration import Curves
 from tipoff.calibration.recovery import LOCAL, noisy
 from tipoff.calibration.search import Plan
 from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.scenes import changes
 from tipoff.scenes.calibration import Calibration
 from tipoff.studies.calibration import page, stage
 
@@ -99,6 +100,24 @@ def test_axes_that_are_exchanged_are_refused_also_where_the_line_of_thrust_is_fi
     """Free flight depends on the fit then, so the search itself is judged."""
     wrong = {name: turned(item, EXCHANGED) for name, item in curves().items()}
     assert "rate_y and rate_z are exchanged" in refusal(wrong, CLEARANCE, LINE)
+
+
+@pytest.mark.parametrize(("turn", "words"), RATES[:2])
+def test_the_unit_is_named_where_all_errors_of_mounting_are_candidates(turn, words):
+    """Of a payload in free flight, whose line of thrust is 0.1 mm off: the search has hardly a point
+    that explains the curves in the right unit. Control: the right unit is fitted."""
+    free = tiny().replace({"contact": "absent", "friction": "absent"})
+    exact = {}
+    for name in CONDITIONS:
+        own = free.condition(name)
+        run = lowfi.run(own.replace(changes.overrides(own, {LINE: 1e-4})))
+        exact[name] = noisy(Curves.from_trajectory(run), 0.02, np.random.default_rng(5))
+    plan = Plan(points=32, starts=1, evaluations=30, polish=6)
+    found = calibration.run(free, exact, plan=plan)
+    assert max(row["rate_relative_l2"] for row in found.residuals.values()) < 0.05
+    with pytest.raises(calibration.CalibrationError) as refused:
+        calibration.run(free, {n: turned(c, turn) for n, c in exact.items()}, plan=plan)
+    assert str(refused.value).count(f"Likely cause: {words}") == 2, str(refused.value)
 
 
 @pytest.mark.parametrize(

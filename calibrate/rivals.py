@@ -1,0 +1,63 @@
+"""The likely cause of curves that no errors of mounting explain: the fit is repeated with the curves
+transformed, and the transformation that leaves the least is named.
+
+Where mounting is fitted, the points of a search do not explain the transformed curves, since few of
+them are near its optimum. So each candidate gets a least squares of its own.
+"""
+
+import copy
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from tipoff.calibration.information import jacobian
+from tipoff.calibration.misfit import KINDS, NEAR, Kind, misfits
+from tipoff.calibration.objective import Objective
+
+_ITERATIONS = 8
+
+
+def likely(objective: Objective, name: str, best: Kind) -> tuple[Kind, float]:
+    """The transformation of the curves of the condition ``name`` that is the likely cause, and the
+    misfit that it leaves; ``best`` is that of the search. Among those that leave about the least, it is
+    the one whose fit is nearest to the scene's values."""
+    own = np.array([item.share(item.read(objective.scene)) for item in objective.parameters])
+    own, tried = np.clip(own, 0.0, 1.0), []
+    for kind in _candidates(best):
+        turned = _turned(objective, name, kind)
+        end = least_squares(
+            turned,
+            own,
+            lambda shares, turned=turned: jacobian(turned, shares),
+            bounds=(0.0, 1.0),
+            max_nfev=_ITERATIONS,
+        ).x
+        run = turned.runs(end)[name]
+        whole = misfits(turned.targets[name], run, turned.offsets[name], 0.0).whole
+        if whole is not None:
+            tried.append((float(whole[0]), float(np.abs(end - own).max()), kind))
+    if not tried:
+        return KINDS[0], 2.0
+    least = min(misfit for misfit, _, _ in tried)
+    near = [item for item in tried if item[0] <= NEAR * least]
+    misfit, _, kind = min(near, key=lambda item: item[1])
+    return kind, misfit
+
+
+def _turned(objective: Objective, name: str, kind: Kind) -> Objective:
+    """An objective of the curves of ``name`` alone, transformed."""
+    wanted = objective.targets[name]
+    rate, settled = wanted.rate @ kind.turn.T, kind.turn @ wanted.settled
+    turning = float(np.sqrt(wanted.weights @ (rate**2).sum(axis=1)))
+    leaving = max(float(np.linalg.norm(settled)), 1e-300)
+    found = copy.copy(objective)
+    found.library, found.offsets = None, {name: objective.offsets[name]}
+    amplitudes = (wanted.amplitudes[0], turning, leaving)
+    found.targets = {name: wanted._replace(rate=rate, settled=settled, amplitudes=amplitudes)}
+    return found
+
+
+def _candidates(best: Kind) -> list[Kind]:
+    """Other units and signs, exchanges of two axes, and the ``best`` of a search."""
+    simple = [kind for kind in KINDS if 0 < kind.changes <= 2]
+    return simple + ([best] if best.changes > 2 else [])
