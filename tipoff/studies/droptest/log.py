@@ -203,7 +203,7 @@ def _drifting(time, values, grid, source: str, notes: list[str]) -> np.ndarray:
 def _marked(sheet: Sheet, filled: dict, doubtful: np.ndarray, notes: list[str]) -> Log:
     rate, force, temperature = filled["rate"], filled.get("acceleration"), filled.get("temperature")
     at_end = saturated(rate, sheet.gyro.range, sheet.gyro.resolution)
-    clipped = np.zeros_like(at_end[:, 0])
+    clipped: np.ndarray = np.zeros(len(at_end), dtype=bool)
     if at_end.any():
         where = _level(np.degrees(rate), at_end, np.degrees(sheet.gyro.range), "deg/s")
         notes.append(
