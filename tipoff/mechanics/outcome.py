@@ -61,7 +61,7 @@ class Outcome(NamedTuple):
 
 class Milestones(NamedTuple):
     """Values that the scene alone determines: times (s) from which on the thrust is below 0.1 % and
-    1 % of its peak, the latter no earlier than gravity can set a payload in motion; the jam speed
+    1 % of its peak, the latter no earlier than a body force can set a payload in motion; the jam speed
     (m/s); whether a constant thrust is so strong that a payload that is slow under it is jammed."""
 
     settled_thrust: float

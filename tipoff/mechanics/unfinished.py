@@ -79,7 +79,7 @@ def _on_the_rail(scene: Scene, run: "Trajectory", thrust_ends: float) -> str:
     text = f"still on the rail: {1e3 * way:.3g} of {1e3 * whole:.3g} mm"
     if speed < _SLOW:
         lasts = f" (it lasts until {_ms(thrust_ends)})" if thrust_ends > scene.time_limit else ""
-        back = ", gravity pulls it back" if speed < -_SLOW else ""
+        back = ", its weight pulls it back" if speed < -_SLOW else ""
         return f"{text}, at {speed:.2g} m/s{back}: it needs more thrust{lasts}, or less friction"
     exit_time = float(run.time[-1]) + (whole - way) / speed
     settled = max(exit_time + SETTLE_DELAY, thrust_ends) + SETTLE_WINDOW + _MARGIN

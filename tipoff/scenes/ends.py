@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from tipoff.scenes.body import tensor
-from tipoff.scenes.effects import thrust_law
+from tipoff.scenes.effects import registry, thrust_law
 from tipoff.scenes.faults import within
 from tipoff.scenes.tables import MOST_SAMPLES, OutputTable
 from tipoff.scenes.units import LONGEST
@@ -43,7 +43,7 @@ class Timed:
     @property
     def time_limit(self: Any) -> float:
         """Time (s) at which a run ends at the latest: the duration, or without one a bound
-        that follows from rail, thrust, friction and gravity. A run that has settled or is jammed
+        that follows from rail, thrust, friction and body forces. A run that has settled or is jammed
         ends before.
 
         Example:
@@ -72,7 +72,7 @@ def limit(scene: Any) -> float:
     if scene.friction is not None:
         slowest = max(slowest, getattr(scene.friction, "static_speed", 0.0))
     coasting = max(way(scene), 0.0) / slowest
-    if (pull := -_gravity(scene)) > 0.0:
+    if (pull := -_pull(scene)) > 0.0:
         fastest = max(_begun(scene), 0.0) + _pushed(record) / scene.payload.mass
         coasting = min(coasting, 2.0 * fastest / pull)
     end = thrust_end(record) + coasting + JAM_DURATION + SETTLE_DELAY + SETTLE_WINDOW + _AFTER
@@ -125,7 +125,7 @@ def expected(scene: Any) -> float:
     if scene.duration is not None:
         return scene.duration
     record = scene.thrust.record()
-    exits = _exit(scene, record, _fixed_gain(scene), _gravity(scene), forwards=False)
+    exits = _exit(scene, record, _fixed_gain(scene), _pull(scene), forwards=False)
     if not math.isfinite(exits):  # it falls back, or nothing moves it
         exits = thrust_end(record) + JAM_DURATION
     settled = max(exits + SETTLE_DELAY, _burnt(record)) + SETTLE_WINDOW
@@ -134,18 +134,17 @@ def expected(scene: Any) -> float:
 
 def earliest(scene: Any) -> float:
     """Lower bound (s) of the end of the settled window, infinite if the payload cannot leave in an
-    hour: no friction, no thrust and no gravity backwards, and a platform that recoils along the
+    hour: no friction, no thrust and no body force backwards, and a platform that recoils along the
     rail with all of its freedom. Zero where bodies turn at ignition, which moves the rail too."""
     record = scene.thrust.record()
     initial = scene.initial
     turns = initial is not None and any(
         any((rate.x, rate.y, rate.z)) for rate in (initial.rate, initial.platform_rate)
     )
-    gravity = scene.gravity.x if scene.gravity is not None else 0.0
+    force = registry.body_force(scene)
+    pull = force.x if force is not None else 0.0
     exits = (
-        0.0
-        if turns
-        else _exit(scene, record, _freest_gain(scene), max(gravity, 0.0), forwards=True)
+        0.0 if turns else _exit(scene, record, _freest_gain(scene), max(pull, 0.0), forwards=True)
     )
     return max(exits + SETTLE_DELAY, _burnt(record)) + SETTLE_WINDOW
 
@@ -175,9 +174,9 @@ def starts_briskly(scene: Any, speed: float) -> bool:
 
 
 def slides(scene: Any, speed: float) -> float:
-    """Time (s) in which gravity along fixed rails brings a payload without friction from rest to
-    twice this ``speed`` (m/s); zero without such gravity."""
-    pull = _gravity(scene)
+    """Time (s) in which a body force along fixed rails brings a payload without friction from rest to
+    twice this ``speed`` (m/s); zero without such a force."""
+    pull = _pull(scene)
     return 2.0 * speed / pull if pull > 0.0 and abs(_begun(scene)) < speed else 0.0
 
 
@@ -209,9 +208,7 @@ def _pushed(record: thrust_law.Thrust) -> float:
     return float(np.trapezoid(np.maximum(force, 0.0), time))
 
 
-def _exit(
-    scene: Any, record: thrust_law.Thrust, gain: float, gravity: float, forwards: bool
-) -> float:
+def _exit(scene: Any, record: thrust_law.Thrust, gain: float, pull: float, forwards: bool) -> float:
     """Time (s) at which a payload without friction has gone its way; infinite if it never does.
     ``gain`` is its acceleration relative to the rail per force (1/kg); with ``forwards`` only what
     pushes it forwards counts."""
@@ -221,17 +218,17 @@ def _exit(
     distance = way(scene)
     if distance <= 0.0:
         return 0.0
-    speed = begun + _integral(gain * force + gravity, time)
+    speed = begun + _integral(gain * force + pull, time)
     place = _integral(speed, time)
     past = np.flatnonzero(place >= distance)
     if past.size:
         after = past[0]
         return float(np.interp(distance, place[after - 1 : after + 1], time[after - 1 : after + 1]))
     left, last = distance - float(place[-1]), float(speed[-1])
-    if gravity == 0.0:
+    if pull == 0.0:
         return float(time[-1]) + left / last if last > 0.0 else math.inf
-    root = last * last + 2.0 * gravity * left
-    if root < 0.0 or (gravity < 0.0 and last <= 0.0):
+    root = last * last + 2.0 * pull * left
+    if root < 0.0 or (pull < 0.0 and last <= 0.0):
         return math.inf
     return float(time[-1]) + 2.0 * left / (last + math.sqrt(root))
 
@@ -249,10 +246,11 @@ def _begun(scene: Any) -> float:
     return scene.initial.velocity.x - carried
 
 
-def _gravity(scene: Any) -> float:
+def _pull(scene: Any) -> float:
     """Acceleration (m/s2) along the rail relative to it: a free platform falls as the payload
     does."""
-    return scene.gravity.x if scene.gravity is not None and scene.platform is None else 0.0
+    force = registry.body_force(scene)
+    return force.x if force is not None and scene.platform is None else 0.0
 
 
 def _fixed_gain(scene: Any) -> float:

@@ -58,8 +58,7 @@ _NOT_PHYSICS = {"name", "description", "flight", "studies", *_BESIDE}
 
 
 class Scene(shown.Shown, ends.Timed, Table):
-    """Everything a run needs. Fields are SI; an absent effect is None. Use ``replace`` for
-    variations.
+    """Everything a run needs, in SI; an absent effect is None. ``replace`` makes variations.
 
     Example:
         >>> scene = tipoff.load("tiny")
