@@ -203,7 +203,7 @@ def _drifting(time, values, grid, source: str, notes: list[str]) -> np.ndarray:
 def _marked(sheet: Sheet, filled: dict, doubtful: np.ndarray, notes: list[str]) -> Log:
     rate, force, temperature = filled["rate"], filled.get("acceleration"), filled.get("temperature")
     at_end = saturated(rate, sheet.gyro.range, sheet.gyro.resolution)
-    clipped: np.ndarray = np.zeros(len(at_end), dtype=bool)
+    clipped = np.zeros(len(at_end), dtype=bool)
     if at_end.any():
         where = _level(np.degrees(rate), at_end, np.degrees(sheet.gyro.range), "deg/s")
         notes.append(
@@ -214,7 +214,7 @@ def _marked(sheet: Sheet, filled: dict, doubtful: np.ndarray, notes: list[str]) 
         assert sheet.accelerometer is not None  # as a sheet with accelerations has to have it
         largest = sheet.accelerometer.range
         pushed = saturated(force, largest)
-        clipped = pushed.any(axis=1)
+        clipped = np.asarray(pushed.any(axis=1))
         if clipped.any():
             where = _level(force, pushed, largest, "m/s2")
             notes.append(f"acceleration: {counted(clipped.sum(), 'sample')} clipped at {where}")
