@@ -41,7 +41,7 @@ def begin() -> Friction:
 
 def most_damping(loop) -> float:
     """Friction damping / mass (1/s) of a node that the present step of a ``run.Loop`` can follow."""
-    return 2.0 * (1.0 - _used(loop, loop.substeps)) / loop.step
+    return max(0.0, 2.0 * (1.0 - _used(loop, loop.substeps)) / loop.step)
 
 
 def needed(loop, damping: float) -> int:

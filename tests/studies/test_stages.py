@@ -94,6 +94,7 @@ def test_pareto_front():
             "error_deg_s": error,
             "wall_s": wall,
             "status": "exited",
+            "reference": False,
         }
         for setting, (error, wall) in enumerate(
             ((1.0, 1.0), (0.5, 2.0), (0.6, 3.0), (None, 9.0), (0.1, 6.0), (0.05, 7.0))

@@ -61,7 +61,7 @@ def test_the_compliance_holds_the_offset(tmp_path):
     """Of a stored one too, and its hash tells it from a straight rail."""
     scene = drawn(tmp_path, draft)
     found = highfi.condense(scene, 0.008, spacing=0.05, modes=0)
-    assert found.drawn == pytest.approx(offsets(scene), abs=0.0)
+    assert found.drawn == pytest.approx(offsets(scene), abs=1e-15)
     found.save(tmp_path / "kept.npz")
     again = type(found).load(tmp_path / "kept.npz")
     np.testing.assert_array_equal(again.drawn, found.drawn)

@@ -129,11 +129,11 @@ def test_mesh_of_a_file_that_leaves_too_little_is_refused(monkeypatch):
 
 
 def test_a_file_is_not_split_where_its_parts_do_not_fit(monkeypatch):
-    """An element size of 4 um instead of 4 mm asks for 1e9 times the elements."""
+    """An element size of 0.05 mm instead of 4 mm asks for half a million times the elements."""
     monkeypatch.setattr(memory_estimate, "available", lambda: 8_000_000_000)
     monkeypatch.setattr(split, "to_size", lambda *_: pytest.fail("split"))
     with pytest.raises(SceneError) as caught:
-        highfi.prepare(load("channel"), Numerics(element_size=4e-6))
+        highfi.prepare(load("channel"), Numerics(element_size=5e-5))
     (fault,) = caught.value.faults
     assert fault.key == "element_size" and "1,472,000,000,000 elements" in fault.given
 

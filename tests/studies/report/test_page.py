@@ -346,6 +346,7 @@ def test_calibration_shows_intervals_and_constants_without_one():
     document = {
         "parameters": ["contact.force", "contact.damping"],
         "values": [400.0, 0.0],
+        "fitted": [400.0, 0.0],
         "intervals": [[350.0, 450.0], [None, None]],
         "units": ["N", "N*s/m"],
         "lower": [20.0, 0.0],
