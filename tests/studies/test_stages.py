@@ -108,14 +108,8 @@ def test_pareto_front():
         True,
         False,
     ]
-    assert [point["pareto"] for point in cost.marked(points, None)] == [
-        True,
-        True,
-        False,
-        False,
-        True,
-        True,
-    ]
+    # an error band that is not known tells no two errors apart
+    assert not any(point["pareto"] for point in cost.marked(points, None))
 
 
 def test_matched_meshes():
