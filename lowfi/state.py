@@ -1,15 +1,19 @@
 """The state vector: the slot of each quantity, and the motion of a body.
 
-Each body has place r, velocity v, quaternion q and the *total* angular momentum about the scene
-origin::
+Each body has place r, velocity v, quaternion q, spin h in body axes, and the *total* angular
+momentum A about the scene origin::
 
-    A = r x m v + h,      h = R I R' w,      w = R I^-1 R' (A - r x m v)
+    h = I w,      A = r x m v + R h      (h and w in body axes)
 
 Explicit Runge-Kutta methods conserve linear invariants to rounding. The sums of m v and of A over
 both bodies, less the impulse and its moment from outside, are such invariants when every internal
-force acts as a pair at one common point; a wrong pair still shows. The work entries after them are
-quadratures: the same method integrates them, so both ledgers close to its accuracy. The modes of
-the rails come last, where there are any (``lowfi.contact.compliant.modes``).
+force acts as a pair at one common point; a wrong pair still shows. The rate follows from h. From A
+it would be w = I^-1 R' (A - r x m v): an error of R would turn a large spin into one about the axis
+of least inertia, where it is a large rate. ``reconcile`` makes h and R agree with A after each step.
+
+The work entries come next. They are quadratures: the same method integrates them, so both ledgers
+close to its accuracy. The modes of the rails come last, where there are any
+(``lowfi.contact.compliant.modes``).
 """
 
 from typing import NamedTuple
@@ -22,10 +26,13 @@ from tipoff.mechanics import comoving
 from tipoff.mechanics.model import Model
 
 # Offsets inside a body's slots.
-PLACE, VELOCITY, QUATERNION, MOMENT, BODY_SIZE = 0, 3, 6, 10, 13
+PLACE, VELOCITY, QUATERNION, SPIN, BODY_SIZE = 0, 3, 6, 10, 13
 # First slots of the parts of the state.
-PAYLOAD, PLATFORM, IMPULSE, TURN, WORK = 0, 13, 26, 29, 32
+PAYLOAD, PLATFORM, MOMENT, IMPULSE, TURN, WORK = 0, 13, 26, 32, 35, 38
+# The first slots of each body and of its A.
+BODIES = ((PAYLOAD, MOMENT), (PLATFORM, MOMENT + 3))
 DYNAMIC_SIZE = 26  # what the equations of motion depend on, besides modes
+MOVING_SIZE = 32  # the same with A of both bodies
 # Slots of work and loss (J), total and axial part.
 (
     THRUST,
@@ -40,17 +47,19 @@ DYNAMIC_SIZE = 26  # what the equations of motion depend on, besides modes
     STRUCTURAL,
 ) = range(WORK, WORK + 10)
 WORK_SIZE = 10
+_REGULAR = 1e-13
 # WORK + WORK_SIZE, filled up to whole cache lines: rows of stages are read as vectors of eight
 STATE_SIZE = 48
 
 
 class Motion(NamedTuple):
-    """Motion of a body at one instant, in scene axes."""
+    """Motion of a body at one instant, in scene axes but for ``body_rate``."""
 
     place: tuple  # m, mass centre
     velocity: tuple  # m/s, of the mass centre
     turn: tuple  # nine numbers of the rotation matrix
     rate: tuple  # rad/s, angular velocity
+    body_rate: tuple  # rad/s, angular velocity in body axes
 
 
 @kernel
@@ -94,6 +103,12 @@ def triple(values, first):
 
 
 @kernel
+def moment_of(body):
+    """First slot of A of the body whose slots begin at ``body``."""
+    return MOMENT if body == PAYLOAD else MOMENT + 3
+
+
+@kernel
 def quaternion(state, body):
     """Quaternion of the body whose slots begin at ``body``."""
     first = body + QUATERNION
@@ -101,22 +116,26 @@ def quaternion(state, body):
 
 
 @kernel
-def motion(mass, inverse_inertia, state, body):
+def motion(inverse_inertia, state, body):
     """Motion of the body whose slots begin at ``body``."""
-    place, velocity = triple(state, body + PLACE), triple(state, body + VELOCITY)
     turn = rotation.matrix(quaternion(state, body))
-    moment, orbit = triple(state, body + MOMENT), rotation.cross(place, velocity)
-    spin = (moment[0] - mass * orbit[0], moment[1] - mass * orbit[1], moment[2] - mass * orbit[2])
-    return Motion(place, velocity, turn, rotation.angular_velocity(turn, inverse_inertia, spin))
+    rate = rotation.multiply(inverse_inertia, triple(state, body + SPIN))
+    return Motion(
+        triple(state, body + PLACE),
+        triple(state, body + VELOCITY),
+        turn,
+        rotation.rotate(turn, rate),
+        rate,
+    )
 
 
 @kernel
 def frame(platform, state):
     """Motion of the frame that carries the rails: the platform, or the scene axes at rest."""
     if platform is not None:
-        return motion(platform.mass, platform.inverse_inertia, state, PLATFORM)
+        return motion(platform.inverse_inertia, state, PLATFORM)
     zero = (0.0, 0.0, 0.0)
-    return Motion(zero, zero, (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), zero)
+    return Motion(zero, zero, (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), zero, zero)
 
 
 @kernel
@@ -128,13 +147,75 @@ def velocity_at(body, point):
 
 
 @kernel
+def kinetic(mass, state, first, body):
+    """Kinetic energy (J) of the body whose slots begin at ``first``, in the motion ``body``."""
+    turning = rotation.dot(triple(state, first + SPIN), body.body_rate)
+    return 0.5 * (mass * rotation.dot(body.velocity, body.velocity) + turning)
+
+
+@kernel
 def normalise(state):
     """Bring both quaternions back to length one."""
     for body in (PAYLOAD, PLATFORM):
-        first = body + QUATERNION
-        q = rotation.normalised(quaternion(state, body))
-        for i in range(4):
-            state[first + i] = q[i]
+        _set_quaternion(state, body, quaternion(state, body))
+
+
+@kernel
+def _set_quaternion(state, body, q):
+    unit = rotation.normalised(q)
+    for i in range(4):
+        state[body + QUATERNION + i] = unit[i]
+
+
+@kernel
+def reconcile(record, dt, state, body):
+    """Make attitude and spin of a body, whose slots begin at ``body``, agree with its A, to first
+    order, at the end of a step of ``dt`` (s).
+
+    The difference e = R' (A - r x m v) - h is an error of the step. Of the turns p of the body (rad,
+    body axes) and the changes d of its spin that remove it, d = e + h x p, those that change rates
+    least are taken. The minimum of |p|^2 / dt^2 + |I^-1 d|^2 is at::
+
+        p = dt^2 h x k,      (I^2 + dt^2 (|h|^2 - h h')) k = e
+    """
+    mass, h = record.mass, triple(state, body + SPIN)
+    q, a = quaternion(state, body), triple(state, moment_of(body))
+    orbit = rotation.cross(triple(state, body + PLACE), triple(state, body + VELOCITY))
+    spin = rotation.unrotate(
+        rotation.matrix(q),
+        (a[0] - mass * orbit[0], a[1] - mass * orbit[1], a[2] - mass * orbit[2]),
+    )
+    e = (spin[0] - h[0], spin[1] - h[1], spin[2] - h[2])
+    g = (dt * h[0], dt * h[1], dt * h[2])
+    k = rotation.solve(
+        _squares(record.inertia, g, (1.0, 0.0, 0.0)),
+        _squares(record.inertia, g, (0.0, 1.0, 0.0)),
+        _squares(record.inertia, g, (0.0, 0.0, 1.0)),
+        e,
+    )
+    p = rotation.cross((dt * g[0], dt * g[1], dt * g[2]), k)
+    left = rotation.cross(h, p)
+    for i in range(3):
+        state[body + SPIN + i] += e[i] + left[i]
+    turned = rotation.product(q, (1.0, 0.5 * p[0], 0.5 * p[1], 0.5 * p[2]))
+    _set_quaternion(state, body, turned)
+
+
+@kernel
+def _squares(inertia, g, k):
+    """(I^2 + |g|^2 - g g') k, and a little of the trace, so that the sum is regular to rounding
+    for the thinnest body."""
+    square = rotation.multiply(inertia, rotation.multiply(inertia, k))
+    trace = 2.0 * rotation.dot(g, g)
+    for i in range(3):
+        for j in range(3):
+            trace += inertia[i, j] * inertia[i, j]
+    size, along = rotation.dot(g, g) + _REGULAR * trace, rotation.dot(g, k)
+    return (
+        square[0] + size * k[0] - along * g[0],
+        square[1] + size * k[1] - along * g[1],
+        square[2] + size * k[2] - along * g[2],
+    )
 
 
 def initial(model: Model) -> np.ndarray:
@@ -169,20 +250,15 @@ def initial(model: Model) -> np.ndarray:
 
 @entry
 def fill(state, body, mass, inertia, place, velocity, attitude, rate):
-    """Fill the slots of a body, the first of which is ``body``, in ``state`` (STATE_SIZE,): mass
-    (kg), inertia (3,3) kg m2 in body axes, place (m), velocity (m/s), unit quaternion and rate
-    (rad/s) in body axes."""
-    orbit, turn, j = rotation.cross(place, velocity), rotation.matrix(attitude), inertia
-    spin = rotation.rotate(
-        turn,
-        (
-            j[0, 0] * rate[0] + j[0, 1] * rate[1] + j[0, 2] * rate[2],
-            j[1, 0] * rate[0] + j[1, 1] * rate[1] + j[1, 2] * rate[2],
-            j[2, 0] * rate[0] + j[2, 1] * rate[1] + j[2, 2] * rate[2],
-        ),
-    )
+    """Fill the slots of a body, the first of which is ``body``, and those of its A in ``state``
+    (STATE_SIZE,): mass (kg), inertia (3,3) kg m2 in body axes, place (m), velocity (m/s), unit
+    quaternion and rate (rad/s) in body axes."""
+    moment = moment_of(body)
+    orbit, h = rotation.cross(place, velocity), rotation.multiply(inertia, rate)
+    spin = rotation.rotate(rotation.matrix(attitude), h)
     for i in range(3):
         state[body + PLACE + i], state[body + VELOCITY + i] = place[i], velocity[i]
-        state[body + MOMENT + i] = mass * orbit[i] + spin[i]
+        state[body + SPIN + i] = h[i]
+        state[moment + i] = mass * orbit[i] + spin[i]
     for i in range(4):
         state[body + QUATERNION + i] = attitude[i]

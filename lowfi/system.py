@@ -23,7 +23,8 @@ class Body(NamedTuple):
     """A rigid body."""
 
     mass: float  # kg
-    inverse_inertia: np.ndarray  # (3, 3) 1/(kg m2), about the mass centre, in body axes
+    inertia: np.ndarray  # (3, 3) kg m2, about the mass centre, in body axes
+    inverse_inertia: np.ndarray  # (3, 3) 1/(kg m2)
 
 
 @by_reference
@@ -96,4 +97,8 @@ def build(
 
 
 def _body(record) -> Body:
-    return Body(record.mass, np.ascontiguousarray(record.inverse_inertia))
+    return Body(
+        record.mass,
+        np.ascontiguousarray(record.inertia),
+        np.ascontiguousarray(record.inverse_inertia),
+    )

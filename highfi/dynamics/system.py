@@ -15,7 +15,7 @@ from tipoff.kernels import rotation
 from tipoff.kernels.memory import zeros
 from tipoff.mechanics import comoving
 from tipoff.mechanics import model as scene_model
-from tipoff.scenes.body import tensor
+from tipoff.scenes.body import inverse, tensor
 from tipoff.scenes.effects.structural_damping import Damping
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
@@ -199,7 +199,7 @@ def _rigid_part(scene, platform, points, moving) -> tuple[records.Frame, np.ndar
         )
     frame = records.Frame(
         mass=mass,
-        inverse_inertia=np.linalg.inv(inertia),
+        inverse_inertia=inverse(inertia),
         total_mass=platform.mass,
         centre=np.zeros(3),
     )

@@ -18,7 +18,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.kernels import rotation
 from tipoff.kernels.jit import entry, kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip
@@ -50,9 +49,9 @@ class Balances(NamedTuple):
 def _balances(system, loop, surveyed, in_compliance, state):
     """Balances at a ``surveyed`` (f, SURVEY_SIZE) state, with the energy (J) in compliant
     contact."""
-    body = slot.motion(system.payload.mass, system.payload.inverse_inertia, state, PAYLOAD)
+    body = slot.motion(system.payload.inverse_inertia, state, PAYLOAD)
     base = slot.frame(system.platform, state)
-    kinetic, axial = _kinetic(system.payload.mass, state[:PLATFORM], body)
+    kinetic, axial = _kinetic(system.payload.mass, state, PAYLOAD, body)
     more, more_axial = _kinetic_of_platform(system.platform, state, base)
     vibrating, strain = _of_modes(system.compliance, state)
     kept = (
@@ -96,21 +95,17 @@ def _balances(system, loop, surveyed, in_compliance, state):
 
 
 @kernel
-def _kinetic(mass, state, body):
-    """Kinetic energy (J) of the body whose slots stand first in ``state``, and its axial part."""
-    orbit, moment = rotation.cross(body.place, body.velocity), slot.triple(state, slot.MOMENT)
-    spin = (moment[0] - mass * orbit[0], moment[1] - mass * orbit[1], moment[2] - mass * orbit[2])
-    return (
-        0.5 * (mass * rotation.dot(body.velocity, body.velocity) + rotation.dot(spin, body.rate)),
-        0.5 * mass * body.velocity[0] * body.velocity[0],
-    )
+def _kinetic(mass, state, first, body):
+    """Kinetic energy (J) of the body whose slots begin at ``first``, and its axial part."""
+    axial = 0.5 * mass * body.velocity[0] * body.velocity[0]
+    return slot.kinetic(mass, state, first, body), axial
 
 
 @kernel
 def _kinetic_of_platform(platform, state, base):
     kinetic, axial = 0.0, 0.0
     if platform is not None:
-        kinetic, axial = _kinetic(platform.mass, state[PLATFORM:], base)
+        kinetic, axial = _kinetic(platform.mass, state, PLATFORM, base)
     return kinetic, axial
 
 

@@ -23,6 +23,7 @@ class Cases(NamedTuple):
     """What differs between n cases of f faces."""
 
     mass: np.ndarray  # (n,) kg, of the payload
+    inertia: np.ndarray  # (n, 3, 3) kg m2, of the payload
     inverse_inertia: np.ndarray  # (n, 3, 3) 1/(kg m2), of the payload
     faces: np.ndarray  # (n, f, FACE_SIZE)
     direction: np.ndarray | None  # (n, 3) of the thrust; None without thrust offset
@@ -37,6 +38,7 @@ def alone(system: System, start: np.ndarray, reach: float) -> Cases:
     offset = system.thrust_offset
     return Cases(
         mass=np.array([system.payload.mass]),
+        inertia=system.payload.inertia[None],
         inverse_inertia=system.payload.inverse_inertia[None],
         faces=system.faces[None],
         direction=None if offset is None else np.array([offset.direction]),
@@ -51,7 +53,7 @@ def alone(system: System, start: np.ndarray, reach: float) -> Cases:
 def system_of(common, cases, n):
     """The ``common`` system with what differs in case ``n``."""
     return System(
-        payload=Body(cases.mass[n], cases.inverse_inertia[n]),
+        payload=Body(cases.mass[n], cases.inertia[n], cases.inverse_inertia[n]),
         platform=common.platform,
         faces=cases.faces[n],
         rail_start=common.rail_start,

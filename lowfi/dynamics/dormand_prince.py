@@ -15,7 +15,16 @@ import numpy as np
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi.dynamics.equations import derivative
 from tipoff.lowfi.dynamics.vibration import advance_free_modes
-from tipoff.lowfi.state import DYNAMIC_SIZE, STATE_SIZE, copy, modal_size, normalise
+from tipoff.lowfi.state import (
+    DYNAMIC_SIZE,
+    PAYLOAD,
+    PLATFORM,
+    STATE_SIZE,
+    copy,
+    modal_size,
+    normalise,
+    reconcile,
+)
 
 STAGES = 7
 STABLE_RADIUS = 0.95
@@ -59,7 +68,7 @@ def attempt(system, loop, stretch, time, dt, fresh):
         _combine(stage, dt, start, stages, end)
         _combine_modes(stage, dt, start, stages, modal_size(system.compliance), end)
         if stage == STAGES - 1:
-            normalise(end)
+            _restore(system, dt, end)
             advance_free_modes(system.compliance, loop.touching, dt, start, end, True)
         derivative(
             system,
@@ -69,6 +78,21 @@ def attempt(system, loop, stretch, time, dt, fresh):
             end,
             stages[stage],
         )
+
+
+@kernel
+def _restore(system, dt, state):
+    """Restore what the sum of stages of a step of ``dt`` (s) does not keep: quaternions of length
+    one, and rates that agree with the momenta."""
+    normalise(state)
+    reconcile(system.payload, dt, state, PAYLOAD)
+    _reconcile_platform(system.platform, dt, state)
+
+
+@kernel
+def _reconcile_platform(platform, dt, state):
+    if platform is not None:
+        reconcile(platform, dt, state, PLATFORM)
 
 
 @kernel
@@ -150,8 +174,8 @@ def _difference(h, k, j):
 
 @kernel
 def interpolate(system, loop, dt, theta, size, out):
-    """The first ``size`` slots of the state, and the modes of the rails, at ``theta`` in 0..1 of the
-    step of ``dt`` (s) that ``loop`` holds."""
+    """The first ``size`` slots of the state, at least MOVING_SIZE, and the modes of the rails, at
+    ``theta`` in 0..1 of the step of ``dt`` (s) that ``loop`` holds."""
     start, stages, h = loop.start, loop.stages, dt * theta
     b0, b2, b3, b4, b5, b6 = (
         _polynomial(0, theta),
@@ -179,7 +203,7 @@ def interpolate(system, loop, dt, theta, size, out):
             + b5 * stages[5, j]
             + b6 * stages[6, j]
         )
-    normalise(out)
+    _restore(system, dt, out)
     advance_free_modes(system.compliance, loop.touching, h, start, out, size == STATE_SIZE)
 
 

@@ -172,5 +172,5 @@ def _fill(system, loop, step, time):
         slot.copy(loop.start, loop.work, slot.STATE_SIZE)
     else:
         theta = (time - step.began) / step.size
-        interpolate(system, loop, step.size, theta, slot.DYNAMIC_SIZE, loop.work)
+        interpolate(system, loop, step.size, theta, slot.MOVING_SIZE, loop.work)
     posture(system, loop.work, loop.book[NOW:])

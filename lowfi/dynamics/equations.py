@@ -1,6 +1,9 @@
 """Equations of motion of payload and platform, together with the power of every force.
 
-    r' = v,   m v' = sum F,   q' = w q / 2,   A' = sum X x F   (X the point a force acts at, all about the scene origin)
+    r' = v,   m v' = sum F,   q' = q w / 2,   A' = sum X x F,   h' = h x w + R' (A' - r x sum F)
+
+X is the point a force acts at; h and w are in body axes (``lowfi.state``). There the products of
+h and w of a thin body cancel to rounding, also in stages of a step, where q has no unit length.
 
 Every effect adds itself in one line of ``derivative``. Until ``move``, the velocity slots of the
 derivative hold forces (N). Axial power is each force's X component times the X velocity of the
@@ -18,7 +21,7 @@ from tipoff.lowfi.contact.compliant.loads import load as compliant_load
 from tipoff.lowfi.contact.compliant.modes import vibrate
 from tipoff.lowfi.contact.compliant.solution import solve
 from tipoff.lowfi.contact.springs import load, penetration, relative_pose
-from tipoff.lowfi.state import IMPULSE, MOMENT, PAYLOAD, PLACE, PLATFORM, QUATERNION, TURN, VELOCITY
+from tipoff.lowfi.state import IMPULSE, PAYLOAD, PLACE, PLATFORM, QUATERNION, SPIN, TURN, VELOCITY
 from tipoff.lowfi.system import Body
 from tipoff.scenes.effects.friction import Friction
 from tipoff.scenes.effects.thrust_law import magnitude
@@ -40,7 +43,7 @@ def derivative(system, touching, stick, time, state, out):
     the faces that carry load, ``stick`` (f, ROW_SIZE) or None their stick-slip states."""
     payload, platform = system.payload, system.platform
     bodies = Bodies(
-        payload=slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD),
+        payload=slot.motion(payload.inverse_inertia, state, PAYLOAD),
         base=slot.frame(platform, state),
         platform=platform,
         friction=system.friction,
@@ -51,33 +54,47 @@ def derivative(system, touching, stick, time, state, out):
     add_body_force(system.body_force, payload.mass, bodies, out)
     add_springs(system.contact, system.sticking, system.faces, touching, stick, bodies, out)
     add_compliant_contact(system.compliance, system.faces, touching, bodies, state, out)
-    move(payload.mass, state[:PLATFORM], bodies.payload, out[:PLATFORM])
+    move(payload.mass, state, PAYLOAD, bodies.payload, out)
     move_platform(platform, state, bodies.base, out)
 
 
 @kernel
-def move(mass, state, body, out):
-    """Turn the force in the velocity slots into acceleration and add the kinematics."""
+def move(mass, state, first, body, out):
+    """Turn the force in the velocity slots of the body whose slots begin at ``first`` into
+    acceleration, and add the kinematics and the change of spin."""
+    w = body.body_rate
     turning = rotation.product(
-        (0.0, 0.5 * body.rate[0], 0.5 * body.rate[1], 0.5 * body.rate[2]), slot.quaternion(state, 0)
+        slot.quaternion(state, first), (0.0, 0.5 * w[0], 0.5 * w[1], 0.5 * w[2])
+    )
+    carried = rotation.cross(body.place, slot.triple(out, first + VELOCITY))
+    moment = slot.triple(out, slot.moment_of(first))
+    gyroscopic = rotation.cross(slot.triple(state, first + SPIN), w)
+    about_centre = rotation.unrotate(
+        body.turn, (moment[0] - carried[0], moment[1] - carried[1], moment[2] - carried[2])
     )
     for i in range(3):
-        out[PLACE + i] = body.velocity[i]
-        out[VELOCITY + i] /= mass
+        out[first + PLACE + i] = body.velocity[i]
+        out[first + VELOCITY + i] /= mass
+        out[first + SPIN + i] = gyroscopic[i] + about_centre[i]
     for i in range(4):
-        out[QUATERNION + i] = turning[i]
+        out[first + QUATERNION + i] = turning[i]
 
 
 @kernel
 def move_platform(platform, state, base, out):
     """``move`` of the platform, if it is free."""
     if platform is not None:
-        move(platform.mass, state[PLATFORM:], base, out[PLATFORM:])
+        move(platform.mass, state, PLATFORM, base, out)
 
 
 @kernel
-def push(out, force_slot, moment_slot, force, point, sign):
-    """Add ``sign`` times a force at a point to a body, or to the impulse from outside."""
+def push(out, body, force, point, sign):
+    """Add ``sign`` times a force at a point to the body whose slots begin at ``body``."""
+    _push(out, body + VELOCITY, slot.moment_of(body), force, point, sign)
+
+
+@kernel
+def _push(out, force_slot, moment_slot, force, point, sign):
     moment = rotation.cross(point, force)
     for i in range(3):
         out[force_slot + i] += sign * force[i]
@@ -92,7 +109,7 @@ def add_thrust(thrust, offset, reacts, time, bodies, out):
         return
     body = bodies.payload
     force, point = line_of_action(offset, size, body)
-    push(out, PAYLOAD + VELOCITY, PAYLOAD + MOMENT, force, point, 1.0)
+    push(out, PAYLOAD, force, point, 1.0)
     velocity = slot.velocity_at(body, point)
     add_power(
         bodies.ledger, slot.THRUST, slot.THRUST_AXIAL, force, velocity, body.velocity[0], 1.0, out
@@ -114,7 +131,7 @@ def add_outside_impulse(ledger, force, point, out):
     """Add a force (N) from outside, and its moment, to the rates of the impulses in ``out``; nothing
     without a ledger."""
     if ledger is not None:
-        push(out, IMPULSE, TURN, force, point, 1.0)
+        _push(out, IMPULSE, TURN, force, point, 1.0)
 
 
 @kernel
@@ -146,7 +163,7 @@ def react(platform, reacts, bodies, force, point, out):
 def _react_on_free_platform(reacts, bodies, force, point, out):
     if reacts:
         base = bodies.base
-        push(out, PLATFORM + VELOCITY, PLATFORM + MOMENT, force, point, -1.0)
+        push(out, PLATFORM, force, point, -1.0)
         velocity, speed = slot.velocity_at(base, point), base.velocity[0]
         add_power(bodies.ledger, slot.THRUST, slot.THRUST_AXIAL, force, velocity, speed, -1.0, out)
     else:
@@ -170,7 +187,7 @@ def _add_body_force_on_platform(force, platform, bodies, out):
 @kernel
 def _add_body_force(force, mass, first, ledger, body, out):
     weight = (mass * force.x, mass * force.y, mass * force.z)
-    push(out, first + VELOCITY, first + MOMENT, weight, body.place, 1.0)
+    push(out, first, weight, body.place, 1.0)
     add_outside_impulse(ledger, weight, body.place, out)
     add_power(
         ledger,
@@ -309,11 +326,11 @@ def _add_friction_power(ledger, heat, axial_power, out):
 def _pair(platform, ledger, force, point, out):
     """A force on the payload and its opposite at the same point, on the platform or on the
     ground."""
-    push(out, PAYLOAD + VELOCITY, PAYLOAD + MOMENT, force, point, 1.0)
+    push(out, PAYLOAD, force, point, 1.0)
     if platform is None:
         add_outside_impulse(ledger, force, point, out)
     if platform is not None:
-        push(out, PLATFORM + VELOCITY, PLATFORM + MOMENT, force, point, -1.0)
+        push(out, PLATFORM, force, point, -1.0)
 
 
 @kernel

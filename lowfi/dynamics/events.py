@@ -187,7 +187,7 @@ def _locate(system, loop, dt, span, face, kind, level):
             f_low, f_high, span * dt * before[CLOSING], span * dt * after[CLOSING], theta
         )
     for _ in range(60):
-        interpolate(system, loop, dt, span * theta, slot.DYNAMIC_SIZE, loop.work)
+        interpolate(system, loop, dt, span * theta, slot.MOVING_SIZE, loop.work)
         f = _quantity(system.is_compliant, system, loop, face, kind) - level
         if abs(f) < close or high - low < 1e-14:
             return theta
@@ -207,7 +207,7 @@ def _locate(system, loop, dt, span, face, kind, level):
 def _quantity(is_compliant, system, loop, number, kind):
     """Quantity ``kind`` of face ``number`` at the state ``loop.work``."""
     payload, state, face = system.payload, loop.work, system.faces[number]
-    body = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD)
+    body = slot.motion(payload.inverse_inertia, state, slot.PAYLOAD)
     base = slot.frame(system.platform, state)
     place, turn = relative_pose(system.platform, body, base)
     if kind == SIDE:

@@ -1,8 +1,7 @@
 """Local error of a step, as speeds at the pads, relative to the allowed error.
 
-With the error e of each slot, the spin error e_w = R I^-1 R' (e_A - e_r x m v - r x m e_v), the
-distance ``reach`` of the farthest pad from the mass centre and the step h, each body's ratio is the
-largest of::
+With the error e of each slot, the error e_w = I^-1 e_h of the rate, the distance ``reach`` of the
+farthest pad from the mass centre and the step h, each body's ratio is the largest of::
 
     |e_v| across, reach |e_w|, |e_r| / h across, 2 reach |e_q| / h      over   rtol (floor + |v| across + reach |w|)
     |e_v| along X, |e_r| / h along X                                     over   rtol (floor + |v| along X)
@@ -28,10 +27,10 @@ from tipoff.lowfi.dynamics.dormand_prince import local_error
 from tipoff.lowfi.numerics import Numerics
 from tipoff.lowfi.state import (
     BODY_SIZE,
-    MOMENT,
     PAYLOAD,
     PLACE,
     PLATFORM,
+    SPIN,
     VELOCITY,
     modal_size,
     motion,
@@ -81,9 +80,7 @@ def error_ratio(tolerance, system, loop, dt):
     is."""
     payload, end, error = system.payload, loop.end, loop.work
     local_error(dt, loop.stages, modal_size(system.compliance), error)
-    ratio = _body_ratio(
-        tolerance, payload.mass, payload.inverse_inertia, dt, error[:BODY_SIZE], end[:BODY_SIZE]
-    )
+    ratio = _body_ratio(tolerance, payload.inverse_inertia, dt, error[:BODY_SIZE], end[:BODY_SIZE])
     return worse(
         worse(ratio, _platform_ratio(tolerance, system.platform, dt, error, end)),
         _rail_ratio(tolerance, payload, system.compliance, error, end),
@@ -101,7 +98,7 @@ def _platform_ratio(tolerance, platform, dt, error, end):
     ratio = 0.0
     if platform is not None:
         ratio = _body_ratio(
-            tolerance, platform.mass, platform.inverse_inertia, dt, error[PLATFORM:], end[PLATFORM:]
+            tolerance, platform.inverse_inertia, dt, error[PLATFORM:], end[PLATFORM:]
         )
     return ratio
 
@@ -118,7 +115,7 @@ def _rail_ratio(tolerance, payload, compliance, error, end):
 def _modal_ratio(tolerance, payload, modes, error, end):
     ratio = 0.0
     if modes is not None:
-        body = motion(payload.mass, payload.inverse_inertia, end, PAYLOAD)
+        body = motion(payload.inverse_inertia, end, PAYLOAD)
         across = (
             tolerance.floor
             + np.hypot(body.velocity[1], body.velocity[2])
@@ -130,27 +127,13 @@ def _modal_ratio(tolerance, payload, modes, error, end):
 
 
 @kernel
-def _body_ratio(tolerance, mass, inverse_inertia, dt, error, end):
+def _body_ratio(tolerance, inverse_inertia, dt, error, end):
     """Ratio of one body, whose slots stand first in ``error`` and ``end``."""
-    place, velocity = triple(end, PLACE), triple(end, VELOCITY)
-    e_place, e_velocity, e_moment = (
-        triple(error, PLACE),
-        triple(error, VELOCITY),
-        triple(error, MOMENT),
-    )
-    q, e_q = quaternion(end, 0), quaternion(error, 0)
-    turn, orbit = rotation.matrix(q), rotation.cross(place, velocity)
-    moment = triple(end, MOMENT)
-    spin = (moment[0] - mass * orbit[0], moment[1] - mass * orbit[1], moment[2] - mass * orbit[2])
-    a, b = rotation.cross(e_place, velocity), rotation.cross(place, e_velocity)
-    e_spin = (
-        e_moment[0] - mass * (a[0] + b[0]),
-        e_moment[1] - mass * (a[1] + b[1]),
-        e_moment[2] - mass * (a[2] + b[2]),
-    )
+    velocity, e_q = triple(end, VELOCITY), quaternion(error, 0)
+    e_place, e_velocity = triple(error, PLACE), triple(error, VELOCITY)
     rate, e_rate = (
-        rotation.angular_velocity(turn, inverse_inertia, spin),
-        rotation.angular_velocity(turn, inverse_inertia, e_spin),
+        rotation.multiply(inverse_inertia, triple(end, SPIN)),
+        rotation.multiply(inverse_inertia, triple(error, SPIN)),
     )
     across = (
         tolerance.floor

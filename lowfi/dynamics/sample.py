@@ -17,11 +17,9 @@ from tipoff.lowfi.dynamics.survey import stored
 from tipoff.lowfi.faces import HALF_LENGTH
 from tipoff.lowfi.state import (
     IMPULSE,
-    MOMENT,
     PAYLOAD,
     PLACE,
     PLATFORM,
-    VELOCITY,
     WORK,
     WORK_SIZE,
     Motion,
@@ -29,7 +27,7 @@ from tipoff.lowfi.state import (
 
 # Slots of a sample: payload and platform first (place, velocity, quaternion, rate in body axes),
 # each BODY_SIZE long.
-RATE = slot.MOMENT  # where the state holds angular momentum the sample holds the rate
+RATE = slot.SPIN  # where the state holds the spin the sample holds the rate
 KINETIC, AXIAL_KINETIC, STORED, STRAIN, WORKS = 26, 27, 28, 29, 30
 LINEAR, ANGULAR, GIVEN = WORKS + WORK_SIZE, WORKS + WORK_SIZE + 3, WORKS + WORK_SIZE + 6
 SAMPLE_SIZE = GIVEN + 6
@@ -40,11 +38,11 @@ def observe(system, loop, row, forces):
     """Fill ``row`` (SAMPLE_SIZE,) and ``forces`` (f,3) N on the payload, in scene axes, from the
     state ``loop.work``; False where a number is not finite."""
     payload, state = system.payload, loop.work
-    body = slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD)
+    body = slot.motion(payload.inverse_inertia, state, PAYLOAD)
     base = slot.frame(system.platform, state)
     row[:] = 0.0
     _place(state, body, base, row)
-    _body(payload.mass, state[:PLATFORM], body, row)
+    _body(payload.mass, state, PAYLOAD, body, row)
     _platform(system.platform, state, base, row)
     row[STORED] = _observe_springs(system.contact, system, loop, body, base, forces)
     row[STORED] += _observe_compliance(system.compliance, system, loop, body, base, forces)
@@ -72,7 +70,7 @@ def posture(system, state, row):
     """Fill only the motion of both bodies in ``row``."""
     _place(
         state,
-        slot.motion(system.payload.mass, system.payload.inverse_inertia, state, PAYLOAD),
+        slot.motion(system.payload.inverse_inertia, state, PAYLOAD),
         slot.frame(system.platform, state),
         row,
     )
@@ -88,13 +86,13 @@ def _place(state, body, base, row):
 def rearmost_edge(faces, platform, row):
     """X (m) in platform axes of the rearmost trailing edge of the pads."""
     place, turn = slot.triple(row, PAYLOAD + PLACE), rotation.matrix(slot.quaternion(row, PAYLOAD))
-    body = Motion(place, place, turn, place)
+    body = Motion(place, place, turn, place, place)
     base_place, base_turn = (
         slot.triple(row, PLATFORM + PLACE),
         rotation.matrix(slot.quaternion(row, PLATFORM)),
     )
     place, turn = relative_pose(
-        platform, body, Motion(base_place, base_place, base_turn, base_place)
+        platform, body, Motion(base_place, base_place, base_turn, base_place, base_place)
     )
     rearmost = np.inf
     for i in range(faces.shape[0]):
@@ -105,30 +103,25 @@ def rearmost_edge(faces, platform, row):
 @kernel
 def _copy(state, body, row):
     """Places and velocities of one body, whose slots stand first in ``state`` and ``row``."""
-    slot.copy(state, row, slot.MOMENT)
-    rate = rotation.unrotate(body.turn, body.rate)
+    slot.copy(state, row, RATE)
     for i in range(3):
-        row[RATE + i] = rate[i]
+        row[RATE + i] = body.body_rate[i]
 
 
 @kernel
 def _platform(platform, state, base, row):
     if platform is not None:
-        _body(platform.mass, state[PLATFORM:], base, row)
+        _body(platform.mass, state, PLATFORM, base, row)
 
 
 @kernel
-def _body(mass, state, body, row):
-    """Add kinetic energy and momenta of one body."""
-    moment, orbit = slot.triple(state, MOMENT), rotation.cross(body.place, body.velocity)
-    spin = (moment[0] - mass * orbit[0], moment[1] - mass * orbit[1], moment[2] - mass * orbit[2])
-    row[KINETIC] += 0.5 * (
-        mass * rotation.dot(body.velocity, body.velocity) + rotation.dot(spin, body.rate)
-    )
+def _body(mass, state, first, body, row):
+    """Add kinetic energy and momenta of the body whose slots begin at ``first``."""
+    row[KINETIC] += slot.kinetic(mass, state, first, body)
     row[AXIAL_KINETIC] += 0.5 * mass * body.velocity[0] * body.velocity[0]
     for i in range(3):
-        row[LINEAR + i] += mass * state[VELOCITY + i]
-        row[ANGULAR + i] += moment[i]
+        row[LINEAR + i] += mass * body.velocity[i]
+        row[ANGULAR + i] += state[slot.moment_of(first) + i]
 
 
 @kernel

@@ -277,6 +277,7 @@ def _stacked(common: system.System, group: _Group) -> cases.Cases:
     offsets = [model.thrust_offset for model in of_cases if model.thrust_offset is not None]
     return cases.Cases(
         np.array([model.payload.mass for model in of_cases]),
+        np.stack([model.payload.inertia for model in of_cases]),
         np.stack([model.payload.inverse_inertia for model in of_cases]),
         faces,
         np.array([offset.direction for offset in offsets]) if offsets else None,

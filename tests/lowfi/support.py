@@ -104,12 +104,12 @@ def unwatched(asked: scenes.Scene, numerics: lowfi.Numerics, change=None) -> Run
     return run
 
 
-def turned_state(start, turn: tuple, bodies=(state.PAYLOAD, state.PLATFORM)):
+def turned_state(start, turn: tuple, bodies=state.BODIES):
     """State with some of its bodies turned about the scene's origin by the quaternion ``turn``."""
     new = start.copy()
-    for body in bodies:
-        for slot in (state.PLACE, state.VELOCITY, state.MOMENT):
-            vector = slice(body + slot, body + slot + 3)
+    for body, moment in bodies:
+        for first in (body + state.PLACE, body + state.VELOCITY, moment):
+            vector = slice(first, first + 3)
             new[vector] = turning.turned(start[vector], turn)
         first = body + state.QUATERNION
         new[first : first + 4] = rotation.product(turn, tuple(start[first : first + 4]))

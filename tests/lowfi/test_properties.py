@@ -37,7 +37,6 @@ TOLERANCE = NUDGE = 1e-9  # relative; m/s
 # m/s, below which nothing is called a motion; m from the mass centre to a pad
 LEAST, REACH = 1e-2, 0.1
 KINETIC = ledger.ENTRIES.index("kinetic")
-BODIES = (state.PAYLOAD, state.PLATFORM)
 FEW = settings(max_examples=12, suppress_health_check=list(HealthCheck))
 MANY = settings(max_examples=420, suppress_health_check=list(HealthCheck))
 
@@ -53,7 +52,7 @@ def moved(raw: dict, change=None) -> Run:
 def nudged(start: np.ndarray) -> np.ndarray:
     """The state with all its motions changed a little."""
     new = start.copy()
-    for slot, mass in ((state.VELOCITY, 1.0), (state.MOMENT, 0.1)):
+    for slot, mass in ((state.VELOCITY, 1.0), (state.SPIN, 0.1), (state.MOMENT, 0.1)):
         new[slot : slot + 3] += NUDGE * mass * np.array([1.0, -0.7, 0.4])
     return new
 
@@ -141,9 +140,9 @@ def check_other_axes(raw: dict, base: np.ndarray, perturbed: np.ndarray) -> None
 def reversed_motion(end: np.ndarray):
     """What turns any state into the state ``end`` with all motions reversed."""
     start = end.copy()
-    for body in BODIES:
-        start[body + state.VELOCITY : body + state.QUATERNION] *= -1.0
-        start[body + state.MOMENT : body + state.BODY_SIZE] *= -1.0
+    for body, moment in state.BODIES:
+        for first in (body + state.VELOCITY, body + state.SPIN, moment):
+            start[first : first + 3] *= -1.0
     start[state.IMPULSE :] = 0.0
     return start
 

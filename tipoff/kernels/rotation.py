@@ -97,17 +97,29 @@ def step(q, rate, dt):
 
 
 @njit
+def multiply(j, v):
+    """Matrix ``j`` (3,3) times a triple."""
+    return (
+        j[0, 0] * v[0] + j[0, 1] * v[1] + j[0, 2] * v[2],
+        j[1, 0] * v[0] + j[1, 1] * v[1] + j[1, 2] * v[2],
+        j[2, 0] * v[0] + j[2, 1] * v[1] + j[2, 2] * v[2],
+    )
+
+
+@njit
+def solve(a, b, c, v):
+    """x of the regular symmetric matrix with the columns ``a``, ``b`` and ``c``, so that
+    M x = v, by Cramer's rule."""
+    bc, ca, ab = cross(b, c), cross(c, a), cross(a, b)
+    scale = 1.0 / dot(a, bc)
+    return (scale * dot(bc, v), scale * dot(ca, v), scale * dot(ab, v))
+
+
+@njit
 def angular_velocity(m, inverse_inertia, momentum):
     """Inertial-axes angular velocity R I^-1 R' h of a body with inertial-axes spin momentum h;
     inverse inertia is (3,3)."""
-    b = unrotate(m, momentum)
-    j = inverse_inertia
-    w = (
-        j[0, 0] * b[0] + j[0, 1] * b[1] + j[0, 2] * b[2],
-        j[1, 0] * b[0] + j[1, 1] * b[1] + j[1, 2] * b[2],
-        j[2, 0] * b[0] + j[2, 1] * b[1] + j[2, 2] * b[2],
-    )
-    return rotate(m, w)
+    return rotate(m, multiply(inverse_inertia, unrotate(m, momentum)))
 
 
 def vector(q) -> list[float]:

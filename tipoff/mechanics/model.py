@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tipoff.kernels.reference import by_reference
-from tipoff.scenes.body import tensor
+from tipoff.scenes.body import inverse, tensor
 from tipoff.scenes.effects import contact, registry, thrust, thrust_offset
 from tipoff.scenes.effects.body_force import BodyForce
 from tipoff.scenes.effects.friction import Friction
@@ -187,7 +187,7 @@ def half_sizes(faces: Faces) -> np.ndarray:
 
 def _payload(scene: Scene) -> Payload:
     inertia = tensor(scene.payload.inertia)
-    return Payload(scene.payload.mass, inertia, np.linalg.inv(inertia), (0.0, 0.0, 0.0))
+    return Payload(scene.payload.mass, inertia, inverse(inertia), (0.0, 0.0, 0.0))
 
 
 def _plate(scene: Scene, nominal: Faces, platform: Platform | None) -> Plate:

@@ -37,6 +37,14 @@ class InertiaTensor(Table):
         return self
 
 
+def inverse(inertia: np.ndarray) -> np.ndarray:
+    """Inverse (3,3) of an ``inertia`` tensor (3,3) by its principal axes. It is symmetric, and has
+    those axes to rounding also where one moment is far below the others."""
+    moments, axes = np.linalg.eigh(inertia)
+    whole = (axes / moments) @ axes.T
+    return 0.5 * (whole + whole.T)
+
+
 def tensor(inertia: InertiaTensor) -> np.ndarray:
     """The (3,3) tensor (kg m2) of an inertia table."""
     return np.array(

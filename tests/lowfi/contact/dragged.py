@@ -40,9 +40,7 @@ def _thrust_and_drag(thrust, offset, reacts, time, bodies, out):
     _thrust(thrust, offset, reacts, time, bodies, out)
     body = bodies.payload
     force = (STIFFNESS * (STRETCHED + SPEED * time - body.place[0]), 0.0, 0.0)
-    equations.push(
-        out, slot.PAYLOAD + slot.VELOCITY, slot.PAYLOAD + slot.MOMENT, force, body.place, 1.0
-    )
+    equations.push(out, slot.PAYLOAD, force, body.place, 1.0)
     equations.add_outside_impulse(bodies.ledger, force, body.place, out)
     equations.add_power(
         bodies.ledger,

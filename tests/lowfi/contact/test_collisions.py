@@ -32,7 +32,7 @@ def test_impact_spot_values(p_mm, closing, force):
     """F = max(0, k p^e + c s(p/d) p') at the paper's pad, from the load on a face."""
     record = scene(1e-3, 1e-4, contact=PAPER_PAD).contact.record()
     turn, zero = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0)
-    body = state.Motion(zero, (0.0, 0.0, -closing / 1e3), turn, zero)
+    body = state.Motion(zero, (0.0, 0.0, -closing / 1e3), turn, zero, zero)
     face = (0.0, 0.0, -0.1, 0.0, -1.0, 0.1, 0.0)
     found = springs.load(
         Contact(*law.laws(record), None),
@@ -41,7 +41,7 @@ def test_impact_spot_values(p_mm, closing, force):
         face,
         p_mm * 1e-3,
         body,
-        state.Motion(zero, zero, turn, zero),
+        state.Motion(zero, zero, turn, zero, zero),
     ).normal[2]
     assert found == pytest.approx(
         exact.impact_force(K, 1.5, 60000.0, 3e-4, p_mm * 1e-3, closing / 1e3), rel=1e-9, abs=1e-12

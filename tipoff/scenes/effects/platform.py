@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.scenes.body import InertiaTensor, tensor
+from tipoff.scenes.body import InertiaTensor, inverse, tensor
 from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.effects.initial import Displacement
 from tipoff.scenes.table import Table
@@ -32,7 +32,7 @@ class PlatformTable(Table):
         """Kernel record."""
         inertia = tensor(self.inertia)
         centre = self.mass_centre
-        return Platform(self.mass, inertia, np.linalg.inv(inertia), (centre.x, centre.y, centre.z))
+        return Platform(self.mass, inertia, inverse(inertia), (centre.x, centre.y, centre.z))
 
 
 class Platform(NamedTuple):

@@ -227,8 +227,8 @@ def _seen_from(scene: Scene, turn: tuple | None) -> Trajectory:
     if turn:
         start, q = state.initial(made.model), rotation.exponential(turn)
         frame = rotation.matrices(np.array([q]))[0]
-        for body in (state.PAYLOAD, state.PLATFORM):
-            for first in (body + state.PLACE, body + state.VELOCITY, body + state.MOMENT):
+        for body, moment in state.BODIES:
+            for first in (body + state.PLACE, body + state.VELOCITY, moment):
                 start[first : first + 3] = frame @ start[first : first + 3]
             first = body + state.QUATERNION
             start[first : first + 4] = rotation.product(q, tuple(start[first : first + 4]))

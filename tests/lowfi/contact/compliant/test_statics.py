@@ -83,11 +83,13 @@ def derivative(system, model, pose, twist, modes=()):
 def generalised(pose, out):
     """Generalised forces (12,) of twists, from forces and their moments about the origin."""
     found = []
-    for first, place, attitude in (
-        (slot.PAYLOAD, pose.place, pose.attitude),
-        (slot.PLATFORM, pose.base_place, pose.base_attitude),
+    for (first, about_origin), place, attitude in zip(
+        slot.BODIES,
+        (pose.place, pose.base_place),
+        (pose.attitude, pose.base_attitude),
+        strict=True,
     ):
-        force, moment = out[first + slot.VELOCITY :][:3], out[first + slot.MOMENT :][:3]
+        force, moment = out[first + slot.VELOCITY :][:3], out[about_origin:][:3]
         about = tuple(moment - np.cross(place, force))
         found += [force, rotation.unrotate(rotation.matrix(attitude), about)]
     return np.concatenate(found)
