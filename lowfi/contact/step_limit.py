@@ -38,7 +38,7 @@ def fastest_rate(laws, system, touching, stick, state, ahead):
     rate = 0.0
     if laws is not None:
         payload, platform = system.payload, system.platform
-        body = slot.motion(payload.inverse_inertia, state, slot.PAYLOAD)
+        body = slot.motion(payload, state, slot.PAYLOAD)
         base = slot.frame(platform, state)
         place, turn = relative_pose(platform, body, base)
         stiffness, damping = 0.0, 0.0

@@ -49,7 +49,7 @@ class Balances(NamedTuple):
 def _balances(system, loop, surveyed, in_compliance, state):
     """Balances at a ``surveyed`` (f, SURVEY_SIZE) state, with the energy (J) in compliant
     contact."""
-    body = slot.motion(system.payload.inverse_inertia, state, PAYLOAD)
+    body = slot.motion(system.payload, state, PAYLOAD)
     base = slot.frame(system.platform, state)
     kinetic, axial = _kinetic(system.payload.mass, state, PAYLOAD, body)
     more, more_axial = _kinetic_of_platform(system.platform, state, base)

@@ -43,7 +43,7 @@ def derivative(system, touching, stick, time, state, out):
     the faces that carry load, ``stick`` (f, ROW_SIZE) or None their stick-slip states."""
     payload, platform = system.payload, system.platform
     bodies = Bodies(
-        payload=slot.motion(payload.inverse_inertia, state, PAYLOAD),
+        payload=slot.motion(payload, state, PAYLOAD),
         base=slot.frame(platform, state),
         platform=platform,
         friction=system.friction,

@@ -207,7 +207,7 @@ def _locate(system, loop, dt, span, face, kind, level):
 def _quantity(is_compliant, system, loop, number, kind):
     """Quantity ``kind`` of face ``number`` at the state ``loop.work``."""
     payload, state, face = system.payload, loop.work, system.faces[number]
-    body = slot.motion(payload.inverse_inertia, state, slot.PAYLOAD)
+    body = slot.motion(payload, state, slot.PAYLOAD)
     base = slot.frame(system.platform, state)
     place, turn = relative_pose(system.platform, body, base)
     if kind == SIDE:

@@ -8,9 +8,10 @@ farthest pad from the mass centre and the step h, each body's ratio is the large
 
 so that 6 m/s along the rail do not loosen the tolerance of the millimetres per second across it.
 All speeds are those of the frame that moves with the platform (``mechanics.comoving``), so a speed
-that all bodies share loosens nothing either. Modes of the rails are bounded by the error of their
-energy, as a speed of the payload's mass m. A step too long for the highest mode fails here, or at
-the proven limit before::
+that all bodies share loosens nothing either. A rate that rounding alone makes is taken off: it
+counts on a thin body that lies across its axes, with moments that differ by a factor of a million.
+Modes of the rails are bounded by the error of their energy, as a speed of the payload's mass m. A
+step too long for the highest mode fails here, or at the proven limit before::
 
     sqrt(sum over modes of (e_q'^2 + omega^2 e_q^2) / m)                 over   the first of these, of the payload
 """
@@ -38,6 +39,8 @@ from tipoff.lowfi.state import (
     triple,
 )
 from tipoff.mechanics.promises import Promises
+
+_ROUNDING = 2e-15
 
 
 @by_reference
@@ -115,7 +118,7 @@ def _rail_ratio(tolerance, payload, compliance, error, end):
 def _modal_ratio(tolerance, payload, modes, error, end):
     ratio = 0.0
     if modes is not None:
-        body = motion(payload.inverse_inertia, end, PAYLOAD)
+        body = motion(payload, end, PAYLOAD)
         across = (
             tolerance.floor
             + np.hypot(body.velocity[1], body.velocity[2])
@@ -131,9 +134,16 @@ def _body_ratio(tolerance, inverse_inertia, dt, error, end):
     """Ratio of one body, whose slots stand first in ``error`` and ``end``."""
     velocity, e_q = triple(end, VELOCITY), quaternion(error, 0)
     e_place, e_velocity = triple(error, PLACE), triple(error, VELOCITY)
+    spin = triple(end, SPIN)
     rate, e_rate = (
-        rotation.multiply(inverse_inertia, triple(end, SPIN)),
+        rotation.multiply(inverse_inertia, spin),
         rotation.multiply(inverse_inertia, triple(error, SPIN)),
+    )
+    # of the spin, as a rate about the axis of least inertia
+    rounding = (
+        _ROUNDING
+        * (abs(inverse_inertia[0, 1]) + abs(inverse_inertia[0, 2]) + abs(inverse_inertia[1, 2]))
+        * np.sqrt(rotation.dot(spin, spin))
     )
     across = (
         tolerance.floor
@@ -144,7 +154,7 @@ def _body_ratio(tolerance, inverse_inertia, dt, error, end):
     e_turn = (
         2.0 * np.sqrt(e_q[0] * e_q[0] + e_q[1] * e_q[1] + e_q[2] * e_q[2] + e_q[3] * e_q[3]) / dt
     )
-    angular = tolerance.reach * worse(np.sqrt(rotation.dot(e_rate, e_rate)), e_turn)
+    angular = tolerance.reach * (worse(np.sqrt(rotation.dot(e_rate, e_rate)), e_turn) - rounding)
     axial = worse(abs(e_velocity[0]), abs(e_place[0]) / dt)
     return (
         worse(worse(lateral, angular) / across, axial / (tolerance.floor + abs(velocity[0])))

@@ -38,7 +38,7 @@ def observe(system, loop, row, forces):
     """Fill ``row`` (SAMPLE_SIZE,) and ``forces`` (f,3) N on the payload, in scene axes, from the
     state ``loop.work``; False where a number is not finite."""
     payload, state = system.payload, loop.work
-    body = slot.motion(payload.inverse_inertia, state, PAYLOAD)
+    body = slot.motion(payload, state, PAYLOAD)
     base = slot.frame(system.platform, state)
     row[:] = 0.0
     _place(state, body, base, row)
@@ -70,7 +70,7 @@ def posture(system, state, row):
     """Fill only the motion of both bodies in ``row``."""
     _place(
         state,
-        slot.motion(system.payload.inverse_inertia, state, PAYLOAD),
+        slot.motion(system.payload, state, PAYLOAD),
         slot.frame(system.platform, state),
         row,
     )

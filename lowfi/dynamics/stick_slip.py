@@ -44,7 +44,7 @@ def _change(sticking, system, loop, number, touched, touches, state):
     """Change the state of a face that begins to touch, slips, stops, or ceases to touch; the energy
     (J) lost, and its new margin."""
     face, row, laws = system.faces[number], loop.stick[number], system.contact
-    body = slot.motion(system.payload.inverse_inertia, state, slot.PAYLOAD)
+    body = slot.motion(system.payload, state, slot.PAYLOAD)
     base = slot.frame(system.platform, state)
     place, turn = relative_pose(system.platform, body, base)
     depth = max(penetration(laws.thermal_offset, face, place, turn), 0.0)

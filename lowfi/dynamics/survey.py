@@ -62,7 +62,7 @@ def _survey_compliance(compliance, faces, platform, payload, loop, solved):
 def _survey_springs(laws, sticking, faces, platform, payload, loop):
     if laws is not None:
         out = loop.after
-        body = slot.motion(payload.inverse_inertia, loop.end, slot.PAYLOAD)
+        body = slot.motion(payload, loop.end, slot.PAYLOAD)
         base = slot.frame(platform, loop.end)
         place, turn = relative_pose(platform, body, base)
         drift, swing = relative_motion(platform, body, base, place, turn)

@@ -124,7 +124,7 @@ def state_of(model, pose: Pose, twist: np.ndarray = np.zeros(12)) -> np.ndarray:
 @kernel
 def seen_from_platform(platform, payload, state):
     """Place (m) and rotation (nine numbers) of the payload in platform axes."""
-    body = slot.motion(payload.inverse_inertia, state, slot.PAYLOAD)
+    body = slot.motion(payload, state, slot.PAYLOAD)
     return springs.relative_pose(platform, body, slot.frame(platform, state))
 
 
@@ -133,7 +133,7 @@ def add_compliant_contact(system, touching, state, out):
     """Add compliant contact alone to ``out``, the derivative of ``state``."""
     payload = system.payload
     bodies = equations.Bodies(
-        slot.motion(payload.inverse_inertia, state, slot.PAYLOAD),
+        slot.motion(payload, state, slot.PAYLOAD),
         slot.frame(system.platform, state),
         system.platform,
         system.friction,

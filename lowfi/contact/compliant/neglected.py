@@ -148,7 +148,7 @@ def _begin(neglected, members, rail, time):
 def _press(neglected, system, loop, rail):
     compliance, dt = system.compliance, loop.clock.now - neglected.rails[rail].time
     payload = system.payload
-    body = slot.motion(payload.inverse_inertia, loop.end, slot.PAYLOAD)
+    body = slot.motion(payload, loop.end, slot.PAYLOAD)
     place, _ = relative_pose(system.platform, body, slot.frame(system.platform, loop.end))
     station, way, _ = between_stations(compliance, place[0] + system.faces[0, 0])
     for i in range(neglected.first, neglected.effect.size):
@@ -201,7 +201,7 @@ def _leave(neglected, system, state, rail):
     neglected.rails[rail].pressed = False
     number = _most_pressed(compliance.members, neglected.faces, rail)
     face = system.faces[number]
-    body = slot.motion(payload.inverse_inertia, state, slot.PAYLOAD)
+    body = slot.motion(payload, state, slot.PAYLOAD)
     base = slot.frame(platform, state)
     point, n = pad_point(face, body), outward(face, base)
     mass = 1.0 / inverse_mass(platform, payload, body, base, point, n)

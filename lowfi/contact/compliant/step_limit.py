@@ -38,7 +38,7 @@ def stiffness_and_damping(compliance, friction, faces, platform, payload, touchi
     """Traces K (1/s2) and C (1/s) of all ``touching`` faces (f,) at ``state``, for which all rails
     may be ``solved`` already."""
     body, base = (
-        slot.motion(payload.inverse_inertia, state, slot.PAYLOAD),
+        slot.motion(payload, state, slot.PAYLOAD),
         slot.frame(platform, state),
     )
     place, turn = relative_pose(platform, body, base)

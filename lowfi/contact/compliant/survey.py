@@ -98,7 +98,7 @@ def survey(compliance, faces, platform, payload, touching, state, solved, out):
     """Fill ``out`` (f, SURVEY_SIZE), as ``lowfi.dynamics.survey`` does; the energy (J) stored under
     the ``touching`` faces (f,)."""
     body, base = (
-        slot.motion(payload.inverse_inertia, state, slot.PAYLOAD),
+        slot.motion(payload, state, slot.PAYLOAD),
         slot.frame(platform, state),
     )
     place, turn = relative_pose(platform, body, base)
@@ -132,7 +132,7 @@ def longest_step_at_ends(compliance, faces, platform, payload, touching, state):
     latest, and where a face that comes over an end is wholly over it, and is a quarter of a cell
     long at most."""
     body, base = (
-        slot.motion(payload.inverse_inertia, state, slot.PAYLOAD),
+        slot.motion(payload, state, slot.PAYLOAD),
         slot.frame(platform, state),
     )
     place, turn = relative_pose(platform, body, base)
@@ -162,7 +162,7 @@ def longest_step_at_ends(compliance, faces, platform, payload, touching, state):
 def energy(compliance, faces, platform, payload, touching, state):
     """Energy (J) stored under the ``touching`` faces (f,)."""
     body, base = (
-        slot.motion(payload.inverse_inertia, state, slot.PAYLOAD),
+        slot.motion(payload, state, slot.PAYLOAD),
         slot.frame(platform, state),
     )
     place, turn = relative_pose(platform, body, base)

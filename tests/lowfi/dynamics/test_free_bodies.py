@@ -139,10 +139,11 @@ def test_thin_rod(start, thin, tolerance, error):
 
 
 @pytest.mark.case("X26")
-def test_thin_rod_in_other_axes():
-    """The same motion, where the rod lies across the body axes. Its inverse inertia is symmetric:
-    that of a general solver is not by 1e-4 of 1e6, which accelerates the rod."""
-    thin, start = 1e-6, np.array([3.0, 0.1, -0.2])
+@pytest.mark.parametrize("thin, error", [(1e-6, 1e-8), (1e-9, 2e-6)])
+def test_thin_rod_in_other_axes(thin, error):
+    """The same motion, where the rod lies across the body axes. The rounding of its inverse inertia,
+    1e-16 / ``thin``, must not accelerate it."""
+    start = np.array([3.0, 0.1, -0.2])
     axes = rotation.matrices(np.array([rotation.exponential((0.4, -0.7, 1.1))]))[0]
     tensor = axes @ np.diag([thin, 1.0, 1.0]) @ axes.T
     names = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
@@ -158,7 +159,8 @@ def test_thin_rod_in_other_axes():
     )
     across = (start[1] + 1j * start[2]) * np.exp(1j * (thin - 1.0) * start[0] * run.time)
     expected = np.stack([np.full(run.time.size, start[0]), across.real, across.imag], axis=1)
-    assert np.abs(run.rate @ axes - expected).max() <= 1e-7
+    assert run.status == "time_limit" and run.cost["steps"] <= 600
+    assert np.abs(run.rate @ axes - expected).max() <= error
 
 
 @pytest.mark.case("O37")
