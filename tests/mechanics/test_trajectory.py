@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -132,6 +133,22 @@ def test_no_nan_in_attributes(parts, place):
 def test_arrays_of_the_wrong_shape(name, shape):
     with pytest.raises(ValueError, match="has shape"):
         random_trajectory(**{name: np.zeros(shape)})
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"exit_time": "0.02"}, {"rate": 1.0}, {"rate": [1.0, 2.0]}, {"velocity": [1.0, None, 2.0]}],
+    ids=str,
+)
+def test_an_outcome_that_is_no_number(wrong):
+    with pytest.raises(ValueError, match=f"^outcome.{next(iter(wrong))}: given"):
+        random_trajectory(outcome=Outcome(**wrong))
+
+
+def test_samples_out_of_order():
+    whole = random_trajectory()
+    with pytest.raises(ValueError, match="time falls"):
+        replace(whole, time=whole.time[::-1])
 
 
 def test_unknown_status():

@@ -157,6 +157,9 @@ class Trajectory(Carded):
                 raise ValueError(
                     f"{name} holds NaN or inf: a run must stop before it reaches a result"
                 )
+        if (np.diff(self.time) < 0.0).any():
+            raise ValueError("time falls, expected samples in their order")
+        outcome.require(self.outcome)
         found = {name: getattr(self, name) for name in _CHECKED} | {
             "outcome": self.outcome._asdict()
         }
@@ -337,8 +340,7 @@ class Trajectory(Carded):
             raise OSError(
                 f"{path}: not a whole trajectory file: it {fault.reason}; make it again"
             ) from fault
-        except (OSError, KeyError, TypeError, ValueError, RuntimeError) as error:
-            # the error that HDF5 raises for a foreign file depends on the file
+        except Exception as error:  # that of HDF5 for a foreign file depends on the file
             raise OSError(f"{path}: not a whole trajectory file ({error})") from error
 
 
