@@ -135,7 +135,7 @@ def pace(study: Study) -> Pace:
             rows, key=lambda row: abs(math.log(row["element_size_m"] / study.settings.element_size))
         )
         return Pace(float(nearest["ns_one_thread"]), source=" (speed from the benchmark)")
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, OverflowError):
         return Pace(_TYPICAL_NS, source=" (typical speed, not measured on this machine)")
 
 
@@ -205,9 +205,12 @@ def _stored(path: Path) -> Pace | None:
         with h5py.File(path) as file:
             cost, numerics = json.loads(file.attrs["cost"]), json.loads(file.attrs["numerics"])
         return Pace(
-            cost["ns_per_element_step"], numerics["element_size"], cost["elements"], cost["steps"]
+            float(cost["ns_per_element_step"]),
+            float(numerics["element_size"]),
+            int(cost["elements"]),
+            int(cost["steps"]),
         )
-    except (OSError, KeyError, ValueError):
+    except Exception:  # that of HDF5 for a foreign file depends on the file
         return None
 
 
@@ -245,8 +248,8 @@ def _surrogate(folder: Path, model: str) -> float:
         try:
             require_whole(path)
             with h5py.File(path) as file:
-                found.append(json.loads(file.attrs["cost"])["wall_s"])
-        except (OSError, KeyError, ValueError):
+                found.append(float(json.loads(file.attrs["cost"])["wall_s"]))
+        except Exception:  # as in ``_stored``
             pass
     return min(found, default=_TYPICAL_RUNS[model])
 
