@@ -13,7 +13,7 @@ import pytest
 
 from tests.scenes.support import motion
 from tests.written_names import ARRAYS
-from tipoff.files import content_hash, replacing, write_json, write_text
+from tipoff.files import content_hash, replacing, write_json, write_netcdf, write_text
 from tipoff.mechanics import ledger
 from tipoff.mechanics.outcome import Outcome
 from tipoff.mechanics.trajectory import Trajectory
@@ -143,6 +143,21 @@ def test_arrays_of_the_wrong_shape(name, shape):
 def test_an_outcome_that_is_no_number(wrong):
     with pytest.raises(ValueError, match=f"^outcome.{next(iter(wrong))}: given"):
         random_trajectory(outcome=Outcome(**wrong))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"cost": "a"}, {"cost": {"wall_s": "1 s"}}, {"checks": {"energy_error": None}}, {"scene": []}],
+    ids=str,
+)
+def test_tables_of_other_types_in_a_file_are_refused(wrong, tmp_path):
+    whole = random_trajectory()
+    (name,) = wrong
+    found = whole.to_xarray()
+    found.attrs[name] = json.dumps(wrong[name])
+    write_netcdf(tmp_path / "a.nc", found)
+    with pytest.raises(OSError, match="a.nc: not a whole trajectory file"):
+        Trajectory.load(tmp_path / "a.nc")
 
 
 def test_samples_out_of_order():

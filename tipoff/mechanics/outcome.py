@@ -62,7 +62,8 @@ class Outcome(NamedTuple):
 _VECTORS = {name for name, kind in Outcome.__annotations__.items() if kind == list[float] | None}
 
 
-def _is_number(value: object) -> bool:
+def is_number(value: object) -> bool:
+    """Whether a value is a number of ordinary size, as JSON has it."""
     return isinstance(value, float) or (type(value) is int and abs(value) < 2**53)
 
 
@@ -73,7 +74,7 @@ def require(found: Outcome) -> None:
         is_right = value is None or (
             isinstance(numbers, (list, tuple))
             and len(numbers) == (3 if name in _VECTORS else 1)
-            and all(_is_number(one) for one in numbers)
+            and all(is_number(one) for one in numbers)
         )
         if not is_right:
             raise ValueError(f"outcome.{name}: given {value!r}, expected a number, or None")

@@ -289,7 +289,7 @@ def picked(path: Path, pick: Callable[[dict], _T]) -> _T | None:
         return None
     try:
         return pick(found)
-    except (KeyError, TypeError, ValueError, AttributeError):
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
         say(f"  {path} was written by another version of the program: repeat the command")
         return None
 
