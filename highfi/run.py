@@ -12,7 +12,7 @@ import numpy as np
 from tipoff.files import tell
 from tipoff.highfi import result
 from tipoff.highfi.dynamics import ending, jolts, linear_range, observe, resting, substeps
-from tipoff.highfi.dynamics.checkpoint import Checkpoint, restore
+from tipoff.highfi.dynamics.checkpoint import Checkpoint
 from tipoff.highfi.dynamics.resting import Rails
 from tipoff.highfi.dynamics.step import ADVANCE, EVALUATE, KICK, OPEN, Task, perform
 from tipoff.highfi.dynamics.step_size import STEPS_PER_CHECK, Stepping, choose
@@ -107,8 +107,8 @@ def run(
     compiling, set_up_cpu = clock.perf_counter(), clock.thread_time() - cpu
     loop.begin()
     compiled = clock.perf_counter()
-    if saved is not None:
-        restore(loop, saved)
+    if kept is not None and saved is not None:
+        kept.resume(loop, saved)
     loop.integrate(progress, kept, observer)
     elements = int(system.operator.cells.shape[0])
     cost = {

@@ -101,7 +101,7 @@ def source(module: str) -> Source:
     try:
         code, *imports = json.loads(kept.read_text(encoding="utf-8"))
         return Source(code, tuple(imports))
-    except (OSError, ValueError):
+    except (OSError, ValueError, TypeError, RecursionError):  # none, or a damaged one
         tree = ast.parse(content)
         imports = sorted(set(_imports(tree)))
         found = Source(hashlib.sha256(_code(tree).encode()).hexdigest(), tuple(imports))

@@ -121,21 +121,41 @@ class Checkpoint:
             )
         if hashlib.sha256(content).hexdigest().encode() != match[2]:
             raise CheckpointError(self.path, "is damaged or was cut short")
-        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
-            saved = dict(archive)
-        header = json.loads(saved.pop("header").item())
+        try:
+            with np.load(io.BytesIO(content), allow_pickle=False) as archive:
+                saved = dict(archive)
+            header = json.loads(saved.pop("header").item())
+            others = {name: header[name] for name in _OTHER}
+        except Exception as fault:  # NumPy and zipfile raise many kinds on foreign bytes
+            raise CheckpointError(self.path, "is damaged or foreign") from fault
         for name, reason in _OTHER.items():
-            if header[name] != self.header[name]:
+            if others[name] != self.header[name]:
                 raise CheckpointError(
-                    self.path, reason + _difference(header[name], self.header[name])
+                    self.path, reason + _difference(others[name], self.header[name])
                 )
         return saved
+
+    def resume(self, loop, saved: dict[str, np.ndarray]) -> None:
+        """Put what ``read`` returned into ``loop``, as ``restore`` does. Raises CheckpointError for
+        values that are not those of the loop."""
+        try:
+            restore(loop, saved)
+        except ValueError as fault:
+            raise CheckpointError(self.path, f"is damaged or foreign: it {fault}") from fault
 
 
 def restore(loop, saved: dict[str, np.ndarray]) -> None:
     """Put ``saved`` into a loop that has begun; arrays are filled in place, because kernels need them
-    aligned."""
-    for name, value in evolving(loop).items():
+    aligned. Raises ValueError, before anything is filled, for values that are not those of the
+    loop."""
+    parts = evolving(loop)
+    for name, value in parts.items():
+        if isinstance(value, list):
+            _require(name, saved, (None,))
+        else:
+            for key, array in arrays({name: value}):
+                _require(key, saved, array.shape, array.dtype)
+    for name, value in parts.items():
         if isinstance(value, list):
             setattr(loop, name, list(saved[name]))
         elif isinstance(value, (tuple, np.ndarray)):
@@ -143,6 +163,19 @@ def restore(loop, saved: dict[str, np.ndarray]) -> None:
                 array[...] = saved[key]
         else:
             setattr(loop, name, type(value)(saved[name].item()))
+
+
+def _require(
+    name: str, saved: dict[str, np.ndarray], shape: tuple, dtype: np.dtype | None = None
+) -> None:
+    """Raises ValueError where a value is missing or has another shape or type; a list has any length
+    and type."""
+    if name not in saved:
+        raise ValueError(f"lacks the value {name}")
+    array = saved[name]
+    fits = array.shape == shape if dtype is not None else array.ndim > 0
+    if not fits or (dtype is not None and array.dtype.kind != dtype.kind):
+        raise ValueError(f"has {name} in the shape {array.shape} of {array.dtype}")
 
 
 def evolving(loop) -> dict[str, Any]:

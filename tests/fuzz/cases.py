@@ -11,7 +11,7 @@ import meshio
 import numpy as np
 import typer
 
-from tests.fuzz import mutants
+from tests.fuzz import mutants, results
 from tests.highfi.mesh import seeds
 from tipoff import scenes
 from tipoff.calibration.curves import Curves
@@ -288,4 +288,5 @@ KINDS: dict[str, Callable[[random.Random, Path], None]] = {
     "log": _log,
     "distributions": _distributions,
     "calibration": _calibration,
+    **results.KINDS,
 }

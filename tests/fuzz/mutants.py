@@ -154,6 +154,13 @@ def of_scene(rng: Random, raw: dict[str, Any]) -> str:
     return toml.dumps(raw)
 
 
+def of_plain(rng: Random, value: dict[str, Any]) -> dict[str, Any]:
+    """One to three values, keys or tables of JSON changed, in place."""
+    for _ in range(rng.randint(1, 3) if isinstance(value, dict) else 0):
+        _change(rng, value)
+    return value
+
+
 def of_bytes(rng: Random, content: bytes) -> bytes:
     """One to six edits of the bytes and numbers of a file."""
     for _ in range(rng.choice(EDITS)):

@@ -5,7 +5,7 @@ import pytest
 
 from tests.fuzz import cases
 
-SHORT = {"solid": 1}
+SHORT = {"solid": 1, "run": 20, "store": 10}
 COUNT, ALL = 40, 80
 CODES = {0, 1, 2}
 
@@ -13,7 +13,7 @@ CODES = {0, 1, 2}
 def _mutants():
     """Each kind with a count, and a larger count for the slow tests."""
     for kind in cases.KINDS:
-        if kind == "step":  # which needs compiled kernels
+        if kind in ("step", "checkpoint"):  # which need compiled kernels
             continue
         marks = [pytest.mark.gmsh] if kind == "solid" else []
         yield pytest.param(kind, SHORT.get(kind, COUNT), marks=marks, id=kind)

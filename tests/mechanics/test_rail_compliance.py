@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from tipoff import lowfi, scenes
+from tipoff.mechanics.joint_terms import JointTerms
 from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest
+from tipoff.scenes.effects.thermal import FIELDS
 from tipoff.scenes.faults import SceneError
 
 SCENE = scenes.load("reference")
@@ -125,6 +127,45 @@ def test_arrays_that_do_not_belong_together_are_refused(compliance, tmp_path):
             RailCompliance.load(tmp_path / "walls.npz")
     with pytest.raises(FileNotFoundError):
         RailCompliance.load(tmp_path / "none.npz")
+
+
+@pytest.mark.parametrize("given", JointTerms._fields)
+def test_terms_of_joints_that_do_not_belong_together_are_refused(compliance, tmp_path, given):
+    """They would end a later run with a factor on the stiffness of the mounts."""
+    stations, faces, rails = len(compliance.travel), len(compliance.rail), len(compliance.frequency)
+    modes = compliance.frequency.shape[1]
+    whole = JointTerms(
+        share=np.full((rails, 3), 0.5),
+        moved=np.zeros((stations, faces, PATTERNS, 3)),
+        heated=np.zeros((rails, 3, FIELDS)),
+        shape=np.zeros((stations, faces, PATTERNS, modes)),
+        stiffness=np.tile(np.eye(modes), (rails, 1, 1)),
+        joint=np.zeros((rails, modes, modes)),
+    )
+    path = tmp_path / "walls.npz"
+    replace(compliance, joints=whole).save(path)
+    assert RailCompliance.load(path).joints is not None
+    for wrong in (
+        getattr(whole, given).ravel(),
+        getattr(whole, given)[:-1],
+        getattr(whole, given) + 1j,
+    ):
+        replace(compliance, joints=whole._replace(**{given: wrong})).save(path)
+        with pytest.raises(ValueError, match=f"joints.{given}"):
+            RailCompliance.load(path)
+
+
+def test_types_of_arrays_are_checked(compliance, tmp_path):
+    for change in (
+        {"rail": compliance.rail.astype(float)},
+        {"rail": compliance.rail - 1},
+        {"travel": compliance.travel[::-1]},
+        {"travel": np.array(0.0)},
+        {"frequency": compliance.frequency + 1j},
+    ):
+        replace(compliance, **change).save(tmp_path / "walls.npz")
+        with pytest.raises(ValueError, match="not a file of rail compliance"):
+            RailCompliance.load(tmp_path / "walls.npz")
 
 
 @pytest.mark.parametrize(

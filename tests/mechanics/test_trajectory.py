@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 
 from tests.scenes.support import motion
 from tests.written_names import ARRAYS
-from tipoff.files import content_hash, replacing, write_json, write_text
+from tipoff.files import content_hash, replacing, write_json, write_netcdf, write_text
 from tipoff.mechanics import ledger
 from tipoff.mechanics.outcome import Outcome
 from tipoff.mechanics.trajectory import Trajectory
@@ -132,6 +133,37 @@ def test_no_nan_in_attributes(parts, place):
 def test_arrays_of_the_wrong_shape(name, shape):
     with pytest.raises(ValueError, match="has shape"):
         random_trajectory(**{name: np.zeros(shape)})
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"exit_time": "0.02"}, {"rate": 1.0}, {"rate": [1.0, 2.0]}, {"velocity": [1.0, None, 2.0]}],
+    ids=str,
+)
+def test_an_outcome_that_is_no_number(wrong):
+    with pytest.raises(ValueError, match=f"^outcome.{next(iter(wrong))}: given"):
+        random_trajectory(outcome=Outcome(**wrong))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"cost": "a"}, {"cost": {"wall_s": "1 s"}}, {"checks": {"energy_error": None}}, {"scene": []}],
+    ids=str,
+)
+def test_tables_of_other_types_in_a_file_are_refused(wrong, tmp_path):
+    whole = random_trajectory()
+    (name,) = wrong
+    found = whole.to_xarray()
+    found.attrs[name] = json.dumps(wrong[name])
+    write_netcdf(tmp_path / "a.nc", found)
+    with pytest.raises(OSError, match="a.nc: not a whole trajectory file"):
+        Trajectory.load(tmp_path / "a.nc")
+
+
+def test_samples_out_of_order():
+    whole = random_trajectory()
+    with pytest.raises(ValueError, match="time falls"):
+        replace(whole, time=whole.time[::-1])
 
 
 def test_unknown_status():

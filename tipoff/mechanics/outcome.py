@@ -59,6 +59,27 @@ class Outcome(NamedTuple):
     exit_platform_rate: list[float] | None = None
 
 
+_VECTORS = {name for name, kind in Outcome.__annotations__.items() if kind == list[float] | None}
+
+
+def is_number(value: object) -> bool:
+    """Whether a value is a number of ordinary size, as JSON has it."""
+    return isinstance(value, float) or (type(value) is int and abs(value) < 2**53)
+
+
+def require(found: Outcome) -> None:
+    """Raises ValueError for an entry that is neither None nor a number, or three of a vector."""
+    for name, value in found._asdict().items():
+        numbers = value if name in _VECTORS else [value]
+        is_right = value is None or (
+            isinstance(numbers, (list, tuple))
+            and len(numbers) == (3 if name in _VECTORS else 1)
+            and all(is_number(one) for one in numbers)
+        )
+        if not is_right:
+            raise ValueError(f"outcome.{name}: given {value!r}, expected a number, or None")
+
+
 class Milestones(NamedTuple):
     """Values that the scene alone determines: times (s) from which on the thrust is below 0.1 % and
     1 % of its peak, the latter no earlier than a body force can set a payload in motion; the jam speed

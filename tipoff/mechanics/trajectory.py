@@ -157,6 +157,9 @@ class Trajectory(Carded):
                 raise ValueError(
                     f"{name} holds NaN or inf: a run must stop before it reaches a result"
                 )
+        if (np.diff(self.time) < 0.0).any():
+            raise ValueError("time falls, expected samples in their order")
+        outcome.require(self.outcome)
         found = {name: getattr(self, name) for name in _CHECKED} | {
             "outcome": self.outcome._asdict()
         }
@@ -324,6 +327,7 @@ class Trajectory(Carded):
                     if name in data or name != "wall_stress"
                 }
                 plain = {name: json.loads(data.attrs[name]) for name in _PLAIN}
+                _require_plain(plain)
                 result = outcome.Outcome(**json.loads(data.attrs["outcome"]))
                 return cls(
                     model=data.attrs["model"],
@@ -337,9 +341,21 @@ class Trajectory(Carded):
             raise OSError(
                 f"{path}: not a whole trajectory file: it {fault.reason}; make it again"
             ) from fault
-        except (OSError, KeyError, TypeError, ValueError, RuntimeError) as error:
-            # the error that HDF5 raises for a foreign file depends on the file
+        except Exception as error:  # that of HDF5 for a foreign file depends on the file
             raise OSError(f"{path}: not a whole trajectory file ({error})") from error
+
+
+def _require_plain(plain: dict[str, Any]) -> None:
+    """Raises ValueError where what a file holds as JSON has other types than ``save`` writes."""
+    for name in ("checks", "cost", "scene", "numerics", "versions"):
+        if not isinstance(plain[name], dict):
+            raise ValueError(f"{name}: given {plain[name]!r}, expected a table")
+    numbers = plain["checks"] | {"wall_s": plain["cost"].get("wall_s", 0.0)}
+    for name, value in numbers.items():
+        if not outcome.is_number(value):
+            raise ValueError(f"{name}: given {value!r}, expected a number")
+    if not _is_finite(plain):
+        raise ValueError("a number that is not finite")
 
 
 def _is_finite(plain: dict) -> bool:

@@ -2,6 +2,8 @@
 file."""
 
 import copy
+import hashlib
+import io
 import os
 import random
 import threading
@@ -53,6 +55,50 @@ def test_one_flipped_bit_anywhere_is_refused(kept):
 def test_cut_file_is_refused(kept, length):
     kept.path.write_bytes(kept.path.read_bytes()[:length])
     with pytest.raises(CheckpointError, match="cut short|no checkpoint"):
+        kept.read()
+
+
+def resealed(kept, change) -> None:
+    """Arrays of the checkpoint after ``change``, with a digest that fits, as a file of another program
+    may have it."""
+    content = kept.path.read_bytes().partition(b"\n")[2]
+    with np.load(io.BytesIO(content)) as archive:
+        arrays = dict(archive)
+    change(arrays)
+    stream = io.BytesIO()
+    np.savez(stream, **arrays)
+    content = stream.getvalue()
+    line = f"tipoff checkpoint {FORMAT} {hashlib.sha256(content).hexdigest()}\n"
+    kept.path.write_bytes(line.encode() + content)
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        (lambda arrays: arrays.pop("header"), "damaged or foreign"),
+        (lambda arrays: arrays.update(header=np.array("[]")), "damaged or foreign"),
+        (lambda arrays: arrays.pop("wall"), "lacks the value wall"),
+        (lambda arrays: arrays.update(rests=arrays["rests"][:1]), "has rests in the shape"),
+        (lambda arrays: arrays.update(steps=np.array("x")), "has steps"),
+        (lambda arrays: arrays.update(rows=np.array(1.0)), "has rows"),
+    ],
+    ids=["no header", "other header", "missing", "cut", "text", "no list"],
+)
+def test_whole_files_of_other_values_are_refused(kept, loop, change, words):
+    """And nothing of the run is changed by them."""
+    resealed(kept, change)
+    before = checkpoint.digest(checkpoint.arrays(checkpoint.evolving(loop)))
+    with pytest.raises(CheckpointError, match=words) as fault:
+        kept.resume(loop, kept.read())
+    assert str(fault.value).startswith(str(kept.path))
+    assert checkpoint.digest(checkpoint.arrays(checkpoint.evolving(loop))) == before
+
+
+def test_bytes_that_are_no_archive_are_refused(kept):
+    content = b"no archive"
+    line = f"tipoff checkpoint {FORMAT} {hashlib.sha256(content).hexdigest()}\n"
+    kept.path.write_bytes(line.encode() + content)
+    with pytest.raises(CheckpointError, match="damaged or foreign"):
         kept.read()
 
 

@@ -128,8 +128,10 @@ def common_time(reference: Trajectory, surrogate: Trajectory) -> np.ndarray:
     start = reference.outcome.window_start
     end = math.inf if start is None else start + SETTLE_WINDOW
     end = min(end, float(reference.time[-1]), float(surrogate.time[-1]))
-    interval = float(np.median(np.diff(reference.time)))
-    return np.linspace(0.0, end, max(20, round(end / interval) + 1))
+    steps = np.diff(reference.time)
+    steps = steps[steps > 0.0]  # none in a run of one sample
+    count = round(end / float(np.median(steps))) + 1 if steps.size else 0
+    return np.linspace(0.0, end, max(20, count))
 
 
 def relative_l2(time: np.ndarray, reference: np.ndarray, other: np.ndarray) -> float | None:

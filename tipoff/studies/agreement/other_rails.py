@@ -7,7 +7,7 @@ from tipoff import scenes
 from tipoff.mechanics.rail_compliance import digest
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.study import Study, read
+from tipoff.studies.core.study import Study, picked
 
 
 def beside(folder: Path) -> list[dict]:
@@ -15,19 +15,25 @@ def beside(folder: Path) -> list[dict]:
     results in folders beside ``folder``."""
     found, own = [], digest(scenes.load(folder.name)) if folder.name in scenes.catalog() else None
     for path in sorted(folder.parent.glob("*/agreement.json")):
-        name, size = path.parent.name, (read(path) or {}).get("element_size_m")
-        if name not in scenes.catalog() or digest(scenes.load(name)) == own or size is None:
+        name = path.parent.name
+        if name not in scenes.catalog() or digest(scenes.load(name)) == own:
+            continue
+        size = picked(path, lambda found: float(found["element_size_m"]))
+        if size is None:
             continue
         other = Study(scenes.load(name), path.parent, replace(defaults(name), element_size=size))
         if agreement := compare.stored(other):
-            calibration = read(other.path("calibration.json"))
-            assert calibration is not None  # with which the agreement was found
+            constants = picked(
+                other.path("calibration.json"), lambda found: dict(found["constants"])
+            )
+            if constants is None:
+                continue
             found.append(
                 {
                     "name": name,
                     "element_size_m": size,
                     "agreement": agreement,
-                    "constants": calibration["constants"],
+                    "constants": constants,
                 }
             )
     return found

@@ -38,6 +38,7 @@ _TYPICAL_NS = 11.0
 _TYPICAL_RUNS = {SPRINGS: 3e-3, COMPLIANT: 6e-3}  # s, the surrogate there
 _STEP = 0.7  # dt sqrt(E / rho) / h of meshes of the built-in section
 _COMPILED = " and half a minute to compile, this once"
+_LARGEST = 1e18  # of any number in a file; a larger one is damage
 _LOOKED_AT = 4  # stored runs, newest first
 
 
@@ -134,9 +135,11 @@ def pace(study: Study) -> Pace:
         nearest = min(
             rows, key=lambda row: abs(math.log(row["element_size_m"] / study.settings.element_size))
         )
-        return Pace(float(nearest["ns_one_thread"]), source=" (speed from the benchmark)")
-    except (OSError, ValueError, KeyError, TypeError):
-        return Pace(_TYPICAL_NS, source=" (typical speed, not measured on this machine)")
+        if 0.0 < (speed := float(nearest["ns_one_thread"])) < _LARGEST:
+            return Pace(speed, source=" (speed from the benchmark)")
+    except (OSError, ValueError, KeyError, TypeError, OverflowError):
+        pass
+    return Pace(_TYPICAL_NS, source=" (typical speed, not measured on this machine)")
 
 
 def in_time(work: Callable):
@@ -204,10 +207,12 @@ def _stored(path: Path) -> Pace | None:
         require_whole(path)
         with h5py.File(path) as file:
             cost, numerics = json.loads(file.attrs["cost"]), json.loads(file.attrs["numerics"])
-        return Pace(
-            cost["ns_per_element_step"], numerics["element_size"], cost["elements"], cost["steps"]
-        )
-    except (OSError, KeyError, ValueError):
+        names = ("ns_per_element_step", "elements", "steps")
+        ns, elements, steps = (float(cost[name]) for name in names)
+        size = float(numerics["element_size"])
+        whole = all(0.0 < number < _LARGEST for number in (ns, size, elements, steps))
+        return Pace(ns, size, int(elements), int(steps)) if whole else None
+    except Exception:  # that of HDF5 for a foreign file depends on the file
         return None
 
 
@@ -245,8 +250,10 @@ def _surrogate(folder: Path, model: str) -> float:
         try:
             require_whole(path)
             with h5py.File(path) as file:
-                found.append(json.loads(file.attrs["cost"])["wall_s"])
-        except (OSError, KeyError, ValueError):
+                seconds = float(json.loads(file.attrs["cost"])["wall_s"])
+            if 0.0 < seconds < _LARGEST:
+                found.append(seconds)
+        except Exception:  # as in ``_stored``
             pass
     return min(found, default=_TYPICAL_RUNS[model])
 

@@ -21,7 +21,7 @@ from tipoff.studies.calibration import compliance, forecast
 from tipoff.studies.core.progress import Board, say
 from tipoff.studies.core.run import Run
 from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.study import Study, StudyError, read, require_success
+from tipoff.studies.core.study import Study, StudyError, picked, require_success
 
 FILE = "calibration.toml"
 _OF_COMPLIANT = f"calibration-{COMPLIANT}"
@@ -90,10 +90,10 @@ stored = STAGE.stored
 
 def constants(study: Study) -> dict:
     """Constants of the last calibration, which may be out of date. Raises KeyError without one."""
-    found = read(study.path("calibration.json"))
+    found = picked(study.path("calibration.json"), lambda document: dict(document["constants"]))
     if found is None:
         raise KeyError("calibration.json")
-    return found["constants"]
+    return found
 
 
 def named(

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from tipoff import sources
 from tipoff.files import DamageError, content_hash, read_json, write_json
@@ -30,6 +30,7 @@ from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.store import Store
 
 FAILED = ("diverged", "refused")
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True)
@@ -240,7 +241,7 @@ class Study:
         found = read(self.path(f"{name}.json"))
         try:
             return found if found and found["key"] == key(found) else None
-        except (SceneError, OSError, KeyError, TypeError, ValueError):
+        except (SceneError, OSError, KeyError, TypeError, ValueError, AttributeError):
             return None
 
     def _announce(self, name: str, text: str) -> None:
@@ -251,9 +252,15 @@ class Study:
     def whole(self, document: dict, remedy: str) -> bool:
         """Whether every file of a result exists unchanged; prints the name of the first changed
         file with the ``remedy``."""
-        for name, expected in document.get("files", {}).items():
+        listed = document.get("files", {})
+        if not isinstance(listed, dict):
+            return False
+        for name, expected in listed.items():
             path = self.path(name)
-            if not path.is_file():
+            try:
+                if not path.is_file():
+                    return False
+            except ValueError:  # a name that no file has
                 return False
             if _digest(path) != expected:
                 say(f"  {path} has changed since it was written: {remedy}")
@@ -271,6 +278,20 @@ def read(path: Path, remedy: str = "repeat the command that wrote it") -> dict |
     except OSError:
         pass
     return None
+
+
+def picked(path: Path, pick: Callable[[dict], _T]) -> _T | None:
+    """What ``pick`` takes from a result file whose key is not compared, such as one that another
+    version of the program wrote; None where the file is missing, damaged, or lacks it. Prints the
+    latter two."""
+    found = read(path)
+    if found is None:
+        return None
+    try:
+        return pick(found)
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
+        say(f"  {path} was written by another version of the program: repeat the command")
+        return None
 
 
 def require_success(runs: dict[str, Trajectory], purpose: str) -> None:

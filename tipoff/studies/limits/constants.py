@@ -9,7 +9,7 @@ from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.agreement import verdicts
-from tipoff.studies.core.study import Study, read
+from tipoff.studies.core.study import Study, picked
 from tipoff.studies.core.words import counted
 from tipoff.studies.populations.derived import law
 
@@ -53,6 +53,13 @@ class Margin(NamedTuple):
     source: str
 
 
+def _residuals(found: dict) -> list[float]:
+    """Errors (deg/s) of the fitted conditions in the result of a calibration; none where one of them
+    did not settle."""
+    errors = [row["settled_rate_error_deg_s"] for row in found["residuals"].values()]
+    return [] if None in errors else [float(error) for error in errors]
+
+
 def margin(study: Study, model: str) -> Margin:
     """The largest errors on the held-out conditions of ``make compare`` that single runs judge; on
     others the error has an unknown share of the reference's own. Where there is no such condition,
@@ -77,11 +84,8 @@ def margin(study: Study, model: str) -> Margin:
             f"largest of {counted(len(errors), 'held-out condition')}; not judged as curves: "
             f"{len(rows) - len(judged)}; not settled: {len(judged) - len(errors)}",
         )
-    left = [
-        row["settled_rate_error_deg_s"]
-        for row in (read(study.path("calibration.json")) or {}).get("residuals", {}).values()
-    ]
-    if model == COMPLIANT or not left or None in left:
+    left = picked(study.path("calibration.json"), _residuals) or []
+    if model == COMPLIANT or not left:
         if not rows:
             return Margin(None, "not measured (tipoff compare measures it)")
         return Margin(

@@ -1,0 +1,70 @@
+"""Whether the arrays of a rail compliance belong together, as a file gives them."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tipoff.mechanics import drawn_walls
+from tipoff.scenes.effects.thermal import FIELDS
+
+if TYPE_CHECKING:
+    from tipoff.mechanics.rail_compliance import RailCompliance
+
+
+def require(found: "RailCompliance", patterns: int) -> None:
+    """Raises ValueError where types or shapes do not belong together, or a number is not finite;
+    ``patterns`` is the number of those on a face."""
+    _require_dimensions("travel", found.travel, 1)
+    _require_dimensions("rail", found.rail, 1, "iu")
+    _require_dimensions("frequency", found.frequency, 2)
+    stations, faces, modes = found.travel.size, found.rail.size, found.frequency.shape[1]
+    if stations < 2:
+        raise ValueError(f"travel: given {stations} stations, expected at least 2")
+    if not (np.diff(found.travel) > 0.0).all():
+        raise ValueError("travel: given stations out of order, expected rising ones")
+    if not faces or found.rail.min() < 0:
+        raise ValueError(f"rail: given {faces} faces, expected each on a rail of number 0 or more")
+    rails = int(found.rail.max()) + 1
+    expected: dict[str, tuple[int, ...]] = {
+        "flexibility": (stations, faces, patterns, faces, patterns),
+        "half": (faces, 2),
+        "frequency": (rails, modes),
+        "shape": (stations, faces, patterns, modes),
+    }
+    if found.warm is not None:
+        expected["warm"] = (FIELDS, stations, faces, patterns)
+    if found.drawn is not None:
+        _require_dimensions("drawn", found.drawn, 3)
+        expected["drawn"] = (max(len(found.drawn), 2), faces, drawn_walls.ACROSS)
+    for name, shape in expected.items():
+        _require_shape(name, getattr(found, name), shape)
+    if (terms := found.joints) is None:
+        return
+    _require_dimensions("joints.share", terms.share, 2)
+    _require_dimensions("joints.shape", terms.shape, 4)
+    count, shapes = terms.share.shape[1], max(terms.shape.shape[3], modes)
+    for name, shape in {
+        "share": (rails, count),
+        "moved": (stations, faces, patterns, count),
+        "heated": (rails, count, FIELDS),
+        "shape": (stations, faces, patterns, shapes),
+        "stiffness": (rails, shapes, shapes),
+        "joint": (rails, shapes, shapes),
+    }.items():
+        _require_shape(f"joints.{name}", getattr(terms, name), shape)
+
+
+def _require_dimensions(name: str, array: np.ndarray, dimensions: int, kinds: str = "f") -> None:
+    if array.ndim != dimensions or array.dtype.kind not in kinds:
+        raise ValueError(
+            f"{name}: given shape {array.shape} of {array.dtype}, expected finite numbers in "
+            f"{dimensions} dimensions"
+        )
+
+
+def _require_shape(name: str, array: np.ndarray, shape: tuple[int, ...]) -> None:
+    if array.shape != shape or array.dtype.kind != "f" or not np.isfinite(array).all():
+        raise ValueError(
+            f"{name}: given shape {array.shape} of {array.dtype}, expected finite numbers in the "
+            f"shape {shape}"
+        )
