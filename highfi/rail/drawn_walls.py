@@ -17,13 +17,14 @@ import numpy as np
 from tipoff.highfi.contact import surface
 from tipoff.highfi.mesh import facets as geometry
 from tipoff.highfi.mesh.rail_mesh import RailMesh
-from tipoff.highfi.statics.pressure import located
+from tipoff.highfi.statics.pressure import every, located
 from tipoff.mechanics.drawn_walls import ACROSS, grid
 from tipoff.mechanics.model import Faces
 
 SAME = 1e-6  # m: below what a rail is made to, above the rounding of any mesh format
 _SAMPLES = 6  # places across the width of a face, the middles of so many strips
 _TOGETHER = 64  # places along the rail that are located at once; bounds the memory
+_END = 1e-8  # m: nodes so near the end of a piece of wall are on it
 _SINGULAR = (
     1e-6  # of the largest eigenvalue: powers of eta that hardly differ on what wall there is
 )
@@ -103,6 +104,55 @@ def _fitted(x: np.ndarray, found: np.ndarray, eta: np.ndarray) -> Track:
         for column in (*offset.T, gap):
             column[:] = np.interp(places, known, column[known])
     return Track(x, offset, gap, missed)
+
+
+def step(near: np.ndarray, faces: Faces, face: int) -> tuple[float, float]:
+    """Height (m) of the highest step in the wall of facets with nodes ``near`` (m,k,3) m under the
+    track of a face, and its X (m): where facets meet at two heights, or where a piece without wall
+    ends otherwise than the slopes beside it continue."""
+    return max(_meeting(near, faces, face), _over_gaps(near, faces, face))
+
+
+def _meeting(near: np.ndarray, faces: Faces, face: int) -> tuple[float, float]:
+    plane, height = near[:, :, [0, 3 - faces.axis[face]]], away(near, faces, face)
+    control, highest = geometry.hull(plane), (0.0, 0.0)
+    places = np.unique(plane.reshape(-1, 2), axis=0)
+    for first in range(0, len(places), _TOGETHER):
+        part = places[first : first + _TOGETHER]
+        number, facet, weight = every(plane, control, part)
+        values = (weight * height[facet]).sum(axis=1)
+        low, high = np.full(len(part), np.inf), np.full(len(part), -np.inf)
+        np.minimum.at(low, number, values)
+        np.maximum.at(high, number, values)
+        most = int((high - low).argmax())
+        highest = max(highest, (float(high[most] - low[most]), float(part[most, 0])))
+    return highest
+
+
+def _over_gaps(near: np.ndarray, faces: Faces, face: int) -> tuple[float, float]:
+    height, normal = away(near, faces, face), geometry.normals(near)
+    across = near[:, :, 3 - faces.axis[face]]
+    slope = -faces.sign[face] * normal[:, 0] / normal[:, faces.axis[face]]
+    highest = (0.0, 0.0)
+    for before, after in gaps(near):
+        ends = [np.abs(near[:, :, 0] - x) < _END for x in (before, after)]
+        side = np.unique(across[ends[0] | ends[1]])
+        order = [np.argsort(across[end]) for end in ends]
+        first, second = (
+            np.interp(side, across[end][sort], height[end][sort]) for end, sort in zip(ends, order)
+        )
+        beside, rise = slope[(ends[0] | ends[1]).any(axis=1)] * (after - before), second - first
+        apart = max((rise - beside.max()).max(), (beside.min() - rise).max())
+        highest = max(highest, (float(apart), before))
+    return highest
+
+
+def gaps(near: np.ndarray) -> list[tuple[float, float]]:
+    """Pieces (m) along X without any of the facets with nodes ``near`` (m,k,3) m, between others."""
+    low, high = near[:, :, 0].min(axis=1), near[:, :, 0].max(axis=1)
+    order = np.argsort(low)
+    reached, starts = np.maximum.accumulate(high[order])[:-1], low[order][1:]
+    return [(float(a), float(b)) for a, b in zip(reached, starts) if b - a > _END]
 
 
 def offsets(

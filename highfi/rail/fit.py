@@ -1,10 +1,11 @@
 """Checks that the walls of a rail file are those of its scene, and that each solid is held.
 
-The reference takes the walls of a file as they are drawn, and so do the surrogates: draft, bow, steps
+The reference takes the walls of a file as they are drawn, and so do the surrogates: draft, bow, ramps
 and joints are an offset of the wall along the rail (``highfi.rail.drawn_walls``). So the walls of a
 file must end where the scene says, lie under the whole track of every pad face, and have the clearance
 of the scene somewhere along it, to a micrometre. Every facet under the track is checked: none may be
-steeper than ``STEEPEST`` or wave across the face.
+steeper than ``STEEPEST`` or wave across the face, and none may meet another one at a step. A step is
+an edge, which pads strike or fall off, and a potential of penetrations jumps there.
 """
 
 import numpy as np
@@ -201,9 +202,20 @@ def _shape_faults(
     name: str,
     most: float,
 ) -> list[tuple[str, str, str]]:
-    """The steepest place of a wall, and where it deviates by more than ``most`` (m) from a parabola
-    across a face."""
+    """The highest step and the steepest place of a wall, and where it deviates by more than ``most``
+    (m) from a parabola across a face."""
     faults, key = [], f"pads.{faces.pad[face]}"
+    height, x = drawn_walls.step(near, faces, face)
+    if height > SAME:
+        ramp = 1e3 * height / np.tan(np.radians(STEEPEST))
+        faults.append(
+            (
+                key,
+                f"a face {name} whose wall has a step of {1e6 * height:.3g} um at x = {x:.6g} m",
+                f"at most {1e6 * SAME:g} um: contact at an edge is not modelled; draw a ramp of at most "
+                f"{STEEPEST:g} deg, here {ramp:.3g} mm or more along the rail",
+            )
+        )
     cosines = -faces.sign[face] * facets.normals(near)[:, faces.axis[face]]
     slopes = np.degrees(np.arccos(cosines.clip(-1.0, 1.0)))
     if slopes.max() > STEEPEST:

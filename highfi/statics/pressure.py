@@ -74,7 +74,16 @@ def located(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Numbers of the places (q,2) m that lie in a facet, of that facet, and the values of its nodal
     functions there; ``plane`` and ``control`` (m,k,2) m are nodes and control points of the
-    facets."""
+    facets. A place on the border of two facets belongs to the first."""
+    point, facet, values = every(plane, control, place)
+    found, first = np.unique(point, return_index=True)
+    return found, facet[first], values[first]
+
+
+def every(
+    plane: np.ndarray, control: np.ndarray, place: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The same with a place on the border of facets in each of them."""
     slack = geometry.INSIDE * np.ptp(control, axis=1)
     low, high = control.min(axis=1) - slack, control.max(axis=1) + slack
     near = np.flatnonzero(((low < place.max(axis=0)) & (place.min(axis=0) < high)).all(axis=1))
@@ -83,6 +92,4 @@ def located(
     )
     facet = near[facet]
     values, inside = geometry.weights(plane[facet], place[point])
-    # a place on the border of two facets belongs to the first
-    found, first = np.unique(point[inside], return_index=True)
-    return found, facet[inside][first], values[inside][first]
+    return point[inside], facet[inside], values[inside]

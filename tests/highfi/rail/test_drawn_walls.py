@@ -99,3 +99,40 @@ def test_the_clearance_to_enter_does_not_depend_on_the_elements(tmp_path):
             highfi.prepare(scene, highfi.Numerics(element_size=size))
         words.append([fault.expected for fault in caught.value.faults])
     assert words[0] == words[1]
+
+
+def jointed(folder, height, gap=0.0, joint=START + 0.052):
+    """Drafted channels in two pieces that share no nodes: the second is ``height`` (m) nearer to the
+    payload, and the first ends ``gap`` (m) before it."""
+    mesh = channel.build()
+    at = np.flatnonzero(np.abs(mesh.points[:, 0] - joint) < 1e-9)
+    assert at.size  # a layer of elements ends there
+    copy = np.arange(len(mesh.points))
+    copy[at] = len(copy) + np.arange(at.size)
+    mesh.points = np.concatenate([mesh.points, mesh.points[at]])
+    second = np.zeros(len(mesh.points), dtype=bool)
+    for block in mesh.cells:
+        own = mesh.points[block.data][..., 0].mean(axis=1) > joint
+        block.data[own] = copy[block.data[own]]
+        second[block.data[own]] = True
+    mesh.points[at, 0] -= gap
+    x, y, _ = mesh.points.T
+    mesh.points[:, 1] += np.sign(y) * (draft(x, 0.0) - height * second)
+    return from_file(channels(), saved(mesh, folder / "rails.msh"))
+
+
+@pytest.mark.parametrize("gap", [0.0, 2e-4])
+@pytest.mark.parametrize("height", [2e-6, 1e-4, -1e-4])
+def test_a_step_is_refused(tmp_path, height, gap):
+    """Into the way of the pads and out of it: contact at an edge is not modelled, and energy would
+    jump there. A ramp of the height is not refused. Control: nor is a joint without a step."""
+    with pytest.raises(SceneError) as caught:
+        highfi.prepare(jointed(tmp_path, height, gap))
+    words = f"a step of {1e6 * abs(height):.3g} um at x = {START + 0.052 - gap:.6g} m"
+    assert words in str(caught.value)
+    highfi.prepare(jointed(tmp_path, 0.0, gap))
+
+    def ramp(x, z):
+        return draft(x, z) - height * np.clip((x - START - 0.052) / 6e-3, 0.0, 1.0)
+
+    highfi.prepare(drawn(tmp_path, ramp))
