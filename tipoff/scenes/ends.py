@@ -149,6 +149,27 @@ def earliest(scene: Any) -> float:
     return max(exits + SETTLE_DELAY, _burnt(record)) + SETTLE_WINDOW
 
 
+def exit_speed(scene: Any) -> float | None:
+    """Estimate (m/s) of the speed along the rail at the exit, of a payload without friction on a
+    platform that does not turn; None if it never leaves."""
+    record, gain, pull = scene.thrust.record(), _fixed_gain(scene), _pull(scene)
+    left = _exit(scene, record, gain, pull, forwards=False)
+    if not math.isfinite(left):
+        return None
+    return _begun(scene) + gain * thrust_law.impulse(record, left) + pull * left
+
+
+def is_driven_otherwise(scene: Any) -> bool:
+    """Whether anything but the thrust moves the payload along the rail."""
+    return _begun(scene) != 0.0 or _pull(scene) != 0.0
+
+
+def speed_change(scene: Any) -> float:
+    """Change (m/s) of the speed along the rail by the whole thrust, on a platform that does not turn."""
+    record = scene.thrust.record()
+    return _fixed_gain(scene) * thrust_law.impulse(record, thrust_end(record))
+
+
 def is_too_short(scene: Any) -> bool:
     """Whether no run of ``scene`` can settle within its stated duration, whatever friction is."""
     return scene.duration is not None and earliest(scene) > scene.duration * (1.0 + _ROUNDING)
