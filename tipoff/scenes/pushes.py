@@ -16,6 +16,7 @@ import numpy as np
 from tipoff.scenes import ends
 from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.effects.measured import FIT_IMPULSE, MeasuredCurve
+from tipoff.scenes.rounding import at_most, below
 
 _GRAVITY = 9.80665
 FASTEST, SLOWEST = 100.0, 0.05  # m/s
@@ -63,12 +64,12 @@ def _of_size(scene) -> list[str]:
         + f" after {1e3 * ends.way(scene):.4g} mm, {strongest / _GRAVITY:.4g} g at the peak of "
         f"{strongest * scene.payload.mass:.4g} N on {scene.payload.mass:.4g} kg"
     )
-    rocket = scene.thrust.reaction == "exhaust" and strongest <= HARDEST_ROCKET
+    rocket = scene.thrust.reaction == "exhaust" and at_most(strongest, HARDEST_ROCKET)
     judged = (leaves or 0.0) if rocket else speed
-    if judged > FASTEST or strongest > HARDEST:
+    if below(FASTEST, judged) or below(HARDEST, strongest):
         allowed = f"plausible up to {FASTEST:g} m/s and {HARDEST / _GRAVITY:g} g"
         return [f"{keys}: {said}; {allowed}{_meant(scene, speed, strongest, weaker=True)}"]
-    if 0.0 < speed < SLOWEST and not ends.is_driven_otherwise(scene):
+    if speed > 0.0 and below(speed, SLOWEST) and not ends.is_driven_otherwise(scene):
         allowed = f"plausible from {SLOWEST:g} m/s on"
         return [f"{keys}: {said}; {allowed}{_meant(scene, speed, strongest, weaker=False)}"]
     return []
@@ -209,7 +210,7 @@ def _of_fit(table) -> list[str]:
     if fit is None:
         return []
     error, residual = fit.impulse_error, fit.relative_residual
-    if abs(error) <= FIT_IMPULSE and residual <= _RESIDUAL:
+    if at_most(abs(error), FIT_IMPULSE) and at_most(residual, _RESIDUAL):
         return []
     return [
         f'thrust.use: "fit", whose residual is {100.0 * residual:.3g} % and whose impulse differs by '

@@ -45,6 +45,7 @@ from tipoff.scenes.effects.thrust_law import (
     shortest_feature,
 )
 from tipoff.scenes.faults import within
+from tipoff.scenes.rounding import below
 from tipoff.scenes.table import Table, at_least_one, is_absent, limited
 from tipoff.scenes.units import (
     Force,
@@ -283,7 +284,7 @@ class MeasuredTable(_ThrustTable):
         self._curve = without_baseline(read_curve(self.file), self.baseline)
         if self.use == "fit":
             fit = fit_gaussian(self._curve)
-            if abs(fit.impulse_error) > self.fit_impulse_tolerance:
+            if below(self.fit_impulse_tolerance, abs(fit.impulse_error)):
                 raise within(
                     "use",
                     f"'fit', whose impulse after ignition differs by {100.0 * fit.impulse_error:+.3g} % from "
