@@ -182,6 +182,7 @@ def test_limits_that_are_computed():
     assert rounding.at_most(0.1 + 0.2, 0.3) and not rounding.below(0.3, 0.1 + 0.2)
     assert rounding.below(0.3, 0.3000001) and not rounding.at_most(0.3000001, 0.3)
     assert rounding.at_most(1.0, math.inf) and rounding.below(-math.inf, 0.0)
+    assert rounding.below(1.0, math.inf) and not rounding.at_most(math.inf, 1.0)
     assert rounding.on(0.1 + 0.2, (0.3, 1.0)) == 0.3 and rounding.on(0.31, (0.3, 1.0)) == 0.31
     # a difference of large numbers
     assert rounding.at_most((1.0 + 0.1) - 1.0, 0.1, scale=1.0)

@@ -5,13 +5,16 @@ A value that lies on a limit may have been converted from another unit or comput
 scene is accepted or refused alike in all units.
 """
 
+import math
+
 ROUNDING = 1e-12  # relative: thousands of operations, and far below what is made or measured
 
 
 def at_most(value: float, limit: float, scale: float = 0.0) -> bool:
     """Whether ``value <= limit`` up to rounding. ``scale`` is the largest magnitude from which either
     was computed, where that is larger than both, as of a difference."""
-    return value <= limit + ROUNDING * max(abs(value), abs(limit), abs(scale))
+    slack = ROUNDING * max(abs(value), abs(limit), abs(scale))
+    return value <= (limit + slack if math.isfinite(slack) else limit)
 
 
 def below(value: float, limit: float, scale: float = 0.0) -> bool:

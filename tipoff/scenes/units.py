@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypedDict, Unpack
 
 from pydantic import BeforeValidator, Field, ValidationInfo
 
-from tipoff.scenes import rounding
+from tipoff.scenes.rounding import on
 
 if TYPE_CHECKING:
     import pint
@@ -172,7 +172,7 @@ def quantity(unit: str, **bounds: Unpack[Bounds]) -> Any:
 
     def convert(value: Any, info: ValidationInfo) -> float:
         bare = bool(info.context and info.context.get("bare_numbers_are_si"))
-        return sized(rounding.on(parse(value, unit, bare), limits), unit, bounds.get("gt") == 0.0)
+        return sized(on(parse(value, unit, bare), limits), unit, bounds.get("gt") == 0.0)
 
     return Annotated[
         float, BeforeValidator(convert), Field(**bounds, json_schema_extra={"unit": unit})
