@@ -26,7 +26,7 @@ COLUMNS = {
 }
 # s; a pad contact lasts milliseconds, and the settled window needs several samples
 LONGEST_STEP = 0.5 * SETTLE_WINDOW
-_ROUNDING = 1e-9  # s; a record as long as the window is accepted
+_ROUNDING = 1e-9  # s; instants are decimal digits of a file, in any unit
 
 
 class Curves(NamedTuple):
@@ -114,11 +114,11 @@ def _time_faults(source: str, time: np.ndarray, settled_from: float | None) -> l
         found.append(
             (f"{_ms(time[back + 1])} after {_ms(time[back])}", "times that rise from line to line")
         )
-    if not 0.0 <= time[0] <= LONGEST_STEP:
+    if not -_ROUNDING <= time[0] <= LONGEST_STEP + _ROUNDING:
         found.append(
             (f"{_ms(time[0])} first", f"time since ignition, from 0 to {_ms(LONGEST_STEP)} on")
         )
-    if steps[gap] > LONGEST_STEP:
+    if steps[gap] > LONGEST_STEP + _ROUNDING:
         found.append(
             (
                 f"a gap from {_ms(time[gap])} to {_ms(time[gap + 1])}",
@@ -132,7 +132,9 @@ def _time_faults(source: str, time: np.ndarray, settled_from: float | None) -> l
                 f"at least the settled window of {_ms(SETTLE_WINDOW)}",
             )
         )
-    elif settled_from is not None and not time[0] <= settled_from <= latest + _ROUNDING:
+    elif settled_from is not None and not (
+        time[0] - _ROUNDING <= settled_from <= latest + _ROUNDING
+    ):
         found.append(
             (
                 f"settled from {_ms(settled_from)}",

@@ -115,11 +115,11 @@ def _check(geometry: LRailGeometry, element_size: float) -> None:
     if not 0.0 < element_size:
         raise ValueError(f"element_size must be positive, got {element_size!r}")
     if (
-        not 0.0 < geometry.mount_width <= geometry.leg
+        not 0.0 < geometry.mount_width <= geometry.leg + _TOUCH
         or not 0.0 < geometry.thickness < geometry.leg
     ):
         raise ValueError(f"need 0 < thickness < leg and 0 < mount_width <= leg, got {geometry}")
-    if any(right < left for left, right in itertools.pairwise(borders)) or length <= 0.0:
+    if any(right < left - _TOUCH for left, right in itertools.pairwise(borders)) or length <= 0.0:
         raise ValueError(
             f"mount_spans must be in order and inside the length {length:g} m, got "
             f"{geometry.mount_spans}"

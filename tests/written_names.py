@@ -39,4 +39,5 @@ RUN_ROW = {
     "angular_momentum_error",
     "settled",
     "trajectory",
+    "thrust",
 }

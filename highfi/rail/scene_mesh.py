@@ -88,6 +88,6 @@ def _l_section(scene: Scene, rail: SectionTable) -> l_rail.LRailGeometry:
         rail.end,
         y + clearance,
         z + clearance,
-        tuple((span.start, span.end) for span in rail.mounts),
+        tuple(sorted((span.start, span.end) for span in rail.mounts)),
         rail.mount_width,
     )

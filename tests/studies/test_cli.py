@@ -7,15 +7,19 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from tests.studies.synthetic import flight
 from tests.written_names import RUN_ROW
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.scenes.scene import CATALOG
+from tipoff.scenes.scene import CATALOG, load
 from tipoff.studies.cli import app, flowed
 from tipoff.studies.core import store as store_module
+from tipoff.studies.report import assembly
+from tipoff.studies.report.page import Page
+from tipoff.studies.runs.figures import Runs
 
 ROOT = Path(__file__).resolve().parents[2]
 STAGES = (
@@ -197,7 +201,45 @@ def test_implausible_value_is_warned_about_and_still_runs(tmp_path, monkeypatch)
         tmp_path,
     )
     assert result.exit_code == 0
-    assert "rail.material.density" in result.stderr
+    assert (
+        result.stderr.count("implausible: rail.material.youngs_modulus, rail.material.density") == 1
+    )
+
+
+def test_an_implausible_thrust_is_said_once_stored_and_on_the_page(tmp_path, monkeypatch):
+    """A load cell that reads 40 N without thrust, of 36 kN for 1.5 ms over 3 s. Control: the baseline."""
+    _stub(monkeypatch)
+    monkeypatch.setattr("tipoff.studies.report.page.to_files", lambda *_: [])
+    time = np.concatenate([np.linspace(0.0, 2e-2, 201), np.linspace(3e-2, 3.0, 298)])
+    force = 36e3 * np.exp(-0.5 * ((time - 1.2e-2) / 1.0e-3) ** 2) + 40.0
+    rows = "".join(f"{t!r},{f!r}\n" for t, f in zip(time.tolist(), force.tolist()))
+    (tmp_path / "thrust.csv").write_text("time_s,force_N\n" + rows)
+    own = tmp_path / "own.toml"
+    thrust = 'kind = "measured"\nfile = "thrust.csv"\n'
+    text = 'extends = "tiny"\nname = "own"\nduration = "3100 ms"\n[thrust]\n' + thrust
+    own.write_text(text)
+    asked = ["--scene", own, "--out", tmp_path, "--condition", "phi15"]
+    said = "implausible: thrust.baseline: the force does not return to zero: 40 N"
+    for command in (["run", "--model", "finite-elements"], ["highfi"]):
+        found = call(*command, *asked, "--json")
+        assert " ".join(found.stderr.split()).count(said) == 1, found.stderr
+        (words,) = [w for w in json.loads(found.stdout)["implausible"] if "baseline" in w]
+        assert "this adds 120 N s" in words
+    stored = json.loads((tmp_path / "own" / "highfi.json").read_text())
+    assert words in stored["implausible"]
+    acted = stored["conditions"][0]["thrust"]
+    assert acted["impulse_requested_Ns"] == pytest.approx(np.trapezoid(force, time), rel=1e-12)
+    shown = call("run", "--model", "finite-elements", *asked).stdout
+    assert f"impulse requested {np.trapezoid(force, time):.7g} N s" in shown
+    assert f"relative residual {acted['fit_relative_residual']:.3g}" in shown
+    short = call("highfi", *asked, "--set", "duration=30 ms")  # the offset counts as thrust
+    assert short.exit_code == 2 and said in " ".join(short.stderr.split())
+    html = assembly.render(Page(load(str(own)), tmp_path, {}, Runs({}, {}), {}))
+    assert html.count("Implausible: thrust.baseline") == 1
+    own.write_text(text + 'baseline = ["40 N", "40 N"]\n')
+    found = call("highfi", *asked, "--json")
+    assert "thrust.baseline" not in found.stderr
+    assert json.loads(found.stdout)["implausible"] == []
 
 
 def test_catalogue_is_listed():

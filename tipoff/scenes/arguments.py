@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from tipoff.scenes import units
 from tipoff.scenes.faults import Fault, SceneError, close
+from tipoff.scenes.rounding import below
 from tipoff.scenes.scene import Scene, load
 
 _T = TypeVar("_T")
@@ -55,7 +56,7 @@ def length(name: str, given: Any) -> float:
         value = units.parse(given, "m", bare_numbers_are_si=True)
     except ValueError as fault:
         raise SceneError([Fault("arguments", name, repr(given), str(fault))]) from None
-    if not units.FINEST_ELEMENTS <= value <= units.COARSEST_ELEMENTS:
+    if below(value, units.FINEST_ELEMENTS) or below(units.COARSEST_ELEMENTS, value):
         between = f"{units.FINEST_ELEMENTS:g} to {units.COARSEST_ELEMENTS:g} m"
         raise SceneError([Fault("arguments", name, repr(given), between)])
     return value

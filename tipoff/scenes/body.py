@@ -3,6 +3,7 @@
 import numpy as np
 from pydantic import model_validator
 
+from tipoff.scenes.rounding import below
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import Inertia, PositiveInertia
 
@@ -30,7 +31,7 @@ class InertiaTensor(Table):
         given = f"its principal moments are {', '.join(f'{each:.6g}' for each in moments)} kg m2"
         if moments[0] <= 0.0:
             raise ValueError(f"a positive definite inertia tensor ({given})")
-        if moments[0] + moments[1] < moments[2] * (1.0 - 1e-12):
+        if below(moments[0] + moments[1], moments[2]):
             raise ValueError(
                 f"principal moments that satisfy the triangle inequality I1 + I2 >= I3 ({given})"
             )

@@ -16,6 +16,7 @@ import numpy as np
 from pydantic import BeforeValidator, ValidationInfo, field_validator
 from scipy.special import exp2, log1p, ndtr, ndtri
 
+from tipoff.scenes.rounding import at_most
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import parse
 
@@ -46,7 +47,7 @@ class _Limits(Table):
     @field_validator("high")
     @classmethod
     def _above_low(cls, value: float, info: ValidationInfo) -> float:
-        if value <= info.data.get("low", -np.inf):
+        if "low" in info.data and at_most(value, info.data["low"]):
             raise ValueError("more than low")
         return value
 

@@ -21,6 +21,7 @@ import numpy as np
 from tipoff.scenes.body import tensor
 from tipoff.scenes.effects import registry, thrust_law
 from tipoff.scenes.faults import within
+from tipoff.scenes.rounding import at_most, below
 from tipoff.scenes.tables import MOST_SAMPLES, OutputTable
 from tipoff.scenes.units import LONGEST
 
@@ -34,7 +35,6 @@ _UNIT = 1e-3  # s
 _REACH = 8.0  # widths of a Gaussian beyond which it is below 2e-14 of its peak
 _MARGIN = 1.25  # of the expected end: friction delays the exit
 _POINTS = 4001  # of the thrust
-_ROUNDING = 1e-12
 
 
 class Timed:
@@ -91,10 +91,10 @@ def burns_too_long(scene: Any) -> float | None:
     if scene.duration is not None:
         return None
     record, most = scene.thrust.record(), longest(scene)
-    if thrust_end(record) + SETTLE_WINDOW <= most:
+    if at_most(thrust_end(record) + SETTLE_WINDOW, most):
         return None
     needed = _burnt(record) + SETTLE_WINDOW
-    return needed if needed > most else None
+    return needed if below(most, needed) else None
 
 
 def require(tables: dict[str, Any], output: OutputTable) -> None:
@@ -149,9 +149,30 @@ def earliest(scene: Any) -> float:
     return max(exits + SETTLE_DELAY, _burnt(record)) + SETTLE_WINDOW
 
 
+def exit_speed(scene: Any) -> float | None:
+    """Estimate (m/s) of the speed along the rail at the exit, of a payload without friction on a
+    platform that does not turn; None if it never leaves."""
+    record, gain, pull = scene.thrust.record(), _fixed_gain(scene), _pull(scene)
+    left = _exit(scene, record, gain, pull, forwards=False)
+    if not math.isfinite(left):
+        return None
+    return _begun(scene) + gain * thrust_law.impulse(record, left) + pull * left
+
+
+def is_driven_otherwise(scene: Any) -> bool:
+    """Whether anything but the thrust moves the payload along the rail."""
+    return _begun(scene) != 0.0 or _pull(scene) != 0.0
+
+
+def speed_change(scene: Any) -> float:
+    """Change (m/s) of the speed along the rail by the whole thrust, on a platform that does not turn."""
+    record = scene.thrust.record()
+    return _fixed_gain(scene) * thrust_law.impulse(record, thrust_end(record))
+
+
 def is_too_short(scene: Any) -> bool:
     """Whether no run of ``scene`` can settle within its stated duration, whatever friction is."""
-    return scene.duration is not None and earliest(scene) > scene.duration * (1.0 + _ROUNDING)
+    return scene.duration is not None and below(scene.duration, earliest(scene))
 
 
 def way(scene: Any) -> float:

@@ -12,6 +12,8 @@ import math
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
+from tipoff.scenes.rounding import at_most, below
+
 
 class Range(NamedTuple):
     """Least and largest plausible value, both in the SI ``unit``."""
@@ -42,7 +44,6 @@ RANGES = {
 # a twentieth of a pad of the catalogue.
 CLEARANCE = 0.1
 TURN = math.radians(0.5)  # five times the tilt of the thrust in the catalogue
-_SLACK = 1e-9  # relative: a value on its bound may have been converted from another unit
 
 
 def warnings(scene) -> list[str]:
@@ -51,7 +52,7 @@ def warnings(scene) -> list[str]:
         f"{key}: {value:.4g}{_unit(own)}, plausible {own.least:g} to {own.most:g}{_unit(own)}"
         for key, own in RANGES.items()
         for value in _values(scene, key)
-        if not own.least * (1.0 - _SLACK) <= value <= own.most * (1.0 + _SLACK)
+        if below(value, own.least) or below(own.most, value)
     ]
     return found + (_of_clearance(scene) + _of_turning(scene) if scene.contact is not None else [])
 
@@ -73,7 +74,7 @@ def _of_clearance(scene) -> list[str]:
     """Clearances that are large beside a pad. The widest of both axes counts."""
     widest = max(scene.contact.gaps()[1:])
     most = CLEARANCE * min(min(pad.length, pad.width) for pad in scene.pads)
-    if widest <= most * (1.0 + _SLACK):
+    if at_most(widest, most):
         return []
     return [
         f"contact.clearance, pads: {1e3 * widest:.4g} mm, plausible up to {1e3 * most:.4g} mm, a "
@@ -94,7 +95,7 @@ def _of_turning(scene) -> list[str]:
             continue
         ends = [pad.position[0] + side * pad.length for pad in pads for side in (-0.5, 0.5)]
         turn = 2.0 * clearance / (max(ends) - min(ends))
-        if turn > TURN * (1.0 + _SLACK):
+        if below(TURN, turn):
             found.append(
                 f"pads, contact.clearance: along {axis} the walls allow the payload to turn "
                 f"by {math.degrees(turn):.3g} deg, plausible up to {math.degrees(TURN):g} deg; "

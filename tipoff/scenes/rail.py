@@ -29,6 +29,7 @@ from pydantic import (
 from tipoff.files import open_input
 from tipoff.scenes.effects.mount_stiffness import MountStiffness, MountStiffnessTable
 from tipoff.scenes.effects.structural_damping import DampingTable
+from tipoff.scenes.rounding import below
 from tipoff.scenes.table import Table, at_least_one, is_absent, limited
 from tipoff.scenes.units import (
     SMALLEST_DIMENSION,
@@ -47,7 +48,8 @@ SOLIDS = (".step", ".stp", ".iges", ".igs", ".brep")
 
 
 def _beyond_start(end: float, info: ValidationInfo) -> float:
-    if end < info.data.get("start", -math.inf) + SMALLEST_DIMENSION:
+    start = info.data.get("start", -math.inf)
+    if below(end, start + SMALLEST_DIMENSION, start if math.isfinite(start) else 0.0):
         raise ValueError(f"an end beyond start, by {SMALLEST_DIMENSION:g} m or more")
     return end
 
@@ -129,18 +131,19 @@ class SectionTable(_RailTable):
     def _within_leg(cls, value: float, info: ValidationInfo):
         leg = info.data.get("leg", math.inf)
         free = SMALLEST_DIMENSION if info.field_name == "thickness" else 0.0
-        if value > leg - free:
+        if below(leg - free, value, leg if math.isfinite(leg) else 0.0):
             raise ValueError(f"less than the leg, {leg:g} m")
         return value
 
     @field_validator("mounts")
     @classmethod
     def _apart_on_the_rail(cls, mounts: tuple[Span, ...], info: ValidationInfo):
-        length = info.data.get("end", math.inf) - info.data.get("start", 0.0)
-        if any(span.end > length + 1e-12 for span in mounts):
+        start, end = info.data.get("start", 0.0), info.data.get("end", math.inf)
+        length, scale = end - start, max(abs(start), abs(end)) if math.isfinite(end) else 0.0
+        if any(below(length, span.end, scale) for span in mounts):
             raise ValueError(f"spans that lie on the rail, which is {length:g} m long")
         inward = sorted(mounts, key=lambda span: span.start)
-        if any(after.start < before.end for before, after in itertools.pairwise(inward)):
+        if any(below(after.start, before.end) for before, after in itertools.pairwise(inward)):
             raise ValueError("spans that do not overlap")
         return mounts
 
@@ -219,7 +222,7 @@ class BoxTable(Table):
     @field_validator("high")
     @classmethod
     def _above(cls, high, info: ValidationInfo):
-        if any(above < below for below, above in zip(info.data.get("low", high), high)):
+        if any(below(above, least) for least, above in zip(info.data.get("low", high), high)):
             raise ValueError("a corner whose coordinates are at least those of low")
         return high
 

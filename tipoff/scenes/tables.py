@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, field_validator
 
 from tipoff.scenes.body import InertiaTensor
+from tipoff.scenes.rounding import ROUNDING
 from tipoff.scenes.table import Table, at_least_one, limited
 from tipoff.scenes.units import (
     Length,
@@ -18,7 +19,6 @@ from tipoff.scenes.units import (
 )
 
 MOST_SAMPLES = 1_000_000  # after ignition: a gigabyte of curves
-_ROUNDING = 1e-12  # relative: a last sample at the end of the scene is one
 
 _Names = Annotated[tuple[str, ...], limited]
 Normal = Literal["+y", "-y", "+z", "-z"]
@@ -75,12 +75,12 @@ class OutputTable(Table):
     def fits(self, duration: float) -> bool:
         """Whether a scene that lasts ``duration`` (s) has at least one sample after ignition, and
         no more than MOST_SAMPLES."""
-        return 1 <= duration / self.interval * (1.0 + _ROUNDING) < MOST_SAMPLES + 1
+        return 1 <= duration / self.interval * (1.0 + ROUNDING) < MOST_SAMPLES + 1
 
     def last(self, duration: float) -> int:
         """Number of the last sample of a scene that lasts ``duration`` (s), the one at ignition
         being number 0."""
-        return int(duration / self.interval * (1.0 + _ROUNDING))
+        return int(duration / self.interval * (1.0 + ROUNDING))
 
 
 class AgreementTable(Table):

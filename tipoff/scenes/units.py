@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Annotated, Any, TypedDict, Unpack
 
 from pydantic import BeforeValidator, Field, ValidationInfo
 
+from tipoff.scenes.rounding import on
+
 if TYPE_CHECKING:
     import pint
 
@@ -164,11 +166,13 @@ class Bounds(TypedDict, total=False):
 
 def quantity(unit: str, **bounds: Unpack[Bounds]) -> Any:
     """Pydantic type of a quantity held in ``unit``, with bounds as in ``pydantic.Field`` (gt, ge,
-    lt, le) in that unit."""
+    lt, le) in that unit. A value that is on a bound up to rounding becomes the bound."""
+
+    limits = tuple(limit for limit in bounds.values() if isinstance(limit, float) and limit)
 
     def convert(value: Any, info: ValidationInfo) -> float:
         bare = bool(info.context and info.context.get("bare_numbers_are_si"))
-        return sized(parse(value, unit, bare), unit, bounds.get("gt") == 0.0)
+        return sized(on(parse(value, unit, bare), limits), unit, bounds.get("gt") == 0.0)
 
     return Annotated[
         float, BeforeValidator(convert), Field(**bounds, json_schema_extra={"unit": unit})

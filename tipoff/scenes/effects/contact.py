@@ -30,6 +30,7 @@ from pydantic import Field, ValidationInfo, field_validator
 
 from tipoff.kernels.jit import njit
 from tipoff.scenes.effects.effect import Effect
+from tipoff.scenes.rounding import at_most
 from tipoff.scenes.table import Table, is_absent
 from tipoff.scenes.units import (
     ContactDamping,
@@ -107,9 +108,9 @@ class _ContactTable(Table):
         """Overrides (SI) of a scene for ``change`` (m) more clearance, "plus", and for less,
         "minus"; without the latter where none would be left."""
         return {
-            name: self.widened(step)
+            name: {key: max(gap, 0.0) for key, gap in self.widened(step).items()}
             for name, step in (("plus", change), ("minus", -change))
-            if self.narrowest() + step >= 0.0
+            if at_most(-step, self.narrowest())
         }
 
     def series_stiffness(self) -> float:

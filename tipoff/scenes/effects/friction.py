@@ -20,6 +20,7 @@ from tipoff.kernels.jit import njit
 from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.effects.sticking import StickingTable
 from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.rounding import at_most
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import NonNegativeNumber, PositiveVelocity
 
@@ -44,7 +45,7 @@ class TwoStepTable(Table):
     @field_validator("dynamic_speed")
     @classmethod
     def _speeds_in_order(cls, dynamic_speed: float, info: ValidationInfo):
-        if dynamic_speed <= info.data.get("static_speed", 0.0):
+        if at_most(dynamic_speed, info.data.get("static_speed", 0.0)):
             raise ValueError("a speed above static_speed")
         return dynamic_speed
 

@@ -70,6 +70,16 @@ def read_curve(path: str | Path) -> MeasuredCurve:
     return MeasuredCurve(time, force)
 
 
+def without_baseline(curve: MeasuredCurve, baseline: tuple[float, float] | None) -> MeasuredCurve:
+    """The curve less the straight line from the first to the last of the ``baseline`` (N), which are
+    readings without thrust at the first and at the last time."""
+    if baseline is None:
+        return curve
+    share = (curve.time - curve.time[0]) / (curve.time[-1] - curve.time[0])
+    line = baseline[0] + (baseline[1] - baseline[0]) * share
+    return MeasuredCurve(curve.time, curve.force - line)
+
+
 def fit_gaussian(curve: MeasuredCurve) -> GaussianFit:
     """Least-squares Gaussian through a measured curve, started from its moments. Raises ValueError
     where none fits."""

@@ -15,6 +15,7 @@ from typing import Literal, NamedTuple
 
 from pydantic import ValidationInfo, field_validator
 
+from tipoff.scenes.rounding import below
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import CaptureSpeed, ContactDamping, NonNegativeNumber, Stiffness
 
@@ -39,7 +40,7 @@ class StickingTable(Table):
     @field_validator("dynamic")
     @classmethod
     def _not_above_static(cls, dynamic: float, info: ValidationInfo):
-        if dynamic > info.data.get("static", dynamic):
+        if below(info.data.get("static", dynamic), dynamic):
             raise ValueError("at most static; otherwise a face that slips would stick at once")
         return dynamic
 

@@ -12,11 +12,9 @@ from typing import NamedTuple
 from pydantic import ValidationInfo, field_validator
 
 from tipoff.scenes.effects.effect import Effect
+from tipoff.scenes.rounding import below
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import DampingRatio, Frequency
-
-_ROUNDING = 1e-12  # of a bound: a ratio that lies on it may have been computed
-
 
 EFFECT = Effect(
     "rail.damping",
@@ -49,7 +47,7 @@ class DampingTable(Table):
     @field_validator("frequencies")
     @classmethod
     def _ascending(cls, frequencies):
-        if not frequencies[0] < frequencies[1]:
+        if not below(*frequencies):
             raise ValueError("two different frequencies, the lower one first")
         return frequencies
 
@@ -59,7 +57,7 @@ class DampingTable(Table):
         first, second = info.data.get("frequencies", (0.0, math.inf))
         quotient = second / first if first > 0.0 else math.inf
         low, high = ratios[0] / quotient, min(quotient * ratios[0], 1.0) if ratios[0] > 0.0 else 0.0
-        if not low * (1.0 - _ROUNDING) <= ratios[1] <= high * (1.0 + _ROUNDING):
+        if below(ratios[1], low) or below(high, ratios[1]):
             raise ValueError(
                 f"a second ratio from {low:.6g} to {high:.6g}, the range for these frequencies "
                 f"and a first ratio of {ratios[0]:g}"

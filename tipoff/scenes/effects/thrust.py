@@ -27,6 +27,7 @@ from tipoff.scenes.effects.measured import (
     MeasuredCurve,
     fit_gaussian,
     read_curve,
+    without_baseline,
 )
 from tipoff.scenes.effects.thrust_law import (
     ROOT_TWO_PI,
@@ -44,7 +45,8 @@ from tipoff.scenes.effects.thrust_law import (
     shortest_feature,
 )
 from tipoff.scenes.faults import within
-from tipoff.scenes.table import Table, at_least_one, limited
+from tipoff.scenes.rounding import below
+from tipoff.scenes.table import Table, at_least_one, is_absent, limited
 from tipoff.scenes.units import (
     Force,
     Impulse,
@@ -266,6 +268,9 @@ class MeasuredTable(_ThrustTable):
     use: Literal["curve", "fit"] = "curve"
     #: Largest relative error of the impulse of the fit, with use = "fit".
     fit_impulse_tolerance: NonNegativeNumber = FIT_IMPULSE
+    #: Readings of the load cell without thrust, at the first and at the last point. The straight
+    #: line between them is subtracted.
+    baseline: tuple[Force, Force] | None = Field(None, exclude_if=is_absent)
     _curve: MeasuredCurve = PrivateAttr()
 
     @field_validator("file")
@@ -276,10 +281,10 @@ class MeasuredTable(_ThrustTable):
 
     @model_validator(mode="after")
     def _usable(self):
-        self._curve = read_curve(self.file)
+        self._curve = without_baseline(read_curve(self.file), self.baseline)
         if self.use == "fit":
             fit = fit_gaussian(self._curve)
-            if abs(fit.impulse_error) > self.fit_impulse_tolerance:
+            if below(self.fit_impulse_tolerance, abs(fit.impulse_error)):
                 raise within(
                     "use",
                     f"'fit', whose impulse after ignition differs by {100.0 * fit.impulse_error:+.3g} % from "
@@ -298,7 +303,7 @@ class MeasuredTable(_ThrustTable):
             return None
 
     def curve(self) -> MeasuredCurve:
-        """Times (s) and forces (N) as they were measured."""
+        """Times (s) and forces (N) that were measured, without the baseline."""
         return self._curve
 
     def points(self) -> list[list[float]]:
@@ -320,7 +325,7 @@ class MeasuredTable(_ThrustTable):
         return Thrust(None, Curve(self._curve.time, self._curve.force))
 
     def requested(self) -> float:
-        """Impulse (N s) of the measured curve."""
+        """Impulse (N s) of the measured curve, without the baseline."""
         return float(np.trapezoid(self._curve.force, self._curve.time))
 
     def usage(self) -> str:

@@ -63,6 +63,7 @@ def _beginning_with(incomplete: str) -> list[Path]:
 
 def in_millimetres(text: str) -> float:
     """A length with its unit, or a number of millimetres, in mm. Raises typer.BadParameter."""
+    from tipoff.scenes.rounding import below
     from tipoff.scenes.units import COARSEST_ELEMENTS, FINEST_ELEMENTS, to_si
 
     try:
@@ -75,7 +76,7 @@ def in_millimetres(text: str) -> float:
                 f'given {text!r}, expected a length, for example "4 mm", or a number of mm'
             ) from None
     least, most = 1e3 * FINEST_ELEMENTS, 1e3 * COARSEST_ELEMENTS
-    if not least <= value <= most:
+    if below(value, least) or below(most, value):
         raise typer.BadParameter(
             f"given {text!r}, expected at least {least:g} mm, at most {most:g}"
         )

@@ -72,7 +72,6 @@ def study_of(
     # a bad override or an unknown condition, before anything runs
     asked = {"source": "--condition", "key": "name"} if names else {}
     _of_option(asked, lambda: study.conditions)
-    _require_time(study)
     doubtful = plausibility.of_all_conditions(found)
     if doubtful and strict:
         raise SceneError(
@@ -83,6 +82,7 @@ def study_of(
         )
     for warning in doubtful:
         say(f"implausible: {warning}")
+    _require_time(study)  # after the warnings, which may say why a thrust lasts too long
     replaced = _replaced(changes, study)
     for warning in [*reading.replaced_by_conditions(scene), *replaced]:
         say(f"warning: {warning}")

@@ -1,10 +1,10 @@
 """One scene under study: its conditions, folder, stored runs, and stages that are skipped when
 nothing changed.
 
-A stage writes ``out/<scene>/<stage>.json`` with the ``key`` of everything it depends on and the
-digests of the ``files`` it wrote. It is made again if the key differs, if one of its files is
-missing or changed, or if the result does not match its own digest. Readers verify all files, so a
-stage never uses a damaged one.
+A stage writes ``out/<scene>/<stage>.json`` with the ``key`` of everything it depends on, the
+digests of the ``files`` it wrote, and the warnings of the scene as ``implausible``. It is made again
+if the key differs, if one of its files is missing or changed, or if the result does not match its own
+digest. Readers verify all files, so a stage never uses a damaged one.
 """
 
 import hashlib
@@ -18,6 +18,7 @@ from tipoff import sources
 from tipoff.files import DamageError, content_hash, read_json, write_json
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes import plausibility
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import SectionTable
@@ -230,6 +231,7 @@ class Study:
                 "scene": self.scene.name,
                 "key": key,
                 "quantities": words.QUANTITIES,
+                "implausible": plausibility.of_all_conditions(self.scene),
                 **result,
                 "files": {self.relative(file): _digest(file) for file in files},
             },

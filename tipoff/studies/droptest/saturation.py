@@ -1,24 +1,40 @@
-"""Where a sensor or its logger is saturated. A saturated channel repeats its largest value.
+"""Where a sensor or its logger is saturated. A saturated channel repeats its largest value, up to a step
+or two of its resolution where noise is added after the clipping.
 
-A run of L equal extreme samples is no saturation if the sensor often repeats a value by chance. Of n
-samples, of which the share p equals the one before, n p^(L-1) such runs are expected. So a quiet
-sensor, whose noise is below its resolution, may repeat its extreme value; within ``_NEAR`` of the
-range it may not. The level need not be the range: offsets, calibration and the logger move it, and
-not by the same amount on both sides.
+The level need not be the range: offsets, calibration and the logger move it, and not by the same amount
+on both sides. Of the samples at the level, the top, three things are asked:
+
+* Has the signal a corner there? At a smooth maximum the number of samples within k widths of the level
+  grows with sqrt(k), so that twice as many lie just below it, within eight, as at it. A clipped
+  signal has few of them.
+* Is the level near the range? Then three samples in a row are enough.
+* Elsewhere, is it no chance? If the share p of samples equals the one before, a run of L equal ones among
+  the k at the top has the probability k p^(L-1). A quiet sensor, whose noise is below its resolution,
+  may rest at one value. A vibration may be clipped for one or two samples of each cycle; then many samples
+  are equal to the largest, and hardly any is just below.
+
+Samples that differ by a step or two are one level within a tenth of the range only: far from the range, a
+settled rate with less noise than before looks the same.
 """
 
 import numpy as np
 
 _AT = 1e-3  # of the range: what a low-pass after the clipping leaves below it
-_NEAR, _RUN = 0.02, 3  # of the range, and equal samples there
+_NEAR, _NEAR_NOISY, _RUN = 0.02, 0.005, 3  # of the range, and samples in a row there
+_LIKELY = 0.1  # of the range: a level with noise on it is looked for within
+_NOISY = (2.5, 4.5)  # steps between the smallest and the largest sample of a level with noise on it
 _LEAST, _CHANCE = 4, 1e-6  # equal samples elsewhere, and how many such runs chance may give
+_MANY, _RARE = 8, 8  # equal largest samples, and how many of them for each just below
+_CORNER = 0.5  # samples just below a level for each at it: more, and it is a smooth maximum
+_BELOW = 8.0  # widths of a level, or steps, that are just below it
 _QUIET = 1.5  # steps between samples of a sensor that may rest at one value
 _EQUAL = 1e-6  # relative: a value in single precision, or converted from another unit
 
 
 def saturated(values: np.ndarray, largest: float, resolution: float = 0.0) -> np.ndarray:
     """Samples (n,k) of ``values`` (n,k) of a sensor with the range ``largest`` that are saturated;
-    ``resolution`` is the step of the sensor, all in one unit."""
+    ``resolution`` is the step of the sensor, all in one unit. Without it the step is the smallest
+    difference of two samples."""
     found = np.abs(values) >= largest * (1.0 - _AT)
     for axis, column in enumerate(values.T):
         for sign in (1.0, -1.0):
@@ -29,21 +45,52 @@ def saturated(values: np.ndarray, largest: float, resolution: float = 0.0) -> np
 def _plateau(column: np.ndarray, largest: float, resolution: float) -> np.ndarray:
     """Where (n,) a column (n,) is at its maximum, if that is a level of saturation."""
     level = np.nanmax(column, initial=-np.inf)
-    same = max(0.5 * resolution, _EQUAL * abs(level))
-    top = column >= level - same
+    equal = _EQUAL * abs(level)
+    steps = np.abs(np.diff(column))
+    step = max(
+        resolution, equal, steps[steps > equal].min(initial=np.inf) if not resolution else 0.0
+    )
+    if not np.isfinite(step):
+        step = equal
+    same = max(0.5 * resolution, equal)
+    for width in (same, *(factor * step for factor in _NOISY)):
+        top = column >= level - width
+        is_noisy = width > same
+        if _has_corner(column, level, top, max(width, step)) and (
+            _is_near(level, largest, top, is_noisy)
+            or _is_no_chance(
+                column, top, step, width, is_noisy and level < (1.0 - _LIKELY) * largest
+            )
+        ):
+            return top
+    return np.zeros(column.size, dtype=bool)
+
+
+def _has_corner(column: np.ndarray, level: float, top: np.ndarray, width: float) -> bool:
+    """Whether few samples are just below a level beside those at it."""
+    just_below = ~top & (column >= level - (1.0 + _BELOW) * width)
+    return bool(just_below.sum() < _CORNER * top.sum())
+
+
+def _is_near(level: float, largest: float, top: np.ndarray, is_noisy: bool) -> bool:
+    near = _NEAR_NOISY if is_noisy else _NEAR
+    return bool(level >= largest * (1.0 - near) and _longest(top) >= _RUN)
+
+
+def _is_no_chance(
+    column: np.ndarray, top: np.ndarray, step: float, width: float, is_far: bool
+) -> bool:
+    """Whether so many samples, or so many in a row, are at the level by more than chance."""
+    others, count = np.abs(np.diff(column[~top])), int(top.sum())
+    if is_far or not others.size or np.median(others) <= _QUIET * step:
+        return False
+    share = max(float((others <= width).mean()), 1.0 / others.size)
     longest = _longest(top)
-    near = level >= largest * (1.0 - _NEAR)
-    if near and longest >= _RUN:
-        return top
-    others = np.abs(np.diff(column[~top]))
-    if longest < _LEAST or not others.size:
-        return np.zeros_like(top)
-    step = max(resolution, others[others > 0.0].min(initial=np.inf))
-    if np.median(others) <= _QUIET * step:
-        return np.zeros_like(top)
-    share = max(float((others <= same).mean()), 1.0 / others.size)
-    by_chance = column.size * share ** (longest - 1.0)
-    return top if by_chance < _CHANCE else np.zeros_like(top)
+    if longest >= _LEAST and count * share ** (longest - 1.0) < _CHANCE:
+        return True
+    level = column[top].min()
+    just_below = ~top & (column >= level - _BELOW * max(width, step))
+    return bool(count >= _MANY and _RARE * just_below.sum() <= count)
 
 
 def _longest(flags: np.ndarray) -> int:

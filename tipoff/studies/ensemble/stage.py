@@ -18,7 +18,7 @@ from tipoff.lowfi.ensemble.store import Store, StoreError
 from tipoff.lowfi.ensemble.table import TableFile
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.models import SPRINGS
-from tipoff.scenes import uncertainty
+from tipoff.scenes import plausibility, uncertainty
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
@@ -109,6 +109,7 @@ def run(study: Study, options: Options) -> dict:
         "stage": "ensemble",
         "scene": study.scene.name,
         "quantities": words.QUANTITIES,
+        "implausible": plausibility.of_all_conditions(study.scene),
         "store": str(path),
         **statistics,
         **told,

@@ -97,7 +97,7 @@ def result_of(study: Study, condition: str, request: Run, quiet: bool) -> dict:
         kernel_marks.remember(request)
     calibrated, modes = request.calibration is not None, getattr(request.numerics, "modes", AUTO)
     result = row(condition, found, study.relative(study.store.path(request)))
-    result |= beside(request, found)
+    result |= beside(request, found) | {"implausible": request.scene.warnings}
     result["agreement"] = kept.words(study, request.model, condition, calibrated, modes)
     if request.fidelity == "lowfi" and found.outcome.rate is not None:
         result["disturbed"] = disturbed.of(request, found, study.settings.clearance_change)
@@ -125,6 +125,7 @@ def lines(result: dict, made_with: str, study: Study) -> list[str]:
         f"{study.scene.name} / {result['condition']}, model {made_with}: {result['status']}"
         + (f" ({result['message']})" if result["message"] else "")
     ]
+    text.append(f"  thrust        {result['thrust']['text']}")
     if result["exit_time_s"] is not None:
         text.append(f"  exit          {1e3 * result['exit_time_s']:.4g} ms after ignition")
     if settled := result["settled"]:

@@ -51,11 +51,12 @@ def run(study: Study, fidelity: str) -> dict:
 
 
 def beside(request: Run, found: Trajectory) -> dict:
-    """``advice`` for a run that ended too early, and the rates ``by_hand`` (deg/s) with what they
-    count, None where more than one pad touches."""
+    """``advice`` for a run that ended too early, the rates ``by_hand`` (deg/s) with what they count,
+    None where more than one pad touches, and the ``thrust`` that acted."""
     hand = hand_calculation.rates(request.scene, found)
     return {
         "advice": unfinished.advice(request.scene, found),
+        "thrust": request.scene.thrust.describe(request.scene.time_limit),
         "by_hand": hand
         and {"rate_deg_s": [math.degrees(rate) for rate in hand.rate], "words": hand.words},
     }

@@ -1,0 +1,219 @@
+"""Warnings about a thrust that is probably in a wrong unit, or whose record is no thrust at its ends.
+
+    v = J g,     a = F g,     g = 1/m (+ 1/M of a platform that takes the reaction)
+
+v is the speed by the whole impulse J, a the acceleration at the peak F. Bounds: satellites leave their
+dispensers at 0.3 to 3 m/s, and rockets their rails at 15 to 60 m/s with 5 to 100 g. After the exit a rocket
+gains much more speed, so its v is not judged. A load cell reads zero before ignition and after burn-out;
+what it reads else is added to the impulse.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.scenes import ends
+from tipoff.scenes.effects import thrust_law
+from tipoff.scenes.effects.measured import FIT_IMPULSE, MeasuredCurve
+from tipoff.scenes.rounding import at_most, below
+
+_GRAVITY = 9.80665
+FASTEST, SLOWEST = 100.0, 0.05  # m/s
+HARDEST, HARDEST_ROCKET = 1000.0 * _GRAVITY, 100.0 * _GRAVITY  # m/s2
+_USUAL = (0.1, 60.0)  # m/s, of a speed that a unit must explain
+_UNITS = (
+    (1e-3 * _GRAVITY, "gf"),
+    (1e-3, "mN"),
+    (4.4482216152605, "lbf"),
+    (_GRAVITY, "kgf"),
+    (1e3, "kN"),
+)
+_SAID = 0.005  # of the impulse: an offset that is said
+_BURNS = 0.05  # of the peak: thrust
+_PLATEAU = 0.2  # of the peak: a level above it is thrust, which the record cuts
+_FEWEST = 5  # samples of a level
+_AGREE = 0.2  # relative: two points that are one level
+_CUT = 0.01  # of the peak, with which a record begins or ends
+_RESIDUAL = 0.1  # of a fit that acts
+
+
+def warnings(scene) -> list[str]:
+    """A message for each implausible speed or acceleration, and for each fault of a measured record."""
+    found = _of_size(scene)
+    if scene.thrust.kind == "measured":
+        found += _of_record(scene.thrust) + _of_fit(scene.thrust)
+    return found
+
+
+def _of_size(scene) -> list[str]:
+    """A thrust that is too strong or too weak for its mass and rail."""
+    keys = "thrust, payload.mass"
+    record, speed = scene.thrust.record(), ends.speed_change(scene)
+    limit = max(ends.thrust_end(record), 1e-9)
+    strongest = thrust_law.peak(record, limit) / scene.payload.mass
+    leaves = ends.exit_speed(scene)
+    if speed < 0.0:
+        return [
+            f"{keys}: the impulse is {thrust_law.impulse(record, limit):.4g} N s, away from the open "
+            "end; plausible above 0: its sign is probably wrong"
+        ]
+    said = (
+        f"{speed:.4g} m/s by the thrust"
+        + ("" if leaves is None else f", {leaves:.4g} m/s at the exit")
+        + f" after {1e3 * ends.way(scene):.4g} mm, {strongest / _GRAVITY:.4g} g at the peak of "
+        f"{strongest * scene.payload.mass:.4g} N on {scene.payload.mass:.4g} kg"
+    )
+    rocket = scene.thrust.reaction == "exhaust" and at_most(strongest, HARDEST_ROCKET)
+    judged = (leaves or 0.0) if rocket else speed
+    if below(FASTEST, judged) or below(HARDEST, strongest):
+        allowed = f"plausible up to {FASTEST:g} m/s and {HARDEST / _GRAVITY:g} g"
+        return [f"{keys}: {said}; {allowed}{_meant(scene, speed, strongest, weaker=True)}"]
+    if speed > 0.0 and below(speed, SLOWEST) and not ends.is_driven_otherwise(scene):
+        allowed = f"plausible from {SLOWEST:g} m/s on"
+        return [f"{keys}: {said}; {allowed}{_meant(scene, speed, strongest, weaker=False)}"]
+    return []
+
+
+def _meant(scene, speed: float, strongest: float, weaker: bool) -> str:
+    """The units that the forces may have been meant in, as the end of a message."""
+    units = [
+        (factor, name)
+        for factor, name in _UNITS
+        if (factor < 1.0) == weaker and _USUAL[0] <= factor * speed <= _USUAL[1]
+    ]
+    if not units:
+        return "; is the mass, or the unit of the force or of the time, wrong?"
+    words = " or ".join(f"{factor * speed:.4g} m/s if it is in {name}" for factor, name in units)
+    found = f"; likely cause: the force is in another unit than N ({words})"
+    if weaker and scene.thrust.kind == "measured":
+        found += ", or times are in ms"
+    if weaker and scene.thrust.reaction == "platform" and strongest <= HARDEST_ROCKET:
+        found += '; a rocket, which burns on after the exit, has thrust.reaction = "exhaust"'
+    return found
+
+
+class _Level(NamedTuple):
+    """Reading (N) at one end of a record."""
+
+    value: float
+    is_seen: bool  # above its scatter
+
+
+def _of_record(table) -> list[str]:
+    curve = table.curve()
+    peak = float(np.abs(curve.force).max())
+    if peak == 0.0:
+        return []
+    before, after = _level(curve, peak), _level(MeasuredCurve(*(c[::-1] for c in curve)), peak)
+    if before is None and after is None:
+        before = after = _of_few_points(curve, peak)
+    return _of_offset(table, before, after) + _of_ends(curve, peak, before, after)
+
+
+def _level(curve: MeasuredCurve, peak: float) -> _Level | None:
+    """The level of the first samples, where they are no thrust: at least ``_FEWEST`` within 5 % of the
+    ``peak`` about their median. None for a record that begins with thrust."""
+    force = curve.force
+    noise = 1.4826 * float(np.median(np.abs(np.diff(force)))) / math.sqrt(2.0)
+    begun = float(np.median(force[: max(_FEWEST, force.size // 100)]))
+    burning = np.flatnonzero(
+        np.abs(force - begun) > np.clip(6.0 * noise, _BURNS * peak, _PLATEAU * peak)
+    )
+    count = int(burning[0]) if burning.size else force.size
+    if count < _FEWEST or abs(begun) > _PLATEAU * peak:
+        return None
+    level, error = _mean(force[: max(_FEWEST, count // 2)])
+    return _Level(level, abs(level) > 3.0 * error)
+
+
+def _mean(calm: np.ndarray) -> tuple[float, float]:
+    """Level (N) at the beginning of samples (n,) without thrust, and its standard error: of a zero that
+    drifts along a straight line, else their median. Thrust that begins or fades slowly is neither; there
+    the first samples count."""
+    place = np.linspace(0.0, 1.0, calm.size)
+    slope, end = np.polyfit(place, calm, 1)
+    left = float(np.std(calm - slope * place - end))
+    scatter = 1.4826 * float(np.median(np.abs(np.diff(calm, 2)))) / math.sqrt(6.0)
+    error = 1.2533 * scatter / math.sqrt(calm.size)
+    if left > 2.0 * scatter + 1e-9 * abs(end):
+        few = calm[: max(_FEWEST, calm.size // 5)]
+        return float(np.median(few)), 1.2533 * float(np.std(few)) / math.sqrt(few.size)
+    if abs(slope) > 4.0 * math.sqrt(12.0) * error:  # whose end has twice the error of the mean
+        return float(end), 2.0 * error
+    return float(np.median(calm)), error
+
+
+def _of_few_points(curve: MeasuredCurve, peak: float) -> _Level | None:
+    """The level of a record with too few points for one at either end, where its first and its last
+    point agree and are no thrust."""
+    first, last = float(curve.force[0]), float(curve.force[-1])
+    agree = first * last > 0.0 and abs(first - last) <= _AGREE * abs(last)
+    if not agree or abs(last) > _PLATEAU * peak:
+        return None
+    return _Level(0.5 * (first + last), True)
+
+
+def _of_offset(table, before: _Level | None, after: _Level | None) -> list[str]:
+    """Readings before ignition and after burn-out that are not zero, and the impulse they add."""
+    seen = [item for item in (before, after) if item is not None and item.is_seen]
+    if not seen:
+        return []
+    first, last = (item.value if item is not None else seen[0].value for item in (before, after))
+    curve = table.curve()
+    lasting = float(curve.time[-1] - curve.time[0])
+    added, whole = 0.5 * (first + last) * lasting, table.requested()
+    other = whole - added
+    larger = max(abs(first), abs(last)) * lasting
+    if larger <= _SAID * abs(other):
+        return []
+    share = f", {100.0 * added / other:+.3g} % of the {other:.4g} N s without it" if other else ""
+    words = ", ".join(
+        f"{item.value:.4g} N {where}"
+        for item, where in ((before, "before ignition"), (after, "after burn-out"))
+        if item is not None
+    )
+    given = table.baseline or (0.0, 0.0)
+    pair = ", ".join(f'"{old + new:.5g} N"' for old, new in zip(given, (first, last)))
+    return [
+        f"thrust.baseline: the force does not return to zero: {words}; over the {lasting:.4g} s of the "
+        f"record this adds {added:.4g} N s{share}; plausible below {100.0 * _SAID:g} %. "
+        f"thrust.baseline = [{pair}] subtracts it"
+    ]
+
+
+def _of_ends(
+    curve: MeasuredCurve, peak: float, before: _Level | None, after: _Level | None
+) -> list[str]:
+    """A record that begins or ends with thrust, which is cut there."""
+    found = []
+    first, last = float(curve.force[0]), float(curve.force[-1])
+    if before is None and curve.time[0] > 0.0 and abs(first) > _CUT * peak:
+        added = 0.5 * first * float(curve.time[0])
+        found.append(
+            f"thrust.file, first point: {first:.4g} N at {curve.time[0]:.4g} s, {100.0 * first / peak:.3g} "
+            "% of the peak; plausible: 0 N at ignition. The thrust is zero before; a straight line "
+            f"from 0 N at 0 s adds {added:.4g} N s"
+        )
+    if after is None and abs(last) > _CUT * peak:
+        found.append(
+            f"thrust.file, last point: {last:.4g} N at {curve.time[-1]:.4g} s, {100.0 * last / peak:.3g} "
+            "% of the peak; plausible: 0 N after burn-out. The thrust is zero from there on; if it is "
+            "meant so, a second row with this time and 0 N says so"
+        )
+    return found
+
+
+def _of_fit(table) -> list[str]:
+    """A fit that acts and is poor in shape, or in impulse beyond the limit without a key."""
+    fit = table.fit() if table.use == "fit" else None
+    if fit is None:
+        return []
+    error, residual = fit.impulse_error, fit.relative_residual
+    if at_most(abs(error), FIT_IMPULSE) and at_most(residual, _RESIDUAL):
+        return []
+    return [
+        f'thrust.use: "fit", whose residual is {100.0 * residual:.3g} % and whose impulse differs by '
+        f"{100.0 * error:+.3g} % from the {fit.curve_impulse:.5g} N s of the curve; plausible up to "
+        f"{100.0 * _RESIDUAL:g} % and {100.0 * FIT_IMPULSE:g} %"
+    ]
