@@ -1,0 +1,140 @@
+"""The answer of the scene itself: the first figures of the page, and the first lines of the terminal."""
+
+from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
+from tipoff.studies.core.words import counted
+from tipoff.studies.nominal.spread import ACCURACY, QUANTITIES, TIME
+from tipoff.studies.populations.answers import RATES, TOTAL_RATE, Quantity
+from tipoff.studies.render.document import Caption, KeyFigures, Part
+from tipoff.studies.render.uncertain import LEAST, STEPS, number, rounded
+from tipoff.studies.report.neighbours import text
+
+_MEANINGS = {
+    "rate_x_deg_s": "rate about X, roll",
+    "rate_y_deg_s": "rate about Y",
+    "rate_z_deg_s": "rate about Z",
+    "velocity_x_m_s": "velocity along X",
+    "exit_time_ms": "exit after ignition",
+}
+_NO_ERRORS = (
+    "The scene states no random errors, so no range is known. State them in its table [studies]: "
+    'errors = "paper" for those of the paper\'s Table 3, or a file of distributions'
+)
+
+
+def draw(found: dict) -> list[Part]:
+    """The values with their ranges in large type, and what they are."""
+    return [KeyFigures(figures(found)), Caption(" ".join(f"{line}." for line in notes(found)))]
+
+
+def figures(found: dict) -> list[tuple[str, str]]:
+    """(value with its unit, meaning and range) of each quantity."""
+    values = _values(found)
+    return [
+        (
+            f"{_shown(item, values)} {item.unit}" if values else "–",
+            _meaning(item) + _under(found["spread"], item),
+        )
+        for item in QUANTITIES
+    ]
+
+
+def _meaning(item: Quantity) -> str:
+    return _MEANINGS.get(item.name, item.label)
+
+
+def _values(found: dict) -> dict[str, float] | None:
+    """Those of the finite elements, or of the surrogate where they did not settle."""
+    return found["answer"][FINITE_ELEMENTS] or found["answer"][COMPLIANT]
+
+
+def _shown(item: Quantity, values: dict[str, float]) -> str:
+    return rounded(values[item.name], None, STEPS.get(item.unit, LEAST))
+
+
+def _under(spread: dict | None, item: Quantity) -> str:
+    if spread is None or spread["ranges"] is None:
+        return ""
+    ends = spread["ranges"][item.name]
+    return f"; 95 % of launches: {text(ends['low'], ends['high'])} {item.unit}"
+
+
+def notes(found: dict) -> list[str]:
+    """Sentences: what the values are, how far both models differ, what the range is."""
+    reference, surrogate = (found["answer"][name] for name in (FINITE_ELEMENTS, COMPLIANT))
+    statuses = {row["model"]: row["status"] for row in found["rows"]}
+    of = "finite elements" if reference else "compliant contact" if surrogate else ""
+    if not of:
+        words = ", ".join(f"{model}: {status}" for model, status in statuses.items())
+        said = [f"The scene itself does not settle ({words})"]
+    else:
+        said = [
+            f"The scene itself, by {of}: means over 2 ms after exit and burnout, rates inertial in "
+            "payload body axes, velocity in the initial scene axes"
+        ]
+    if reference and surrogate:
+        apart = max(abs(reference[item.name] - surrogate[item.name]) for item in RATES)
+        said.append(f"Compliant contact differs by at most {number(apart, '.2g', LEAST)} deg/s")
+    elif of:
+        failed = COMPLIANT if reference else FINITE_ELEMENTS
+        said.append(f"The run of {failed} did not settle: {statuses[failed]}")
+    return [*said, *_of_spread(found["spread"])]
+
+
+def _of_spread(spread: dict | None) -> list[str]:
+    if spread is None:
+        return [_NO_ERRORS]
+    cases, lost = spread["cases"], spread["cases"] - spread["settled"]
+    keys = ", ".join(dict.fromkeys(key.rpartition(".")[0] or key for key in spread["vary"]))
+    errors = f"{cases:,} launches of compliant contact with the errors {spread['errors']} ({keys})"
+    if spread["ranges"] is None:
+        return [f"No range: {counted(spread['settled'], 'case')} of {errors} settled"]
+    said = [f"95 % of launches: between the 2.5 and 97.5 % quantiles of {errors}"]
+    if lost:
+        said.append(
+            f"{lost:,} of them, {number(100.0 * lost / cases, '.2g')} %, did not leave and settle; "
+            "the range is that of the others"
+        )
+    wide = [share for item in QUANTITIES if (share := _doubt(spread["ranges"][item.name]))]
+    known = max(wide, default=0.0)
+    said.append(
+        f"Each end is known to {number(100.0 * max(known, ACCURACY), '.2g')} % of its range"
+        if known != float("inf")
+        else "Too few cases settled to bound the ends"
+    )
+    return said
+
+
+def _doubt(found: dict) -> float:
+    """Distance of the 95 % bounds of the worse end, as a share of the range; infinite without both
+    bounds."""
+    width = found["high"] - found["low"]
+    ends = (found["low_bounds"], found["high_bounds"])
+    if any(None in end for end in ends):
+        return float("inf")
+    return max(end[1] - end[0] for end in ends) / width if width > 0.0 else 0.0
+
+
+def lines(found: dict) -> list[str]:
+    """The same for the terminal."""
+    values = _values(found)
+    if values is None:
+        return notes(found)
+    rates = ", ".join(_shown(item, values) for item in RATES)
+    speed = QUANTITIES[-2]
+    first = (
+        f"{_shown(TOTAL_RATE, values)} deg/s in total ({rates} deg/s about x, y, z), "
+        f"{_shown(speed, values)} m/s along X, exit {_shown(TIME, values)} ms after ignition"
+    )
+    return [f"answer: {first}", *ranges(found["spread"])]
+
+
+def ranges(spread: dict | None) -> list[str]:
+    """The 95 % range of each quantity in one line, with what it is."""
+    if spread is None or spread["ranges"] is None:
+        return _of_spread(spread)
+    ends = "; ".join(
+        f"{_meaning(item)} {text(*(spread['ranges'][item.name][end] for end in ('low', 'high')))} "
+        f"{item.unit}"
+        for item in QUANTITIES
+    )
+    return [f"95 % of launches: {ends}", *_of_spread(spread)[1:]]
