@@ -1,8 +1,10 @@
 """The answer of the scene itself: the first figures of the page, and the first lines of the terminal."""
 
+import math
+
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.studies.core.words import counted
-from tipoff.studies.nominal.spread import ACCURACY, QUANTITIES, TIME
+from tipoff.studies.nominal.spread import QUANTITIES, TIME, doubt
 from tipoff.studies.populations.answers import RATES, TOTAL_RATE, Quantity
 from tipoff.studies.render.document import Caption, KeyFigures, Part
 from tipoff.studies.render.uncertain import LEAST, STEPS, number, rounded
@@ -94,24 +96,13 @@ def _of_spread(spread: dict | None) -> list[str]:
             f"{lost:,} of them, {number(100.0 * lost / cases, '.2g')} %, did not leave and settle; "
             "the range is that of the others"
         )
-    wide = [share for item in QUANTITIES if (share := _doubt(spread["ranges"][item.name]))]
-    known = max(wide, default=0.0)
+    known = max(doubt(spread["ranges"][item.name]) for item in QUANTITIES)
     said.append(
-        f"Each end is known to {number(100.0 * max(known, ACCURACY), '.2g')} % of its range"
-        if known != float("inf")
+        f"The ends are known to ± {max(1, math.ceil(100.0 * known))} % of the range or better"
+        if math.isfinite(known)
         else "Too few cases settled to bound the ends"
     )
     return said
-
-
-def _doubt(found: dict) -> float:
-    """Distance of the 95 % bounds of the worse end, as a share of the range; infinite without both
-    bounds."""
-    width = found["high"] - found["low"]
-    ends = (found["low_bounds"], found["high_bounds"])
-    if any(None in end for end in ends):
-        return float("inf")
-    return max(end[1] - end[0] for end in ends) / width if width > 0.0 else 0.0
 
 
 def lines(found: dict) -> list[str]:
