@@ -104,7 +104,10 @@ def test_cases_that_did_not_settle_are_said(tilted, tmp_path, monkeypatch):
     monkeypatch.setattr("tipoff.studies.populations.population.run", normal)
     found = spread.of(study(tilted, tmp_path), tilted)
     said = " ".join(page.ranges(found))
-    assert f"{4000 - found['settled']:,} of them" in said and "did not leave and settle" in said
+    assert (
+        f"{found['cases'] - found['settled']:,} of them" in said
+        and "did not leave and settle" in said
+    )
     few = drawn(lambda random, n: random.normal(size=n), settled=0.01)
     monkeypatch.setattr("tipoff.studies.populations.population.run", few)
     found = spread.of(study(tilted, tmp_path), tilted)

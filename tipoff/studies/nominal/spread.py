@@ -2,7 +2,7 @@
 
 The ends are the 2.5 and 97.5 % quantiles of independent cases of compliant contact. Half the distance of
 the 95 % bounds of an end, as a share of the range, is 1.35 / sqrt(n) with n cases of a normal
-distribution and 2.2 / sqrt(n) of a half normal one: 4,000 cases give 2 to 3.5 %. Where it is above 4 %,
+distribution and 2.2 / sqrt(n) of a half normal one: 4,000 cases give 2 to 4 %. Where it is above 5 %,
 16,000 cases are drawn, no more: the page states what was reached.
 """
 
@@ -21,7 +21,7 @@ from tipoff.studies.populations.population import Population, Surrogate
 
 SHARES = (0.025, 0.975)
 CASES = (4000, 16_000)  # the second where the first is not accurate enough
-ACCURACY = 0.04  # of a range: half the distance of the bounds of an end
+ACCURACY = 0.05  # of a range: half the distance of the bounds of an end
 _CONFIDENCE = 0.95
 _FEWEST = 100  # settled cases: fewer do not show 2.5 %
 
