@@ -4,11 +4,11 @@ import math
 
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.studies.core.words import counted
-from tipoff.studies.nominal.spread import QUANTITIES, TIME, doubt
+from tipoff.studies.nominal.spread import QUANTITIES, doubt
 from tipoff.studies.populations.answers import RATES, TOTAL_RATE, Quantity
 from tipoff.studies.render.document import Caption, KeyFigures, Part
 from tipoff.studies.render.uncertain import LEAST, STEPS, number, rounded
-from tipoff.studies.report.neighbours import text
+from tipoff.studies.report.neighbours import SHARE, text
 
 _MEANINGS = {
     "rate_x_deg_s": "rate about X, roll",
@@ -30,10 +30,9 @@ def draw(found: dict) -> list[Part]:
 
 def figures(found: dict) -> list[tuple[str, str]]:
     """(value with its unit, meaning and range) of each quantity."""
-    values = _values(found)
     return [
         (
-            f"{_shown(item, values)} {item.unit}" if values else "–",
+            f"{_shown(item, found)} {item.unit}" if _values(found) else "–",
             _meaning(item) + _under(found["spread"], item),
         )
         for item in QUANTITIES
@@ -49,15 +48,31 @@ def _values(found: dict) -> dict[str, float] | None:
     return found["answer"][FINITE_ELEMENTS] or found["answer"][COMPLIANT]
 
 
-def _shown(item: Quantity, values: dict[str, float]) -> str:
-    return rounded(values[item.name], None, STEPS.get(item.unit, LEAST))
+def _shown(item: Quantity, found: dict) -> str:
+    """The value as text, with the digits that its range leaves a meaning, or without one those in which
+    both models agree."""
+    values = _values(found)
+    assert values is not None
+    least = STEPS.get(item.unit, LEAST)
+    if (ends := _ends(found["spread"], item)) is not None:
+        return rounded(values[item.name], SHARE * (ends["high"] - ends["low"]), least)
+    both = [answer[item.name] for answer in found["answer"].values() if answer]
+    apart = max(both) - min(both) if len(both) > 1 else None
+    return rounded(values[item.name], apart, least)
+
+
+def _ends(spread: dict | None, item: Quantity) -> dict | None:
+    """The range of a quantity; None where there is none."""
+    return None if spread is None or spread["ranges"] is None else spread["ranges"][item.name]
 
 
 def _under(spread: dict | None, item: Quantity) -> str:
-    if spread is None or spread["ranges"] is None:
-        return ""
-    ends = spread["ranges"][item.name]
-    return f"; 95 % of launches: {text(ends['low'], ends['high'])} {item.unit}"
+    ends = _ends(spread, item)
+    return f"; 95 % of launches: {_text(ends)} {item.unit}" if ends else ""
+
+
+def _text(ends: dict) -> str:
+    return text(ends["low"], ends["high"])
 
 
 def notes(found: dict) -> list[str]:
@@ -96,9 +111,9 @@ def _of_spread(spread: dict | None) -> list[str]:
             f"{lost:,} of them, {number(100.0 * lost / cases, '.2g')} %, did not leave and settle; "
             "the range is that of the others"
         )
-    known = max(doubt(spread["ranges"][item.name]) for item in QUANTITIES)
+    known = max(doubt(spread["ranges"][item.name]) for item in (TOTAL_RATE, *RATES))
     said.append(
-        f"The ends are known to ± {max(1, math.ceil(100.0 * known))} % of the range or better"
+        f"The ends of the rates are known to ± {max(1, math.ceil(100.0 * known))} % of the range or better"
         if math.isfinite(known)
         else "Too few cases settled to bound the ends"
     )
@@ -106,26 +121,21 @@ def _of_spread(spread: dict | None) -> list[str]:
 
 
 def lines(found: dict) -> list[str]:
-    """The same for the terminal."""
-    values = _values(found)
-    if values is None:
+    """The same for the terminal, one line for each quantity."""
+    if _values(found) is None:
         return notes(found)
-    rates = ", ".join(_shown(item, values) for item in RATES)
-    speed = QUANTITIES[-2]
-    first = (
-        f"{_shown(TOTAL_RATE, values)} deg/s in total ({rates} deg/s about x, y, z), "
-        f"{_shown(speed, values)} m/s along X, exit {_shown(TIME, values)} ms after ignition"
-    )
-    return [f"answer: {first}", *ranges(found["spread"])]
+    own = [
+        f"  {_meaning(item):<22}{_shown(item, found)} {item.unit}{_under(found['spread'], item)}"
+        for item in QUANTITIES
+    ]
+    return ["The scene itself:", *own, *_of_spread(found["spread"])]
 
 
 def ranges(spread: dict | None) -> list[str]:
-    """The 95 % range of each quantity in one line, with what it is."""
-    if spread is None or spread["ranges"] is None:
-        return _of_spread(spread)
-    ends = "; ".join(
-        f"{_meaning(item)} {text(*(spread['ranges'][item.name][end] for end in ('low', 'high')))} "
-        f"{item.unit}"
+    """The 95 % range of each quantity, with what it is."""
+    own = [
+        f"95 % range  {_meaning(item):<22}{_text(ends)} {item.unit}"
         for item in QUANTITIES
-    )
-    return [f"95 % of launches: {ends}", *_of_spread(spread)[1:]]
+        if (ends := _ends(spread, item)) is not None
+    ]
+    return [*own, *_of_spread(spread)]

@@ -2,8 +2,8 @@
 
 The ends are the 2.5 and 97.5 % quantiles of independent cases of compliant contact. Half the distance of
 the 95 % bounds of an end, as a share of the range, is 1.35 / sqrt(n) with n cases of a normal
-distribution and 2.2 / sqrt(n) of a half normal one: 4,000 cases give 2 to 4 %. Where it is above 5 %,
-16,000 cases are drawn, no more: the page states what was reached.
+distribution and 2.2 / sqrt(n) of a half normal one: 4,000 cases give 2 to 4 %. Where it is above 5 % for a
+rate, 16,000 cases are drawn, no more: the page states what was reached.
 """
 
 from typing import Any
@@ -21,7 +21,7 @@ from tipoff.studies.populations.population import Population, Surrogate
 
 SHARES = (0.025, 0.975)
 CASES = (4000, 16_000)  # the second where the first is not accurate enough
-ACCURACY = 0.05  # of a range: half the distance of the bounds of an end
+ACCURACY = 0.05  # of the range of a rate: half the distance of the bounds of an end
 _CONFIDENCE = 0.95
 _FEWEST = 100  # settled cases: fewer do not show 2.5 %
 
@@ -36,7 +36,8 @@ def _time(found: Any) -> np.ndarray:
 
 SPEED = Quantity("velocity_x_m_s", "velocity along X", "m/s", _speed)
 TIME = Quantity("exit_time_ms", "time of the exit", "ms", _time)
-QUANTITIES = (answers.TOTAL_RATE, *answers.RATES, SPEED, TIME)
+_RATES = (answers.TOTAL_RATE, *answers.RATES)
+QUANTITIES = (*_RATES, SPEED, TIME)
 
 
 def of(study: Study, scene: Scene) -> dict | None:
@@ -54,7 +55,7 @@ def of(study: Study, scene: Scene) -> dict | None:
         asked = Drawn(stated._replace(cases=cases, sampling="random"))
         found = population.run(study, "errors", model, asked)
         ranges = _ranges(found)
-        if ranges is None or all(doubt(item) <= ACCURACY for item in ranges.values()):
+        if ranges is None or all(doubt(ranges[item.name]) <= ACCURACY for item in _RATES):
             break
     assert scene.studies is not None  # it states the errors
     return {
