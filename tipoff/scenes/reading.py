@@ -17,8 +17,8 @@ from tipoff.scenes.faults import Fault, SceneError, close
 
 CATALOG = Path(__file__).resolve().parent / "catalog"
 _CHOICE = {"thrust": "kind", "contact": "law"}
-# written relative to the scene file
-_FILES = (("thrust", "file"), *(("rail", key) for key in rail.FILES))
+# written relative to the scene file; with a suffix where a name of the catalogue may stand there too
+_FILES = (("thrust", "file"), *(("rail", key) for key in rail.FILES), ("studies", "errors", ".toml"))
 _FREE_TEXT = {"conditions", "provenance"}
 
 
@@ -55,12 +55,13 @@ def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
             [Fault(user_file, key, str(path), "files that do not extend each other in a circle")]
         )
     raw = toml(path, user_file, key)
-    for name, entry in _FILES:
+    for name, entry, *suffix in _FILES:
         table = raw.get(name)
         if (
             isinstance(table, dict)
             and isinstance(table.get(entry), str)
             and table[entry] != "absent"
+            and table[entry].endswith(tuple(suffix) or "")
         ):
             table[entry] = str(absolute(path.parent / table[entry]))
     base = raw.pop("extends", None)

@@ -15,11 +15,14 @@ _Neighbours = Annotated[int, Field(strict=True, ge=5, le=10_000)]
 
 
 class StudiesTable(Table):
-    """``[studies]``: element size (m) of the reference and of the rail compliance, and what makes the
-    studies of a small scene short."""
+    """``[studies]``: element size (m) of the reference and of the rail compliance, the random errors of
+    a launch, and what makes the studies of a small scene short."""
 
     #: Element size of the reference and of the rail compliance; 2 mm where absent.
     element_size: Dimension | None = None
+    #: Random errors of a launch: a file of distributions (.toml), relative to the scene file, or a name
+    #: of the catalogue. The report states the 95 % range of the rates under them.
+    errors: str | None = None
     #: Meshes of the convergence study, coarsest first: their element sizes divided by
     #: element_size, one of them 1.
     mesh_ratios: Annotated[tuple[PositiveNumber, ...], limited] | None = None

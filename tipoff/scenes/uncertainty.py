@@ -59,6 +59,13 @@ class Uncertainty(NamedTuple):
         }
 
 
+def of_scene(scene: Scene, **changed: Any) -> Uncertainty | None:
+    """The random errors that ``scene`` states under ``studies.errors``, read as ``load`` does; None where
+    it states none. Raises SceneError listing every fault."""
+    stated = scene.studies and scene.studies.errors
+    return load(stated, scene, **changed) if stated else None
+
+
 def load(name_or_path: str | Path, scene: Scene, **changed: Any) -> Uncertainty:
     """Read what varies in ``scene`` from a TOML file, or from the catalogue by name; ``changed``
     replaces cases, seed or sampling.

@@ -15,6 +15,7 @@ from tipoff.studies import (
     limits,
     mesh,
     montecarlo,
+    nominal,
     paper,
     peers,
     recovery,
@@ -28,6 +29,7 @@ from tipoff.studies.question import Contents, Entry, Result, Section
 
 # In the order of their commands; the report makes their results in this order.
 COMPARISON: tuple[Entry, ...] = (
+    nominal.ENTRY,
     mesh.ENTRY,
     runs.ENTRY,
     calibration.ENTRY,

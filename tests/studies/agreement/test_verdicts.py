@@ -199,3 +199,20 @@ def test_conditions_are_counted_by_their_word():
     assert page.summary([{"judgement": verdicts.CANNOT, "touches": True}], "fitted ") == (
         "0 of 1 fitted conditions agree, 1 cannot be judged, 0 miss"
     )
+
+
+def test_a_floor_is_unknown_where_a_neighbour_does_not_settle():
+    """The neighbour that settles says little then, and the floor widens no gate. Control: with both
+    neighbours it is the larger change."""
+    nominal, lost = constant(3.0, 0.0, 4.0), flight(status="jammed")
+    near, far = constant(3.0, 0.01, 4.0), constant(3.0, 0.5, 4.0)
+    both = verdicts.spread("phi15", "reference", "clearance", nominal, [near, far])
+    assert both.settled_rate_change_deg_s == pytest.approx(0.5, rel=1e-9)
+    half = verdicts.spread("phi15", "reference", "clearance", nominal, [far, lost])
+    assert half.settled_rate_change_deg_s is None
+    other = Spread("phi15", "surrogate", "clearance", 0.003, 0.09)
+    floor, _, measured = Context([half, other], CONVERGED, GATES).floor("phi15")
+    assert floor is None and measured
+    limits = Context([half, other], CONVERGED, GATES).limits(floor)
+    assert limits["settled_rate_error_deg_s"] == GATES["settled_rate_error_deg_s"]
+    assert Context([both, other], CONVERGED, GATES).floor("phi15")[0] == pytest.approx(0.5)

@@ -1,6 +1,7 @@
 """Results are kept by content: nothing unchanged is run again, nothing changed or damaged is
 reused, nothing is half written."""
 
+import errno
 import os
 import signal
 import subprocess
@@ -16,7 +17,7 @@ from tipoff import scenes, sources
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.core import store as store_module
 from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study
+from tipoff.studies.core.study import Study, StudyError
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -208,3 +209,38 @@ def test_kill_while_writing_leaves_no_half_file(tmp_path, samples):
         writer.kill()
         writer.communicate()
     assert [Trajectory.load(path).time.size for path in moments] == [samples] * len(moments)
+
+
+def test_an_error_in_one_run_leaves_the_others(tmp_path, monkeypatch):
+    """All others are made, kept and not run again, and the message names each run that failed with its
+    reason. A refusal of the machine stops all."""
+    calls = []
+
+    def execute(run, progress=None, threads=None, **kept):
+        calls.append(run.label)
+        if run.label in ("phi15", "h1"):
+            raise ZeroDivisionError("float division by zero")
+        return flight(lambda t: np.full((t.size, 3), 0.1))
+
+    monkeypatch.setattr(store_module, "execute", execute)
+    monkeypatch.setattr(store_module, "prepare", lambda run: None)
+    study = Study(scenes.load("tiny"), tmp_path, Settings(workers=2))
+    runs = [study.highfi(name) for name in ("phi15", "phi60", "h1", "h2")]
+    with pytest.raises(StudyError) as fault:
+        study.store.fill("highfi", runs)
+    said = str(fault.value)
+    assert said.count("ZeroDivisionError: float division by zero") == 2
+    assert "phi15: " in said and "h1: " in said and "phi60" not in said
+    assert sorted(calls) == sorted(run.label for run in runs)
+    assert [study.store.path(run).is_file() for run in runs] == [False, True, False, True]
+    calls.clear()
+    assert [each.status for each in study.store.fill("highfi", runs[1::2])] == ["exited"] * 2
+    assert not calls
+
+    def full(run, *rest, **kept):
+        calls.append(run.label)
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(store_module, "execute", full)
+    with pytest.raises(OSError, match="No space left"):
+        study.store.fill("highfi", runs)

@@ -177,3 +177,19 @@ def test_a_spread_condition_has_its_range_over_neighbours(page):
     assert "± 13" not in shown and "-31.0 to -12.0" in shown and "2.00 to 10.00" in shown
     assert "<b>12.0 to 31.0</b><span>largest roll rate (deg/s): phi15, over 3 neighbours" in shown
     assert "moved by less than 1 µm" in shown
+
+
+def test_the_scene_itself_comes_first(page):
+    """Control: without its result the page begins with the conditions."""
+    assert html(answer.draw(page)).startswith('<div class="figures"><div><b>13.6457</b>')
+    rates = {"rate_deg_s": 5.0, "rate_x_deg_s": 0.0, "rate_y_deg_s": 3.0, "rate_z_deg_s": 4.0}
+    values = rates | {"velocity_x_m_s": 13.6457, "exit_time_ms": 19.1}
+    page.documents["nominal"] = {
+        "rows": [],
+        "answer": {"finite-elements": values, "compliant": values},
+        "spread": None,
+    }
+    shown = html(answer.draw(page))
+    assert shown.startswith('<div class="figures"><div><b>5.000 deg/s</b><span>total rate</span>')
+    assert shown.index("no range is known") < shown.index("Over all conditions")
+    assert shown.index("Over all conditions") < shown.index("largest roll rate")

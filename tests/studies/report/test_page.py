@@ -179,9 +179,20 @@ def test_a_promise_is_kept_only_by_runs_that_keep_it():
     """No run keeps nothing, a diverged one breaks, and a NaN is found. Control: a sound run keeps it."""
     name, sound = "no NaN leaves the program", row("phi15", flight(cost=COSTS), "")
     lost = sound | {"status": "diverged", "settled": None}
+    late = sound | {"status": "time_limit", "settled": None}
+    jam = sound | {"status": "jammed", "settled": None}
     wild = sound | {"settled": sound["settled"] | {"rate_deg_s": [0.0, float("nan"), 0.0]}}
-    for rows, kept in (([], None), ([lost], False), ([sound, wild], False), ([sound], True)):
+    for rows, kept in (
+        ([], None),
+        ([lost], False),
+        ([sound, late], False),
+        ([sound, wild], False),
+        ([sound, jam], True),
+        ([sound], True),
+    ):
         assert promised({"highfi": rows, "lowfi": []})[name].kept is kept
+    worst = promised({"highfi": [sound, late], "lowfi": []})[name].worst
+    assert worst == "1 of 2 runs ended well, not phi15 time_limit"
     assert "0 of 1 run ended well" in promised({"highfi": [lost], "lowfi": []})[name].worst
 
 

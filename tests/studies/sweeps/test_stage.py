@@ -95,6 +95,40 @@ def test_without_contact_rates_are_the_moment_impulse_over_the_inertia(tmp_path,
     )
 
 
+@pytest.mark.parametrize(
+    "thrust, share",
+    [
+        ({"kind": "gaussian", "peak": "0 N", "width": "1 ms", "centre": "3 ms"}, 0.0),
+        ({"kind": "gaussian", "peak": "6 kN", "width": "1 ms", "centre": "3 ms"}, 0.0),
+        (
+            {
+                "kind": "gaussians",
+                "components": [
+                    {"peak": "6 kN", "width": "1 ms", "centre": "8 ms"},
+                    {"peak": "-6 kN", "width": "1 ms", "centre": "500 ms"},
+                ],
+            },
+            1.0,
+        ),
+    ],
+    ids=["no thrust", "a push", "a push on the rail and a pull after it"],
+)
+def test_the_share_of_the_impulse_after_the_exit(thrust, share):
+    """A payload that is in motion at ignition leaves without an impulse too."""
+    free = load("reference").replace(
+        {
+            "contact": None,
+            "friction": None,
+            "thrust_offset": None,
+            "duration": None,
+            "initial": {"velocity": {"x": "5 m/s"}},
+            "thrust": thrust | {"arm": "0.1 m"},
+        }
+    )
+    found = burnout.exit_of(Surrogate(free, None, None))
+    assert found.share_after == pytest.approx(share, abs=1e-9)
+
+
 def test_a_stretched_thrust_keeps_its_impulse():
     model = Surrogate(
         load("reference").replace({"contact": None, "friction": None, "thrust_offset": None}),

@@ -74,8 +74,8 @@ def spread(
         condition,
         model,
         cause,
-        largest(item.rate_relative_l2 for item in found),
-        largest(item.settled_rate_error_deg_s for item in found),
+        largest_known(item.rate_relative_l2 for item in found),
+        largest_known(item.settled_rate_error_deg_s for item in found),
     )
 
 
@@ -89,6 +89,12 @@ def largest(values) -> float | None:
     """Largest of the values that are not None, or None."""
     known = [value for value in values if value is not None]
     return max(known) if known else None
+
+
+def largest_known(values) -> float | None:
+    """Largest of the values, or None where one of them is: the unknown one may be larger."""
+    found = list(values)
+    return None if None in found else largest(found)
 
 
 _Measured = TypeVar("_Measured", Spread, Refinement)
@@ -111,12 +117,12 @@ class Context:
         }
 
     def floor(self, condition: str) -> tuple[float | None, float | None, bool]:
-        """Floor of the settled rates (deg/s) and of the rate L2, and whether it was measured on
-        this very condition."""
+        """Floor of the settled rates (deg/s) and of the rate L2, None where a run did not settle, and
+        whether it was measured on this very condition."""
         own, measured = _own(self.floors, condition)
         return (
-            largest(item.settled_rate_change_deg_s for item in own),
-            largest(item.rate_relative_l2 for item in own),
+            largest_known(item.settled_rate_change_deg_s for item in own),
+            largest_known(item.rate_relative_l2 for item in own),
             measured,
         )
 
@@ -132,7 +138,7 @@ class Context:
             found = [item.uncertainty_deg_s for item in own]
             # Unknown where the payload did not settle with a refinement, or a mesh is not refined:
             # what is borrowed of several conditions is unknown where one of them is.
-            causes[cause] = None if None in found else largest(found)
+            causes[cause] = largest_known(found)
             here.append(measured)
         unknown = not causes or None in causes.values()
         return None if unknown else largest(causes.values()), causes, bool(here) and all(here)

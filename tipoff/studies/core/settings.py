@@ -74,4 +74,4 @@ def defaults(scene: Scene | str) -> Settings:
     """Settings of a ``scene``, or of the one of this name in the catalogue: those that its ``[studies]``
     states, else the defaults. Its name does not count."""
     stated = (load(scene) if isinstance(scene, str) else scene).studies
-    return Settings(**(stated.model_dump(exclude_none=True) if stated else {}))
+    return Settings(**(stated.model_dump(exclude_none=True, exclude={"errors"}) if stated else {}))

@@ -23,13 +23,14 @@ class Sampling(StrEnum):
 def ensemble(
     request: Request,
     vary: Annotated[
-        str,
+        str | None,
         typer.Option(
             "--vary",
             metavar="NAME_OR_FILE",
-            help="Distributions: a .toml file, or a name of the catalogue.",
+            help="Distributions: a .toml file, or a name of the catalogue; default: studies.errors of "
+            "the scene, else paper.",
         ),
-    ] = "paper",
+    ] = None,
     table: Annotated[
         Path | None,
         typer.Option(

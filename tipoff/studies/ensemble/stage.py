@@ -32,9 +32,10 @@ from tipoff.studies.ensemble import sensitivity, summary
 
 @dataclass(frozen=True)
 class Options:
-    """Options of ``tipoff ensemble``; None: from the file of distributions, or the default."""
+    """Options of ``tipoff ensemble``; None: from the file of distributions, or the default. The file is
+    that of ``vary``, else of the errors that the scene states, else of the paper."""
 
-    vary: str = uncertainty.DEFAULT
+    vary: str | None = None
     table: Path | None = None
     cases: int | None = None
     seed: int | None = None
@@ -66,7 +67,9 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
             )
         source: Any = TableFile(options.table)
     else:
-        source = Drawn(uncertainty.load(options.vary, study.scene, **changed))
+        own = study.scene.studies and study.scene.studies.errors
+        vary = options.vary or own or uncertainty.DEFAULT
+        source = Drawn(uncertainty.load(vary, study.scene, **changed))
     try:
         numerics = Numerics(relative_tolerance=options.tolerance, modes=options.model.asked)
     except ValueError as fault:

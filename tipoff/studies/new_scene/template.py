@@ -255,6 +255,9 @@ dynamic_speed = "20 mm/s"
 # yy = "4.9 kg*m**2"
 # zz = "4.9 kg*m**2"
 
+[studies]
+errors = "paper"  # random errors of a launch, as in the paper; or a file of distributions of your own
+
 [conditions.tilt0]  # variants of the scene: tipoff run --condition tilt0,tilt45
 "thrust_offset.misalignment.radial" = "0 deg"
 

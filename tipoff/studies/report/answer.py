@@ -1,5 +1,6 @@
-"""The first screen of the page: velocity and rates with their uncertainty, whether they are within
-the user's limits, agreement and speed-up, and how far the answer can be trusted."""
+"""The first screen of the page: the scene itself with its range under random errors, then over all
+conditions velocity and rates with their uncertainty, whether they are within the user's limits,
+agreement and speed-up, and how far the answer can be trusted."""
 
 import math
 import re
@@ -13,6 +14,7 @@ from tipoff.scenes.overrides import is_drop
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.page import counts
 from tipoff.studies.core.words import counted
+from tipoff.studies.nominal import page as nominal_page
 from tipoff.studies.populations.exceedance import TOTAL, Limit
 from tipoff.studies.render.document import Bullets, Heading, KeyFigures, Part
 from tipoff.studies.render.table import Column, Table
@@ -42,16 +44,21 @@ _HAND_NOTE = (
 
 
 def draw(page: "Page") -> list[Part]:
-    """Key figures, what the answer rests on, the launcher with its axes, and one row a condition."""
+    """The answer of the scene itself, key figures over all conditions, what the answer rests on, the
+    launcher with its axes, and one row a condition."""
+    nominal = page.documents.get("nominal")
+    first = nominal_page.draw(nominal) if nominal else []
     rows = page.rows()["highfi"]
     if not rows:
-        return [page.missing("highfi", "highfi"), drawing.launcher(page.scene)]
+        return [*first, page.missing("highfi", "highfi"), drawing.launcher(page.scene)]
     compared = {
         row["condition"]: row
         for row in (page.documents.get("agreement") or {}).get("compliant", [])
     }
+    over_all = [KeyFigures(_figures(page, rows, compared))]
     return [
-        KeyFigures(_figures(page, rows, compared)),
+        *first,
+        *([Heading("Over all conditions"), *over_all] if first else over_all),
         Heading("How far it can be trusted"),
         Bullets([*_numerics(compared), *_model(page, compared), *_inputs(page, compared)]),
         drawing.launcher(page.scene),

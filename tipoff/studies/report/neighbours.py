@@ -14,7 +14,7 @@ NOTE = (
     "A range in place of a value: from the smallest to the largest settled rate of the same launch with "
     "payload and walls moved by less than 1 µm, by finite elements on the coarse mesh."
 )
-_SHARE = 0.02  # of a range, the digit to which its ends are rounded
+SHARE = 0.02  # of a range, the digit to which its ends are rounded
 
 
 class Spread(NamedTuple):
@@ -43,6 +43,6 @@ def of(agreement: dict | None) -> dict[str, Spread]:
 
 def text(low: float, high: float) -> str:
     """A range, rounded to a part of its width."""
-    digit = _SHARE * (high - low)
+    digit = SHARE * (high - low)
     ends = [rounded(end, digit) for end in (low, high)]
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)

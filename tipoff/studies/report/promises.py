@@ -37,6 +37,7 @@ _CHECKS = tuple(
     )
 )
 _WELL = "no NaN leaves the program; every run ends well"
+_ENDED_WELL = ("exited", "jammed")  # a run that reached its time limit gave no answer
 _NOT_MEASURED = (
     "orders of accuracy are as stated",
     "mirror image, contact order and turned frames give the same answer",
@@ -140,13 +141,16 @@ def _finite(rows: dict[str, list[dict]]) -> Promise:
     every = [row for found in rows.values() for row in found]
     if not every:
         return Promise(_WELL, "no run", "all", None)
-    bad = [row["condition"] for row in every if row["status"] in ("diverged", "refused")]
+    bad = [row["condition"] for row in every if row["status"] not in _ENDED_WELL]
     wild = [row["condition"] for row in every if not _is_finite(row.get("settled"))]
-    lost = f" ({', '.join(dict.fromkeys(bad))})" if bad else ""
+    statuses = dict.fromkeys(
+        f"{row['condition']} {row['status']}" for row in every if row["status"] not in _ENDED_WELL
+    )
+    lost = f", not {', '.join(statuses)}" if bad else ""
     return Promise(
         _WELL,
-        f"{len(every) - len(bad)} of {counted(len(every), 'run')} ended well, {len(bad)} diverged or "
-        f"refused{lost}" + (f"; NaN: {', '.join(dict.fromkeys(wild))}" if wild else ""),
+        f"{len(every) - len(bad)} of {counted(len(every), 'run')} ended well{lost}"
+        + (f"; NaN: {', '.join(dict.fromkeys(wild))}" if wild else ""),
         "all",
         not bad and not wild,
     )

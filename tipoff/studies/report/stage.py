@@ -21,8 +21,9 @@ from tipoff.studies.runs import stage as runs
 
 
 def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict:
-    """Make missing results and write report.html; ``verdict`` is one sentence on the agreement of
-    both models, ``failed`` contains the failures of all stages and sections.
+    """Make missing results and write report.html; ``answer`` has the rates of the scene itself as lines
+    of text, ``verdict`` is one sentence on the agreement of both models, ``failed`` contains the
+    failures of all stages and sections.
 
     A result or a section that fails leaves the others on the page. Raises InputError where the scene
     cannot be used for one of the results that every page has.
@@ -64,6 +65,7 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
         write_text(path, render(page))
         found = {
             "report": study.relative(path),
+            "answer": _answer(documents.get("nominal")),
             "verdict": _verdict(documents.get("agreement")),
             "failed": _failed(documents, problems)
             + [f"section {name}: {reason}" for name, reason in page.failures.items()],
@@ -78,6 +80,15 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
     shown = study.key(__name__, drawn, study.scene.resolved().get("flight"), list(limits))
     key = content_hash(keys, content_hash(made_at), content_hash(there), problems | absent, shown)
     return study.stage("report", key, make)
+
+
+def _answer(nominal: dict | None) -> list[str]:
+    """The answer of the scene itself with its range; empty where it could not be made."""
+    if not nominal:
+        return []
+    from tipoff.studies.nominal import page
+
+    return page.lines(nominal)
 
 
 def _verdict(agreement: dict | None) -> str:

@@ -85,6 +85,14 @@ def run(
             "most accurate model within it, as measured by tipoff cost.",
         ),
     ] = None,
+    range_: Annotated[
+        bool,
+        typer.Option(
+            "--range",
+            help="Also print the 95 % range under the random errors of the scene (studies.errors): "
+            "thousands of launches of compliant contact.",
+        ),
+    ] = False,
     *,
     checkpoint_every: CheckpointEvery = None,
     resume: Resume = True,
@@ -95,6 +103,7 @@ def run(
     once for a rail with its pads. --accuracy and --budget choose a model from the results of tipoff
     cost.
 
+      tipoff run --range
       tipoff run --condition phi35
       tipoff run --condition phi15,phi35,phi60
       tipoff run --condition phi35 --model finite-elements
@@ -113,9 +122,15 @@ def run(
         condition or ["nominal"], checkpoint_every=checkpoint_every, resume=resume
     )
     names = list(study.conditions)
+
+    def ranged(name: str, found: dict) -> dict:
+        return found | (single.ranged(study, name, quiet) if range_ else {})
+
     if accuracy is None and budget is None:
         models.require(options, checkpoint_every=checkpoint_every)
-        found = single.several(names, lambda name: single.run(study, name, options, quiet))
+        found = single.several(
+            names, lambda name: ranged(name, single.run(study, name, options, quiet))
+        )
         return Output(found, shown)
     given = {"--model": model, "--calibration": calibration, "--modes": modes}
     if wrong := [name for name, value in given.items() if value is not None]:
@@ -125,5 +140,7 @@ def run(
         lambda: quantity("--accuracy", accuracy, "deg/s", "0.1 deg/s"),
         lambda: quantity("--budget", budget, "s", "2 s"),
     )
-    found = single.several(names, lambda name: single.chosen(study, name, error, wall, quiet))
+    found = single.several(
+        names, lambda name: ranged(name, single.chosen(study, name, error, wall, quiet))
+    )
     return Output(found, shown)

@@ -1,5 +1,6 @@
 """One run of one condition in one model; prints the result."""
 
+import math
 from collections.abc import Callable, Sequence
 from functools import partial
 
@@ -106,6 +107,17 @@ def result_of(study: Study, condition: str, request: Run, quiet: bool) -> dict:
     return result | {"failed": failure(condition, request, found)}
 
 
+def ranged(study: Study, condition: str, quiet: bool = False) -> dict:
+    """``spread``: the ranges of a condition under the random errors of the scene (``nominal.spread``);
+    prints them unless ``quiet``."""
+    from tipoff.studies.nominal import page, spread
+
+    found = spread.of(study, study.condition(condition))
+    if not quiet:
+        print("\n".join(f"  {line}" for line in page.ranges(found)))
+    return {"spread": found}
+
+
 def model(request: Run) -> str:
     """The model of a run with its numerics."""
     if request.fidelity == "highfi":
@@ -137,7 +149,7 @@ def lines(result: dict, made_with: str, study: Study) -> list[str]:
         text.append(
             "  rate          "
             + ", ".join(map(uncertain, settled["rate_deg_s"]))
-            + " deg/s (x, y, z)"
+            + f" deg/s (x, y, z), {uncertain(math.hypot(*settled['rate_deg_s']))} in total"
         )
         if hand := result.get("by_hand"):
             rates = ", ".join(map(uncertain, hand["rate_deg_s"]))

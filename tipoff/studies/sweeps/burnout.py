@@ -19,7 +19,8 @@ _MOST = 7  # doublings of the stretch
 
 
 class Exit(NamedTuple):
-    """Exit of a launch without errors: its time (s) and the share of the impulse after it."""
+    """Exit of a launch without errors: its time (s) and the share of the impulse after it, zero where
+    the thrust has none: a launch by gravity or by its speed at ignition."""
 
     time: float
     share_after: float
@@ -36,7 +37,10 @@ def exit_of(model: Surrogate) -> Exit | None:
     if time is None:
         return None
     record, duration = model.scene.thrust.record(), model.scene.time_limit
-    after = 1.0 - thrust.impulse(record, time) / thrust.impulse(record, duration)
+    before, whole = thrust.impulse(record, time), thrust.impulse(record, duration)
+    # the larger one: a thrust that pushes and then pulls may have no impulse in the end
+    scale = max(abs(before), abs(whole))
+    after = abs(whole - before) / scale if scale > 0.0 else 0.0
     return Exit(time, after if after > _ROUNDING else 0.0)
 
 

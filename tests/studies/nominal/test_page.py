@@ -1,0 +1,81 @@
+"""What the page and the terminal say of the scene itself."""
+
+import pytest
+
+from tests.studies.shown import html
+from tipoff.studies.nominal import page, spread
+from tipoff.studies.nominal.stage import answer
+
+ROW = {
+    "settled": {"rate_deg_s": [-2.0, 1.0, 2.0], "velocity_m_s": [13.64567, 0.1, 0.0]},
+    "exit_time_s": 0.0123,
+}
+LOW = {"rate_deg_s": 0.4123, "rate_x_deg_s": -4.0}
+
+
+@pytest.fixture
+def found():
+    ranges = {
+        item.name: {
+            "low": LOW.get(item.name, 1.0),
+            "high": 10.4,
+            "low_bounds": [LOW.get(item.name, 1.0), LOW.get(item.name, 1.0) + 0.4],
+            "high_bounds": [10.0, 10.4],
+        }
+        for item in spread.QUANTITIES
+    }
+    nearby = {**ROW, "settled": ROW["settled"] | {"rate_deg_s": [-2.0, 1.25, 2.0]}}
+    return {
+        "rows": [
+            {"model": "finite-elements", "status": "exited"},
+            {"model": "compliant", "status": "exited"},
+        ],
+        "answer": {"finite-elements": answer(ROW), "compliant": answer(nearby)},
+        "spread": {
+            "errors": "paper",
+            "vary": ["thrust_offset.misalignment.axial", "thrust_offset.misalignment.radial"],
+            "cases": 4000,
+            "settled": 4000,
+            "ranges": ranges,
+        },
+    }
+
+
+def test_each_number_has_its_unit_its_meaning_and_its_range(found):
+    """A value has no more digits than a fiftieth of its range."""
+    shown = page.figures(found)
+    assert shown[0] == ("3.0 deg/s", "total rate; 95 % of launches: 0.4 to 10.4 deg/s")
+    assert shown[1] == ("-2.0 deg/s", "rate about X, roll; 95 % of launches: -4.0 to 10.4 deg/s")
+    values = [value for value, _ in shown[2:]]
+    assert values == ["1.00 deg/s", "2.00 deg/s", "13.65 m/s", "12.30 ms"]
+
+
+def test_what_the_numbers_are_is_said(found):
+    said = html(page.draw(found))
+    assert "The scene itself, by finite elements" in said and "at most 0.25 deg/s" in said
+    assert "4,000 launches of compliant contact with the errors paper (thrust_offset.misali" in said
+    assert "The ends of the rates are known to ± 3 % of the range or better" in said
+    lines = page.lines(found)
+    total = " ".join(lines[1].split())
+    assert total == "total rate 3.0 deg/s; 95 % of launches: 0.4 to 10.4 deg/s"
+    assert len(lines) == 9 and "m/s; 95 % of launches: 1.00 to 10.40 m/s" in lines[5]
+
+
+def test_without_errors_no_range_is_claimed(found):
+    found["spread"] = None
+    assert page.figures(found)[0] == ("3.00 deg/s", "total rate")
+    assert "no range is known" in html(page.draw(found))
+
+
+def test_a_run_that_does_not_settle_is_no_number(found):
+    found["answer"]["finite-elements"] = None
+    found["rows"][0]["status"] = "jammed"
+    said = html(page.draw(found))
+    assert "The scene itself, by compliant contact" in said
+    assert "The run of finite-elements did not settle: jammed" in said
+    found["answer"]["compliant"] = answer({"settled": None, "exit_time_s": None})
+    found["rows"][1]["status"] = "time_limit"
+    assert page.figures(found)[0][0] == "–"
+    assert (
+        "does not settle (finite-elements: jammed, compliant: time_limit)" in page.lines(found)[0]
+    )

@@ -1,0 +1,141 @@
+"""The answer of the scene itself: the first figures of the page, and the first lines of the terminal."""
+
+import math
+
+from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
+from tipoff.studies.core.words import counted
+from tipoff.studies.nominal.spread import QUANTITIES, doubt
+from tipoff.studies.populations.answers import RATES, TOTAL_RATE, Quantity
+from tipoff.studies.render.document import Caption, KeyFigures, Part
+from tipoff.studies.render.uncertain import LEAST, STEPS, number, rounded
+from tipoff.studies.report.neighbours import SHARE, text
+
+_MEANINGS = {
+    "rate_x_deg_s": "rate about X, roll",
+    "rate_y_deg_s": "rate about Y",
+    "rate_z_deg_s": "rate about Z",
+    "velocity_x_m_s": "velocity along X",
+    "exit_time_ms": "exit after ignition",
+}
+_NO_ERRORS = (
+    "The scene states no random errors, so no range is known. State them in its table [studies]: "
+    'errors = "paper" for those of the paper\'s Table 3, or a file of distributions'
+)
+
+
+def draw(found: dict) -> list[Part]:
+    """The values with their ranges in large type, and what they are."""
+    return [KeyFigures(figures(found)), Caption(" ".join(f"{line}." for line in notes(found)))]
+
+
+def figures(found: dict) -> list[tuple[str, str]]:
+    """(value with its unit, meaning and range) of each quantity."""
+    return [
+        (
+            f"{_shown(item, found)} {item.unit}" if _values(found) else "–",
+            _meaning(item) + _under(found["spread"], item),
+        )
+        for item in QUANTITIES
+    ]
+
+
+def _meaning(item: Quantity) -> str:
+    return _MEANINGS.get(item.name, item.label)
+
+
+def _values(found: dict) -> dict[str, float] | None:
+    """Those of the finite elements, or of the surrogate where they did not settle."""
+    return found["answer"][FINITE_ELEMENTS] or found["answer"][COMPLIANT]
+
+
+def _shown(item: Quantity, found: dict) -> str:
+    """The value as text, with the digits that its range leaves a meaning, or without one those in which
+    both models agree."""
+    values = _values(found)
+    assert values is not None
+    least = STEPS.get(item.unit, LEAST)
+    if (ends := _ends(found["spread"], item)) is not None:
+        return rounded(values[item.name], SHARE * (ends["high"] - ends["low"]), least)
+    both = [answer[item.name] for answer in found["answer"].values() if answer]
+    apart = max(both) - min(both) if len(both) > 1 else None
+    return rounded(values[item.name], apart, least)
+
+
+def _ends(spread: dict | None, item: Quantity) -> dict | None:
+    """The range of a quantity; None where there is none."""
+    return None if spread is None or spread["ranges"] is None else spread["ranges"][item.name]
+
+
+def _under(spread: dict | None, item: Quantity) -> str:
+    ends = _ends(spread, item)
+    return f"; 95 % of launches: {_text(ends)} {item.unit}" if ends else ""
+
+
+def _text(ends: dict) -> str:
+    return text(ends["low"], ends["high"])
+
+
+def notes(found: dict) -> list[str]:
+    """Sentences: what the values are, how far both models differ, what the range is."""
+    reference, surrogate = (found["answer"][name] for name in (FINITE_ELEMENTS, COMPLIANT))
+    statuses = {row["model"]: row["status"] for row in found["rows"]}
+    of = "finite elements" if reference else "compliant contact" if surrogate else ""
+    if not of:
+        words = ", ".join(f"{model}: {status}" for model, status in statuses.items())
+        said = [f"The scene itself does not settle ({words})"]
+    else:
+        said = [
+            f"The scene itself, by {of}: means over 2 ms after exit and burnout, rates inertial in "
+            "payload body axes, velocity in the initial scene axes"
+        ]
+    if reference and surrogate:
+        apart = max(abs(reference[item.name] - surrogate[item.name]) for item in RATES)
+        said.append(f"Compliant contact differs by at most {number(apart, '.2g', LEAST)} deg/s")
+    elif of:
+        failed = COMPLIANT if reference else FINITE_ELEMENTS
+        said.append(f"The run of {failed} did not settle: {statuses[failed]}")
+    return [*said, *_of_spread(found["spread"])]
+
+
+def _of_spread(spread: dict | None) -> list[str]:
+    if spread is None:
+        return [_NO_ERRORS]
+    cases, lost = spread["cases"], spread["cases"] - spread["settled"]
+    keys = ", ".join(dict.fromkeys(key.rpartition(".")[0] or key for key in spread["vary"]))
+    errors = f"{cases:,} launches of compliant contact with the errors {spread['errors']} ({keys})"
+    if spread["ranges"] is None:
+        return [f"No range: {counted(spread['settled'], 'case')} of {errors} settled"]
+    said = [f"95 % of launches: between the 2.5 and 97.5 % quantiles of {errors}"]
+    if lost:
+        said.append(
+            f"{lost:,} of them, {number(100.0 * lost / cases, '.2g')} %, did not leave and settle; "
+            "the range is that of the others"
+        )
+    known = max(doubt(spread["ranges"][item.name]) for item in (TOTAL_RATE, *RATES))
+    said.append(
+        f"The ends of the rates are known to ± {max(1, math.ceil(100.0 * known))} % of the range or better"
+        if math.isfinite(known)
+        else "Too few cases settled to bound the ends"
+    )
+    return said
+
+
+def lines(found: dict) -> list[str]:
+    """The same for the terminal, one line for each quantity."""
+    if _values(found) is None:
+        return notes(found)
+    own = [
+        f"  {_meaning(item):<22}{_shown(item, found)} {item.unit}{_under(found['spread'], item)}"
+        for item in QUANTITIES
+    ]
+    return ["The scene itself:", *own, *_of_spread(found["spread"])]
+
+
+def ranges(spread: dict | None) -> list[str]:
+    """The 95 % range of each quantity, with what it is."""
+    own = [
+        f"95 % range  {_meaning(item):<22}{_text(ends)} {item.unit}"
+        for item in QUANTITIES
+        if (ends := _ends(spread, item)) is not None
+    ]
+    return [*own, *_of_spread(spread)]
