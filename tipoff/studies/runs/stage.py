@@ -51,11 +51,13 @@ def run(study: Study, fidelity: str) -> dict:
 
 
 def beside(request: Run, found: Trajectory) -> dict:
-    """``advice`` for a run that ended too early, and the rates ``by_hand`` (deg/s) with what they
-    count, None where more than one pad touches."""
+    """``advice`` for a run that ended too early; the rates ``by_hand`` (deg/s) with what they
+    count, None where more than one pad touches; ``rail_compliance``, what that of the run states
+    about its elements, None without one."""
     hand = hand_calculation.rates(request.scene, found)
     return {
         "advice": unfinished.advice(request.scene, found),
+        "rail_compliance": request.compliance and request.compliance.stated(),
         "by_hand": hand
         and {"rate_deg_s": [math.degrees(rate) for rate in hand.rate], "words": hand.words},
     }
