@@ -14,22 +14,26 @@ import numpy as np
 from tipoff import sources
 from tipoff.files import content_hash
 from tipoff.highfi import compliance as statics
+from tipoff.highfi import discretisation
 from tipoff.highfi.statics import inputs
 from tipoff.mechanics import model as scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance, digest
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.studies import element_size as own_size
 
+_SAID: set[Path] = set()  # files whose uncertainty was said
 _PLACES = 4  # stations along the rail at which meshes are compared
 
 
 def compliance(scene: Scene, element_size: float | None = None) -> RailCompliance:
     """Compliance of the rails of ``scene`` under its pads, with the modes of the rails, in elements
-    of ``element_size`` (m), else in those of the reference (``scenes.studies``).
+    of ``element_size`` (m), else in those of the reference (``scenes.studies``), and with its
+    uncertainty by these elements.
 
     Takes seconds to minutes, once for a rail and its pads. Raises SceneError or MeshError.
     """
-    return statics.condense(scene, element_size or own_size(scene.studies))
+    size = element_size or own_size(scene.studies)
+    return discretisation.stated(scene, size, statics.condense(scene, size))
 
 
 def walls(scene: Scene, element_size: float | None = None) -> RailCompliance | None:
@@ -48,8 +52,18 @@ def kept(
 ) -> RailCompliance:
     """The same in elements of ``element_size`` (m), read from ``folder`` if it is stored there for
     this rail, these pads and this code, else made and stored there. ``say`` gets messages on what
-    takes time."""
+    takes time, and once in a process for each file the uncertainty by the elements."""
     path, say = kept_file(scene, folder, element_size), say or (lambda _: None)
+    found = _loaded_or_made(scene, path, element_size, say)
+    if path not in _SAID:
+        _SAID.add(path)
+        say(f"  {found.accuracy()}")
+    return found
+
+
+def _loaded_or_made(
+    scene: Scene, path: Path, element_size: float, say: Callable[[str], None]
+) -> RailCompliance:
     try:
         return RailCompliance.load(path)
     except FileNotFoundError:
@@ -57,8 +71,8 @@ def kept(
     except ValueError as fault:
         say(f"  {fault}, so it is found again")
     say(
-        f"rail compliance, once per rail and pads: {1e3 * element_size:g} mm elements, seconds to "
-        f"minutes"
+        f"rail compliance, once per rail and pads: {1e3 * element_size:g} mm elements, and half of "
+        f"that for its uncertainty, seconds to minutes"
     )
     began = time.perf_counter()
     with statics.progress_to(_Waiting(say, time.perf_counter)):

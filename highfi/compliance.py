@@ -216,7 +216,7 @@ def of_mesh(
     parts: list[joint_terms.Part] = []
     warm = np.zeros((stations.size, count, patterns, FIELDS))
     for rail, images in pieces.distinct(mesh):
-        patches = _Patches(rail, patterns)
+        patches = Patches(rail, patterns)
         places = [patches.under(faces, half, signs, reach, stations) for signs in images]
         if not patches.found:
             continue
@@ -257,7 +257,7 @@ def of_mesh(
     )
 
 
-class _Patches:
+class Patches:
     """All different places of one rail that some face of it, or of a mirror image of it,
     presses."""
 
@@ -317,7 +317,7 @@ class _Patches:
         frequencies (n,) rad/s of the lowest modes and their displacement (m,p,n); the terms of a
         ``joint`` where there are modes."""
         operator = assembly.of_material(self._rail, material, joint=joint)
-        clamped, loads = Clamped(operator), self._loads()
+        clamped, loads = Clamped(operator), self.loads()
         load, held = thermal.of_each_field(self._rail, operator, material, middle)
         warm = loads.T @ clamped.displaced(load, held)
         loads = loads[clamped.free]
@@ -338,7 +338,7 @@ class _Patches:
             terms,
         )
 
-    def _loads(self) -> csc_array:
+    def loads(self) -> csc_array:
         """Nodal loads (3n,mp) of all patterns at all places."""
         rows, columns, values = [], [], []
         for number, (patch, (axis, sign)) in enumerate(zip(self.found, self._direction)):

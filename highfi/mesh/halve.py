@@ -12,6 +12,7 @@ from dataclasses import replace
 from itertools import product
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 
@@ -27,6 +28,12 @@ _TRIANGLES = [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)]
 def halved(mesh: RailMesh) -> RailMesh:
     """``mesh`` with two elements along every edge of each; warnings stay: they give the
     elements of the file."""
+    return halved_with_weights(mesh)[0]
+
+
+def halved_with_weights(mesh: RailMesh) -> tuple[RailMesh, csr_array]:
+    """The same, and the matrix (n,m) that interpolates values at the m nodes of ``mesh`` to the n
+    nodes of the result."""
     # One random number per node makes a sum of weights a name of the point, whichever element it is
     # seen from; it may wrap around.
     names = np.random.default_rng(0).integers(1, 2**63, len(mesh.points), dtype=np.uint64)
@@ -50,7 +57,19 @@ def halved(mesh: RailMesh) -> RailMesh:
         name: np.searchsorted(found, names[facets] @ shares)[:, quarters].reshape(-1, 6)
         for name, facets in mesh.surfaces.items()
     }
-    return replace(mesh, points=places[first], cells=cells.reshape(-1, 10), surfaces=surfaces)
+    finer = replace(mesh, points=places[first], cells=cells.reshape(-1, 10), surfaces=surfaces)
+    return finer, interpolation(mesh, first, weights / 8.0)
+
+
+def interpolation(mesh: RailMesh, first: np.ndarray, weights: np.ndarray) -> csr_array:
+    """Matrix (n,m) from values at the m nodes of ``mesh`` to n places: ``first`` (n,) is the number of
+    an element times p plus that of one of its p places, whose ``weights`` (p,k) are those of its k
+    nodes."""
+    element, place = np.divmod(first, len(weights))
+    columns, values = mesh.cells[element], weights[place]
+    rows = np.repeat(np.arange(first.size), columns.shape[1])
+    shape = (first.size, len(mesh.points))
+    return csr_array((values.ravel(), (rows, columns.ravel())), shape=shape)
 
 
 def _quarters(corners: int) -> np.ndarray:

@@ -11,9 +11,10 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from tipoff.highfi.mesh.cells import HEXAHEDRON, edge_lengths, kind
-from tipoff.highfi.mesh.halve import halved
+from tipoff.highfi.mesh.halve import halved, halved_with_weights, interpolation
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 
 # Corners of the unit square and cube in VTK order.
@@ -49,8 +50,18 @@ def shortest(mesh: RailMesh) -> float:
 def split(mesh: RailMesh, parts: int) -> RailMesh:
     """Hexahedra with ``parts`` elements along every edge of each in ``mesh``; warnings stay:
     they give the elements of the file."""
-    if parts == 1:
-        return mesh
+    return mesh if parts == 1 else _split(mesh, parts)[0]
+
+
+def refined(mesh: RailMesh) -> tuple[RailMesh, csr_array]:
+    """``mesh`` with two elements along every edge of each, and the matrix (n,m) that interpolates
+    values at its m nodes to the n nodes of the result."""
+    if kind(mesh.cells) is HEXAHEDRON:
+        return _split(mesh, 2)
+    return halved_with_weights(mesh)
+
+
+def _split(mesh: RailMesh, parts: int) -> tuple[RailMesh, csr_array]:
     # One random number per node makes a sum of weights a name of the point, whichever element it is
     # seen from.
     names = np.random.default_rng(0).integers(1, 2**63, len(mesh.points), dtype=np.uint64)
@@ -69,7 +80,8 @@ def split(mesh: RailMesh, parts: int) -> RailMesh:
         ].reshape(-1, 4)
         for name, facets in mesh.surfaces.items()
     }
-    return replace(mesh, points=places[first], cells=hexes, surfaces=surfaces)
+    finer = replace(mesh, points=places[first], cells=hexes, surfaces=surfaces)
+    return finer, interpolation(mesh, first, weights / float(parts**3))
 
 
 def _lattice(corners: np.ndarray, parts: int) -> tuple[np.ndarray, np.ndarray]:

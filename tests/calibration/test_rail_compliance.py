@@ -131,6 +131,7 @@ def test_the_faces_of_a_rail_from_a_file_are_part_of_it():
 
 def test_the_elements_are_those_that_are_asked_for_or_of_the_scene(monkeypatch):
     monkeypatch.setattr(rail_compliance.statics, "condense", lambda scene, size: size)
+    monkeypatch.setattr(rail_compliance.discretisation, "stated", lambda scene, size, found: found)
     assert calibration.compliance(load("tiny"), 6e-3) == 6e-3
     assert calibration.compliance(load("tiny")) == 8e-3
     assert calibration.compliance(load("reference").replace({"name": "tiny"})) == 2e-3
@@ -146,24 +147,40 @@ def _said(monkeypatch, tmp_path, seconds: float) -> list[str]:
         for part in range(4):
             now += seconds
             report(0.25 * (part + 1))
-        return SimpleNamespace(save=lambda path: None)
+        return SimpleNamespace(save=lambda path: None, accuracy=lambda: "")
 
     monkeypatch.setattr(rail_compliance.time, "perf_counter", lambda: now)
     monkeypatch.setattr(rail_compliance.statics, "condense", condense)
-    lines = []
+    monkeypatch.setattr(rail_compliance.discretisation, "stated", lambda scene, size, found: found)
+    lines: list[str] = []
     rail_compliance.kept(load("tiny"), tmp_path, 8e-3, lines.append)
     return lines
 
 
 def test_a_long_wait_says_how_long_it_takes(monkeypatch, tmp_path):
     """Four minutes; control: four seconds say nothing."""
-    first, *left, last = _said(monkeypatch, tmp_path, 60.0)
+    first, *left, last, _ = _said(monkeypatch, tmp_path / "long", 60.0)
     assert "rail compliance, once" in first and "found in 240 s" in last
     assert left == [
         "  50 %, about 2 min left; coarser elements take less",
         "  75 %, about 60 s left",
     ]
-    assert len(_said(monkeypatch, tmp_path, 1.0)) == 2
+    assert len(_said(monkeypatch, tmp_path / "short", 1.0)) == 3
+
+
+def test_the_elements_and_their_uncertainty_are_stored_and_said_once(tmp_path):
+    """From the file as when it was made. Control: the same size asked for in another folder is another
+    file, which is said too."""
+    lines: list[str] = []
+    scene = load("tiny")
+    made, found = (rail_compliance.kept(scene, tmp_path, 16e-3, lines.append) for _ in range(2))
+    assert found.stated() == made.stated() and found.hash == made.hash
+    assert found.uncertainty.min() > 0.1 and found.frequency_uncertainty > 0.01
+    said = [line for line in lines if "mm elements: uncertainty" in line]
+    assert said == [f"  {made.accuracy()}"] and "(from 16 and 8 mm)" in said[0]
+    made.save(rail_compliance.kept_file(scene, tmp_path / "other", 16e-3))
+    rail_compliance.kept(scene, tmp_path / "other", 16e-3, lines.append)
+    assert lines[-1] == said[0] and lines.count(said[0]) == 2
 
 
 def test_the_loads_solved_for_are_reported(monkeypatch):

@@ -1,5 +1,6 @@
 """Whether the arrays of a rail compliance belong together, as a file gives them."""
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 def require(found: "RailCompliance", patterns: int) -> None:
     """Raises ValueError where types or shapes do not belong together, or a number is not finite;
     ``patterns`` is the number of those on a face."""
+    _require_plain(found)
     _require_dimensions("travel", found.travel, 1)
     _require_dimensions("rail", found.rail, 1, "iu")
     _require_dimensions("frequency", found.frequency, 2)
@@ -36,6 +38,8 @@ def require(found: "RailCompliance", patterns: int) -> None:
     if found.drawn is not None:
         _require_dimensions("drawn", found.drawn, 3)
         expected["drawn"] = (max(len(found.drawn), 2), faces, drawn_walls.ACROSS)
+    if found.uncertainty is not None:
+        expected["uncertainty"] = (faces,)
     for name, shape in expected.items():
         _require_shape(name, getattr(found, name), shape)
     if (terms := found.joints) is None:
@@ -52,6 +56,16 @@ def require(found: "RailCompliance", patterns: int) -> None:
         "joint": (rails, shapes, shapes),
     }.items():
         _require_shape(f"joints.{name}", getattr(terms, name), shape)
+
+
+def _require_plain(found: "RailCompliance") -> None:
+    for name in ("made_for", "not_known"):
+        if not isinstance(getattr(found, name), str):
+            raise ValueError(f"{name}: given {getattr(found, name)!r}, expected a text")
+    for name in ("element_size", "frequency_uncertainty"):
+        value = getattr(found, name)
+        if value is not None and not (isinstance(value, float) and 0.0 <= value < math.inf):
+            raise ValueError(f"{name}: given {value!r}, expected a number not below zero")
 
 
 def _require_dimensions(name: str, array: np.ndarray, dimensions: int, kinds: str = "f") -> None:

@@ -7,12 +7,13 @@ import numpy as np
 
 from tipoff.cards import Carded
 from tipoff.files import write_csv
+from tipoff.mechanics.elements_stated import Elements
 
 if TYPE_CHECKING:
     from tipoff.plots import Figure
 
 
-class Shown(Carded):
+class Shown(Elements, Carded):
     """Base of ``mechanics.rail_compliance.RailCompliance``, whose fields it shows."""
 
     travel: np.ndarray
@@ -37,7 +38,15 @@ class Shown(Carded):
             "stations": f"{self.travel.size} stations over {1e3 * np.ptp(self.travel):.4g} mm",
             "faces": f"{self.rail.size} faces",
             "modes": modes,
-        }
+        } | ({"elements": size} if (size := self._elements()) else {})
+
+    def _elements(self) -> str:
+        if self.element_size is None:
+            return ""
+        size = f"{1e3 * self.element_size:.3g} mm elements"
+        if self.uncertainty is None:
+            return size
+        return f"{size}, uncertain by {100.0 * self.uncertainty.max():.2g} %"
 
     def plot(self, axes: Any = None) -> "Figure":
         """Draw the compliance (nm/N) of each pad face over the travel of the payload (mm).

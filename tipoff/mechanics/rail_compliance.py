@@ -46,10 +46,9 @@ POWERS = np.array([[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]])  # of xi and
 
 _KEEPING = threading.Lock()
 _KEPT_FACTORS = 4  # compliances at other factors that are kept
+_PLAIN = ("made_for", "element_size", "frequency_uncertainty", "not_known")  # no arrays
 _JOINTS = "joints."  # before the names of their arrays in a file
-
-# of the largest eigenvalue of F: error of an eigenvalue of zero by the accuracy of the modes
-_ROUNDING = 1e-9
+_ROUNDING = 1e-9  # of the largest eigenvalue of F: error of one of zero by that of the modes
 
 # Means over a face of products of two patterns: the mean of xi^n is 1 / (n + 1) for even n.
 _TOGETHER = POWERS[:, None] + POWERS
@@ -58,14 +57,14 @@ GRAM = np.where((_TOGETHER % 2 == 0).all(axis=2), 1.0 / (_TOGETHER + 1.0).prod(a
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RailCompliance(Shown):
-    """travel (s,) m of the payload along X since ignition, evenly spaced; flexibility (s,f,p,f,p)
-    m/N; rail (f,) number of the rail each face is on; half (f,2) m, half the size of each face
-    along xi and eta, negative where eta runs against the axis; frequency (r,n) rad/s of the lowest
-    modes of each rail, ascending, and their shape W (s,f,p,n) 1/kg^0.5; made_for, digest of the
-    rail and pads; warm (t,s,f,p) m away from the payload under one of each field of temperature,
-    or None; joints, what a factor on the stiffness of the mounts changes, or None; drawn (n,f,3) m,
-    offset of walls that are not straight as drawn, at places from end to end of the rail
-    (``mechanics.drawn_walls``), or None. Rigid walls have no flexibility (None).
+    """travel (s,) m of the payload along X since ignition, evenly spaced; flexibility (s,f,p,f,p) m/N; rail
+    (f,) number of the rail each face is on; half (f,2) m, half the size of each face along xi and eta,
+    negative where eta runs against the axis; frequency (r,n) rad/s of the lowest modes of each rail,
+    ascending, and their shape W (s,f,p,n) 1/kg^0.5; made_for, digest of the rail and pads; warm (t,s,f,p) m
+    away from the payload under one of each field of temperature, or None; joints, what a factor on the
+    stiffness of the mounts changes, or None; drawn (n,f,3) m, offset of walls that are not straight as
+    drawn, at places from end to end of the rail (``mechanics.drawn_walls``), or None. Rigid walls have no
+    flexibility (None). The other fields are those of ``mechanics.elements_stated``.
 
     Example:
         >>> rail = tipoff.compliance(tipoff.load("tiny"), 8e-3)
@@ -179,7 +178,7 @@ class RailCompliance(Shown):
 
     @cached_property
     def hash(self) -> str:
-        """Hexadecimal SHA-256 of all of it."""
+        """Hexadecimal SHA-256 of all of it but its ``mechanics.elements_stated``."""
         digest = hashlib.sha256(self.made_for.encode())
         for array in (
             self.travel,
@@ -203,7 +202,7 @@ class RailCompliance(Shown):
 
     def rigid(self) -> "RailCompliance":
         """The same walls without flexibility: their offsets alone, for springs."""
-        return replace(self, flexibility=None)
+        return replace(self, flexibility=None, element_size=None, uncertainty=None)
 
     def moved(self, amounts: np.ndarray) -> np.ndarray:
         """Thermal offset T (s,f,p) m under ``amounts`` (t,) of the fields of temperature."""
@@ -229,9 +228,9 @@ class RailCompliance(Shown):
         return replace(self, flexibility=flexibility, frequency=frequency, shape=shape, joints=None)
 
     def require(self, scene: Scene) -> None:
-        """Raises SceneError where ``scene`` has another rail or other pads than this compliance was
-        made for, a temperature while this has no thermal offset, or a factor on the stiffness of
-        its mounts that this does not cover."""
+        """Raises SceneError where ``scene`` has another rail or other pads than this compliance was made for, a
+        temperature while this has no thermal offset, or a factor on the stiffness of its mounts that this does
+        not cover."""
         if self.made_for != digest(scene):
             expected = "those of this compliance: make it again"
             raise SceneError([Fault(scene.name, "rail", "another rail, or other pads", expected)])
@@ -300,7 +299,9 @@ class RailCompliance(Shown):
                 names = [f"{_JOINTS}{name}" for name in JointTerms._fields]
                 if names[0] in found:
                     arrays["joints"] = JointTerms(*(found[name] for name in names))
-            compliance = cls(**arrays | {"made_for": str(arrays["made_for"])})
+            compliance = cls(
+                **arrays | {name: arrays[name].item() for name in {*_PLAIN} & {*arrays}}
+            )
             compliance_arrays.require(compliance, PATTERNS)
         except DamageError as fault:
             raise ValueError(f"{path}: not a file of rail compliance: it {fault.reason}") from fault
@@ -354,9 +355,9 @@ def _factor(scene: Scene) -> float:
 
 
 def digest(scene: Scene) -> str:
-    """Hexadecimal digest of the rail and pads that a compliance is made for. The clearance is not part
-    of it: one compliance serves the cases of a population, whose clearances vary around that of
-    their scene. A compliance is stored under all that it is computed from, the clearance included
+    """Hexadecimal digest of the rail and pads that a compliance is made for. The clearance is not part of it:
+    one compliance serves the cases of a population, whose clearances vary around that of their scene. A
+    compliance is stored under all that it is computed from, the clearance included
     (``calibration.rail_compliance.made_from``)."""
     described = scene.model_dump(mode="json", include={"rail", "pads"})
     described["rail"] |= scene.rail.contents()

@@ -18,7 +18,11 @@ from tipoff.scenes.faults import Fault, SceneError, close
 CATALOG = Path(__file__).resolve().parent / "catalog"
 _CHOICE = {"thrust": "kind", "contact": "law"}
 # written relative to the scene file; with a suffix where a name of the catalogue may stand there too
-_FILES = (("thrust", "file"), *(("rail", key) for key in rail.FILES), ("studies", "errors", ".toml"))
+_FILES = (
+    ("thrust", "file"),
+    *(("rail", key) for key in rail.FILES),
+    ("studies", "errors", ".toml"),
+)
 _FREE_TEXT = {"conditions", "provenance"}
 
 

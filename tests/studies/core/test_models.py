@@ -131,7 +131,10 @@ def test_an_answer_names_its_model_and_its_error(tmp_path):
         in first.stdout
     )
     assert first.stderr.count("rail compliance, once per rail and pads") == 1
+    assert "  rails         rail compliance at 8 mm elements: uncertainty " in first.stdout
     again = json.loads(call(*asked, "--json").stdout)
+    assert again["rail_compliance"]["element_size_m"] == 8e-3
+    assert again["rail_compliance"]["words"] in first.stdout
     assert again["model"] == COMPLIANT
     vibrating = call(*asked, "--modes", "1")
     assert (

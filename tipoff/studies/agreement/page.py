@@ -95,17 +95,21 @@ def terminal(document: dict) -> list[Part]:
         ("verdict", "verdict"),
     )
     title = f"Compliant contact: {summary(document['compliant'])}."
+    under = document.get("rail_compliance")
     alike = document["distributions"]
     return [
-        Table.of(document["compliant"], columns, title=title),
+        Table.of(
+            document["compliant"], columns, title=title, notes=(under["words"],) if under else ()
+        ),
         *([distribution_page.verdicts_of(alike)] if alike else []),
         *by_factor(document["interface"]),
     ]
 
 
 def _notes(document: dict) -> tuple[str, ...]:
-    gates = document["gates"]
+    gates, under = document["gates"], document.get("rail_compliance")
     return (
+        *([f"Elements: {under['words']}."] if under else []),
         f"Limits of agreement: rate L2 {percent(gates['rate_relative_l2'])} %, v_x L2 "
         f"{percent(gates['velocity_relative_l2'])} %, settled error "
         f"{gates['settled_rate_error_deg_s']:g} deg/s or twice the floor, if that is larger. "

@@ -35,8 +35,9 @@ def run(study: Study, options: Options | None = None) -> dict:
     """``uncalibrated``, ``fitted``, ``held_out``, ``compliant`` and ``modal`` rows; measured
     ``floor`` and ``refinement``; ``growth`` of a 1 um disturbance; ``distributions`` of conditions
     that no single run can judge; ``speedup`` of calibrated springs and ``speedup_compliant``;
-    ``simpler`` rail compliance; other values of the ``interface`` stiffness. ``options`` None: those
-    of the stored result, or else of the settings."""
+    ``simpler`` rail compliance; ``rail_compliance``, its elements and their uncertainty; other
+    values of the ``interface`` stiffness. ``options`` None: those of the stored result, or else of
+    the settings."""
     study.fitted()
     chosen = options or _last(study)
     _, calibrated, static, modal = compared = candidates(study)
@@ -60,6 +61,7 @@ def run(study: Study, options: Options | None = None) -> dict:
             **groups,
             "compliant": table["compliant"],
             "modal": table["modal"],
+            "rail_compliance": _elements(static),
             "rail_modes": modal.modes,
             "gates": verdicts.gates(study.scene),
             "element_size_m": study.settings.element_size,
@@ -80,6 +82,13 @@ def run(study: Study, options: Options | None = None) -> dict:
 def _last(study: Study) -> Options:
     found = STAGE.stored(study)
     return Options(**found["asked"]) if found is not None else Options(study.settings.neighbours)
+
+
+def _elements(compliant: Candidate) -> dict | None:
+    """What the most uncertain rail compliance states about its elements."""
+    found = [under.stated() for under in compliant.compliance.values() if under is not None]
+    known = [own for own in found if own is not None]
+    return max(known, key=lambda own: own["uncertainty"] or 0.0, default=None)
 
 
 def _inputs(study: Study, _: Options) -> list:

@@ -18,8 +18,8 @@ _SAME = 1e-9  # m
 
 
 def run(study: Study) -> dict:
-    """``file``, null for a scene without contact; number of stations, compliance under a pad (m/N),
-    wall time (s)."""
+    """``file``, null for a scene without contact; ``elements`` and their uncertainty; number of
+    stations, compliance under a pad (m/N), wall time (s)."""
 
     def make() -> tuple[dict, list[Path]]:
         began = time.perf_counter()
@@ -37,6 +37,7 @@ def run(study: Study) -> dict:
             "stations": len(found.travel),
             "rails": int(found.rail.max()) + 1,
             "element_size_m": study.settings.element_size,
+            "elements": found.stated(),
             "wall_s": time.perf_counter() - began,
             "under_a_pad": _under_a_pad(study.scene, found, mesh.points[mesh.surfaces["mount"]]),
         }, [path]

@@ -30,6 +30,8 @@ def draw(page: "Page") -> list[Part]:
     if not (found := document.get("under_a_pad")):
         return []
     caption = _CAPTION.format(size=1e3 * document["element_size_m"])
+    if elements := document.get("elements"):
+        caption += f" Elements: {elements['words']}."
     return [Figure(picture(found), caption), table(found)]
 
 

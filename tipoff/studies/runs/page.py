@@ -44,7 +44,8 @@ def settled(rows: list[dict]) -> Table:
                 row["wall_s"],
             )
         )
-    return Table(columns, found)
+    under = [row["rail_compliance"] for row in rows if row.get("rail_compliance")]
+    return Table(columns, found, notes=tuple(dict.fromkeys(own["words"] for own in under)))
 
 
 def thrust(page: "Page") -> list[Part]:

@@ -171,6 +171,8 @@ def lines(result: dict, made_with: str, study: Study) -> list[str]:
         text += disturbed.lines(result["disturbed"], limit)
     if why := result["numerics"].get("modes_why"):
         text.append(f"  rail modes    {why}")
+    if under := result.get("rail_compliance"):
+        text.append(f"  rails         {under['words']}")
     text.append(f"  agreement     {result['agreement']}")
     text.append(f"  took          {result['wall_s']:.3g} s, {result['steps']} steps")
     text.append(f"  trajectory    {study.path(result['trajectory'])}")

@@ -51,12 +51,14 @@ def run(study: Study, fidelity: str) -> dict:
 
 
 def beside(request: Run, found: Trajectory) -> dict:
-    """``advice`` for a run that ended too early, the rates ``by_hand`` (deg/s) with what they count,
-    None where more than one pad touches, and the ``thrust`` that acted."""
+    """``advice`` for a run that ended too early; the rates ``by_hand`` (deg/s) with what they
+    count, None where more than one pad touches; the ``thrust`` that acted; ``rail_compliance``,
+    what that of the run states about its elements, None without one."""
     hand = hand_calculation.rates(request.scene, found)
     return {
         "advice": unfinished.advice(request.scene, found),
         "thrust": request.scene.thrust.describe(request.scene.time_limit),
+        "rail_compliance": request.compliance and request.compliance.stated(),
         "by_hand": hand
         and {"rate_deg_s": [math.degrees(rate) for rate in hand.rate], "words": hand.words},
     }

@@ -1,0 +1,107 @@
+"""Uncertainty of a rail compliance by its elements: it covers the error against finer meshes on sections
+that are too stiff at 4 mm, and is not far above it."""
+
+import numpy as np
+import pytest
+
+from tests.highfi import sections, tets
+from tipoff.highfi import compliance, discretisation
+from tipoff.highfi.mesh import split
+from tipoff.scenes import load
+
+REACH = (0.0, sections.LENGTH)
+TRAVEL = np.linspace(0.0, sections.LENGTH - 0.016, 4)
+
+
+def uncertainty(mesh):
+    return discretisation.of_mesh(mesh, sections.ALUMINIUM, sections.pad(), REACH, TRAVEL)
+
+
+def solved(mesh):
+    """Sum of the compliance over all places, and the lowest frequency, by direct solutions."""
+    found = compliance.of_mesh(
+        mesh, sections.ALUMINIUM, sections.pad(), REACH, TRAVEL, patterns=1, modes=1
+    )
+    return found.matrix[:, 0, 0, 0, 0].sum(), found.frequency[0, 0]
+
+
+def too_stiff(section, size, finest):
+    """Relative error of the compliance in elements of ``size`` (m), from direct solutions on the
+    ``finest`` (m) and one twice as coarse, by the first power."""
+    (own, _), (twice, _), (fine, _) = (
+        solved(sections.rail(section, each)) for each in (size, 2.0 * finest, finest)
+    )
+    return (2.0 * fine - twice) / own - 1.0
+
+
+def test_the_finer_solution_is_that_of_the_mesh_itself():
+    """The iteration against a direct solution on the same refined mesh."""
+    mesh = sections.rail("tee", 8e-3)
+    found = uncertainty(mesh)
+    (own, frequency), (fine, finer) = solved(mesh), solved(split.refined(mesh)[0])
+    factor = 2.0 * discretisation.SAFETY_FACTOR
+    assert found.compliance == pytest.approx(factor * (fine / own - 1.0), rel=5e-3)
+    assert found.frequency == pytest.approx(factor * (1.0 - finer / frequency), rel=2e-2)
+
+
+def test_the_uncertainty_covers_the_error_of_walls_one_element_thick():
+    """Control: the change from elements twice as large, in walls as thick, does not cover it."""
+    section, size = "tee by its web", 4e-3
+    mesh = sections.rail(section, size)
+    error, own = too_stiff(section, size, 2e-3), uncertainty(mesh).compliance[0]
+    assert 0.15 < error < own < 1.6 * error
+    twice = solved(sections.rail(section, 2.0 * size))[0]
+    assert discretisation.SAFETY_FACTOR * (solved(mesh)[0] / twice - 1.0) < 0.6 * error
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("section", ["tee", "channel", "box"])
+def test_the_uncertainty_covers_the_error_against_elements_of_one_millimetre(section):
+    """Elements of 4 mm are 7 to 11 % too stiff, with the rest to elements of no size 10 to 16 %."""
+    size = 4e-3
+    own = uncertainty(sections.rail(section, size)).compliance[0]
+    to_one = 1.0 - solved(sections.rail(section, size))[0] / solved(sections.rail(section, 1e-3))[0]
+    error = too_stiff(section, size, 1e-3)
+    assert 0.06 < to_one < 0.12 and to_one < error < own < 1.6 * error
+
+
+def test_tetrahedra_are_refined_too():
+    mesh = tets.split(sections.rail("tee", 20e-3))
+    found = uncertainty(mesh)
+    (own, _), (fine, _) = solved(mesh), solved(split.refined(mesh)[0])
+    factor = 2.0 * discretisation.SAFETY_FACTOR
+    assert found.compliance == pytest.approx(factor * (fine / own - 1.0), rel=5e-3)
+
+
+def test_values_are_interpolated_to_the_finer_nodes():
+    """A linear field keeps its values, in both kinds of elements."""
+    bricks = sections.rail("tee", 20e-3)
+    for mesh in (bricks, tets.split(bricks)):
+        finer, weights = split.refined(mesh)
+        assert len(finer.cells) == 8 * len(mesh.cells)
+        assert weights @ mesh.points == pytest.approx(finer.points, abs=1e-15)
+
+
+def test_a_mesh_that_is_too_large_has_no_uncertainty(monkeypatch):
+    """None with the reason, not zero."""
+    monkeypatch.setattr(discretisation, "MOST_ENTRIES", 1e5)
+    found = uncertainty(sections.rail("tee", 8e-3))
+    assert found.compliance is None and found.frequency is None
+    assert "1,040 on a rail, too many" in found.why
+
+
+def test_a_compliance_states_its_elements(monkeypatch):
+    """Those of a file are its own, whatever size is asked for. Control: a compliance made elsewhere
+    states nothing."""
+    known = discretisation.of(load("tiny"), 16e-3)
+    monkeypatch.setattr(discretisation, "of", lambda *_: known)
+    for scene, asked, own in ((load("tiny"), 16e-3, 16e-3), (load("channel"), 9e-3, 4e-3)):
+        plain = compliance.condense(scene, asked, spacing=0.15, modes=2)
+        found = discretisation.stated(scene, asked, plain)
+        facts = found.stated()
+        assert plain.stated() is None and plain.accuracy() == "" and found.hash == plain.hash
+        assert facts["element_size_m"] == pytest.approx(own)
+        assert facts["uncertainty"] == found.uncertainty.max() > 0.1
+        assert f"at {1e3 * own:g} mm elements: uncertainty " in facts["words"]
+        assert found.is_coarse and "finer elements are needed" in facts["words"]
+        assert "rigid" in repr(found.rigid()) and found.rigid().stated() is None

@@ -1,0 +1,54 @@
+"""What a rail compliance states about its elements: their size, and how uncertain they leave it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+COARSE = 0.1  # uncertainty by the elements beyond which finer ones are advised
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Elements:
+    """element_size (m) of the statics, None where it is not known; uncertainty (f,) by these elements of
+    the compliance under each face, relative to it, and frequency_uncertainty of the lowest mode
+    (``highfi.discretisation``), both None where not_known says why. They change no run."""
+
+    element_size: float | None = None
+    uncertainty: np.ndarray | None = None
+    frequency_uncertainty: float | None = None
+    not_known: str = ""
+
+    @property
+    def is_coarse(self) -> bool:
+        """Whether the uncertainty of any face is above ``COARSE``."""
+        return self.uncertainty is not None and bool(self.uncertainty.max() > COARSE)
+
+    def stated(self) -> dict | None:
+        """As in results: ``element_size_m``; the largest ``uncertainty`` of any face and
+        ``frequency_uncertainty``, None where ``not_known`` says why; ``words``. None where the
+        elements are not known."""
+        if self.element_size is None:
+            return None
+        return {
+            "element_size_m": self.element_size,
+            "uncertainty": None if self.uncertainty is None else float(self.uncertainty.max()),
+            "frequency_uncertainty": self.frequency_uncertainty,
+            "not_known": self.not_known,
+            "words": self.accuracy(),
+        }
+
+    def accuracy(self) -> str:
+        """The elements and what they leave uncertain, in words; empty where they are not known."""
+        if self.element_size is None:
+            return ""
+        size = 1e3 * self.element_size
+        words = f"rail compliance at {size:.3g} mm elements: uncertainty "
+        if self.uncertainty is None or self.frequency_uncertainty is None:
+            return f"{words}not known: {self.not_known}"
+        words += (
+            f"{100.0 * self.uncertainty.max():.2g} % (from {size:.3g} and {0.5 * size:.3g} mm), that "
+            f"of the lowest frequency {100.0 * self.frequency_uncertainty:.2g} %"
+        )
+        if not self.is_coarse:
+            return words
+        return f"{words}; warning: more than {100.0 * COARSE:g} %, finer elements are needed"
