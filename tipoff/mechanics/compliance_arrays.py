@@ -1,19 +1,17 @@
 """Whether the arrays of a rail compliance belong together, as a file gives them."""
 
 import math
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
 from tipoff.mechanics import drawn_walls
 from tipoff.scenes.effects.thermal import FIELDS
 
-if TYPE_CHECKING:
-    from tipoff.mechanics.rail_compliance import RailCompliance
 
-
-def require(found: "RailCompliance", patterns: int) -> None:
-    """Raises ValueError where types or shapes do not belong together, or a number is not finite;
+def require(found: Any, patterns: int) -> None:
+    """Raises ValueError where types or shapes of ``found``, a ``RailCompliance``, do not belong
+    together, or a number is not finite;
     ``patterns`` is the number of those on a face."""
     _require_plain(found)
     _require_dimensions("travel", found.travel, 1)
@@ -58,7 +56,7 @@ def require(found: "RailCompliance", patterns: int) -> None:
         _require_shape(f"joints.{name}", getattr(terms, name), shape)
 
 
-def _require_plain(found: "RailCompliance") -> None:
+def _require_plain(found: Any) -> None:
     for name in ("made_for", "not_known"):
         if not isinstance(getattr(found, name), str):
             raise ValueError(f"{name}: given {getattr(found, name)!r}, expected a text")
