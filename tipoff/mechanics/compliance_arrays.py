@@ -11,8 +11,7 @@ from tipoff.scenes.effects.thermal import FIELDS
 
 def require(found: Any, patterns: int) -> None:
     """Raises ValueError where types or shapes of ``found``, a ``RailCompliance``, do not belong
-    together, or a number is not finite;
-    ``patterns`` is the number of those on a face."""
+    together, or a number is not finite; ``patterns`` is the number of those on a face."""
     _require_plain(found)
     _require_dimensions("travel", found.travel, 1)
     _require_dimensions("rail", found.rail, 1, "iu")
