@@ -166,3 +166,34 @@ def test_milestones_of_the_reference():
     )
     assert found.jam_speed == 0.01
     assert not found.constant_thrust
+
+
+def test_a_body_force_has_time_to_set_a_payload_in_motion_before_it_counts_as_jammed():
+    """From rest on fixed rails, g along them reaches twice the jam speed after 2 v / g. Control: under a
+    pull across or backwards, on a free platform that falls too, or once in motion, it is the thrust
+    alone that counts."""
+    pull = 0.05  # m/s2: slower than the duration of a jam
+    resting = load("reference").replace(
+        {
+            "platform": None,
+            "friction": None,
+            "thrust": {"kind": "constant", "force": 0.0, "duration": 1e-3},
+            "thrust_offset": None,
+            "duration": None,
+        }
+    )
+
+    def spent(**changes) -> float:
+        scene = resting.replace(changes)
+        return outcome.milestones(scene, model.build(scene)).spent_thrust
+
+    assert spent(gravity={"x": pull}) == pytest.approx(2.0 * 0.01 / pull, rel=1e-9)
+    # Control:
+    moving = {"velocity": {"x": 0.5}}
+    for others in (
+        {"gravity": {"y": pull}},
+        {"gravity": {"x": -pull}},
+        {"gravity": {"x": pull}, "initial": moving},
+        {"gravity": {"x": pull}, "platform": load("reference").resolved()["platform"]},
+    ):
+        assert spent(**others) <= 1e-3

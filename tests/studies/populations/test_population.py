@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.studies import free_flight
 from tipoff import lowfi
 from tipoff.lowfi.ensemble.rows import Listed
 from tipoff.lowfi.numerics import Numerics
@@ -13,6 +14,8 @@ from tipoff.scenes import load
 from tipoff.studies.agreement import kept
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.limits import stage as limits
+from tipoff.studies.montecarlo import stage as montecarlo
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Surrogate
 
@@ -106,3 +109,26 @@ def test_cases_are_kept_and_not_run_again(tmp_path, monkeypatch):
         np.array_equal(again.results.rate, found.results.rate, equal_nan=True)
         and (tmp_path / again.store).is_dir()
     )
+
+
+@pytest.mark.parametrize("study_of", [limits.run, montecarlo.run], ids=["limits", "montecarlo"])
+def test_a_scene_that_never_leaves_is_refused_before_thousands_of_cases(
+    study_of, tmp_path, monkeypatch
+):
+    """Without a stated duration such a run is jammed after 5 ms. Control: the same launch with its
+    thrust goes on to its cases."""
+
+    class Began(Exception):
+        pass
+
+    def begin(*_, **__):
+        raise Began
+
+    monkeypatch.setattr(population, "run", begin)
+    monkeypatch.setattr(limits.Search, "all", begin)
+    moving = free_flight.scene().replace({"duration": None})
+    still = moving.replace({"thrust.peak": 0.0})
+    with pytest.raises(Began):
+        study_of(Study(moving, tmp_path / "moving", Settings(workers=1)))
+    with pytest.raises(StudyError, match=r"does not leave the rail and settle \(jammed\)"):
+        study_of(Study(still, tmp_path / "still", Settings(workers=1)))

@@ -28,7 +28,7 @@ def summary(found: dict) -> list[Part]:
     run = [
         f"{found['scene']}, model {found['model']}: {counted(counts['asked'], 'case')} = {counts['ok']:,} "
         f"ok + {counts['refused']:,} refused + {counts['failed']:,} failed; {found['settled']:,} "
-        "left the rail and settled",
+        f"left the rail and settled{_others(found['statuses'])}",
         f"agreement: {found['agreement']}",
         *failures,
     ]
@@ -42,6 +42,13 @@ def summary(found: dict) -> list[Part]:
         *(_sensitivity(found["sensitivity"]) if "sensitivity" in found else []),
         f"store: {found['store']}",
     ]
+
+
+def _others(statuses: dict[str, int]) -> str:
+    """How the cases ended that neither left the rail nor failed: jammed, or at the time limit."""
+    words = {"jammed": "jammed", "time_limit": "reached the time limit"}
+    found = [f"{statuses[name]:,} {text}" for name, text in words.items() if statuses.get(name)]
+    return "".join(f", {text}" for text in found)
 
 
 def _time(cost: dict) -> str:

@@ -39,7 +39,8 @@ _REACH = 5.0  # largest multiple of a whole set
 
 def run(study: Study, options: Options = Options()) -> dict:
     """``rows`` for each factor and for all together, and the ``map`` of two. Raises SceneError for
-    bad input, every fault listed."""
+    bad input, every fault listed, and StudyError where the payload does not leave without errors
+    either."""
     (limits, cases), _ = together(
         lambda: checked(options), lambda: options.condition and study.condition(options.condition)
     )
@@ -50,6 +51,7 @@ def run(study: Study, options: Options = Options()) -> dict:
         from tipoff.studies.limits import page
         from tipoff.studies.render.document import with_figures
 
+        population.require_settling(model, within.without_errors(model))
         with Board(NAME, 1) as board:
             found = Search(study, options, limits, cases, model, margin, board.callback(NAME)).all()
             board.finished(NAME, f"{found['evaluations']:,} sets of {cases:,} cases")

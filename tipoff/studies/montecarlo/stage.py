@@ -17,6 +17,7 @@ from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core.checked import together
 from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.limits import within
 from tipoff.studies.populations import answers, exceedance, population, random_factors, spread
 from tipoff.studies.populations.population import Population
 from tipoff.studies.populations.random_factors import READINGS, Reading
@@ -57,7 +58,9 @@ def run(study: Study, options: Options = Options()) -> dict:
         from tipoff.studies.montecarlo import page
         from tipoff.studies.render.document import with_figures
 
-        found = population.run(study, NAME, population.surrogate(study, options.model), source)
+        model = population.surrogate(study, options.model)
+        population.require_settling(model, within.without_errors(model))
+        found = population.run(study, NAME, model, source)
         if (settled := int(found.settled.sum())) < _FEWEST:
             raise StudyError(
                 f"{settled or 'no'} case settled; {found.counts['refused']:,} were refused, for "

@@ -14,13 +14,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tipoff import lowfi
 from tipoff.lowfi.ensemble import columns, pilot
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.lowfi.ensemble.fill import fill
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.store import StoreError
 from tipoff.lowfi.numerics import AUTO, Numerics
-from tipoff.mechanics.models import SPRINGS
+from tipoff.mechanics import unfinished
+from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
@@ -116,6 +118,27 @@ def surrogate(study: Study, model: str | None = None, condition: str | None = No
         return Surrogate(fitted.apply(scene), fitted, study.rigid_rails(scene))
     require_accepted(study, model, condition)
     return Surrogate(scene, None, study.rail_compliance(scene))
+
+
+def require_settling(*models: Surrogate) -> None:
+    """Run each of ``models`` once, until one settles. Raises StudyError, with how they ended, where none
+    does: thousands of cases like them would end so too."""
+    ended = []
+    for model in models:
+        vibrates = model.compliance is not None and model.name == COMPLIANT
+        numerics = Numerics(relative_tolerance=TOLERANCE, modes=0 if vibrates else AUTO)
+        found = lowfi.run(model.scene, model.name, numerics=numerics, compliance=model.compliance)
+        if found.outcome.rate is not None:
+            return
+        ended.append(
+            ": ".join(
+                filter(None, [found.status, found.message, unfinished.advice(model.scene, found)])
+            )
+        )
+    raise StudyError(
+        f"the scene itself does not leave the rail and settle ({'; '.join(dict.fromkeys(ended))}), so "
+        "cases like it tell nothing"
+    )
 
 
 def answering(study: Study, model: Surrogate, condition: str | None = None) -> dict[str, Any]:

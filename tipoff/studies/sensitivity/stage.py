@@ -40,13 +40,15 @@ def run(study: Study, options: Options = Options()) -> dict:
     """``tables`` in the form of the paper's Table 2, and ``sobol`` with the indices of every
     quantity.
 
-    Raises SceneError for bad input, before anything runs, and StudyError where too few cases
-    settle.
+    Raises SceneError for bad input, before anything runs, and StudyError where the scene itself or
+    too few cases settle.
     """
     _require(study, options)
 
     def make() -> tuple[dict, list[Path]]:
-        sobol, model = _sobol(study, population.surrogate(study, options.model), options)
+        asked = population.surrogate(study, options.model)
+        population.require_settling(asked)
+        sobol, model = _sobol(study, asked, options)
         found = {
             "asked": STAGE.plain(options),
             **population.answering(study, model),
