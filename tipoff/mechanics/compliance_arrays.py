@@ -1,19 +1,16 @@
 """Whether the arrays of a rail compliance belong together, as a file gives them."""
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
 from tipoff.mechanics import drawn_walls
 from tipoff.scenes.effects.thermal import FIELDS
 
-if TYPE_CHECKING:
-    from tipoff.mechanics.rail_compliance import RailCompliance
 
-
-def require(found: "RailCompliance", patterns: int) -> None:
-    """Raises ValueError where types or shapes do not belong together, or a number is not finite;
-    ``patterns`` is the number of those on a face."""
+def require(found: Any, patterns: int) -> None:
+    """Raises ValueError where types or shapes do not belong together, or a number is not finite.
+    ``found`` is a ``RailCompliance``, ``patterns`` is the number of those on a face."""
     _require_dimensions("travel", found.travel, 1)
     _require_dimensions("rail", found.rail, 1, "iu")
     _require_dimensions("frequency", found.frequency, 2)
