@@ -6,7 +6,7 @@ from tipoff.calibration.curves import Curves
 from tipoff.mechanics.models import SPRINGS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.effects import thrust
-from tipoff.scenes.faults import InputError
+from tipoff.scenes.faults import Fault, InputError, SceneError, kind_of
 from tipoff.scenes.scene import Scene
 
 
@@ -20,6 +20,16 @@ def check(scene: Scene, references: Mapping[str, Trajectory | Curves]) -> None:
 
     Runs must cover ``agreement.fitted``; curves from elsewhere are fitted as they come.
     """
+    if not isinstance(references, Mapping):
+        expected = "runs or calibration.Curves by the name of their condition"
+        raise SceneError([Fault("arguments", "references", kind_of(references), expected)])
+    wrong = [
+        Fault("arguments", f"references.{name}", kind_of(reference), "a Trajectory or Curves")
+        for name, reference in references.items()
+        if not isinstance(reference, (Trajectory, Curves))
+    ]
+    if wrong:
+        raise SceneError(wrong)
     faults = []
     fitted = list(scene.agreement.fitted)
     if not references:

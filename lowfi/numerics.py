@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from tipoff.mechanics.promises import RIGID, Promises
 from tipoff.mechanics.rail_compliance import MODES
+from tipoff.scenes.units import is_number, single
 
 AUTO = "auto"
 # A step of 0.1 % relative error is no longer a solution; below 1e-13 rounding decides.
@@ -33,21 +34,26 @@ class Numerics:
     modes: int | str = AUTO
 
     def __post_init__(self):
+        for name, value in vars(self).items():  # scalars of numpy, as Python has them
+            object.__setattr__(self, name, single(value))
         faults = []
-        if not _FINEST <= self.relative_tolerance <= _COARSEST:
+        if not (
+            is_number(self.relative_tolerance) and _FINEST <= self.relative_tolerance <= _COARSEST
+        ):
             faults.append(
                 f"relative_tolerance: given {self.relative_tolerance!r}, expected {_FINEST:g} to "
                 f"{_COARSEST:g}"
             )
-        if not (math.isfinite(self.speed_floor) and self.speed_floor > 0.0):
+        if not (is_number(self.speed_floor) and 0.0 < self.speed_floor < math.inf):
             faults.append(
                 f"speed_floor: given {self.speed_floor!r}, expected a speed above zero (m/s)"
             )
-        if not (isinstance(self.maximum_steps, int) and self.maximum_steps > 0):
+        if not (type(self.maximum_steps) is int and 0 < self.maximum_steps < 2**63):
             faults.append(
                 f"maximum_steps: given {self.maximum_steps!r}, expected a whole number above zero"
             )
-        if self.modes != AUTO and not (type(self.modes) is int and 0 <= self.modes <= MODES):
+        is_auto = isinstance(self.modes, str) and self.modes == AUTO
+        if not is_auto and not (type(self.modes) is int and 0 <= self.modes <= MODES):
             faults.append(
                 f"modes: given {self.modes!r}, expected a whole number from 0 to {MODES}, or "
                 f"{AUTO!r}"

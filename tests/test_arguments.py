@@ -15,6 +15,11 @@ TINY = tipoff.load("tiny")
 OTHER = pint.UnitRegistry()
 FE = "finite-elements"
 
+
+def ensemble(**options):
+    return tipoff.ensemble(TINY, [{"payload.mass": 9.0}], "springs", **options)
+
+
 # call, words of the message
 WRONG = {
     "no scene": (lambda: tipoff.run(None), ["scene", "None", "tipoff.load"]),
@@ -49,6 +54,50 @@ WRONG = {
         lambda: tipoff.ensemble(TINY, {"payload.mass": 9.0}),
         ["cases.payload.mass", "a list"],
     ),
+    "a scene that is a number": (lambda: tipoff.load(3.0), ["scene", "a float", "tiny"]),
+    "a mapping that is none": (lambda: tipoff.parse([1]), ["table", "a list", "mapping"]),
+    "overrides that are text": (lambda: TINY.replace("payload.mass"), ["table", "a str"]),
+    "a key that is a number": (lambda: TINY.replace({3: 1.0}), ["key", "3", "as text"]),
+    "a condition that is a list": (lambda: TINY.condition(["phi15"]), ["conditions", "phi15"]),
+    "no model": (lambda: tipoff.run(TINY, None), ["model", "None", "springs"]),
+    "an array of models": (lambda: tipoff.run(TINY, np.array(["springs"])), ["model", "one of"]),
+    "other objects": (
+        lambda: tipoff.run(TINY, "springs", compliance={}, calibration="c.toml", progress=True),
+        ["3 faults", "compliance", "a dict", "tipoff.compliance", "c.toml", "progress"],
+    ),
+    "no thread": (lambda: ensemble(workers=0), ["workers", "0", "1 to"]),
+    "half a thread": (lambda: ensemble(workers=2.5), ["workers", "2.5"]),
+    "a store that is a number": (lambda: ensemble(store=3), ["store", "3", "path"]),
+    "no name of a store": (lambda: ensemble(store=""), ["store", "path"]),
+    "sometimes": (lambda: ensemble(sensitivity="yes"), ["sensitivity", "True or False"]),
+    "no such key": (
+        lambda: tipoff.ensemble(TINY, [{"payload.mas": 9.0}, {}], "springs"),
+        ["cases.payload.mas", "no such key", "payload.mass"],
+    ),
+    "a number as key": (lambda: tipoff.ensemble(TINY, {1: [9.0]}, "springs"), ["cases", "as text"]),
+    "steps without end": (
+        lambda: tipoff.run(TINY, "springs", maximum_steps=10**400),
+        ["maximum_steps", "above zero"],
+    ),
+    "no floor": (lambda: tipoff.run(TINY, "springs", speed_floor=None), ["speed_floor", "None"]),
+    "modes as an array": (
+        lambda: tipoff.run(TINY, "compliant", compliance=None, modes=np.array([1, 2])),
+        ["modes", "0 to 20"],
+    ),
+    "references that are none": (lambda: tipoff.calibrate(TINY, "phi15"), ["references", "a str"]),
+    "a reference that is a path": (
+        lambda: tipoff.calibrate(TINY, {"phi15": "run.csv"}),
+        ["references.phi15", "a str", "Curves"],
+    ),
+    "one name of a parameter": (
+        lambda: tipoff.calibrate(TINY, {}, fit="friction.dynamic"),
+        ["fit", "friction.dynamic", "list of names"],
+    ),
+    "a seed of text": (lambda: tipoff.calibrate(TINY, {}, seed="one"), ["seed", "whole"]),
+    "steps of everything": (
+        lambda: highfi.Numerics(element_size="4 mm", cells=2.5, step_everything=1),
+        ["element_size", "cells", "step_everything"],
+    ),
     "compared with nothing": (lambda: tipoff.compare(None, TINY), ["reference", "None"]),
 }
 
@@ -60,6 +109,28 @@ def test_wrong_arguments_are_faults_with_their_name(name):
         call()
     assert all(word in str(caught.value) for word in words), str(caught.value)
     assert "object has no attribute" not in str(caught.value)
+
+
+@pytest.mark.parametrize("given", ["rate", 3.0, []], ids=repr)
+def test_other_axes_are_a_type_error(given):
+    with pytest.raises(TypeError, match="axes: given a .*expected axes of matplotlib"):
+        TINY.plot(given)
+
+
+@pytest.mark.parametrize("load", [tipoff.RailCompliance.load, tipoff.Trajectory.load])
+def test_a_number_is_no_path(load, tmp_path):
+    """Python opens a number as a file that is open already, and closes it."""
+    file = (tmp_path / "open").open("w")
+    with pytest.raises((TypeError, ValueError), match="PathLike"):
+        load(file.fileno())
+    file.write("still open")
+    file.close()
+
+
+def test_scalars_of_numpy_are_numerics():
+    found = highfi.Numerics(element_size=np.float64(8e-3), cells=np.int64(4), step=np.array(1e-8))
+    assert found == highfi.Numerics(element_size=8e-3, cells=4, step=1e-8)
+    assert lowfi.Numerics(modes=np.int32(3), maximum_steps=np.int64(9)).modes == 3
 
 
 MASSES = [10.0, 11.0]

@@ -57,6 +57,7 @@ def open_input(path: str | Path) -> Iterator[io.BufferedReader]:
     def opened(name: str, flags: int) -> int:
         return os.open(name, flags | getattr(os, "O_NONBLOCK", 0))
 
+    path = os.fspath(path)  # a number would be a file that is open already
     if "\0" in str(path):
         raise OSError(errno.EINVAL, "a null character in its name", str(path))
     with open(path, "rb", opener=opened) as stream:

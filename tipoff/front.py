@@ -23,6 +23,19 @@ from tipoff.scenes import catalog as catalog
 from tipoff.scenes import parse as parse
 from tipoff.scenes.uncertainty import Uncertainty
 
+_EXPECTED = {
+    "compliance": arguments.kind(
+        RailCompliance, "a rail compliance, which tipoff.compliance returns"
+    ),
+    "calibration": arguments.kind(Calibration, "a calibration, which tipoff.calibrate returns"),
+    "progress": arguments.FUNCTION,
+    "workers": arguments.whole(1, 1024),
+    "store": arguments.PATH,
+    "sensitivity": arguments.CHOICE,
+    "seed": arguments.whole(0, 2**32 - 1),
+    "fit": arguments.NAMES,
+}
+
 if TYPE_CHECKING:
     import xarray
 
@@ -100,6 +113,7 @@ def run(
 
     scene = arguments.scene_of(scene)
     _require(scene, model, MODELS)
+    arguments.require(_EXPECTED, compliance=compliance, calibration=calibration, progress=progress)
     if model == FINITE_ELEMENTS:
         _require_none(scene, model, compliance=compliance, calibration=calibration)
         given = {"element_size": studies.element_size(scene.studies)} | numerics
@@ -173,8 +187,16 @@ def ensemble(
 
     scene = arguments.scene_of(scene)
     _require(scene, model, SURROGATES)
+    arguments.require(
+        _EXPECTED,
+        compliance=compliance,
+        calibration=calibration,
+        workers=workers,
+        store=store,
+        sensitivity=sensitivity,
+    )
     drawn = {"cases": options.pop("count", None), "seed": options.pop("seed", None)}
-    drawn = {key: value for key, value in drawn.items() if value is not None}
+    drawn = {key: arguments.plain(value) for key, value in drawn.items() if value is not None}
     if isinstance(cases, (str, Path)):
         cases = uncertainty.load(cases, scene, **drawn)
     elif drawn:
@@ -275,8 +297,11 @@ def calibrate(
     from tipoff.lowfi import models
 
     scene = arguments.scene_of(scene)
-    model = model or (SPRINGS if fit is None else COMPLIANT)
+    if model is None:
+        model = SPRINGS if fit is None else COMPLIANT
     _require(scene, model, SURROGATES)
+    arguments.require(_EXPECTED, progress=progress, seed=seed, compliance=compliance, fit=fit)
+    seed = arguments.plain(seed)
     calibration.require_model(scene, model, fit)
     found = _pressed(scene, model, compliance)
     models.require(scene, model, found, None, None)
@@ -343,7 +368,7 @@ def _pressed(
 
 
 def _require(scene: Scene, model: str, models: Sequence[str]) -> None:
-    if model not in models:
+    if not isinstance(model, str) or model not in models:
         raise SceneError([Fault(scene.name, "model", repr(model), f"one of {', '.join(models)}")])
 
 

@@ -30,8 +30,10 @@ def lines(
     """``curves`` by name over one variable ``across``; both axes have a title with a unit.
 
     ``axes`` are those of a figure that there is; without them a new figure is made. ``style`` is
-    that of ``Axes.plot``. Returns the figure.
+    that of ``Axes.plot``. Returns the figure. Raises TypeError for other ``axes``.
     """
+    if axes is not None and not isinstance(axes, Axes):
+        raise TypeError(f"axes: given a {type(axes).__name__}, expected axes of matplotlib")
     axes = axes or Plot(figsize=(7.0, 4.0), layout="constrained").add_subplot()
     words, values = across
     for name, curve in curves:

@@ -197,7 +197,7 @@ class Trajectory(Carded):
         """
         from tipoff import plots  # slow to load
 
-        if quantity not in _PLOTTED:
+        if not isinstance(quantity, str) or quantity not in _PLOTTED:
             raise ValueError(f"quantity: given {quantity!r}, expected {' or '.join(_PLOTTED)}")
         unit, factor = _PLOTTED[quantity]
         values = factor * getattr(self, quantity)

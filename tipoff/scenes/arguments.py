@@ -1,13 +1,13 @@
 """What Python callers pass: scenes, numbers with or without units, tables of cases. Faults are those of
 files: all at once, each with the name of the argument."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
-from tipoff.scenes import units
-from tipoff.scenes.faults import Fault, SceneError, close
+from tipoff.scenes import overrides, suggestions, units
+from tipoff.scenes.faults import Fault, SceneError, close, kind_of
 from tipoff.scenes.rounding import below
 from tipoff.scenes.scene import Scene, load
 
@@ -22,7 +22,7 @@ def scene_of(given: Any) -> Scene:
     if isinstance(given, (str, Path)):
         return load(given)
     expected = "a scene of tipoff.load, or its name or path"
-    raise SceneError([Fault("arguments", "scene", _kind(given), expected)])
+    raise SceneError([Fault("arguments", "scene", kind_of(given), expected)])
 
 
 def numerics(kind: Callable[..., _T], given: Mapping[str, Any], other: type, model: str) -> _T:
@@ -48,6 +48,63 @@ def numerics(kind: Callable[..., _T], given: Mapping[str, Any], other: type, mod
     if faults:
         raise SceneError(faults)
     return kind(**values)
+
+
+class Expected(NamedTuple):
+    """What an argument may be: a check, and its words."""
+
+    is_right: Callable[[Any], bool]
+    words: str
+
+
+def require(expected: Mapping[str, Expected], **given: Any) -> None:
+    """Raises SceneError listing every argument that is not what is ``expected`` under its name. None
+    is what is not given."""
+    faults = [
+        Fault("arguments", name, _shown(value), expected[name].words)
+        for name, value in given.items()
+        if value is not None and not expected[name].is_right(value)
+    ]
+    if faults:
+        raise SceneError(faults)
+
+
+def whole(least: int, most: int) -> Expected:
+    """A whole number between bounds."""
+
+    def is_right(value: Any) -> bool:
+        value = plain(value)
+        return type(value) is int and least <= value <= most
+
+    return Expected(is_right, f"a whole number from {least} to {most:,}")
+
+
+PATH = Expected(
+    lambda value: isinstance(value, (str, Path)) and str(value) != "" and "\0" not in str(value),
+    "the path of a file or folder",
+)
+FUNCTION = Expected(callable, "a function of the fraction done")
+CHOICE = Expected(lambda value: isinstance(plain(value), bool), "True or False")
+NAMES = Expected(
+    lambda value: (
+        isinstance(value, Sequence)
+        and not isinstance(value, (str, bytes))
+        and all(isinstance(name, str) for name in value)
+    ),
+    "a list of names",
+)
+
+
+def kind(type_: type, words: str) -> Expected:
+    """An object of a class."""
+    return Expected(lambda value: isinstance(value, type_), words)
+
+
+def _shown(value: Any) -> str:
+    """Numbers and text as they are, the class of anything else."""
+    is_plain = isinstance(value, (str, float)) or (isinstance(value, int) and abs(value) < 2**62)
+    text = repr(value) if is_plain else ""
+    return text if 0 < len(text) <= 80 else kind_of(value)
 
 
 def length(name: str, given: Any) -> float:
@@ -78,14 +135,38 @@ def rows(given: Any) -> list[Mapping[str, Any]]:
         "set of xarray, a structured array; or distributions by name or path"
     )
     if not isinstance(given, Sequence) or isinstance(given, (str, bytes)):
-        raise SceneError([Fault("arguments", "cases", _kind(given), expected)])
+        raise SceneError([Fault("arguments", "cases", kind_of(given), expected)])
     wrong = [place for place, row in enumerate(given) if not isinstance(row, Mapping)]
     if wrong:
-        found = f"{_kind(given[wrong[0]])} as case {wrong[0]}"
+        found = f"{kind_of(given[wrong[0]])} as case {wrong[0]}"
         raise SceneError([Fault("arguments", "cases", found, expected)])
     if not given:
         raise SceneError([Fault("arguments", "cases", "no case", "at least one")])
+    _require_keys(key for row in given for key in row)
     return list(given)
+
+
+def _require_keys(given: Iterable[Any]) -> None:
+    """Raises SceneError for keys that no scene has; without this every case would be refused."""
+    unknown = {
+        key: None
+        for key in dict.fromkeys(given)
+        if not isinstance(key, str) or not overrides.is_key(Scene, key)
+    }
+    if unknown:
+        raise SceneError(
+            [
+                Fault(
+                    "arguments",
+                    f"cases.{key}" if isinstance(key, str) else "cases",
+                    repr(key),
+                    suggestions.expected(Scene, key, overrides.NO_SUCH_KEY)
+                    if isinstance(key, str)
+                    else "a dotted key as text",
+                )
+                for key in unknown
+            ]
+        )
 
 
 def _of_columns(columns: Mapping[str, Any]) -> list[Mapping[str, Any]]:
@@ -106,11 +187,12 @@ def _of_columns(columns: Mapping[str, Any]) -> list[Mapping[str, Any]]:
         faults.append(Fault("arguments", "cases", "no case", "at least one"))
     if faults:
         raise SceneError(faults)
-    items = [[_plain(value) for value in column] for column in columns.values()]
+    _require_keys(columns)
+    items = [[plain(value) for value in column] for column in columns.values()]
     return [dict(zip(columns, values)) for values in zip(*items)]
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """A scalar of numpy as Python has it."""
     return (
         value.item() if getattr(value, "shape", None) == () and hasattr(value, "dtype") else value
@@ -120,14 +202,10 @@ def _plain(value: Any) -> Any:
 def _number(name: str, value: Any) -> Any:
     if name in _LENGTHS and value is not None:
         return units.parse(value, _LENGTHS[name], bare_numbers_are_si=True)
-    value = _plain(value)
+    value = plain(value)
     if name in ("relative_tolerance", "safety"):
         return units.parse(value, "dimensionless", bare_numbers_are_si=True)
     whole = name in ("cells", "maximum_steps")
     if whole and value is not None and (isinstance(value, bool) or not isinstance(value, int)):
         raise ValueError("a whole number")
     return value
-
-
-def _kind(given: Any) -> str:
-    return "None" if given is None else f"a {type(given).__name__}"

@@ -52,6 +52,11 @@ def close(name: str, known: Iterable[str]) -> str:
     return f", did you mean {' or '.join(found)}?" if found else ""
 
 
+def kind_of(given: object) -> str:
+    """What an argument is, in words."""
+    return "None" if given is None else f"a {type(given).__name__}"
+
+
 class InputError(ValueError):
     """Input that cannot be used: a scene, a mesh, a step or curves."""
 

@@ -6,16 +6,22 @@ from collections.abc import Iterator, Mapping
 from types import UnionType
 from typing import Annotated, Any, Union, get_args, get_origin
 
-from tipoff.scenes.faults import NO_SUCH_KEY, Fault, SceneError
+from tipoff.scenes.faults import NO_SUCH_KEY, Fault, SceneError, kind_of
 from tipoff.scenes.table import Table
 
 DEEPEST = 32  # tables and lists inside each other; a scene has five
 
 
 def require_shallow(raw: Any, source: str) -> None:
-    """Raise SceneError for tables and lists more than ``DEEPEST`` levels inside each other, which no
-    scene has; what reads tables here calls itself at each level."""
-    level = [raw]
+    """Raise SceneError for what is no table with names as keys, and for tables and lists more than
+    ``DEEPEST`` levels inside each other, which no scene has; what reads tables here calls itself at
+    each level."""
+    if not isinstance(raw, Mapping):
+        expected = "values by their keys, as a dict or another mapping"
+        raise SceneError([Fault(source, "table", kind_of(raw), expected)])
+    if wrong := [key for key in raw if not isinstance(key, str)]:
+        raise SceneError([Fault(source, "key", repr(key), "a name as text") for key in wrong])
+    level: list[Any] = [raw]
     for _ in range(DEEPEST + 1):
         level = [
             item

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from tipoff.files import read_input
 from tipoff.scenes import overrides, provenance, rail
-from tipoff.scenes.faults import Fault, SceneError, close
+from tipoff.scenes.faults import Fault, SceneError, close, kind_of
 
 CATALOG = Path(__file__).resolve().parent / "catalog"
 _CHOICE = {"thrust": "kind", "contact": "law"}
@@ -33,6 +33,8 @@ def names() -> list[str]:
 
 def read(name_or_path: str | Path) -> tuple[dict, str]:
     """Mapping and path of a catalogue scene (by name) or of a TOML file. Raises SceneError."""
+    if not isinstance(name_or_path, (str, Path)):
+        raise SceneError([Fault("arguments", "scene", kind_of(name_or_path), _known())])
     path = Path(name_or_path)
     if path.suffix != ".toml":
         if str(name_or_path) not in names():

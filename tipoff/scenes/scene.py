@@ -190,14 +190,13 @@ class Scene(shown.Shown, ends.Timed, Table):
             >>> tipoff.load("tiny").condition("phi15").thrust_offset is None
             False
         """
-        if name == NOMINAL and name not in self.conditions:
+        is_text = isinstance(name, str)
+        if is_text and name == NOMINAL and name not in self.conditions:
             return self
-        if name not in self.conditions:
+        if not is_text or name not in self.conditions:
             known = ", ".join(self.conditions) or "none are defined"
-            meant = close(name, self.conditions)
-            raise SceneError(
-                [Fault(self._source, "conditions", repr(name), f"one of {known}{meant}")]
-            )
+            expected = f"one of {known}{close(str(name), self.conditions)}"
+            raise SceneError([Fault(self._source, "conditions", repr(name), expected)])
         return self.replace(self.conditions[name])
 
     def given(self, key: str) -> Any:

@@ -126,8 +126,8 @@ def parse(value: Any, unit: str, bare_numbers_are_si: bool) -> float:
     if isinstance(value, str):
         return to_si(value, unit)
     if hasattr(value, "magnitude") and hasattr(value, "units"):  # of pint, of any registry
-        return to_si(f"{_single(value.magnitude)!r} {value.units}", unit)
-    value = _single(value)
+        return to_si(f"{single(value.magnitude)!r} {value.units}", unit)
+    value = single(value)
     # checks of abstract types are slow
     if type(value) is not float and (isinstance(value, bool) or not isinstance(value, Real)):
         raise ValueError(named(unit))
@@ -140,7 +140,12 @@ def parse(value: Any, unit: str, bare_numbers_are_si: bool) -> float:
     return number
 
 
-def _single(value: Any) -> Any:
+def is_number(value: Any) -> bool:
+    """Whether a value is a real number, of Python or numpy; text and True are none."""
+    return isinstance(value, Real) and not isinstance(value, bool)
+
+
+def single(value: Any) -> Any:
     """The number in an array without dimensions, as Python has it; anything else as it is."""
     return value.item() if getattr(value, "shape", None) == () else value
 

@@ -12,8 +12,8 @@ import numpy as np
 from tipoff.highfi.mesh.files import abaqus_types
 from tipoff.highfi.mesh.files.abaqus_groups import gathered
 from tipoff.highfi.mesh.files.abaqus_model import ROOT, Body, Model, Reference
-from tipoff.highfi.mesh.files.abaqus_text import Keyword, keywords, real, whole
-from tipoff.highfi.mesh.files.tables import Unreadable
+from tipoff.highfi.mesh.files.abaqus_text import Keyword, keywords
+from tipoff.highfi.mesh.files.tables import Unreadable, real, whole
 
 
 def read(content: bytes) -> meshio.Mesh:

@@ -71,24 +71,3 @@ def _keyword(header: str, line: int) -> Keyword:
             "nodes, elements and sets in it"
         )
     return Keyword(name, given, [], line)
-
-
-def whole(text: str, line: int) -> int:
-    """The integer in a field. Raises Unreadable."""
-    try:
-        value = int(text)
-    except ValueError as fault:
-        raise Unreadable(f"line {line}: {text[:40]!r} in place of an integer") from fault
-    if abs(value) >= 2**62:
-        raise Unreadable(f"line {line}: {text[:40]} is too large")
-    return value
-
-
-def real(text: str, line: int) -> float:
-    """The number in a field, zero in an empty one. Raises Unreadable."""
-    if not text:
-        return 0.0
-    try:
-        return float(text.upper().replace("D", "E"))
-    except ValueError as fault:
-        raise Unreadable(f"line {line}: {text[:40]!r} in place of a number") from fault

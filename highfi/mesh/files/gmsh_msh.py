@@ -121,7 +121,7 @@ def read(content: bytes) -> meshio.Mesh:
         blocks, groups = _once(blocks, groups)
     else:
         entities = _entities(file)
-        labels, points = (_nodes_40 if file.version == "4.0" else _nodes_41)(file)
+        labels, points = _nodes(file)
         blocks, owners = _elements(file)
         groups = _groups(blocks, names, [_members(entities, owner) for owner in owners])
     return mesh(labels, points, [_in_vtk_order(block) for block in blocks], groups)
@@ -277,30 +277,22 @@ def _physical(file: _File, section: Section, found: Entities, is_part: bool) -> 
                 section.take(section.one(size))
 
 
-def _nodes_41(file: _File) -> tuple[np.ndarray, np.ndarray]:
-    section, size = file.needed("Nodes"), _size(file)
+def _nodes(file: _File) -> tuple[np.ndarray, np.ndarray]:
+    section, size, is_first = file.needed("Nodes"), _size(file), file.version == "4.0"
     labels, points = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))]
-    count = section.counts(4, size)[0]
+    count = section.counts(2 if is_first else 4, size)[0]
     for _ in range(count):
-        dimension, _, parametric = section.take(3)
-        number = section.one(size)
-        labels.append(section.take(number, size))
+        dimension, entity, parametric = section.take(3)
+        if is_first:
+            dimension, entity = entity, dimension
         # parametric nodes have their coordinates on the entity behind those in space
-        width = 3 + (int(dimension) if parametric else 0)
-        points.append(section.rows(number, (REAL, width))[0][:, :3])
-    return np.concatenate(labels), np.concatenate(points)
-
-
-def _nodes_40(file: _File) -> tuple[np.ndarray, np.ndarray]:
-    section, size = file.needed("Nodes"), _size(file)
-    labels, points = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))]
-    count = section.counts(2, size)[0]
-    for _ in range(count):
-        _, dimension, parametric = section.take(3)
-        width = 3 + (int(dimension) if parametric else 0)
-        label, place = section.rows(section.one(size), (INT, 1), (REAL, width))
-        labels.append(label[:, 0])
-        points.append(place[:, :3])
+        place, number = (REAL, 3 + (int(dimension) if parametric else 0)), section.one(size)
+        if is_first:
+            label, found = section.rows(number, (INT, 1), place)
+        else:
+            label, found = section.take(number, size), section.rows(number, place)[0]
+        labels.append(label.reshape(-1))
+        points.append(found[:, :3])
     return np.concatenate(labels), np.concatenate(points)
 
 

@@ -14,8 +14,8 @@ import re
 import meshio
 import numpy as np
 
-from tipoff.highfi.mesh.files.nastran_text import Card, cards, real, whole
-from tipoff.highfi.mesh.files.tables import Block, Unreadable, any_case, mesh
+from tipoff.highfi.mesh.files.nastran_text import Card, cards
+from tipoff.highfi.mesh.files.tables import Block, Unreadable, any_case, mesh, real, whole
 
 # name in meshio by the number of nodes
 _TYPES = {
@@ -93,7 +93,7 @@ def _place(card: Card) -> list[float]:
             f"line {card.line}: coordinates in system {card.fields[1][:20]}; write them in the basic "
             "one, 0"
         )
-    return [real(field, card.line) for field in card.fields[2:5]]
+    return [real(field, card.line, is_short=True) for field in card.fields[2:5]]
 
 
 def _element(card: Card) -> tuple[int, int, str, list[int]]:

@@ -5,13 +5,10 @@ of a free line. A line that begins with a plus, a star or an empty field goes on
 line before. See chapter "Bulk data entries" of the MSC and NX Nastran quick reference guides.
 """
 
-import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
 from tipoff.highfi.mesh.files.tables import Unreadable
-
-_EXPONENT = re.compile(r"^([-+]?[\d.]+)([-+]\d+)$")  # 7.0-1 for 7.0E-1
 
 
 class Card(NamedTuple):
@@ -72,27 +69,3 @@ def _fields(line: str) -> tuple[str, list[str], str]:
         data = [line[at : at + width].strip() for at in range(8, 72, width)]
         last, count = line[72:80].strip(), 64 // width
     return first, data + [""] * (count - len(data)), last
-
-
-def whole(text: str, line: int) -> int:
-    """The integer in a field. Raises Unreadable."""
-    try:
-        value = int(text)
-    except ValueError as fault:
-        raise Unreadable(f"line {line}: {text[:40]!r} in place of an integer") from fault
-    if abs(value) >= 2**62:
-        raise Unreadable(f"line {line}: {text[:40]} is too large")
-    return value
-
-
-def real(text: str, line: int) -> float:
-    """The number in a field, zero in an empty one. Raises Unreadable."""
-    if not text:
-        return 0.0
-    plain = text.upper().replace("D", "E")
-    if found := _EXPONENT.match(plain):
-        plain = f"{found[1]}E{found[2]}"
-    try:
-        return float(plain)
-    except ValueError as fault:
-        raise Unreadable(f"line {line}: {text[:40]!r} in place of a number") from fault

@@ -1,6 +1,7 @@
 """What the readers of all formats share: the fault they raise, numbers of nodes turned into places
 in a list, and blocks of elements with named groups turned into a mesh."""
 
+import re
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
@@ -13,6 +14,34 @@ _LISTED = 5  # numbers in one message
 class Unreadable(ValueError):
     """A file that its format does not allow, or that says what is not read here; the message names
     the place and the remedy."""
+
+
+_EXPONENT = re.compile(r"^([-+]?[\d.]+)([-+]\d+)$")  # 7.0-1 for 7.0E-1
+
+
+def whole(text: str, line: int) -> int:
+    """The integer in a field. Raises Unreadable."""
+    try:
+        value = int(text)
+    except ValueError as fault:
+        raise Unreadable(f"line {line}: {text[:40]!r} in place of an integer") from fault
+    if abs(value) >= 2**62:
+        raise Unreadable(f"line {line}: {text[:40]} is too large")
+    return value
+
+
+def real(text: str, line: int, is_short: bool = False) -> float:
+    """The number in a field, zero in an empty one; its exponent may have a D in place of the E, and
+    with ``is_short`` no letter. Raises Unreadable."""
+    if not text:
+        return 0.0
+    plain = text.upper().replace("D", "E")
+    if is_short and (found := _EXPONENT.match(plain)):
+        plain = f"{found[1]}E{found[2]}"
+    try:
+        return float(plain)
+    except ValueError as fault:
+        raise Unreadable(f"line {line}: {text[:40]!r} in place of a number") from fault
 
 
 class Block(NamedTuple):

@@ -8,7 +8,9 @@ from tests.highfi.mesh import seeds
 from tipoff.highfi.elements import hexahedron
 from tipoff.highfi.mesh import facets, touching
 from tipoff.highfi.mesh.rail_mesh import MeshError, RailMesh, read
+from tipoff.highfi.rail import spin
 from tipoff.meshes import bricks, generator
+from tipoff.scenes import load
 
 WHOLE = seeds.AREAS
 HALF = WHOLE["mount"] / 2.0
@@ -36,6 +38,32 @@ def read_text(folder, text, name="rail.inp"):
 def test_the_same_rail_in_every_format(tmp_path, form):
     """In gmsh 4.1 the mount is two entities: one is in two groups, one is used reversed."""
     check_rail(read(seeds.write(form, tmp_path / "rail")))
+
+
+def lowest(mesh):
+    """Lowest frequency (Hz) of the plate, held at its mount."""
+    material = load("tiny").rail.material
+    return spin.lowest_of(mesh, material) / (2.0 * np.pi)
+
+
+def test_the_whole_mount_holds_the_rail(tmp_path):
+    """Whatever way a file says that facets are in a group, the lowest frequency is the same. Control: a
+    mount that lost a part of its facets is softer."""
+    form = "gmsh 2.2 text"
+    expected = lowest(read(seeds.write(form, tmp_path / "rail")))
+    numbers = list(range(seeds.ELEMENTS + 1, seeds.ELEMENTS + 9))
+    assert len(seeds.rail().surfaces["mount"]) == len(numbers)
+
+    def text(*parts):
+        lines = [f"*ELSET, ELSET=mount\n{', '.join(map(str, part))}\n" for part in parts]
+        return seeds.abaqus().replace("ELSET=mount", "ELSET=other") + "".join(lines)
+
+    in_two = read_text(tmp_path, text(numbers[:3], numbers[3:]))
+    assert lowest(in_two) == pytest.approx(expected, rel=1e-9)
+    halves = read(seeds.write("gmsh 4.1 binary", tmp_path / "halves"))
+    assert lowest(halves) == pytest.approx(expected, rel=1e-9)
+    # Control.
+    assert lowest(read_text(tmp_path, text(numbers[:3]))) < 0.8 * expected
 
 
 def plate(gmsh, order=1):
