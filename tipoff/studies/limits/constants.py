@@ -9,7 +9,8 @@ from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.agreement import verdicts
-from tipoff.studies.core.study import Study, read
+from tipoff.studies.calibration import stage as calibrate
+from tipoff.studies.core.study import Study
 from tipoff.studies.core.words import counted
 from tipoff.studies.populations.derived import law
 
@@ -56,8 +57,8 @@ class Margin(NamedTuple):
 def margin(study: Study, model: str) -> Margin:
     """The largest errors on the held-out conditions of ``make compare`` that single runs judge; on
     others the error has an unknown share of the reference's own. Where there is no such condition,
-    the largest residuals of the calibration. Runs of compliant contact have the modes that each
-    condition chose."""
+    the largest residuals of the calibration of the present scene and code. Runs of compliant
+    contact have the modes that each condition chose."""
     if study.scene.contact is None:
         return Margin(
             dict.fromkeys(("x", "y", "z", "total"), 0.0), "zero, because the scene has no contact"
@@ -79,7 +80,7 @@ def margin(study: Study, model: str) -> Margin:
         )
     left = [
         row["settled_rate_error_deg_s"]
-        for row in (read(study.path("calibration.json")) or {}).get("residuals", {}).values()
+        for row in (calibrate.stored(study) or {}).get("residuals", {}).values()
     ]
     if model == COMPLIANT or not left or None in left:
         if not rows:
