@@ -11,12 +11,12 @@ from tipoff.studies.core.study import Study
 
 @pytest.mark.parametrize(
     "stored, given, taken",
-    [(None, None, 5), (128, None, 128), (128, 64, 64), (None, 64, 64)],
+    [(None, None, 5), (128, None, 5), (128, 64, 64), (None, 64, 64)],
 )
-def test_a_report_keeps_the_number_that_a_command_asked_for(
+def test_the_number_is_that_asked_for_or_of_the_settings(
     tmp_path, monkeypatch, stored, given, taken
 ):
-    """Without one, that of the settings."""
+    """Whatever is stored. Control: the page shows what is stored, and makes the rest."""
     study = Study(load("tiny"), tmp_path, defaults("tiny"))
     found = None if stored is None else {"asked": {"neighbours": stored}}
     monkeypatch.setattr(stage, "candidates", lambda _: (None,) * 4)
@@ -24,3 +24,4 @@ def test_a_report_keeps_the_number_that_a_command_asked_for(
     monkeypatch.setattr(Stage, "run", lambda own, _, options, make: own.plain(options))
     options = None if given is None else stage.Options(given)
     assert stage.run(study, options) == {"neighbours": taken}
+    assert stage.current(study) == (found or {"neighbours": 5})

@@ -47,6 +47,7 @@ def test_what_is_written_is_whole_and_not_made_again(study, found, monkeypatch):
     } == set(found["files"])
     # no springs and no clearance without contact
     assert found["models"] is None and len(found["readings"]) == 7
+    assert found["models_missing"] in terminal(pictures.summary(found))
     monkeypatch.setattr(
         "tipoff.studies.populations.population.run", lambda *_: pytest.fail("made again")
     )

@@ -16,7 +16,7 @@ def _load() -> Contents:
 
     return Contents(
         (
-            Result("agreement", stage.run),
+            Result("agreement", stage.current),
             Result("rails", stored=lambda study: other_rails.beside(study.folder)),
         ),
         (

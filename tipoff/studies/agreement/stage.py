@@ -36,10 +36,9 @@ def run(study: Study, options: Options | None = None) -> dict:
     ``floor`` and ``refinement``; ``growth`` of a 1 um disturbance; ``distributions`` of conditions
     that no single run can judge; ``speedup`` of calibrated springs and ``speedup_compliant``;
     ``simpler`` rail compliance; ``rail_compliance``, its elements and their uncertainty; other
-    values of the ``interface`` stiffness. ``options`` None: those of the stored result, or else of
-    the settings."""
+    values of the ``interface`` stiffness. ``options`` None: those of the settings."""
     study.fitted()
-    chosen = options or _last(study)
+    chosen = options or Options(study.settings.neighbours)
     _, calibrated, static, modal = compared = candidates(study)
 
     def make() -> tuple[dict, list[Path]]:
@@ -79,9 +78,11 @@ def run(study: Study, options: Options | None = None) -> dict:
     return STAGE.run(study, chosen, make)
 
 
-def _last(study: Study) -> Options:
+def current(study: Study) -> dict:
+    """The result that the page shows: that of the last ``tipoff compare`` if it is of the present scene,
+    code and settings, with its number of neighbours, else a new one."""
     found = STAGE.stored(study)
-    return Options(**found["asked"]) if found is not None else Options(study.settings.neighbours)
+    return run(study) if found is None else found
 
 
 def _elements(compliant: Candidate) -> dict | None:

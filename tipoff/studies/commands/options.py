@@ -203,7 +203,7 @@ Neighbours = Annotated[
         max=10_000,
         help="Number of neighbours of each condition that is judged as a distribution: runs of the "
         "reference within 1 µm of it. A condition that is not sensitive takes a quarter of them, at "
-        "least 5. Default: 32 (scene tiny: 5), or for compare the number of its stored result.",
+        "least 5. Default: the number that the scene states ([studies]), else 32.",
     ),
 ]
 CheckpointEvery = Annotated[

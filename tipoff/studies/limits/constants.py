@@ -9,7 +9,8 @@ from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.agreement import verdicts
-from tipoff.studies.core.study import Study, picked
+from tipoff.studies.calibration import stage as calibrate
+from tipoff.studies.core.study import Study
 from tipoff.studies.core.words import counted
 from tipoff.studies.populations.derived import law
 
@@ -56,15 +57,15 @@ class Margin(NamedTuple):
 def _residuals(found: dict) -> list[float]:
     """Errors (deg/s) of the fitted conditions in the result of a calibration; none where one of them
     did not settle."""
-    errors = [row["settled_rate_error_deg_s"] for row in found["residuals"].values()]
+    errors = [row["settled_rate_error_deg_s"] for row in found.get("residuals", {}).values()]
     return [] if None in errors else [float(error) for error in errors]
 
 
 def margin(study: Study, model: str) -> Margin:
     """The largest errors on the held-out conditions of ``make compare`` that single runs judge; on
     others the error has an unknown share of the reference's own. Where there is no such condition,
-    the largest residuals of the calibration. Runs of compliant contact have the modes that each
-    condition chose."""
+    the largest residuals of the calibration of the present scene and code. Runs of compliant
+    contact have the modes that each condition chose."""
     if study.scene.contact is None:
         return Margin(
             dict.fromkeys(("x", "y", "z", "total"), 0.0), "zero, because the scene has no contact"
@@ -84,7 +85,7 @@ def margin(study: Study, model: str) -> Margin:
             f"largest of {counted(len(errors), 'held-out condition')}; not judged as curves: "
             f"{len(rows) - len(judged)}; not settled: {len(judged) - len(errors)}",
         )
-    left = picked(study.path("calibration.json"), _residuals) or []
+    left = _residuals(calibrate.stored(study) or {})
     if model == COMPLIANT or not left:
         if not rows:
             return Margin(None, "not measured (tipoff compare measures it)")

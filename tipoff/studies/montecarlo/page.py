@@ -66,14 +66,14 @@ def draw(found: dict) -> list[Part]:
         Heading("Effect of the reading of the paper's Table 3"),
         _readings(found),
         *models,
-        *_apart(found["models"]),
+        *_apart(found),
         _PAPER,
     ]
 
 
 def summary(found: dict) -> list[Part]:
     """Quantiles and probabilities above limits, for the terminal."""
-    lines = [*_run(found), *_different(found["readings"]), *_model_error(found["models"])]
+    lines = [*_run(found), *_different(found["readings"]), *_model_error(found)]
     return [Bullets(lines), table_of_quantities(found), table_of_tails(found)]
 
 
@@ -104,10 +104,10 @@ def _different(readings: list[dict]) -> list[str]:
     ]
 
 
-def _model_error(models: dict | None) -> list[str]:
-    """The difference between springs and compliant contact in the rates."""
-    if not models:
-        return []
+def _model_error(found: dict) -> list[str]:
+    """The difference between springs and compliant contact in the rates, or why it is not known."""
+    if not (models := found["models"]):
+        return [f"springs against compliant contact: not compared, {found['models_missing']}"]
     compliant = population.model_words(models | {"model": "compliant contact"})
     what = f"springs against {compliant}, the same {models['cases']:,} cases"
     if not models["quantities"]:
@@ -311,9 +311,9 @@ def _readings(found: dict) -> Table:
     return Table(heads, rows, (note,), dense=True)
 
 
-def _apart(models: dict | None) -> list[Part]:
-    if not models:
-        return []
+def _apart(found: dict) -> list[Part]:
+    if not (models := found["models"]):
+        return [f"Springs and compliant contact are not compared: {found['models_missing']}."]
     if not models["quantities"]:
         return [f"No case of {models['cases']:,} settled in both models."]
     heads: tuple[Column | str, ...] = (

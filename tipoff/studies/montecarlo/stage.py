@@ -84,6 +84,7 @@ def run(study: Study, options: Options = Options()) -> dict:
             ],
             "readings": _readings(study, options, found),
             "models": compared(study, options, found),
+            "models_missing": missing(study),
         }
         return with_figures(made, page.figures, study.path("figures"))
 
@@ -176,11 +177,22 @@ def _apart(here: list[np.ndarray], values: list[np.ndarray]) -> dict:
     }
 
 
+def missing(study: Study) -> str:
+    """Why there are no ``compared`` models; empty where there are."""
+    if study.scene.contact is None:
+        return "without contact both models are the same"
+    return (
+        ""
+        if calibrate.stored(study)
+        else "no calibration of this scene and code (tipoff calibrate)"
+    )
+
+
 def compared(study: Study, options: Options, found: Population) -> dict | None:
     """The first 1,000 cases with springs and with compliant contact. None without contact, where
     both are the same model, and without a calibration for the scene. ``quantities`` is empty where
     no case settled in both models. ``modes`` and ``modes_why``: those of the other model."""
-    if study.scene.contact is None or calibrate.stored(study) is None:
+    if missing(study):
         return None
     cases = min(PAPER, options.cases)
     drawn = random_factors.source(study.scene, options.reading, cases, options.seed)
