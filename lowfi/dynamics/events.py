@@ -180,7 +180,7 @@ def _locate(system, loop, dt, span, face, kind, level):
     before, after = loop.before[face], loop.after[face]
     low, high, side = 0.0, 1.0, 0
     f_low, f_high = before[kind] - level, after[kind] - level
-    close = 0.1 * abs(level) if kind == MARGIN else 0.1 * _NEAR if kind == PULL else 1e-13
+    close = 1e-5 * abs(level) if kind == MARGIN else 1e-5 * _NEAR if kind == PULL else 1e-13
     theta = f_low / (f_low - f_high)
     if kind == DEPTH:
         theta = _cubic_root(
