@@ -87,6 +87,11 @@ def test_a_misspelt_key_in_a_child_is_found(scene):
         scene('extends = "reference"\n[contact]\nclearence = "1 mm"\n')
 
 
+def test_a_key_of_another_kind_of_table_is_not_suggested_for_itself(scene):
+    with pytest.raises(SceneError, match="no such key in this kind of thrust; another kind has it"):
+        scene('extends = "reference"\n[thrust]\nfile = "curve.csv"\n')
+
+
 def test_a_misspelt_table_is_not_dropped_in_silence(scene):
     with pytest.raises(SceneError, match="frictoin: no such key, did you mean friction"):
         scene('extends = "reference"\nfrictoin = "absent"\n')

@@ -30,6 +30,7 @@ from tipoff.scenes import (
     roles,
     shown,
     suggestions,
+    unchanged,
 )
 from tipoff.scenes import overrides as keys
 from tipoff.scenes.effects.contact import ContactTable
@@ -143,18 +144,17 @@ class Scene(shown.Shown, ends.Timed, Table):
     def replace(self, overrides: Mapping[str, Any]) -> "Scene":
         """A new scene with dotted keys set.
 
-        What is set has the provenance "user", unless ``overrides`` give another under
-        ``provenance.<key>``.
+        What is set has the provenance "user", unless ``overrides`` give another under ``provenance.<key>``.
 
         Args:
-            overrides: values by dotted key. Text carries units, a bare number is SI, None or
-                "absent" drops a table.
+            overrides: values by dotted key. Text carries units, a bare number is SI, None or "absent"
+                drops a table.
 
         Returns:
             Scene: the new scene; this one stays as it is.
 
         Raises:
-            SceneError: every fault listed.
+            SceneError: every fault listed, or a file that changed after this scene was read.
 
         Example:
             >>> scene = tipoff.load("tiny").replace({"payload.mass": "12 kg", "friction": None})
@@ -166,11 +166,11 @@ class Scene(shown.Shown, ends.Timed, Table):
         lost = keys.apply_all(raw, overrides, Scene)
         _mark(raw, overrides)
         scene, faults = _validated(raw, True)
-        # the other tables were valid before and have not changed
-        if any(key.split(".")[0] in _BESIDE for key in overrides):
+        if any(key.split(".")[0] in _BESIDE for key in overrides):  # the others were valid before
             faults = faults + _beside_faults(raw, True, faults)
         if scene is None or lost or faults:
             raise SceneError(_reported(f"override of {self._source}", lost + faults))
+        unchanged.require((self.thrust, self.rail), (scene.thrust, scene.rail), self._source)
         scene._raw, scene._source = raw, self._source
         return scene
 

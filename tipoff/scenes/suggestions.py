@@ -33,6 +33,8 @@ def _meant(annotation: Any, key: str) -> str:
     """The keys with the same last part, such as payload.mass for mass; else those that are alike."""
     key = _bare(key)
     known = list(dict.fromkeys(keys(annotation)))
+    if key in known:
+        return f" in this kind of {key.rpartition('.')[0]}; another kind has it"
     same = [name for name in known if name.rpartition(".")[2] == key.rpartition(".")[2]]
     if same and len(same) <= MOST_NAMES:
         return f", did you mean {' or '.join(same)}?"

@@ -13,6 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from tipoff.scenes import overrides as keys
+from tipoff.scenes import unchanged
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.table import Table
@@ -89,6 +90,8 @@ class Variations:
         found = self.scene.model_copy(update=tables)
         if not found.agrees():
             return None
+        base = self.scene
+        unchanged.require((base.thrust, base.rail), (found.thrust, found.rail), base.name)
         kept = {name: table for name, table in self.scene._raw.items() if name not in changed}
         found._raw = kept | raw
         return found

@@ -1,0 +1,30 @@
+"""Files of a scene that changed after it was read: a variation would have another curve or rail than the
+scene that it varies, without a word."""
+
+import numpy as np
+
+from tipoff.scenes.effects.thrust import MeasuredTable, ThrustTable
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.rail import RailTable
+
+Tables = tuple[ThrustTable, RailTable]
+
+
+def require(before: Tables, after: Tables, source: str) -> None:
+    """Raises SceneError, naming ``source``, where a file that the tables of both scenes name has another
+    content in those ``after``, which were read later."""
+    changed = []
+    (old, rail), (new, later) = before, after
+    if isinstance(old, MeasuredTable) and isinstance(new, MeasuredTable) and old.file == new.file:
+        pairs = zip(old.curve(), new.curve())
+        if not all(np.array_equal(first, second) for first, second in pairs):
+            changed.append(("thrust.file", new.file))
+    key = later.GIVEN_BY
+    file = getattr(later, key, None)
+    if getattr(rail, key, None) == file and rail.contents() != later.contents():
+        changed.append((f"rail.{key}", str(file)))
+    if changed:
+        expected = (
+            "the file as it was when the scene was read: it has changed, read the scene again"
+        )
+        raise SceneError([Fault(source, name, repr(path), expected) for name, path in changed])
