@@ -1,11 +1,13 @@
 """The likely cause of curves that no errors of mounting explain: the fit is repeated with the curves
-transformed, and the transformation that leaves the least is named.
+transformed, and the transformation that leaves the least is named. Curves may be those of another
+condition too.
 
 Where mounting is fitted, the points of a search do not explain the transformed curves, since few of
 them are near its optimum. So each candidate gets a least squares of its own.
 """
 
 import copy
+import math
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -13,6 +15,7 @@ from scipy.optimize import least_squares
 from tipoff.calibration.information import jacobian
 from tipoff.calibration.misfit import KINDS, NEAR, Kind, misfits
 from tipoff.calibration.objective import Objective
+from tipoff.mechanics.trajectory import Trajectory
 
 _ITERATIONS = 8
 
@@ -42,6 +45,21 @@ def likely(objective: Objective, name: str, best: Kind) -> tuple[Kind, float]:
     near = [item for item in tried if item[0] <= NEAR * least]
     misfit, _, kind = min(near, key=lambda item: item[1])
     return kind, misfit
+
+
+def condition(
+    objective: Objective, runs: dict[str, Trajectory], name: str, touch: float
+) -> tuple[str, float]:
+    """The other condition whose run is nearest to the curves of the condition ``name``, and the misfit
+    that it leaves; infinite without another. Free flight, until ``touch`` (s), tells conditions apart
+    whatever the fit is, which wrong curves have moved; the whole curve where it has no signal."""
+    found = [("", math.inf)]
+    for other, run in runs.items():
+        there = misfits(objective.targets[name], run, objective.offsets[name], touch)
+        part = there.whole if there.flight is None else there.flight
+        if other != name and part is not None:
+            found.append((other, float(part[0])))
+    return min(found, key=lambda item: item[1])
 
 
 def _turned(objective: Objective, name: str, kind: Kind) -> Objective:

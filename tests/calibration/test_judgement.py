@@ -96,6 +96,33 @@ def test_the_one_wrong_curve_is_named(turn):
     assert "rates of phi60" in told and "phi15" not in told
 
 
+@pytest.mark.parametrize("swapped", [("phi60", "phi15"), ("phi15", "phi15")])
+def test_curves_of_another_condition_are_named(swapped):
+    """Both exchanged, and one file given twice."""
+    wrong = {
+        name: noisy(curves()[own], 0.02, np.random.default_rng(place))
+        for place, (name, own) in enumerate(zip(CONDITIONS, swapped))
+    }
+    told = refusal(wrong)
+    lines = {
+        name: line
+        for line in told.splitlines()
+        for name in CONDITIONS
+        if f"rates of {name} " in line
+    }
+    for name, own in zip(CONDITIONS, swapped):
+        words = f"Likely cause: these are the curves of {own}"
+        assert (words in lines.get(name, "")) == (name != own), told
+
+
+@pytest.mark.parametrize("clearance", [0.1e-3, 1e-3])
+def test_curves_of_which_the_fit_explains_nothing_are_refused(clearance):
+    """The clearance is beyond the bounds of the fit, whose free flight is right. Control: one within
+    the bounds is fitted, in the tests of offsets."""
+    told = refusal(curves(clearance))
+    assert "differ from the model by 1" in told and "a fitted value is beyond its bounds" in told
+
+
 def test_axes_that_are_exchanged_are_refused_also_where_the_line_of_thrust_is_fitted():
     """Free flight depends on the fit then, so the search itself is judged."""
     wrong = {name: turned(item, EXCHANGED) for name, item in curves().items()}

@@ -3,7 +3,7 @@
 import pytest
 
 from tests.scenes.support import refused, small, write
-from tipoff.scenes import csv_file
+from tipoff.scenes import csv_file, parse
 from tipoff.scenes.faults import Fault, SceneError
 
 
@@ -32,6 +32,36 @@ def test_faults_that_differ_in_numbers_are_one_kind(count, lines):
     error = SceneError(faults)
     assert len(str(error).splitlines()) == lines and len(error.faults) == count
     assert f"{count - 3:,} more" in str(error) or count == 3
+
+
+def named(number: int) -> str:
+    """A name of letters alone."""
+    return "".join(chr(97 + number // 26**place % 26) for place in range(3))
+
+
+def test_names_of_the_user_make_no_kind_of_their_own():
+    """5000 conditions with one mistake: three places and a count. Control: two mistakes are two kinds."""
+    wrong = {f"c{named(k)}": {"payload.mass": f"{k} m"} for k in range(4999)}
+    with pytest.raises(SceneError) as caught:
+        parse(small(conditions=wrong))
+    assert len(caught.value.faults) == 4999 and len(str(caught.value).splitlines()) == 5
+    assert "and 4,996 more of this kind" in str(caught.value)
+    wrong["caaa"]["payload.mas"] = "1 kg"
+    assert any("payload.mas:" in line for line in str(refusal(conditions=wrong)).splitlines())
+
+
+def test_a_message_has_a_bounded_number_of_lines():
+    """5000 unknown keys, each of which may be another mistake. Control: forty are all listed."""
+    message = str(refusal(**{f"key{named(k)}": 1 for k in range(5000)}))
+    assert len(message) < 3000 and "and 4,960 more lines" in message
+    message = str(refusal(**{f"key{named(k)}": 1 for k in range(40)}))
+    assert "more" not in message and len(message.splitlines()) == 41
+
+
+def refusal(**tables) -> SceneError:
+    with pytest.raises(SceneError) as caught:
+        parse(small(**tables))
+    return caught.value
 
 
 def test_faults_of_other_kinds_are_all_listed():

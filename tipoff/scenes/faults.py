@@ -42,6 +42,8 @@ class Fault(NamedTuple):
 NO_SUCH_KEY = "no such key"
 MOST_NAMES = 3  # that a message proposes
 MOST_ALIKE = 3  # faults of one kind that a message lists
+MOST_LINES = 40  # of a message, whatever kinds there are
+_NAMED = re.compile(r"^(conditions|provenance|rail\.surfaces)\.[^.]+")  # by the user
 _NUMBERS = re.compile(r"[+-]?\d+(?:\.\d*)?(?:[eE][+-]?\d+)?")
 _ALIKE = 0.7  # of difflib: one or two letters in ten differ
 
@@ -87,17 +89,21 @@ class SceneError(InputError):
 
 
 def listed(faults: list[Fault]) -> list[str]:
-    """The faults as lines: of each kind ``MOST_ALIKE``, and how many more there are. Faults of one
-    kind have the same source, and keys and expected values that differ in numbers alone."""
+    """The faults as lines: of each kind ``MOST_ALIKE``, and how many more there are; ``MOST_LINES`` at
+    most. Faults of one kind have the same source, and keys and expected values that differ in numbers
+    and in names of the user alone."""
     kinds: dict[tuple[str, ...], list[Fault]] = {}
     for fault in faults:
-        kind = tuple(_NUMBERS.sub("#", part) for part in (fault.source, fault.key, fault.expected))
+        key = _NAMED.sub(r"\1.#", fault.key)
+        kind = tuple(_NUMBERS.sub("#", part) for part in (fault.source, key, fault.expected))
         kinds.setdefault(kind, []).append(fault)
     found: list[str] = []
     for alike in kinds.values():
         found += map(str, alike[:MOST_ALIKE])
         if more := len(alike) - MOST_ALIKE:
             found += [f"{alike[0].source}: and {more:,} more of this kind"] if more > 0 else []
+    if (left := len(found) - MOST_LINES) > 1:
+        found[MOST_LINES:] = [f"and {left:,} more lines of other kinds"]
     return found
 
 
