@@ -68,6 +68,23 @@ def test_conditions_are_added_and_replaced_whole(scene):
     assert "phi15" in found.conditions
 
 
+def test_an_inherited_condition_can_be_dropped_with_its_roles(scene):
+    """As the warning says whose value an inherited condition replaces. Control: what is not inherited
+    cannot be dropped, and a role that the file itself states is its own."""
+    found = scene('extends = "reference"\n[conditions]\nh9 = "absent"\nphi0 = "absent"\n')
+    whole = load("reference")
+    assert set(whole.conditions) - set(found.conditions) == {"h9", "phi0"}
+    assert found.agreement.fitted == tuple(
+        name for name in whole.agreement.fitted if name != "phi0"
+    )
+    assert "h9" not in found.agreement.held_out and "h8" in found.agreement.held_out
+    with pytest.raises(SceneError, match="conditions.h99: given 'absent', expected a table"):
+        scene('extends = "reference"\n[conditions]\nh99 = "absent"\n')
+    own = '[agreement]\nheld_out = ["h8", "h9"]\n[conditions]\nh9 = "absent"\n'
+    with pytest.raises(SceneError, match="agreement.held_out: given 'h9'"):
+        scene(f'extends = "reference"\n{own}')
+
+
 def test_a_curve_lies_beside_the_file_that_names_it(scene, tmp_path, monkeypatch):
     (tmp_path / "curve.csv").write_text(
         "time_s,force_N\n0,0\n0.005,3000\n0.01,6000\n0.015,3000\n0.02,0\n"

@@ -80,7 +80,7 @@ def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
     inherited = _inherit(base_path, user_file, (*chain, absolute(path)))
     # results are filed by name: a variation needs a name of its own
     inherited.pop("name", None)
-    merged = _merged(inherited, raw)
+    merged = _without_dropped(inherited, raw, _merged(inherited, raw))
     stated, given = (overrides.texts(table.get("provenance")) for table in (inherited, raw))
     if stated is not None and given is not None:
         merged["provenance"] = provenance.overridden(
@@ -145,6 +145,28 @@ def absolute(path: Path) -> Path:
         return path.resolve()
     except (OSError, RuntimeError, ValueError):
         return Path.cwd() / path
+
+
+def _without_dropped(base: dict, extra: dict, merged: dict) -> dict:
+    """``merged`` without the inherited conditions that ``extra`` sets to "absent". Roles that are
+    inherited too lose their names."""
+    inherited, stated = (_table(table.get("conditions")) for table in (base, extra))
+    dropped = {name for name, value in stated.items() if value == "absent" and name in inherited}
+    if not dropped:
+        return merged
+    own = _table(extra.get("agreement"))
+    roles = {
+        role: [name for name in names_ if name not in dropped]
+        for role, names_ in _table(merged.get("agreement")).items()
+        if isinstance(names_, list) and role not in own
+    }
+    kept = {name: table for name, table in merged["conditions"].items() if name not in dropped}
+    found = merged | {"conditions": kept}
+    return found | {"agreement": merged["agreement"] | roles} if roles else found
+
+
+def _table(value: object) -> dict:
+    return value if isinstance(value, dict) else {}
 
 
 def _merged(base: dict, extra: dict) -> dict:
