@@ -13,13 +13,13 @@ from tipoff.highfi.mesh.files import abaqus_types
 from tipoff.highfi.mesh.files.abaqus_groups import gathered
 from tipoff.highfi.mesh.files.abaqus_model import ROOT, Body, Model, Reference
 from tipoff.highfi.mesh.files.abaqus_text import Keyword, keywords
-from tipoff.highfi.mesh.files.tables import Unreadable, real, whole
+from tipoff.highfi.mesh.files.tables import Unreadable, decoded, real, whole
 
 
 def read(content: bytes) -> meshio.Mesh:
     """The mesh in the ``content`` of a file. Raises Unreadable."""
     model = Model()
-    for keyword in keywords(content.decode("utf-8", "replace")):
+    for keyword in keywords(decoded(content)):
         _take(model, keyword)
     if not any(body.labels for body in model.bodies.values()):
         raise Unreadable("no *NODE, which an input file of Abaqus has")

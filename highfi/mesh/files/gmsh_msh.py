@@ -53,7 +53,7 @@ class _File:
     def __init__(self, content: bytes) -> None:
         self.content = content
         header = re.match(
-            rb"\s*(?:\$Comments\b.*?\$EndComments\s+)?\$MeshFormat[ \t]*\r?\n"
+            rb"(?:\xef\xbb\xbf)?\s*(?:\$Comments\b.*?\$EndComments\s+)?\$MeshFormat[ \t]*\r?\n"
             rb"\s*([\d.]+)\s+([01])\s+(\d+)[ \t]*\r?\n",
             content[: 2**16],
             re.DOTALL,

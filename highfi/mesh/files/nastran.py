@@ -15,7 +15,7 @@ import meshio
 import numpy as np
 
 from tipoff.highfi.mesh.files.nastran_text import Card, cards
-from tipoff.highfi.mesh.files.tables import Block, Unreadable, any_case, mesh, real, whole
+from tipoff.highfi.mesh.files.tables import Block, Unreadable, any_case, decoded, mesh, real, whole
 
 # name in meshio by the number of nodes
 _TYPES = {
@@ -46,7 +46,7 @@ def read(content: bytes) -> meshio.Mesh:
     points: list[list[float]] = []
     elements: dict[tuple[str, int], dict[int, list[int]]] = {}
     names: dict[int, str] = {}
-    text = content.decode("utf-8", "replace")
+    text = decoded(content)
     for line in text.splitlines():
         if line.startswith("$"):
             for found in (pattern.match(line) for pattern in _NAMED):

@@ -1,6 +1,7 @@
 """What the readers of all formats share: the fault they raise, numbers of nodes turned into places
 in a list, and blocks of elements with named groups turned into a mesh."""
 
+import codecs
 import re
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
@@ -17,6 +18,19 @@ class Unreadable(ValueError):
 
 
 _EXPONENT = re.compile(r"^([-+]?[\d.]+)([-+]\d+)$")  # 7.0-1 for 7.0E-1
+
+
+def decoded(content: bytes) -> str:
+    """Text of a file, whose encoding its first bytes may say (a byte order mark); UTF-8 without."""
+    marks = {
+        codecs.BOM_UTF8: "utf-8",
+        codecs.BOM_UTF16_LE: "utf-16-le",
+        codecs.BOM_UTF16_BE: "utf-16-be",
+    }
+    for mark, encoding in marks.items():
+        if content.startswith(mark):
+            return content[len(mark) :].decode(encoding, "replace")
+    return content.decode("utf-8", "replace")
 
 
 def whole(text: str, line: int) -> int:

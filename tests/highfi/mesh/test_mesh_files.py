@@ -40,6 +40,21 @@ def test_the_same_rail_in_every_format(tmp_path, form):
     check_rail(read(seeds.write(form, tmp_path / "rail")))
 
 
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
+@pytest.mark.parametrize("form", ["Abaqus", "Nastran small", "gmsh 2.2 text"])
+def test_a_byte_order_mark_is_no_part_of_the_first_line(tmp_path, form, encoding):
+    """The names of the groups are in the first line of what is left of the Nastran file."""
+    file = seeds.write(form, tmp_path / "rail")
+    text = file.read_text(encoding="utf-8")
+    text = text[text.index("$ Femap") :] if form.startswith("Nastran") else text
+    file.write_bytes(text.encode(encoding))
+    if form.startswith("gmsh") and encoding == "utf-16":
+        with pytest.raises(MeshError, match="starts with .MeshFormat"):
+            read(file)
+    else:
+        check_rail(read(file))
+
+
 def lowest(mesh):
     """Lowest frequency (Hz) of the plate, held at its mount."""
     material = load("tiny").rail.material
