@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 import tipoff
@@ -9,7 +10,9 @@ from tipoff import highfi, lowfi
 from tipoff.calibration import rail_compliance
 
 SCENE = tipoff.load("tiny")
-CALIBRATION = SimpleNamespace(is_of_springs=True)
+CALIBRATION = tipoff.Calibration(
+    {"contact.stiffness": 2.2e9}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0
+)
 STORED = SimpleNamespace(flexibility=1.0)
 
 

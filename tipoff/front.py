@@ -113,9 +113,10 @@ def run(
 
     scene = arguments.scene_of(scene)
     _require(scene, model, MODELS)
-    arguments.require(_EXPECTED, compliance=compliance, calibration=calibration, progress=progress)
     if model == FINITE_ELEMENTS:
         _require_none(scene, model, compliance=compliance, calibration=calibration)
+    arguments.require(_EXPECTED, compliance=compliance, calibration=calibration, progress=progress)
+    if model == FINITE_ELEMENTS:
         given = {"element_size": studies.element_size(scene.studies)} | numerics
         sizes = arguments.numerics(highfi.Numerics, given, lowfi.Numerics, model)
         with kernel_marks.first_use(Run("highfi", scene.name, scene, sizes)):

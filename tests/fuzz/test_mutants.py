@@ -30,7 +30,8 @@ def test_mutants_end_with_an_exit_code(kind, count, tmp_path, capfd):
         found.append(cases.outcome(kind, seed, folder))
     assert set(found) <= CODES
     # Control: some mutants pass all checks, and some are refused.
-    assert kind == "solid" or {0, 2} <= set(found)
+    # What is damaged in the store of an ensemble is made again.
+    assert kind == "solid" or (kind == "store" and set(found) == {0}) or {0, 2} <= set(found)
     assert "Traceback" not in capfd.readouterr().err
 
 

@@ -6,7 +6,10 @@ from typing import Any
 import numpy as np
 
 from tipoff.mechanics import drawn_walls
+from tipoff.mechanics.joint_terms import LEAST, MOST
 from tipoff.scenes.effects.thermal import FIELDS
+
+_ROUNDING = 1e-6
 
 
 def require(found: Any, patterns: int) -> None:
@@ -53,6 +56,14 @@ def require(found: Any, patterns: int) -> None:
         "joint": (rails, shapes, shapes),
     }.items():
         _require_shape(f"joints.{name}", getattr(terms, name), shape)
+    if not ((terms.share >= 0.0) & (terms.share <= 1.0 + _ROUNDING)).all():
+        raise ValueError("joints.share: given parts beyond 0 to 1")
+    for factor in (LEAST, MOST):
+        squares = np.linalg.eigvalsh(terms.stiffness + (factor - 1.0) * terms.joint)
+        if not (squares > 0.0).all():
+            raise ValueError(
+                f"joints.stiffness: given none at {factor:g} of the joints, expected some"
+            )
 
 
 def _require_plain(found: Any) -> None:
