@@ -13,9 +13,10 @@ import pytest
 
 from tests.exact.friction import creep_ratio
 from tests.highfi.blocks import block
-from tests.highfi.support import NEUTRAL, begun, loop_on, tiny
+from tests.highfi.support import COARSE, NEUTRAL, begun, loop_on, stopped, tiny
 from tipoff import highfi
 from tipoff.highfi.dynamics import substeps
+from tipoff.highfi.dynamics.checkpoint import Checkpoint, restore
 from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
 from tipoff.highfi.numerics import Numerics
 from tipoff.mechanics.ledger import ENTRIES
@@ -134,7 +135,7 @@ def test_friction_that_no_step_can_follow_ends_the_run(monkeypatch):
     assert "raise friction.static_speed" in found.message
 
 
-def lying(**overrides):
+def on_rails(**overrides):
     """A payload that lies on two rails of a fixed platform, pressed into them by a micrometre; it
     slides, comes near rest, and is lifted off."""
     changes = {
@@ -143,7 +144,12 @@ def lying(**overrides):
         "friction": {"static": 0.2, "dynamic": 0.2, "static_speed": 2e-3, "dynamic_speed": 4e-3},
         "initial": {"position": {"z": -0.251e-3}, "velocity": {"x": 1e-3}},
     }
-    loop = begun(tiny(**changes | overrides))
+    return tiny(**changes | overrides)
+
+
+def lying(**overrides):
+    """The run of ``on_rails``, at its end."""
+    loop = begun(on_rails(**overrides))
     loop.integrate(None)
     return loop
 
@@ -153,6 +159,22 @@ def test_how_coarsely_a_run_is_sampled_changes_no_bit_of_its_substeps():
     assert 0 < fine.friction.divided[0] < fine.steps and fine.substeps == 1
     assert substeps.cost(fine) == substeps.cost(coarse) and fine.taken == coarse.taken
     np.testing.assert_array_equal(np.array(fine.rows)[::6], np.array(coarse.rows))
+
+
+@pytest.mark.parametrize("samples", [2, 5])
+def test_divided_steps_go_on_with_other_threads_to_the_same_bits(tmp_path, samples):
+    """Stopped while steps are divided, and resumed from the file by two threads."""
+    scene = on_rails(output__interval="0.05 ms")
+    first, second = stopped(samples, scene), begun(scene, threads=2)
+    kept = Checkpoint(tmp_path / "run", 0.0, first, COARSE)
+    kept.write(first)
+    assert first.substeps > 1
+    restore(second, kept.read())
+    assert second.substeps == first.substeps and len(second.rows) == samples + 1
+    for loop in (first, second):
+        loop.integrate(None)
+    np.testing.assert_array_equal(np.array(second.rows), np.array(first.rows))
+    assert substeps.cost(second) == substeps.cost(first) and second.taken == first.taken
 
 
 def test_balances_hold_where_the_number_of_substeps_changes():
