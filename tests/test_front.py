@@ -13,7 +13,7 @@ SCENE = tipoff.load("tiny")
 CALIBRATION = tipoff.Calibration(
     {"contact.stiffness": 2.2e9}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0
 )
-STORED = SimpleNamespace(flexibility=1.0)
+STORED = SimpleNamespace(flexibility=1.0, accuracy=lambda: "")
 
 
 @pytest.fixture

@@ -103,5 +103,5 @@ def test_a_compliance_states_its_elements(monkeypatch):
         assert facts["element_size_m"] == pytest.approx(own)
         assert facts["uncertainty"] == found.uncertainty.max() > 0.1
         assert f"at {1e3 * own:g} mm elements: uncertainty " in facts["words"]
-        assert found.is_coarse and "finer elements are needed" in facts["words"]
+        assert found.is_coarse and "what finer elements change" in facts["words"]
         assert "rigid" in repr(found.rigid()) and found.rigid().stated() is None

@@ -307,7 +307,9 @@ def test_other_faults_name_their_key(change, key):
 
 
 def test_not_a_mapping():
-    assert [fault.expected for fault in refused([1, 2])] == ["a table"]
+    assert [fault.expected for fault in refused([1, 2])] == [
+        "values by their keys, as a dict or another mapping"
+    ]
 
 
 CONDITION_FAULTS = {

@@ -51,4 +51,4 @@ class Elements:
         )
         if not self.is_coarse:
             return words
-        return f"{words}; warning: more than {100.0 * COARSE:g} %, finer elements are needed"
+        return f"{words}; above {100.0 * COARSE:g} %: tipoff cost shows what finer elements change"

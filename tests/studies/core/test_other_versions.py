@@ -10,27 +10,11 @@ from tipoff.files import write_json
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core.settings import defaults
 from tipoff.studies.core.study import Study, picked
-from tipoff.studies.limits import constants
 
 
 @pytest.fixture
 def study(tmp_path):
     return Study(scenes.load("tiny"), tmp_path, defaults("tiny"))
-
-
-@pytest.mark.parametrize(
-    "residuals",
-    [[], None, {"phi15": 0.1}, {"phi15": {}}, {"phi15": {"settled_rate_error_deg_s": "0.1 deg/s"}}],
-    ids=json.dumps,
-)
-def test_residuals_of_another_layout_are_no_margin(study, residuals, capsys):
-    write_json(study.path("calibration.json"), {"residuals": residuals})
-    assert constants.margin(study, "springs").deg_s is None
-    assert "another version" in capsys.readouterr().err
-    # Control: those of this version are one.
-    whole = {"phi15": {"settled_rate_error_deg_s": 0.1}}
-    write_json(study.path("calibration.json"), {"residuals": whole})
-    assert constants.margin(study, "springs").deg_s["x"] == 0.1
 
 
 def test_constants_of_another_layout_are_none(study, capsys):
