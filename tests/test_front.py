@@ -36,6 +36,7 @@ def found(monkeypatch, tmp_path):
         done.append(element_size)
         return SimpleNamespace(
             flexibility=1.0,
+            accuracy=lambda: "",
             save=lambda path: (path.parent.mkdir(parents=True, exist_ok=True), path.touch()),
         )
 
