@@ -82,7 +82,7 @@ def current(study: Study) -> dict:
     """The result that the page shows: that of the last ``tipoff compare`` if it is of the present scene,
     code and settings, with its number of neighbours, else a new one."""
     found = STAGE.stored(study)
-    return run(study) if found is None else found
+    return run(study, None if found is None else STAGE.asked(found))
 
 
 def _elements(compliant: Candidate) -> dict | None:

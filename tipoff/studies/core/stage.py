@@ -66,10 +66,14 @@ class Stage:
         with the files that it wrote. It must contain ``plain(options)`` under ``field``."""
         return study.stage(self.name, self.key(study, options), make)
 
+    def asked(self, found: dict) -> Any:
+        """The options of a stored result. Raises ValueError where they are invalid now."""
+        return TypeAdapter(self.options).validate_python(found.get(self.field))
+
     def stored(self, study: Study) -> dict | None:
         """The stored result if it was made from the present scene, code and settings, else None."""
 
         def key(found: dict) -> str:
-            return self.key(study, TypeAdapter(self.options).validate_python(found.get(self.field)))
+            return self.key(study, self.asked(found))
 
         return study.stored(self.name, key)
