@@ -24,4 +24,4 @@ def test_the_number_is_that_asked_for_or_of_the_settings(
     monkeypatch.setattr(Stage, "run", lambda own, _, options, make: own.plain(options))
     options = None if given is None else stage.Options(given)
     assert stage.run(study, options) == {"neighbours": taken}
-    assert stage.current(study) == (found or {"neighbours": 5})
+    assert stage.current(study) == {"neighbours": stored or 5}
