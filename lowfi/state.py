@@ -47,7 +47,7 @@ MOVING_SIZE = 32  # the same with A of both bodies
     STRUCTURAL,
 ) = range(WORK, WORK + 10)
 WORK_SIZE = 10
-_REGULAR = 1e-13
+_REGULAR = 1e-13  # of the trace, by which the matrix of ``reconcile`` is kept from being singular
 # WORK + WORK_SIZE, filled up to whole cache lines: rows of stages are read as vectors of eight
 STATE_SIZE = 48
 

@@ -40,7 +40,7 @@ from tipoff.lowfi.state import (
 )
 from tipoff.mechanics.promises import Promises
 
-_ROUNDING = 2e-15
+_ROUNDING = 2e-15  # of a product of an inverse inertia and a spin, in its largest axis
 
 
 @by_reference

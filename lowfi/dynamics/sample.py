@@ -116,12 +116,15 @@ def _platform(platform, state, base, row):
 
 @kernel
 def _body(mass, state, first, body, row):
-    """Add kinetic energy and momenta of the body whose slots begin at ``first``."""
+    """Add kinetic energy and momenta of the body whose slots begin at ``first``. The momenta are
+    those of its motion, not A: so the check of the ledger sees whether both agree."""
+    orbit = rotation.cross(body.place, body.velocity)
+    spin = rotation.rotate(body.turn, slot.triple(state, first + slot.SPIN))
     row[KINETIC] += slot.kinetic(mass, state, first, body)
     row[AXIAL_KINETIC] += 0.5 * mass * body.velocity[0] * body.velocity[0]
     for i in range(3):
         row[LINEAR + i] += mass * body.velocity[i]
-        row[ANGULAR + i] += state[slot.moment_of(first) + i]
+        row[ANGULAR + i] += mass * orbit[i] + spin[i]
 
 
 @kernel

@@ -53,7 +53,8 @@ def _is_run(words: tuple[str, ...]) -> bool:
 def folder(tmp_path_factory):
     """A folder with every file that a command of the documentation names."""
     place = tmp_path_factory.mktemp("reader")
-    # A scene of this name has coarse elements by default. The thrust of README is for longer rails.
+    # It extends the small scene, which states coarse elements. The thrust of README is for longer
+    # rails.
     (launcher,) = (tomllib.loads(text) for text in pages.of_language("README.md", "toml"))
     conditions = "".join(
         f"[conditions.{name}]\n" + "".join(f'"{key}" = "{value}"\n' for key, value in table.items())

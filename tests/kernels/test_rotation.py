@@ -89,6 +89,14 @@ def test_angular_velocity():
     assert np.allclose(found, rate, rtol=1e-12)
 
 
+def test_a_matrix_times_a_triple_and_back():
+    root = np.random.default_rng(7).normal(size=(3, 3))
+    matrix, x = root @ root.T + np.eye(3), (1.0, -2.0, 3.0)
+    product = rotation.multiply(matrix, x)
+    assert np.allclose(product, matrix @ x, rtol=1e-14)
+    assert np.allclose(rotation.solve(*map(tuple, matrix), product), x, rtol=1e-12)
+
+
 def test_arrays_of_matrices():
     turns = Rotation.random(50, rng=np.random.default_rng(6))
     assert np.allclose(

@@ -51,4 +51,4 @@ class Elements:
         )
         if not self.is_coarse:
             return words
-        return f"{words}; above {100.0 * COARSE:g} %: tipoff cost shows what finer elements change"
+        return f"{words}; above {100.0 * COARSE:g} %: tipoff convergence shows what finer elements change"

@@ -7,7 +7,6 @@ from pathlib import Path
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes import uncertainty
 from tipoff.scenes.scene import NOMINAL
-from tipoff.studies.core import kernel_marks
 from tipoff.studies.core.run import Run
 from tipoff.studies.core.study import Study
 from tipoff.studies.nominal import spread
@@ -37,14 +36,8 @@ def run(study: Study) -> dict:
     requested = requests(study)
 
     def make() -> tuple[dict, list[Path]]:
-        asked = list(requested.values())
-        missing = [each for each in asked if not study.store.path(each).is_file()]
-        for each in missing:
-            kernel_marks.announce(each)
-        found = dict(zip(requested, study.store.fill(NAME, asked)))
-        for each in missing:
-            kernel_marks.remember(each)
-        paths = [study.store.path(each) for each in asked]
+        found = runs.fill(study, NAME, requested)
+        paths = [study.store.path(each) for each in requested.values()]
         rows = {
             model: runs.row(NOMINAL, found[model], study.relative(path))
             for model, path in zip(requested, paths)

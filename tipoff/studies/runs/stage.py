@@ -27,13 +27,7 @@ def run(study: Study, fidelity: str) -> dict:
     requested = requests(study, fidelity)
 
     def make() -> tuple[dict, list[Path]]:
-        asked = list(requested.values())
-        missing = [run for run in asked if not study.store.path(run).is_file()]
-        for run in missing:
-            kernel_marks.announce(run)
-        runs = dict(zip(requested, study.store.fill(fidelity, asked)))
-        for run in missing:
-            kernel_marks.remember(run)
+        runs = fill(study, fidelity, requested)
         rows = [
             row(name, runs[name], study.relative(study.store.path(run))) | beside(run, runs[name])
             for name, run in requested.items()
@@ -48,6 +42,19 @@ def run(study: Study, fidelity: str) -> dict:
     return study.stage(
         fidelity, study.key(__name__, [item.key for item in requested.values()]), make
     )
+
+
+def fill(study: Study, name: str, requested: dict[str, Run]) -> dict[str, Trajectory]:
+    """The runs of ``requested`` by their names, those that are not stored made under the ``name`` of
+    a stage. What must be compiled first is said once."""
+    asked = list(requested.values())
+    missing = [run for run in asked if not study.store.path(run).is_file()]
+    for run in missing:
+        kernel_marks.announce(run)
+    found = dict(zip(requested, study.store.fill(name, asked)))
+    for run in missing:
+        kernel_marks.remember(run)
+    return found
 
 
 def beside(request: Run, found: Trajectory) -> dict:
