@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from tipoff.scenes import plausible_ranges, pushes, sinking
+from tipoff.scenes import plausible_ranges, sinking, thrust_plausibility
 from tipoff.scenes.effects.thermal import fields
 from tipoff.scenes.rail import SectionTable
 
@@ -42,7 +42,7 @@ def warnings(scene) -> list[str]:
                 f"plausible {_DENSITY[0]:g} to {_DENSITY[1]:g} kg/m3"
             )
     found += plausible_ranges.warnings(scene) + _of_inertia(scene) + _of_mounts(scene.rail)
-    found += _of_joints(scene.rail.mount_stiffness) + pushes.warnings(scene)
+    found += _of_joints(scene.rail.mount_stiffness) + thrust_plausibility.warnings(scene)
     if scene.contact is not None:
         found += sinking.warnings(scene) + _of_interface(scene.contact)
     if scene.thermal is not None:
