@@ -80,16 +80,24 @@ def test_pruned_kernels_have_no_friction(tmp_path):
 )
 def test_one_absent_effect_is_not_compiled(effect):
     """Read from the machine code: what the scene has is there, what it has not is not, and one
-    change changes nothing else. Without contact there is no friction either."""
-    base = load("reference")
+    change changes nothing else. Without contact there is no friction either. Gravity acts on a fixed
+    platform only: with a free one everything falls together."""
+    fixed = {"platform": None} if effect == "gravity" else {}
+    base = load("reference").replace(fixed)
     present = lowfi.compiled_effects(base)
-    assert present == {name: name not in (*ADDED, *ON_RAILS) for name in LAWS}
+    assert present == {name: name not in (*ADDED, *ON_RAILS, *fixed) for name in LAWS}
     changed = lowfi.compiled_effects(base.replace(ADDED.get(effect, {effect: None})))
     also = {"friction"} if effect in ("contact", "sticking") else set()
     assert changed == {
         name: not value if name == effect or name in also else value
         for name, value in present.items()
     }
+
+
+def test_gravity_that_all_bodies_share_is_not_compiled():
+    """Everything falls with a free platform, so no rate depends on it."""
+    base = load("reference")
+    assert lowfi.compiled_effects(base.replace(ADDED["gravity"])) == lowfi.compiled_effects(base)
 
 
 @pytest.mark.slow
