@@ -186,6 +186,13 @@ def test_an_endless_gaussian_is_no_fit(tmp_path):
         table(kind="measured", file=file, use="fit")
 
 
+def test_a_curve_without_a_fit_warns_of_no_covariance(tmp_path, recwarn):
+    """Four points of one force: least squares ends at a pulse that is too wide to have one."""
+    file = curve_file(tmp_path, np.linspace(0.0, 0.15, 4), np.full(4, 100.0))
+    assert "no Gaussian fits" in table(kind="measured", file=file).describe(DURATION)["text"]
+    assert not recwarn.list
+
+
 def test_where_no_gaussian_fits(tmp_path):
     file = curve_file(tmp_path, np.array([0.0, 0.01]), np.array([0.0, 5.0]))
     assert "no Gaussian fits" in table(kind="measured", file=file).describe(DURATION)["text"]

@@ -1,6 +1,7 @@
 """A measured thrust curve: reading, checking, and its least-squares Gaussian fit."""
 
 import math
+import warnings
 from pathlib import Path
 from typing import NamedTuple
 
@@ -102,9 +103,12 @@ def fit_gaussian(curve: MeasuredCurve) -> GaussianFit:
     )
     start = (total / (width * math.sqrt(2.0 * math.pi)), centre, width)
     try:
-        (peak, centre, width), _ = scipy.optimize.curve_fit(
-            gaussian, time, force, p0=start, maxfev=20000
-        )
+        with warnings.catch_warnings():
+            # Of the covariance, which is not used; the curves without one are told apart below.
+            warnings.simplefilter("ignore", scipy.optimize.OptimizeWarning)
+            (peak, centre, width), _ = scipy.optimize.curve_fit(
+                gaussian, time, force, p0=start, maxfev=20000
+            )
     except RuntimeError as error:
         raise ValueError("a curve that a Gaussian fits (least squares did not converge)") from error
     peak, centre, width = float(peak), float(centre), abs(float(width))
