@@ -96,14 +96,14 @@ def fit_gaussian(curve: MeasuredCurve) -> GaussianFit:
 def _fitted(times: bytes, forces: bytes) -> GaussianFit | str:
     """The fit of a curve by its bytes, or the reason why there is none."""
     time, force = np.frombuffer(times), np.frombuffer(forces)
-    total = np.trapezoid(force, time)
+    total = float(np.trapezoid(force, time))
     if time.size < 4 or total <= 0.0:
         return "a curve of at least four points and positive impulse, for a Gaussian to fit"
 
     def gaussian(t, peak, centre, width):
         return peak * np.exp(-0.5 * ((t - centre) / width) ** 2)
 
-    centre = np.trapezoid(force * time, time) / total
+    centre = float(np.trapezoid(force * time, time) / total)
     width = math.sqrt(
         max(
             np.trapezoid(force * (time - centre) ** 2, time) / total,
@@ -129,5 +129,5 @@ def _fitted(times: bytes, forces: bytes) -> GaussianFit | str:
         )
     residual = np.linalg.norm(force - gaussian(time, peak, centre, width)) / np.linalg.norm(force)
     return GaussianFit(
-        peak, centre, width, float(residual), peak * width * math.sqrt(2.0 * math.pi), float(total)
+        peak, centre, width, float(residual), peak * width * math.sqrt(2.0 * math.pi), total
     )
