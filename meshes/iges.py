@@ -4,6 +4,7 @@ An edge of a closed surface belongs to two faces, or twice to one face that clos
 faces that are connected by edges are the surface of one solid where every edge obeys this.
 """
 
+import re
 from collections import Counter
 from pathlib import Path
 
@@ -11,14 +12,20 @@ SUFFIXES = (".iges", ".igs")
 _GAP = 1e-6  # m, at most between edges of two faces that are sewn
 _POINT = 1e-12  # m: an edge of less length is the tip of a cone or the pole of a sphere
 _WAY_OUT = "export the solid as STEP"
+_TEXT = re.compile(r" *(\d+)H")  # before a text, its number of characters
+_SCALE = 12  # place of the scale of the model among the global parameters
 
 
 def load(gmsh, path: Path) -> None:
     """Read the solids of an IGES file into the current model of gmsh, in metres.
 
-    Raises ValueError where the faces do not close, where solids touch or contain each other, and
-    where gmsh does not make solids of them; gmsh raises Exception for what it does not read.
+    Raises ValueError for a model at another scale than 1, where the faces do not close, where solids
+    touch or contain each other, and where gmsh does not make solids of them; gmsh raises Exception for
+    what it does not read.
     """
+    if (scale := (_global_parameters(path)[_SCALE:] or [""])[0]) and not _is_one(scale):
+        # gmsh takes the lengths of the model for those of the part.
+        raise ValueError(f"its model has the scale {scale}, where 1 is expected; {_WAY_OUT}")
     # gmsh sets the unit of its kernel before it starts the kernel's reader of IGES, which has to
     # be there. So the first file read by a process fails with a unit, but not without one.
     unit = gmsh.option.getString("Geometry.OCCTargetUnit")
@@ -47,6 +54,38 @@ def load(gmsh, path: Path) -> None:
         gmsh.model.occ.addVolume([surface])
     gmsh.model.occ.synchronize()
     _check_apart(gmsh)
+
+
+def _global_parameters(path: Path) -> list[str]:
+    """The parameters of the global section, without those at the end that a file leaves out. The first
+    two are the separators, which are a comma and a semicolon where they are empty."""
+    lines = path.read_text(encoding="latin-1").splitlines()
+    text = "".join(line[:72].ljust(72) for line in lines if line[72:73] == "G")
+    found: list[str] = []
+    between, last, at = ",", ";", 0
+    while at < len(text):
+        start, stop = at, at
+        if written := _TEXT.match(text, at):  # it may contain separators
+            start, stop = written.end(), written.end() + int(written[1])
+        while stop < len(text) and text[stop] not in (between, last) and not written:
+            stop += 1
+        found.append(text[start:stop].strip())
+        if len(found) == 1:
+            between = found[0][:1] or between
+        elif len(found) == 2:
+            last = found[1][:1] or last
+        ends = [place for mark in (between, last) if (place := text.find(mark, stop)) >= 0]
+        if not ends or text[min(ends)] == last:
+            break
+        at = min(ends) + 1
+    return found
+
+
+def _is_one(number: str) -> bool:
+    try:
+        return float(number.upper().replace("D", "E")) == 1.0
+    except ValueError:
+        return False
 
 
 def _shells(gmsh, faces: list[int]) -> list[list[int]]:

@@ -256,7 +256,7 @@ class Store:
     def _whole(self, number: int) -> bool:
         begin, end = self.bounds(number)
         try:
-            if (mark := read_json(self._mark(number)))["ensemble"] != self.ensemble:
+            if (mark := self._listed(number))["ensemble"] != self.ensemble:
                 return False
         except FileNotFoundError:
             return False
@@ -280,17 +280,21 @@ class Store:
     def _mark(self, number: int) -> Path:
         return self.path / "done" / f"{number:06}.json"
 
+    def _listed(self, number: int) -> dict:
+        """The mark of a chunk, as ``read_json``. Raises DamageError also for lists of another layout."""
+        if not _is_listed(mark := read_json(self._mark(number)), *self.bounds(number)):
+            raise DamageError(self._mark(number), "has another layout")
+        return mark
+
     def _read_mark(self, number: int) -> dict | None:
         """The mark of a chunk, None before it is done. Raises StoreError where it is damaged."""
         try:
-            return read_json(self._mark(number))
+            return self._listed(number)
         except FileNotFoundError:
             return None
         except (DamageError, OSError) as fault:
-            raise StoreError(
-                f"{self._mark(number)} is damaged or was edited; the same command runs its cases "
-                f"again"
-            ) from fault
+            words = "is damaged or was edited; the same command runs its cases again"
+            raise StoreError(f"{self._mark(number)} {words}") from fault
 
     def read(self, begin: int, end: int) -> tuple[Columns, np.ndarray]:
         """Results, and inputs (n, k), of the cases ``begin`` to ``end`` - 1; status -1 in those
@@ -348,6 +352,16 @@ def described(path: Path) -> dict | None:
         return found if fits_digest(found) else None
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
+
+
+def _is_listed(mark: dict, begin: int, end: int) -> bool:
+    """Whether the lists of a mark have a text for each of their cases, of ``begin`` to ``end`` - 1."""
+    try:
+        texts = [(item["case"], item["reason"]) for item in mark["failures"]]
+        texts += [(int(case), text) for case, text in mark["warnings"].items()]
+        return all(begin <= case < end and isinstance(text, str) for case, text in texts)
+    except (KeyError, TypeError, ValueError, AttributeError):
+        return False
 
 
 def plain(identity: dict) -> dict:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tipoff.files import with_digest
 from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble import store as stores
 from tipoff.lowfi.ensemble.columns import Columns
@@ -139,6 +140,37 @@ def test_an_edited_list_of_failures_is_found(whole, capsys, change):
         f"{file} is damaged or was edited: the cases 8 to 15 are run again"
         in capsys.readouterr().err
     )
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda mark: mark["failures"][0].pop("case"),
+        lambda mark: mark["failures"][0].update(case=3),
+        lambda mark: mark["failures"][0].update(case="ten"),
+        lambda mark: mark["failures"][0].update(reason=None),
+        lambda mark: mark.update(failures={"case": 10}),
+        lambda mark: mark.update(failures=None),
+        lambda mark: mark.pop("warnings"),
+        lambda mark: mark.update(warnings=["close"]),
+        lambda mark: mark.update(warnings={"ten": "close"}),
+    ],
+)
+def test_a_list_of_failures_of_another_layout_is_found(whole, capsys, change):
+    """Its digest fits, as in a store of another version. Control: the same mark unchanged."""
+    path, expected = whole
+    file = path / "done" / "000001.json"
+    mark = json.loads(file.read_text())
+    file.write_text(json.dumps(with_digest(mark)))
+    assert state_of(opened(path)) == expected  # Control
+    change(mark)
+    file.write_text(json.dumps(with_digest(mark)))
+    store = opened(path)
+    for ask in (store.failures, store.results, store.digest):
+        with pytest.raises(StoreError, match="000001.json is damaged or was edited"):
+            ask()
+    assert fill(store) == [1] and state_of(store) == expected
+    assert "the cases 8 to 15 are run again" in capsys.readouterr().err
 
 
 def test_a_list_of_failures_of_another_ensemble_is_none_of_this_one(whole, tmp_path):

@@ -5,12 +5,13 @@ import math
 
 import numpy as np
 import pytest
+import scipy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.exact.thrust import gaussian_peak, kept_by_cut
 from tests.scenes.support import small
-from tipoff.scenes import parse
+from tipoff.scenes import SceneError, load, parse
 from tipoff.scenes.effects import thrust
 from tipoff.scenes.effects.measured import MeasuredCurve, fit_gaussian
 from tipoff.scenes.effects.thrust_law import Pulses, Thrust
@@ -184,6 +185,32 @@ def test_an_endless_gaussian_is_no_fit(tmp_path):
     assert "no Gaussian fits" in table(kind="measured", file=file).describe(DURATION)["text"]
     with pytest.raises(ValueError, match="that a Gaussian fits"):
         table(kind="measured", file=file, use="fit")
+
+
+def test_a_curve_without_a_fit_warns_of_no_covariance(tmp_path, recwarn):
+    """Four points of one force: least squares ends at a pulse that is too wide to have one."""
+    file = curve_file(tmp_path, np.linspace(0.0, 0.15, 4), np.full(4, 100.0))
+    assert "no Gaussian fits" in table(kind="measured", file=file).describe(DURATION)["text"]
+    assert not recwarn.list
+
+
+def test_the_fit_of_a_curve_is_searched_once(tmp_path, monkeypatch):
+    """Not by each of the conditions of a scene: a search that does not converge takes a second."""
+    calls, search = [], scipy.optimize.curve_fit
+
+    def counted(*arguments, **options):
+        calls.append(arguments)
+        return search(*arguments, **options)
+
+    monkeypatch.setattr(scipy.optimize, "curve_fit", counted)
+    file = curve_file(tmp_path, np.array([0, 4e-3, 0.01, 0.021]), np.array([0, 6e3, 5e3, 0]))
+    whole = load("reference")
+    assert whole.conditions
+    with pytest.raises(SceneError, match="did not converge"):
+        whole.replace({"thrust": {"kind": "measured", "file": file, "use": "fit"}})
+    scene = whole.replace({"thrust": {"kind": "measured", "file": file}})
+    assert "no Gaussian fits" in scene.thrust.describe(DURATION)["text"]
+    assert len(calls) == 1
 
 
 def test_where_no_gaussian_fits(tmp_path):

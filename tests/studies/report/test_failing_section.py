@@ -4,6 +4,7 @@ import pytest
 import typer
 
 from tipoff import scenes
+from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies import registry
 from tipoff.studies.commands.running import Output, guarded
 from tipoff.studies.core.errors import StudyError
@@ -104,6 +105,33 @@ def test_a_failed_result_leaves_the_page_and_exits_with_1(tmp_path, monkeypatch,
     said, html = capsys.readouterr().err, study.path("report.html").read_text()
     for name in ("mesh", "flight", "limits"):
         assert f"{name}: ZeroDivisionError" in said and f"{name}: ZeroDivisionError" in html
+
+
+def refused(_):
+    raise SceneError([Fault("own", "agreement.fitted", "nothing", "a condition")])
+
+
+def test_a_result_that_the_scene_does_not_allow_leaves_the_page(
+    tmp_path, monkeypatch, quick, capsys
+):
+    """Control: where it is the first, nothing is lost and the command ends with 2."""
+    study = Study(scenes.load("tiny"), tmp_path / "tiny", defaults("tiny"))
+    page = study.path("report.html")
+
+    def made(_):
+        found = {"key": "k", "conditions": [], "failed": []}
+        study.path("highfi.json").parent.mkdir(exist_ok=True)
+        study.path("highfi.json").write_text("{}")
+        return found
+
+    for names, code in ((["calibration", "highfi"], 2), (["highfi", "calibration"], 1)):
+        listed = [Result(name, made if name == "highfi" else refused) for name in names]
+        monkeypatch.setattr(stage, "results", lambda listed=listed: listed)
+        with pytest.raises(typer.Exit) as caught:
+            guarded(lambda: Output(stage.run(study), None, tmp_path))
+        assert caught.value.exit_code == code and page.exists() == (code == 1)
+    assert "calibration: 1 fault in the scene" in capsys.readouterr().err
+    assert "agreement.fitted: given nothing" in page.read_text()
 
 
 def test_figures_that_fail_lose_no_result(tmp_path):

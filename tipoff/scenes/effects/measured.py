@@ -1,6 +1,8 @@
 """A measured thrust curve: reading, checking, and its least-squares Gaussian fit."""
 
 import math
+import warnings
+from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -83,17 +85,25 @@ def without_baseline(curve: MeasuredCurve, baseline: tuple[float, float] | None)
 def fit_gaussian(curve: MeasuredCurve) -> GaussianFit:
     """Least-squares Gaussian through a measured curve, started from its moments. Raises ValueError
     where none fits."""
-    time, force = curve
-    total = np.trapezoid(force, time)
+    found = _fitted(*(np.asarray(values, dtype=float).tobytes() for values in curve))
+    if isinstance(found, str):
+        raise ValueError(found)
+    return found
+
+
+# A search that does not converge takes a second, and each condition of a scene asks for its fit.
+@lru_cache(maxsize=32)
+def _fitted(times: bytes, forces: bytes) -> GaussianFit | str:
+    """The fit of a curve by its bytes, or the reason why there is none."""
+    time, force = np.frombuffer(times), np.frombuffer(forces)
+    total = float(np.trapezoid(force, time))
     if time.size < 4 or total <= 0.0:
-        raise ValueError(
-            "a curve of at least four points and positive impulse, for a Gaussian to fit"
-        )
+        return "a curve of at least four points and positive impulse, for a Gaussian to fit"
 
     def gaussian(t, peak, centre, width):
         return peak * np.exp(-0.5 * ((t - centre) / width) ** 2)
 
-    centre = np.trapezoid(force * time, time) / total
+    centre = float(np.trapezoid(force * time, time) / total)
     width = math.sqrt(
         max(
             np.trapezoid(force * (time - centre) ** 2, time) / total,
@@ -102,19 +112,22 @@ def fit_gaussian(curve: MeasuredCurve) -> GaussianFit:
     )
     start = (total / (width * math.sqrt(2.0 * math.pi)), centre, width)
     try:
-        (peak, centre, width), _ = scipy.optimize.curve_fit(
-            gaussian, time, force, p0=start, maxfev=20000
-        )
-    except RuntimeError as error:
-        raise ValueError("a curve that a Gaussian fits (least squares did not converge)") from error
+        with warnings.catch_warnings():
+            # Of the covariance, which is not used; the curves without one are told apart below.
+            warnings.simplefilter("ignore", scipy.optimize.OptimizeWarning)
+            (peak, centre, width), _ = scipy.optimize.curve_fit(
+                gaussian, time, force, p0=start, maxfev=20000
+            )
+    except RuntimeError:
+        return "a curve that a Gaussian fits (least squares did not converge)"
     peak, centre, width = float(peak), float(centre), abs(float(width))
     # The best fit of a flat curve is an endless Gaussian, with thrust long after the burn.
     if not time[0] <= centre <= time[-1] or width > 0.5 * (time[-1] - time[0]):
-        raise ValueError(
+        return (
             f"a curve that a Gaussian fits (found centre {centre:.4g} s, width {width:.4g} s, "
             f"for a curve from {time[0]:.4g} to {time[-1]:.4g} s)"
         )
     residual = np.linalg.norm(force - gaussian(time, peak, centre, width)) / np.linalg.norm(force)
     return GaussianFit(
-        peak, centre, width, float(residual), peak * width * math.sqrt(2.0 * math.pi), float(total)
+        peak, centre, width, float(residual), peak * width * math.sqrt(2.0 * math.pi), total
     )

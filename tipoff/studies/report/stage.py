@@ -25,8 +25,8 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
     of text, ``verdict`` is one sentence on the agreement of both models, ``failed`` contains the
     failures of all stages and sections.
 
-    A result or a section that fails leaves the others on the page. Raises InputError where the scene
-    cannot be used for one of the results that every page has.
+    A result or a section that fails leaves the others on the page, and so does a result that the scene
+    does not allow. Raises InputError where the scene does not allow one before any is made.
     With ``every``, each study without a present result is made too; the page gives the reason where
     the scene does not allow one. The page says whether the rates are within ``limits``.
     """
@@ -36,7 +36,8 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
     for name, make_result, stored in listed:
         if make_result is None or stored is not None:
             continue
-        documents[name], reason = attempt(name, partial(make_result, study), InputError)
+        passing = () if any(documents.values()) else InputError
+        documents[name], reason = attempt(name, partial(make_result, study), passing)
         problems |= {name: reason} if reason else {}
     absent, failed = _made(study, listed) if every else ({}, {})
     problems |= failed
