@@ -30,12 +30,13 @@ from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies import cli, registry
-from tipoff.studies.bench.surrogate import varied
 from tipoff.studies.commands.running import study_of
 from tipoff.studies.core.study import Study, read
 from tipoff.studies.render import document
 from tipoff.studies.report.page import Page
 from tipoff.studies.runs.figures import Runs
+from validation import STUDIES
+from validation.bench.surrogate import varied
 
 CATALOG = ("channel", "paper_like", "reference", "sensitive", "thin", "tiny", "titanium")
 CASES = 1000  # of an ensemble
@@ -133,12 +134,14 @@ def results(folder: Path) -> Iterator[str]:
 def pages(out: Path) -> Iterator[str]:
     """A line for the Markdown of each section of the page of each scene below ``out``, whatever code
     made its results, and for the help of each command."""
+    registry.add(*STUDIES)
     for folder in sorted(path.parent for path in out.glob("*/mesh.json")):
         study = study_of(folder.name, out, None)
         page = Page(study.scene, folder, _documents(study), Runs({}, {}), {})
         for section in registry.sections():
             text = document.markdown(section.draw(page))
             yield line(f"{folder.name}/page/{section.anchor}", digest(section.title, text))
+    cli.add("", STUDIES)
     group = typer.main.get_command(cli.app)
     for name in sorted(group.commands):
         shown = CliRunner().invoke(cli.app, [name, "--help"], env={"COLUMNS": "100"}).output
