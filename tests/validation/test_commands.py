@@ -34,7 +34,7 @@ def test_a_bad_option_is_refused(name):
 
 
 def test_added_studies_are_on_the_page(monkeypatch):
-    monkeypatch.setattr(registry, "_ADDED", [])
+    monkeypatch.setattr(registry, "ADDED", [])
     before = [section.anchor for section in registry.sections()]
     registry.add(*STUDIES)
     registry.add(*STUDIES)

@@ -47,7 +47,7 @@ QUESTIONS: tuple[Entry, ...] = (
     flight.QUESTION,
     droptest.QUESTION,
 )
-_ADDED: list[Entry] = []
+ADDED: list[Entry] = []
 
 # The first sections of the page in their order; those of all other studies follow.
 _FIRST = (
@@ -73,11 +73,11 @@ _FIRST = (
 def add(*entries: Entry) -> None:
     """Add studies from outside the package: this process makes their results and shows their sections.
     ``cli.add`` adds their commands."""
-    _ADDED.extend(entry for entry in entries if entry not in _ADDED)
+    ADDED.extend(entry for entry in entries if entry not in ADDED)
 
 
 def _loaded() -> list[Contents]:
-    return [entry.load() for entry in (*COMPARISON, *ON_DEMAND, *QUESTIONS, *_ADDED)]
+    return [entry.load() for entry in (*COMPARISON, *ON_DEMAND, *QUESTIONS, *ADDED)]
 
 
 def results() -> list[Result]:

@@ -16,9 +16,11 @@ from tipoff.highfi.statics import assembly
 from tipoff.lowfi.dynamics import cases
 from tipoff.mechanics.models import COMPLIANT
 from tipoff.scenes import load
+from tipoff.studies import registry
 from tipoff.studies.report.assembly import render
 from tipoff.studies.report.page import Page
 from tipoff.studies.runs.figures import Runs
+from validation import STUDIES
 from validation.bench import reference, surrogate
 from validation.bench.command import bench
 from validation.bench.csr_loop import CsrLoop
@@ -81,6 +83,7 @@ def test_bench_writes_one_row_per_size(tmp_path, monkeypatch, figures, few, erro
     )
     assert row["bytes_per_element"] > 24 * 8 and row["dt_s"] > row["dt_element_s"] * 0.9
     assert f"{row['elements']:,} elements" in reference.line(row)
+    monkeypatch.setattr(registry, "ADDED", [*STUDIES])
     page = render(
         Page(load("tiny"), tmp_path, {"bench": reference.stored(tmp_path)}, Runs({}, {}, {}), {})
     )
