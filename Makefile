@@ -8,6 +8,8 @@ OUT ?= out
 PYTHON ?= python3
 
 TIPOFF = .venv/bin/tipoff
+# The same with the studies that are evidence about tipoff, and are not installed with it.
+EVIDENCE = .venv/bin/python -m validation
 ASKED = --scene $(SCENE) --out $(OUT)
 READY = .venv/.ready
 CHECKED = .venv/.checked
@@ -77,16 +79,16 @@ limits: $(READY) ## tolerances that keep the rates below limits (LIMIT="5 deg/s"
 	$(TIPOFF) limits $(ASKED) $(if $(LIMIT),--limit "$(LIMIT)") $(if $(PROBABILITY),--probability $(PROBABILITY)) $(if $(CERTIFY),--certify $(CERTIFY))
 
 paper: $(READY) ## what the paper's unpublished inputs must have been, its tables beside ours
-	$(TIPOFF) paper $(ASKED)
+	$(EVIDENCE) paper $(ASKED)
 
 recovery: $(READY) ## whether calibration finds hidden values: 20 draws with noise, and a reference
-	$(TIPOFF) recovery $(ASKED)
+	$(EVIDENCE) recovery $(ASKED)
 
 flight: $(READY) ## after separation: miss of a target in orbit, pointing, coning, whether it touches again
 	$(TIPOFF) flight $(ASKED) $(if $(CASES),--cases $(CASES))
 
 bench: $(READY) ## speed of the solvers against what one would write today: OUT/bench
-	$(TIPOFF) bench --out $(OUT)
+	$(EVIDENCE) bench --out $(OUT)
 
 report: $(READY) ## mesh to ablation, made where out of date, with all other studies that were made: OUT/SCENE/report.html
 	$(TIPOFF) report $(ASKED)
@@ -99,7 +101,7 @@ pictures: $(READY) ## add pyvista (0.6 GB) to .venv, with which `make view` draw
 
 peers: $(READY) ## the same work in other codes: installs exudyn and mujoco into .venv, runs them and ccx (apt-get install calculix-ccx)
 	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements-peers.lock
-	$(TIPOFF) peers --out $(OUT) $(if $(KEEP),--keep)
+	$(EVIDENCE) peers --out $(OUT) $(if $(KEEP),--keep)
 
 convergence: $(READY) ## the error of the reference itself: meshes, steps, interface stiffness, quadrature (minutes)
 	$(TIPOFF) convergence $(ASKED)
@@ -109,7 +111,7 @@ rails: $(READY) ## two more rails, calibrated and judged at 4 mm: they stand on 
 	  $(TIPOFF) compare --scene $$rail --element-size 4 --out $(OUT); done
 
 full-report: rails ## the report with every study on it, and with two more rails (an hour and a half)
-	$(TIPOFF) report --every $(ASKED)
+	$(EVIDENCE) report --every $(ASKED)
 
 docs: $(DOCUMENTED) ## the documentation site, every warning an error: docs/_build/index.html
 	.venv/bin/python -m sphinx --fail-on-warning --keep-going --quiet -b html docs docs/_build

@@ -218,7 +218,7 @@ def test_sources_name_no_higher_layer(package):
 
 def test_no_module_has_two_names():
     """The folders at the top are parts of the package, and are imported by that name alone."""
-    for path in [*product(), *sources("tests")]:
+    for path in [*product(), *sources("tests", "validation")]:
         assert not imported(_parsed(path)) & {"highfi", "lowfi", "meshes", "calibrate"}, path
 
 
@@ -313,7 +313,7 @@ def test_commands_of_the_tests_load():
 def test_files_are_short():
     lengths = {
         str(path.relative_to(ROOT)): len(path.read_text().splitlines())
-        for path in [*product(), *sources("tests")]
+        for path in [*product(), *sources("tests", "validation")]
     }
     assert {name: size for name, size in lengths.items() if size > 400} == {}
     assert statistics.median(lengths.values()) < 150
@@ -321,7 +321,7 @@ def test_files_are_short():
 
 def test_sources_keep_the_house_rules():
     jit = ROOT / "tipoff" / "kernels" / "jit.py"
-    paths = [path for path in [*product(), *sources("tests")] if path != jit]
+    paths = [path for path in [*product(), *sources("tests", "validation")] if path != jit]
     wrong = {
         str(path.relative_to(ROOT)): found for path in paths if (found := breaches(_parsed(path)))
     }

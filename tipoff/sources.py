@@ -21,7 +21,7 @@ from tipoff.files import replacing
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = "tipoff"
-WITH_CODE = (PACKAGE, "tests")  # tests have kernels of their own
+WITH_CODE = (PACKAGE, "tests", "validation")  # the last two have kernels of their own
 # Syntax trees differ between versions of Python.
 _SYNTAX = f"{sys.version_info[0]}.{sys.version_info[1]}"
 _DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)

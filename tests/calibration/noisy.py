@@ -5,8 +5,8 @@ import numpy as np
 from tests.lowfi.compliance import reference_compliance
 from tipoff import calibration, lowfi, scenes
 from tipoff.calibration import Curves
-from tipoff.calibration.recovery import LOCAL, noisy
 from tipoff.scenes.calibration import Calibration
+from validation.recovery.draws import LOCAL, noisy
 
 CONDITIONS = ("phi15", "phi35", "phi60")
 SCENE = scenes.load("reference").replace({"agreement.fitted": list(CONDITIONS)})

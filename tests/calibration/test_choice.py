@@ -9,9 +9,9 @@ from scipy.spatial.transform import Rotation
 
 from tipoff import calibration, lowfi, scenes
 from tipoff.calibration import Curves, alignment, choice, compliant
-from tipoff.calibration.recovery import LOCAL, noisy
 from tipoff.calibration.search import Plan
 from tipoff.mechanics import model as models
+from validation.recovery.draws import LOCAL, noisy
 
 CONDITIONS = ("phi15", "phi35")
 SCENE = scenes.load("reference").replace({"agreement.fitted": list(CONDITIONS)})

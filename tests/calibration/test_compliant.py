@@ -14,12 +14,12 @@ from tests.highfi.support import tiny
 from tests.lowfi.compliance import reference_compliance
 from tipoff import calibration, highfi, lowfi, scenes
 from tipoff.calibration import compliant, parameters
-from tipoff.calibration.recovery import LOCAL
 from tipoff.calibration.search import Plan
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes import Calibration, SceneError
 from tipoff.studies.cli import app
 from tipoff.studies.runs import disturbed
+from validation.recovery.draws import LOCAL
 
 CONDITIONS = ("phi15", "phi35", "phi60")
 SCENE = scenes.load("reference").replace({"agreement.fitted": list(CONDITIONS)})

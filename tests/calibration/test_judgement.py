@@ -12,12 +12,12 @@ from tests.calibration.noisy import inside
 from tests.highfi.support import tiny
 from tipoff import calibration, highfi, lowfi
 from tipoff.calibration import Curves
-from tipoff.calibration.recovery import LOCAL, noisy
 from tipoff.calibration.search import Plan
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes import changes
 from tipoff.scenes.calibration import Calibration
 from tipoff.studies.calibration import page, stage
+from validation.recovery.draws import LOCAL, noisy
 
 CONDITIONS = ("phi15", "phi60")
 CLEARANCE, FRICTION, LINE = "contact.clearance", "friction.dynamic", "thrust_offset.eccentricity.y"

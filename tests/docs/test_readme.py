@@ -7,7 +7,7 @@ import pytest
 from tests.docs import pages
 from tipoff.files import write_json
 from tipoff.studies.agreement import verdicts
-from tipoff.studies.report import readme
+from validation.documents import readme
 
 TEXT = (pages.ROOT / "README.md").read_text(encoding="utf-8")
 

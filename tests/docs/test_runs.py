@@ -25,8 +25,6 @@ PROGRAMS = [
 # Commands that are not run here, each by what it begins with, and why.
 LEFT_OUT = {
     ("scenes", "--show"): "its output stands in the test of commands",
-    ("paper",): "minutes for each search: tests/studies/paper",
-    ("recovery",): "an hour: tests/studies/recovery",
     ("cost",): "minutes: tests/studies/cost",
     ("report",): "every stage: tests/studies/test_pipeline.py",
     ("sensitivity",): "20,480 cases: tests/studies/sensitivity",

@@ -29,13 +29,13 @@ from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.agreement import metrics, other_rails
-from tipoff.studies.bench import reference
 from tipoff.studies.calibration import forecast
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core.settings import defaults
 from tipoff.studies.core.study import Study, read
 from tipoff.studies.limits import constants, results
-from tipoff.studies.peers import stage as peers
+from validation.bench import reference
+from validation.peers import stage as peers
 
 Rng = random.Random
 COARSE = 8e-3  # m

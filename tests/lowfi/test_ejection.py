@@ -6,9 +6,9 @@ import pytest
 
 from tests.lowfi.support import PAPER_PAD, corners, scene
 from tipoff import lowfi
-from tipoff.lowfi import oracle
 from tipoff.mechanics import ledger, momenta, promises
 from tipoff.scenes import load
+from validation import oracle
 
 SHORT = {
     "start": -0.2,

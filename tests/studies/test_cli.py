@@ -42,8 +42,6 @@ STAGES = (
     "limits",
     "flight",
     "droptest",
-    "paper",
-    "recovery",
 )
 
 

@@ -6,7 +6,7 @@ that it needs, so that ``--help`` is fast.
 """
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Annotated
 
 import typer
@@ -15,7 +15,7 @@ from tipoff.studies.commands.options import Json
 from tipoff.studies.commands.running import Output, guarded
 from tipoff.studies.new_scene.command import new, schema
 from tipoff.studies.question import Entry
-from tipoff.studies.registry import BENCHMARKS, COMPARISON, ON_DEMAND, QUESTIONS
+from tipoff.studies.registry import COMPARISON, ON_DEMAND, QUESTIONS
 from tipoff.studies.report.command import report
 
 SUMMARY = "Predict the velocity and the angular rates of a payload when it leaves its rail."
@@ -113,21 +113,21 @@ def flowed(text: str) -> str:
     )
 
 
-def _commands(entries: tuple[Entry, ...]) -> list[Callable[..., None]]:
-    return [command for entry in entries for command in entry.commands]
+def _listed(title: str, commands: Iterable[Callable[..., None]]) -> None:
+    for command in commands:
+        app.command(help=flowed(command.__doc__ or ""), rich_help_panel=title)(command)
 
 
-_GROUPS: dict[str, list[Callable[..., None]]] = {
-    "Scenes and this machine": [new, schema, scenes, doctor],
-    "Answers": [*_commands(ON_DEMAND), report],
-    "Surrogate against finite elements": _commands(COMPARISON),
-    "Studies": _commands(QUESTIONS),
-    "Benchmarks": _commands(BENCHMARKS),
-}
-for _title, _members in _GROUPS.items():
-    for _command in _members:
-        _help = flowed(_command.__doc__ or "")
-        app.command(help=_help, rich_help_panel=_title)(_command)
+def add(title: str, entries: Iterable[Entry]) -> None:
+    """Add the commands of studies, under the ``title`` of their group in the help."""
+    _listed(title, [command for entry in entries for command in entry.commands])
+
+
+_listed("Scenes and this machine", [new, schema, scenes, doctor])
+add("Answers", ON_DEMAND)
+_listed("Answers", [report])
+add("Surrogate against finite elements", COMPARISON)
+add("Studies", QUESTIONS)
 
 if __name__ == "__main__":
     app()

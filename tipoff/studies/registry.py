@@ -1,10 +1,9 @@
-"""All studies. This is the only place where a study is added: its command, its result and its
-section of the page follow."""
+"""All studies. This is the only place where a study of the package is added: its command, its result
+and its section of the page follow."""
 
 from tipoff.studies import (
     ablation,
     agreement,
-    bench,
     blind,
     calibration,
     convergence,
@@ -16,9 +15,6 @@ from tipoff.studies import (
     mesh,
     montecarlo,
     nominal,
-    paper,
-    peers,
-    recovery,
     runs,
     sensitivity,
     stability,
@@ -50,10 +46,8 @@ QUESTIONS: tuple[Entry, ...] = (
     limits.QUESTION,
     flight.QUESTION,
     droptest.QUESTION,
-    paper.QUESTION,
-    recovery.QUESTION,
 )
-BENCHMARKS: tuple[Entry, ...] = (bench.ENTRY, peers.ENTRY)
+ADDED: list[Entry] = []
 
 # The first sections of the page in their order; those of all other studies follow.
 _FIRST = (
@@ -71,15 +65,19 @@ _FIRST = (
     "rails",
     "cost",
     "convergence",
-    "bench",
-    "peers",
     "stability",
     "ablation",
 )
 
 
+def add(*entries: Entry) -> None:
+    """Add studies from outside the package: this process makes their results and shows their sections.
+    ``cli.add`` adds their commands."""
+    ADDED.extend(entry for entry in entries if entry not in ADDED)
+
+
 def _loaded() -> list[Contents]:
-    return [entry.load() for entry in (*COMPARISON, *BENCHMARKS, *ON_DEMAND, *QUESTIONS)]
+    return [entry.load() for entry in (*COMPARISON, *ON_DEMAND, *QUESTIONS, *ADDED)]
 
 
 def results() -> list[Result]:

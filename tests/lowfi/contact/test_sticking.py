@@ -10,9 +10,9 @@ from tests.exact import friction as exact
 from tests.lowfi.contact.test_friction import on_slope as smoothed_on_slope
 from tests.lowfi.support import G, corners, numerics, scene
 from tipoff import highfi, lowfi
-from tipoff.lowfi import oracle
 from tipoff.mechanics import ledger
 from tipoff.scenes import SceneError, load
+from validation import oracle
 
 FEET = [{"position": (x, y, 0.0), "normals": ["-z"]} for x in (-0.1, 0.1) for y in (-0.1, 0.1)]
 GROUND = {"law": "linear", "clearance": 0.0, "stiffness": 1e8, "damping": 2e4}

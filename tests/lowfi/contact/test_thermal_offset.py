@@ -9,12 +9,13 @@ from scipy.interpolate import CubicSpline
 
 from tests.lowfi.compliance import REFERENCE, handmade, reference_compliance
 from tipoff import lowfi
-from tipoff.lowfi import Numerics, oracle
+from tipoff.lowfi import Numerics
 from tipoff.lowfi import system as systems
 from tipoff.lowfi.contact import springs, thermal_offset
 from tipoff.mechanics import model as models
 from tipoff.mechanics.rail_compliance import GRAM, PATTERNS
 from tipoff.scenes.effects.thermal import FIELDS
+from validation import oracle
 
 MEAN = 1.0 / REFERENCE.rail.material.expansion  # K: one of the first field
 WARM = {"thermal.mean": 20.0, "thermal.gradient.y": 500.0, "thermal.gradient.z": -300.0}

@@ -11,9 +11,9 @@ from tests.lowfi.compliance import handmade, in_one_cell
 from tests.lowfi.contact.compliant.test_runs import EFFECTS, RUB, STIFFNESS, on_springs
 from tests.lowfi.support import ONE_PAD, RAIL, numerics, scene, unwatched
 from tipoff import lowfi
-from tipoff.lowfi import oracle
 from tipoff.lowfi.single_run import Run
 from tipoff.mechanics import ledger
+from validation import oracle
 
 WIDTH, START = 2e-3, 0.1  # m: a wall, and how far ahead of the middle of the pad it begins
 K, MASS = 7e7, 20.0

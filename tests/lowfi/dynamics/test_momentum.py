@@ -7,8 +7,8 @@ import pytest
 from tests.lowfi.support import PAPER_PAD, corners, scene, unwatched
 from tipoff import lowfi
 from tipoff.kernels import rotation
-from tipoff.lowfi import oracle
 from tipoff.mechanics import model as models
+from validation import oracle
 
 # Undamped pads and little friction, so that the payload goes on rattling in a rail that has no end.
 RATTLING = {

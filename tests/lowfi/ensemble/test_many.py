@@ -8,7 +8,7 @@ from tipoff import lowfi
 from tipoff.lowfi.ensemble import columns
 from tipoff.scenes import load
 from tipoff.scenes.faults import SceneError
-from tipoff.studies.bench.surrogate import varied
+from validation.bench.surrogate import varied
 
 ROWS = [{"thrust_offset.misalignment.radial": f"{angle} deg"} for angle in (5, 25, 45, 65)]
 

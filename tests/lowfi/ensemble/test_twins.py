@@ -13,7 +13,7 @@ from tipoff import lowfi
 from tipoff.lowfi.ensemble import many, twins
 from tipoff.lowfi.ensemble import store as stores
 from tipoff.scenes import load
-from tipoff.studies.bench.surrogate import varied
+from validation.bench.surrogate import varied
 
 REFERENCE = load("reference")
 CLEARANCE, TOLERANCE = "rate_change_by_clearance", "rate_change_by_tolerance"

@@ -16,7 +16,6 @@ from tipoff.calibration import rail_compliance as calibrated
 from tipoff.files import write_json
 from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.studies.bench import reference
 from tipoff.studies.cli import app
 from tipoff.studies.core import store as store_module
 from tipoff.studies.core.settings import Settings
@@ -25,6 +24,7 @@ from tipoff.studies.limits import results
 from tipoff.studies.populations import answers
 from tipoff.studies.runs import stage as runs
 from tipoff.studies.view import stage as view
+from validation.bench import reference
 
 RATE = 0.125  # rad/s, of which means are exact
 

@@ -37,7 +37,6 @@ _GROUPS = {
         "stability",
         "ablation",
         "rails",
-        "bench",
     ),
 }
 

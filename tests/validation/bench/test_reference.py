@@ -1,0 +1,126 @@
+"""The benchmark: the baseline does the same work as the solver, and what is written is what was
+measured."""
+
+import functools
+import json
+
+import numpy as np
+import pytest
+import typer
+from typer.testing import CliRunner
+
+import tipoff
+from tipoff import highfi, lowfi
+from tipoff.highfi import Numerics
+from tipoff.highfi.statics import assembly
+from tipoff.lowfi.dynamics import cases
+from tipoff.mechanics.models import COMPLIANT
+from tipoff.scenes import load
+from tipoff.studies import registry
+from tipoff.studies.report.assembly import render
+from tipoff.studies.report.page import Page
+from tipoff.studies.runs.figures import Runs
+from validation import STUDIES
+from validation.bench import reference, surrogate
+from validation.bench.command import bench
+from validation.bench.csr_loop import CsrLoop
+from validation.bench.methods import (
+    PlainRungeKutta,
+    Population,
+    SolveIvp,
+    Surrogate,
+    varied,
+)
+
+
+def test_baseline_is_central_differences_on_the_assembled_matrix():
+    scene = load("tiny")
+    mesh = highfi.prepare(scene, Numerics(element_size=0.016))
+    loop = CsrLoop(mesh, scene.rail.material, 1e-8, most=10**6)
+    material = scene.rail.material
+    operator = assembly.of_material(mesh, material, fixed=())
+    displacement, velocity = loop.displacement.copy(), loop.velocity.copy()
+    for _ in range(3):
+        velocity = velocity - 1e-8 * (assembly.sparse(operator) @ displacement) / np.repeat(
+            operator.mass, 3
+        )
+        displacement = displacement + 1e-8 * velocity
+    loop.advance(3)
+    assert loop.elements == len(mesh.cells) and loop.displacement == pytest.approx(
+        displacement, rel=1e-12
+    )
+
+
+@pytest.mark.parametrize(
+    "few, errors",
+    [(5, (1.0, 0.5)), pytest.param(20, surrogate.REQUESTED, marks=pytest.mark.slow)],
+)
+def test_bench_writes_one_row_per_size(tmp_path, monkeypatch, figures, few, errors):
+    monkeypatch.setattr(surrogate, "run", functools.partial(surrogate.run, few=few))
+    monkeypatch.setattr(surrogate, "REQUESTED", errors)
+    arguments = [
+        "--element-size",
+        "8",
+        "--repeats",
+        "1",
+        "--steps",
+        "50",
+        "--cases",
+        "40",
+        "--out",
+        str(tmp_path),
+    ]
+    app = typer.Typer()
+    app.command()(bench)
+    said = CliRunner().invoke(app, arguments, catch_exceptions=False)
+    assert said.exit_code == 0
+    assert "SciPy and" in said.stdout and "plain Runge-Kutta" in said.stdout
+    assert f"  {tmp_path / 'bench' / 'lowfi.json'}" in said.stdout.splitlines()
+    (row,) = json.loads((tmp_path / "bench" / "highfi.json").read_text())["rows"]
+    assert row["elements"] > 500 and row["faces_in_contact"] >= 4
+    assert row["ratio"] == pytest.approx(
+        row["baseline_ns_per_element_step"] / row["ns_per_element_step"]
+    )
+    assert row["bytes_per_element"] > 24 * 8 and row["dt_s"] > row["dt_element_s"] * 0.9
+    assert f"{row['elements']:,} elements" in reference.line(row)
+    monkeypatch.setattr(registry, "ADDED", [*STUDIES])
+    page = render(
+        Page(load("tiny"), tmp_path, {"bench": reference.stored(tmp_path)}, Runs({}, {}, {}), {})
+    )
+    assert 'id="bench"' in page and f"{row['elements']:,}" in page
+    assert reference.stored(tmp_path / "elsewhere") is None
+    found = json.loads((tmp_path / "bench" / "lowfi.json").read_text())
+    for error in errors:
+        methods = [row["method"] for row in found["single"] if row["error_percent"] == error]
+        assert methods == ["compliant contact", "springs", PlainRungeKutta.name, SolveIvp.name]
+    for row in found["single"]:
+        assert row["measured_percent"] <= row["error_percent"] and row["cpu_ms"] > 0.0
+        assert f"{row['cpu_ms']:.3f}" in page
+        compliant = row["method"] == "compliant contact"
+        assert (row["run_auto_cpu_ms"] is not None) == compliant
+    assert "pilot cases" in found["modes_why"]
+    for ensemble in found["ensembles"]:
+        assert (
+            ensemble["cases"] == ensemble["ok"] == 40
+            and ensemble["cpu_ms_per_case"] > 0.0 < ensemble["wall_s"]
+        )
+        assert ensemble["peak_memory_bytes"] > 10**7
+
+
+def test_runs_of_a_method_have_the_modes_of_its_population():
+    """Otherwise the two columns of a row compare different equations."""
+    scene = load("tiny")
+    population = Population(scene, varied(2), COMPLIANT, tipoff.compliance(scene))
+    population.modes = 3  # unlike what the cases need
+    method, tolerance = Surrogate(population), 1e-5
+    runs = method.whole(tolerance)()
+    assert [run.numerics["modes"] for run in runs] == [3, 3]
+    steps = method.piece(tolerance)()[:, cases.STEPS]
+    same, other = (
+        population.many(population.rows, lowfi.Numerics(relative_tolerance=tolerance, modes=modes))
+        for modes in (3, 0)
+    )
+    assert [run.cost["steps"] for run in runs] == same.steps.values.tolist()
+    assert steps.tolist() == same.steps.values.tolist() != other.steps.values.tolist()
+    for run in method.whole(tolerance, modes="auto")():
+        assert "modes_why" in run.numerics

@@ -1,0 +1,43 @@
+"""The command line of the evidence, in a process of its own: it adds studies to those of the package."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tipoff.studies import registry
+from validation import STUDIES
+
+NAMES = ("paper", "recovery", "bench", "peers")
+
+
+def call(module: str, *arguments: str) -> subprocess.CompletedProcess:
+    root = Path(__file__).resolve().parents[2]
+    line = [sys.executable, "-m", module, *arguments]
+    return subprocess.run(line, cwd=root, capture_output=True, text=True, timeout=120)
+
+
+def test_the_evidence_is_beside_the_commands_of_the_package():
+    shown, of_package = call("validation", "--help"), call("tipoff", "--help")
+    for name in (*NAMES, "report", "run"):
+        assert f"│ {name} " in shown.stdout, shown.stderr
+    for name in NAMES:
+        assert f"│ {name} " not in of_package.stdout
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_bad_option_is_refused(name):
+    found = call("validation", name, "--scene", "no_such_scene")
+    assert found.returncode == 2
+    assert "no_such_scene" in found.stderr or "No such option" in found.stderr
+
+
+def test_added_studies_are_on_the_page(monkeypatch):
+    monkeypatch.setattr(registry, "ADDED", [])
+    before = [section.anchor for section in registry.sections()]
+    registry.add(*STUDIES)
+    registry.add(*STUDIES)
+    after = [section.anchor for section in registry.sections()]
+    assert after[: len(before)] == before
+    assert after[len(before) :] == ["paper", "recovery", "bench", "peers"]

@@ -1,0 +1,61 @@
+"""``python -m validation bench``."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tipoff.studies.commands.options import Json, Out, in_millimetres
+from tipoff.studies.commands.running import Output, guarded
+
+if TYPE_CHECKING:
+    from tipoff.studies.render.document import Part
+
+
+def bench(
+    out: Out = Path("out"),
+    element_size: Annotated[
+        list[float] | None,
+        typer.Option(
+            "--element-size",
+            metavar="LENGTH",
+            parser=in_millimetres,
+            help='Element size, "4 mm" or 4, repeatable; default: 2, 1 and 0.5 mm.',
+        ),
+    ] = None,
+    repeats: Annotated[
+        int, typer.Option(metavar="N", min=1, help="Timed repeats; the result is the median.")
+    ] = 5,
+    steps: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N", min=1, help="Steps of one timed repeat; default: depends on the mesh."
+        ),
+    ] = None,
+    cases: Annotated[
+        int, typer.Option(metavar="N", min=1, help="Cases in the ensemble of the surrogate.")
+    ] = 2000,
+    json_: Json = False,
+) -> None:
+    """Measure the speed of both solvers; writes bench/highfi.json and bench/lowfi.json.
+
+    The reference is compared with a SciPy matrix and with NumPy on the same mesh. The surrogate, with
+    compliant contact and with springs, is compared with plain Runge-Kutta and solve_ivp at the same
+    error.
+    """
+
+    def work() -> Output:
+        from validation.bench import page, reference, surrogate
+
+        def shown(found: dict) -> "list[Part]":
+            files = [f"  {out / 'bench' / name}" for name in ("highfi.json", "lowfi.json")]
+            return [*page.terminal(found), "\n".join(files)]
+
+        sizes = tuple(1e-3 * size for size in element_size) if element_size else reference.SIZES
+        found = {
+            **reference.run(out, sizes, repeats, steps),
+            "surrogate": surrogate.run(out, cases=cases, repeats=repeats),
+        }
+        return Output(found, shown)
+
+    guarded(work, json_)

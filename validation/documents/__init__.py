@@ -1,0 +1,1 @@
+"""Writers of README and of pages of the documentation from stored results."""

@@ -1,0 +1,275 @@
+"""Writes the figures of README.md, and the tables and pictures of docs/results.md, from the result
+files of ``make full-report``.
+
+    python -m validation.documents.readme [FOLDER]        default out/reference
+"""
+
+import shutil
+import sys
+from collections import Counter
+from pathlib import Path
+
+from tipoff.files import read_json, write_text
+from tipoff.mechanics.models import FINITE_ELEMENTS
+from tipoff.studies.agreement import growth_page, rails_page, verdicts
+from tipoff.studies.agreement.other_rails import beside
+from tipoff.studies.agreement.page import by_factor
+from tipoff.studies.convergence import equal_accuracy
+from tipoff.studies.core.study import read
+from tipoff.studies.montecarlo import tails_page
+from tipoff.studies.render.document import Part, markdown
+from tipoff.studies.render.table import Cells, Column, Table, number, percent
+from tipoff.studies.render.uncertain import STEPS
+from validation.documents import further
+
+_ROOT = Path(__file__).resolve().parents[2]
+_TITLE = """# Results on the reference scene
+
+Written by `python -m validation.documents.readme` from the files of `make full-report` and `make bench`. Times
+of different tables may be from different days, so do not divide them by each other. The
+[glossary](glossary.md) has the terms, and [agreement](explanation/convergence_and_chaos.md) the limits.
+
+Conditions `phi0` to `phi90` are those of the paper: 0.1 deg of thrust misalignment at this clock angle. The
+springs were fitted to them, and not to `h1` to `h10`. No pad touches a rail in `h5` and `h6`: their agreement
+tests free flight."""
+_TAILS = """# Random errors checked by the reference
+
+Scene {scene}. Written by `python -m validation.documents.readme` from the file of
+`tipoff montecarlo --cases {cases} --reference {draws} --finer {fine}`. All runs of the surrogate have the
+[number of rail modes](rail_modes.md#one-number-in-a-study) that pilot cases of the population chose. The
+table by rail modes has runs with other numbers too."""
+_BEGIN, _END = "<!-- {name}: python -m validation.documents.readme -->", "<!-- end of {name} -->"
+
+
+def main(folder: Path) -> None:
+    """Replace the figures in README.md, the page of results, and the pictures beside it."""
+    _into_readme("results", headline(folder))
+    page = f"{_TITLE}\n\n{section(folder)}\n\n{further.details(folder)}\n"
+    write_text(_ROOT / "docs" / "results.md", page)
+    for name in ("figure6.png", "cost.png"):
+        shutil.copyfile(folder / "figures" / name, _ROOT / "docs" / name)
+    if (found := read(folder / "tails.json")) is not None:
+        tails(found, folder)
+
+
+def tails(found: dict, folder: Path) -> None:
+    """Write the page of random errors that the reference has checked, with its picture, and what
+    README says of it."""
+    _into_readme(
+        "tails",
+        "\n  - ".join(
+            [
+                "- **Tails**, from [random ejections](docs/tails.md):",
+                *(_upper(f"{said}.") for said in tails_page.sentences(found)),
+            ]
+        ),
+    )
+    text = markdown(tails_page.document(found))
+    write_text(_ROOT / "docs" / "tails.md", f"{_TAILS.format(**found)}\n\n{text}\n")
+    shutil.copyfile(folder / "figures" / "tails.png", _ROOT / "docs" / "tails.png")
+
+
+def _into_readme(name: str, text: str) -> None:
+    """Replace the lines of README between the marks of ``name``."""
+    path = _ROOT / "README.md"
+    begin, end = (mark.format(name=name) for mark in (_BEGIN, _END))
+    before, rest = path.read_text(encoding="utf-8").split(begin)
+    write_text(path, f"{before}{begin}\n{text}\n{end}{rest.split(end)[1]}")
+
+
+def headline(folder: Path) -> str:
+    """The few figures of README: agreement of compliant contact, and the one speed-up, at equal
+    accuracy, where the error of the reference was studied."""
+    rows = read_json(folder / "agreement.json")["compliant"]
+    lines = [_agreed(rows)]
+    refined = read(folder / "convergence.json")
+    if refined is not None and (found := refined["equal_accuracy"]) is not None:
+        said = equal_accuracy.sentence(found).split(". ")[0].removeprefix("speed-up ")
+        lines.append(f"- **Speed-up** {said}.")
+    return "\n".join(lines)
+
+
+def _agreed(rows: list[dict]) -> str:
+    """How many conditions are judged and agree, and the errors where pads touch."""
+    curves = [row for row in rows if row["judged_as"] == verdicts.CURVE]
+    judged = [row for row in curves if row["judgement"] != verdicts.CANNOT]
+    agree = [row for row in judged if row["judgement"] == verdicts.AGREES]
+    touched = [row for row in agree if row["touches"]]
+    errors = [row["rate_relative_l2"] for row in touched]
+    said = (
+        f"- **Agreement**: The reference is converged on {len(judged)} of {len(rows)} conditions. "
+        f"Compliant contact has no fitted constants and agrees on {len(agree)} of these {len(judged)}."
+    )
+    if touched:
+        settled = max(row["settled_rate_error_deg_s"] for row in touched)
+        said += (
+            f"\n  - Pads touch in {len(touched)} of the {len(agree)}. There the rates differ by at most "
+            f"{percent(max(errors), '.2g')} % over time (L2), and the settled rates by at most "
+            f"{number(settled, '.2g')} deg/s."
+        )
+    if others := [row for row in rows if row["judged_as"] == verdicts.DISTRIBUTION]:
+        count = Counter(row["judgement"] for row in others)
+        said += (
+            f"\n  - On {len(others)} others, [distributions](docs/chaotic_conditions.md) of the settled rates "
+            f"are compared: {count[verdicts.AS_DISTRIBUTION]} agree, {count[verdicts.MISSES]} miss, "
+            f"{count[verdicts.CANNOT]} cannot be judged."
+        )
+    return said
+
+
+def _upper(sentence: str) -> str:
+    return sentence[0].upper() + sentence[1:]
+
+
+def section(folder: Path) -> str:
+    """Markdown of the results: agreement, speed-up, other rails, time against accuracy."""
+    agreement = read_json(folder / "agreement.json")
+    refined, cost, blind = (
+        read(folder / f"{name}.json") for name in ("convergence", "cost_study", "blind")
+    )
+    parts: list[Part] = [
+        _agreement(agreement),
+        *by_factor(agreement["interface"]),
+        *_growth(agreement["growth"]),
+        _speed(agreement),
+        *_equal(refined),
+    ]
+    parts += [_rails(found)] if (found := beside(folder)) else []
+    parts += [_blind(blind)] if blind is not None else []
+    parts += _ladder(cost) if cost is not None else []
+    return markdown(parts)
+
+
+def _pair(row: dict) -> str:
+    return (
+        f"{percent(row['rate_relative_l2'], '.2g')} / "
+        f"{number(row['settled_rate_error_deg_s'], '.2g', STEPS['deg/s'])}"
+    )
+
+
+_COMPLIANT: Cells = (
+    ("compliant contact", _pair),
+    (Column("floor", "deg/s", ".2g"), "floor_deg_s"),
+    (Column("reference uncertainty", "deg/s", ".2g"), "reference_uncertainty_deg_s"),
+    ("judged as", "judged_as"),
+    ("verdict", "verdict"),
+)
+
+
+def _agreement(found: dict) -> Table:
+    before = {row["condition"]: row for row in found["uncalibrated"]}
+    fitted = {row["condition"]: row for row in found["fitted"] + found["held_out"]}
+    columns: Cells = (
+        ("condition", "condition"),
+        ("role", lambda row: row["role"].replace("_", " ")),
+        ("springs, uncalibrated", lambda row: _pair(before[row["condition"]])),
+        ("springs, calibrated", lambda row: _pair(fitted[row["condition"]])),
+        *_COMPLIANT,
+    )
+    return Table.of(
+        found["compliant"],
+        columns,
+        title="Errors of the surrogates against the reference (rate L2 in % / largest error of "
+        "a settled rate in deg/s), the floor, and the\nuncertainty of the reference. "
+        "Compliant contact has no fitted constants; the role is that of the condition in "
+        "the calibration of springs.\nThe verdict is that of compliant contact.",
+    )
+
+
+def _growth(found: list[dict]) -> list[Part]:
+    """One line a condition that 1 µm moves by more than the gate, and one for all others; nothing
+    where it was not measured."""
+    own = [item for item in found if item["model"] == FINITE_ELEMENTS]
+    stable = [item for item in own if item["sensitive"] is False]
+    lines = [
+        f"- {growth_page.sentence(item)} "
+        f"({number(item['settled_growth_deg_s_um'], '.2g', STEPS['deg/s'])} deg/s per µm)"
+        for item in own
+        if item["sensitive"] is not False
+    ]
+    if stable:
+        most = max(item["settled_growth_deg_s_um"] for item in stable)
+        names = ", ".join(item["condition"] for item in stable)
+        lines.append(
+            f"- {names}: stable to the end (up to {number(most, '.2g', STEPS['deg/s'])} deg/s per µm)"
+        )
+    return (
+        ["Growth of a difference of 1 µm of clearance in the reference:", "\n".join(lines)]
+        if lines
+        else []
+    )
+
+
+def _speed(agreement: dict) -> str:
+    found, plain = agreement["speedup_compliant"], agreement["speedup"]
+    machine = found["hardware"]
+    return (
+        f"Speed: {found['ratio']:,.0f} times ({found['low']:,.0f} to {found['high']:,.0f} over "
+        f"repeats): "
+        f"{found['highfi_wall_s']:.3g} s for the reference with {found['elements']:,} elements "
+        f"against "
+        f"{1e3 * found['lowfi_wall_s']:.3g} ms on compliant contact; {plain['ratio']:,.0f} times "
+        f"({1e3 * plain['lowfi_wall_s']:.3g} ms) for springs, calibrated. The same case, "
+        f"everything but compilation "
+        f"included, on {machine['cores']} cores of {machine['processor']}."
+    )
+
+
+def _equal(refined: dict | None) -> list[Part]:
+    """The speed-up on the mesh whose uncertainty is as small as the error of the surrogate, where
+    the error of the reference was studied."""
+    if refined is None or refined["equal_accuracy"] is None:
+        return []
+    sentence = equal_accuracy.sentence(refined["equal_accuracy"])
+    return [f"{_upper(sentence)} (`make convergence`)."]
+
+
+def _rails(found: list[dict]) -> Table:
+    title = "Other rails, each with its own calibration (`make rails`):"
+    return rails_page.table(found, title=title)
+
+
+def _blind(found: dict) -> Table:
+    """Conditions drawn after all code was written, as the agreement table has the scene's own."""
+    springs = {row["condition"]: row for row in found["calibrated"]}
+    columns: Cells = (
+        ("condition", "condition"),
+        ("springs, calibrated", lambda row: _pair(springs[row["condition"]])),
+        *_COMPLIANT,
+    )
+    return Table.of(
+        found["compliant"],
+        columns,
+        title=f"{len(springs)} random conditions with errors as in the paper's Table 3 (`make "
+        "blind`; other code draws other conditions):",
+    )
+
+
+def _ladder(found: dict) -> list[Part]:
+    rows = []
+    for point in found["points"]:
+        wall = point["wall_s"]
+        errors = [
+            "reference" if point["reference"] else value if value is None else scale * value
+            for value, scale in ((point["error_deg_s"], 1.0), (point["curve_error"], 100.0))
+        ]
+        time = f"{wall:.3g} s" if wall >= 0.1 else f"{1e3 * wall:.2g} ms"
+        rows.append((point["model"], point["numerics"], time, *errors))
+    heads = (
+        "model",
+        "numerics",
+        "wall time",
+        Column("settled rates", "deg/s", ".2g"),
+        Column("rate L2", "%", ".2g"),
+    )
+    return [
+        f"Error and time of all models (`make cost`, {found['condition']}). Errors are relative "
+        f"to the finest mesh, whose own uncertainty is {number(found['band_deg_s'], '.2g')} "
+        "deg/s; smaller errors count as this value. Bold: no faster model is as accurate.",
+        "![Errors of all models against wall time](cost.png)",
+        Table(heads, rows, kinds=["best" if point["pareto"] else "" for point in found["points"]]),
+    ]
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else _ROOT / "out" / "reference")
