@@ -9,7 +9,8 @@ from tipoff.studies.core import compiling, kernel_marks
 from tipoff.studies.core.run import Run
 from tipoff.studies.core.store import Store
 
-FLYING = scenes.load("tiny").replace({"contact": None, "friction": None})
+FALLING = scenes.load("tiny").replace({"contact": None, "friction": None})
+FLYING = FALLING.replace({"platform": None})
 
 
 @pytest.fixture
@@ -53,6 +54,17 @@ def test_the_first_compilation_is_announced_once(runs, capfd):
     kernel_marks.announce(other)
     said = capfd.readouterr().err
     assert "once" in said and "modes" not in said  # nothing presses a rail
+
+
+def test_gravity_that_all_bodies_share_needs_no_kernel_of_its_own():
+    """It is in no kernel where a free platform falls with the payload (``tests/lowfi/test_compiled``)."""
+
+    def mark(scene):
+        return kernel_marks.mark(Run("lowfi", "a", scene, lowfi.Numerics()))
+
+    gravity = {"gravity.x": "1 m/s**2"}
+    assert mark(FALLING.replace(gravity)) == mark(FALLING)
+    assert mark(FLYING.replace(gravity)) != mark(FLYING)
 
 
 def pressed(modes) -> Run:

@@ -14,6 +14,8 @@ from tipoff.files import content_hash
 from tipoff.kernels.jit import kernel_digest
 from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.models import COMPLIANT
+from tipoff.scenes.effects.registry import EFFECTS
+from tipoff.scenes.scene import Scene
 from tipoff.studies.core.progress import say
 from tipoff.studies.core.run import Run
 
@@ -78,13 +80,21 @@ def mark(run: Run, chosen: bool = False, many: bool = False) -> Path:
     key = content_hash(
         kernel_digest(f"tipoff.{run.fidelity}"),
         run.model,
-        run.scene.absent_effects(),
+        _not_compiled(run.scene),
         _vibrates(run, chosen),
         many,
         # many cases that choose their modes need the kernels without modes and those with
         many and not chosen and _modes(run) == AUTO,
     )
     return sources.cache_folder() / "kernels" / f"compiled-{key[:16]}"
+
+
+def _not_compiled(scene: Scene) -> list[str]:
+    """Effects without code in the kernels of ``scene``: those that it lacks, and body forces where a
+    free platform falls with the payload (``mechanics.comoving``)."""
+    falls = scene.platform is not None
+    absent = scene.absent_effects()
+    return [item.key for item in EFFECTS if item.key in absent or (falls and item.is_body_force)]
 
 
 def _vibrates(run: Run, chosen: bool) -> bool:
