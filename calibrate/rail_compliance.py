@@ -37,9 +37,9 @@ def compliance(scene: Scene, element_size: float | None = None) -> RailComplianc
 
 
 def walls(scene: Scene, element_size: float | None = None) -> RailCompliance | None:
-    """The rigid walls that springs of ``scene`` need where they are offset: warm, with the statics of
-    ``compliance``, or not straight as drawn in the file of the rail. None where they are straight,
-    and without contact. ``element_size`` (m) is that of a solid. Raises SceneError or MeshError."""
+    """The rigid walls that springs of ``scene`` need where they may be offset: warm, with the statics
+    of ``compliance``, or from a file, as drawn there. None for the built-in section, which is
+    straight, and without contact. ``element_size`` (m) is that of a solid. Raises SceneError or MeshError."""
     if scene.contact is None:
         return None
     if scene.thermal is not None:

@@ -23,6 +23,7 @@ from tipoff.calibration.objective import Objective, Parts, targets
 from tipoff.calibration.offset import Offset
 from tipoff.calibration.parameters import Parameter
 from tipoff.calibration.search import Found, Plan, search
+from tipoff.lowfi.models import require
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
@@ -49,16 +50,19 @@ def run(
 
     ``numerics`` are the surrogate's (lowfi.Numerics), ``progress`` is called with the fraction
     done, ``plan`` sizes the search; the same plan gives the same bits, however many ``workers`` run
-    conditions in parallel. Springs on warm rails need their rigid ``compliance`` (``lowfi.run``).
+    conditions in parallel. Springs on rails that are warm or from a file need their rigid
+    ``compliance`` (``lowfi.run``).
     Raises CalibrationError for references that are missing, did not exit, are too short or do not
     turn, for names that cannot be fitted, and for curves that the model does not explain, with the
-    likely cause (``judgement``); SceneError for an unknown condition.
+    likely cause (``judgement``); SceneError for an unknown condition and for a compliance that is
+    missing.
     """
     faults.check(scene, references)
     curves = {
         name: item if isinstance(item, Curves) else Curves.from_trajectory(item)
         for name, item in references.items()
     }
+    require(scene, model_of(scene, compliance), compliance, None, None)
     plan, wanted = plan or Plan(), targets(scene, curves)
     with ThreadPoolExecutor(workers) as pool:
         make = partial(

@@ -141,12 +141,13 @@ def _drawn(scene: Scene, element_size: float) -> np.ndarray | None:
 
 
 def walls(scene: Scene, element_size: float, spacing: float = _SPACING) -> RailCompliance | None:
-    """Rigid walls of ``scene`` with their offset as drawn, without temperatures, at stations about
-    ``spacing`` (m) apart; None where they are straight. Statics are not solved. The size of elements
-    (m) counts only for a solid with curved walls. Raises SceneError or MeshError."""
-    drawn = _drawn(scene, element_size)
-    if drawn is None:
+    """Rigid walls of ``scene`` with their offset as drawn, if they are not straight, without
+    temperatures, at stations about ``spacing`` (m) apart; None for the built-in section. Statics are
+    not solved. The size of elements (m) counts only for a solid with curved walls. Raises SceneError
+    or MeshError."""
+    if isinstance(scene.rail, SectionTable):
         return None
+    drawn = _drawn(scene, element_size)
     stations, nominal = _stations(scene, spacing), scene_model.built(scene).nominal
     faces = nominal.axis.size
     return RailCompliance(

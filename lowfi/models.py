@@ -1,5 +1,6 @@
 """The two models of the surrogate, ``compliant`` and ``springs``: the options that each takes."""
 
+from tipoff.lowfi.contact import thermal_offset
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.models import COMPLIANT, SURROGATES
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
@@ -47,9 +48,13 @@ def require(
                 (
                     "compliance",
                     "a rail compliance",
-                    "none, or rigid walls where rails are warm: model='compliant' uses it",
+                    "none, or rigid walls where rails are warm or from a file: model='compliant' uses it",
                 )
             )
+        faults += [
+            (fault.key, fault.given, fault.expected)
+            for fault in thermal_offset.lacking(scene, compliance)
+        ]
         if numerics is not None and numerics.count:
             faults.append(
                 ("numerics.modes", str(numerics.modes), "0: springs stand on rigid rails")

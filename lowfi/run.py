@@ -30,12 +30,12 @@ def run(
 
     The ``model`` is ``compliant``: pads press on the rail ``compliance`` (``tipoff.compliance``)
     through the interface stiffness of the reference; or ``springs``: the scene's contact law at
-    each pad face, and a rigid ``compliance`` where the rails are warm or not straight as drawn
-    (``calibration.rail_compliance.walls``): no file is read here, and without it walls are
-    straight. A ``calibration`` replaces constants that were fitted on the same model. ``progress``
-    is called with the fraction of the duration done, and ``vibrates`` with each number of modes
-    that ``modes="auto"`` has chosen, before the scene is run with them: their kernels may have to
-    be compiled. A run whose ledgers do not close as promised is run again at tighter tolerances, as
+    each pad face, and a rigid ``compliance`` where the rails are warm or from a file
+    (``calibration.rail_compliance.walls``): no file is read here, so without it they are refused. A
+    ``calibration`` replaces constants that were fitted on the same model. ``progress`` is called
+    with the fraction of the duration done, and ``vibrates`` with each number of modes that
+    ``modes="auto"`` has chosen, before the scene is run with them: their kernels may have to be
+    compiled. A run whose ledgers do not close as promised is run again at tighter tolerances, as
     message and cost report; one that keeps breaking a promise is diverged. Raises SceneError, every
     fault listed, before the first step; a later failure is the status of the result."""
     require(scene, model, compliance, calibration, numerics)

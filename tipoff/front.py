@@ -351,8 +351,8 @@ def _pressed(
     given: RailCompliance | None,
     calibration: Calibration | None = None,
 ) -> RailCompliance | None:
-    """The rail compliance that ``model`` needs; rigid walls for springs at walls that are warm or not
-    straight as drawn."""
+    """The rail compliance that ``model`` needs; rigid walls for springs at walls that are warm or from
+    a file."""
     if scene.contact is None:
         return given
     if model == COMPLIANT:

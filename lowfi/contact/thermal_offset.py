@@ -23,6 +23,7 @@ from tipoff.mechanics import drawn_walls
 from tipoff.mechanics.model import Model
 from tipoff.mechanics.rail_compliance import GRAM, RailCompliance, cubic
 from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
 
 
@@ -44,13 +45,13 @@ def under_pads(
     require(scene, compliance)
     if compliance is None or model.contact is None or compliance.flexibility is not None:
         return None
+    compliance.require(scene)
     platform = model.platform.mass_centre[0] if model.platform is not None else 0.0
     origin = model.faces.centre[:, 0] + (model.payload.mass_centre[0] - platform)
     travel, mean = compliance.travel, None
     if model.thermal is not None:
         mean = compliance.of(scene).moved(model.thermal.amounts) @ GRAM[0]
     if compliance.drawn is not None:
-        compliance.require(scene)
         fine = drawn_walls.grid(travel[0], travel[-1])
         warm = 0.0 if mean is None else CubicSpline(travel, mean)(fine)
         travel, mean = fine, warm + _drawn_mean(compliance.drawn, model, fine, origin)
@@ -77,16 +78,34 @@ def _drawn_mean(
     )
 
 
-def require(scene: Scene, compliance: RailCompliance | None) -> None:
-    """Raises SceneError for a warm scene without rail compliance, and for that of another rail."""
-    if scene.thermal is None or scene.contact is None:
-        return
-    if compliance is None:
+def lacking(scene: Scene, compliance: RailCompliance | None) -> list[Fault]:
+    """What a scene lacks without rail ``compliance``: the offset of its walls, where they are warm or
+    drawn in a file, which this package does not read."""
+    if scene.contact is None or compliance is not None:
+        return []
+    faults = []
+    if scene.thermal is not None:
         expected = (
             "a rail compliance (tipoff.compliance(scene)), or its rigid() for contact springs"
         )
-        raise SceneError([Fault(scene.name, "thermal", "no rail compliance", expected)])
-    compliance.require(scene)
+        faults.append(Fault(scene.name, "thermal", "no rail compliance", expected))
+    elif not isinstance(scene.rail, SectionTable):
+        expected = (
+            "tipoff.calibration.rail_compliance.walls(scene), the walls as the file draws them, or "
+            "tipoff.run, which finds them"
+        )
+        given = f"none, and a rail from {scene.rail.path().name}"
+        faults.append(Fault(scene.name, "compliance", given, expected))
+    return faults
+
+
+def require(scene: Scene, compliance: RailCompliance | None) -> None:
+    """Raises SceneError for a scene whose walls are warm or from a file without rail compliance, and
+    for a warm one with that of another rail."""
+    if faults := lacking(scene, compliance):
+        raise SceneError(faults)
+    if compliance is not None and scene.thermal is not None and scene.contact is not None:
+        compliance.require(scene)
 
 
 @kernel

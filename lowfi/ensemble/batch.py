@@ -132,7 +132,7 @@ class Family:
             scene.rail is base.rail and scene.pads is base.pads
         ):
             self.compliance.require(scene)
-        if scene.thermal is not base.thermal:
+        if scene.thermal is not base.thermal or scene.rail is not base.rail:
             thermal_offset.require(scene, self.compliance)
 
     def _group(self, groups: dict, built: Built) -> _Group:

@@ -15,6 +15,7 @@ from tests.fuzz import mutants, results
 from tests.highfi.mesh import seeds
 from tipoff import scenes
 from tipoff.calibration.curves import Curves
+from tipoff.highfi.compliance import walls
 from tipoff.highfi.mesh import touching
 from tipoff.highfi.mesh.rail_mesh import read
 from tipoff.highfi.rail import fit, step_cost
@@ -117,8 +118,9 @@ def take_steps(scene: scenes.Scene) -> None:
     from tipoff.highfi.dynamics.system import build
     from tipoff.highfi.run import Loop
 
-    lowfi.run(scene, "springs", numerics=lowfi.Numerics(maximum_steps=200))
     numerics = highfi.Numerics(element_size=1e-3 * COARSE)
+    drawn, few = walls(scene, numerics.element_size), lowfi.Numerics(maximum_steps=200)
+    lowfi.run(scene, "springs", compliance=drawn, numerics=few)
     system = build(scene, numerics, highfi.prepare(scene, numerics))
     loop = Loop(scene, system, choose(system, scene, numerics))
     loop.begin()

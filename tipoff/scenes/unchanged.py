@@ -21,7 +21,11 @@ def require(before: Tables, after: Tables, source: str) -> None:
             changed.append(("thrust.file", new.file))
     key = later.GIVEN_BY
     file = getattr(later, key, None)
-    if getattr(rail, key, None) == file and rail.contents() != later.contents():
+    if (
+        file is not None
+        and getattr(rail, key, None) == file
+        and rail.contents() != later.contents()
+    ):
         changed.append((f"rail.{key}", str(file)))
     if changed:
         expected = (

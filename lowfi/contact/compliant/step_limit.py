@@ -8,13 +8,21 @@ U_2 + xi' U_4 + 2 eta' U_5 changes depth and tilts too, so each g has a force ac
 
     K = sum over rails of sum_ab T_ab (g_a . M^-1 g_b)
 
+A wall that is not straight as drawn has slopes along the rail as well. Their part that is linear in
+xi and eta is in g too. The rest, at most r in each cell (``drawn_slopes``), adds a matrix whose trace
+R is at most k A r^2 times the inverse mass that it meets, since T <= K; so the trace is at most
+(sqrt(K) + sqrt(R))^2 (Minkowski).
+
 Modes of rails that carry load add a diagonal of omega^2 and d to the matrices, which raises
 their spectra by the largest of each (Weyl), and the trace of contact on the modes, W' T W.
 """
 
+import numpy as np
+
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
+from tipoff.lowfi.contact.compliant import drawn_slopes
 from tipoff.lowfi.contact.compliant.loads import load
 from tipoff.lowfi.contact.compliant.modes import fastest
 from tipoff.lowfi.contact.compliant.record import ASIDE, SHIFT
@@ -25,7 +33,7 @@ from tipoff.lowfi.contact.compliant.solution import (
     take_flexibility,
 )
 from tipoff.lowfi.contact.springs import along_width, outward, pad_point, relative_pose
-from tipoff.lowfi.contact.step_limit import friction_damping
+from tipoff.lowfi.contact.step_limit import friction_damping, inverse_mass
 from tipoff.mechanics.rail_compliance import PATTERNS
 
 _RIGID = 3  # depth, tilt along, tilt across
@@ -57,9 +65,12 @@ def stiffness_and_damping(compliance, friction, faces, platform, payload, touchi
         if count > 0:
             take_flexibility(compliance, count, place[0] + faces[0, 0], state)
             columns = _tangent(compliance, count)
-            springs += _trace(
-                compliance, faces, platform, payload, count, body, base
-            ) + _trace_of_modes(compliance.modes, compliance.workspace, count, columns)
+            linear = _trace(compliance, faces, platform, payload, count, body, base)
+            rest = _trace_of_rest(compliance, faces, platform, payload, count, body, base)
+            springs += linear + _trace_of_modes(
+                compliance.modes, compliance.workspace, count, columns
+            )
+            springs += rest + 2.0 * np.sqrt(linear * rest)
     return springs + square, dampers + drag
 
 
@@ -191,6 +202,29 @@ def _trace(compliance, faces, platform, payload, count, body, base):
 
 
 @kernel
+def _trace_of_rest(compliance, faces, platform, payload, count, body, base):
+    """Bound R (1/s2) of the trace by slopes of drawn walls that are not linear under a face; zero
+    where all are straight."""
+    if compliance.drawn is None:
+        return 0.0
+    total = 0.0
+    for i in range(count):
+        face = compliance.workspace.order[i]
+        ahead, aside = drawn_slopes.rest(compliance, face)
+        point, side = pad_point(faces[face], body), along_width(faces[face], 1.0)
+        onward = rotation.rotate(base.turn, (1.0, 0.0, 0.0))
+        sideways = rotation.rotate(base.turn, side)
+        size = ahead * np.sqrt(inverse_mass(platform, payload, body, base, point, onward))
+        size += (
+            aside
+            / abs(compliance.half[face, 1])
+            * np.sqrt(inverse_mass(platform, payload, body, base, point, sideways))
+        )
+        total += compliance.workspace.stiffness[face, 0, 0] * size * size
+    return total
+
+
+@kernel
 def _dot(a, b):
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
@@ -224,8 +258,12 @@ def _answer_of_platform(platform, base, wrench, out):
 def _wrench(compliance, faces, face, rigid, body, base):
     """Force, a point it acts at (m), and couple that belong to a rigid motion of the face."""
     n, half = outward(faces[face], base), compliance.half[face]
+    size = _by_slope(compliance.workspace, face, rigid)
+    size += drawn_slopes.across(compliance, face)[rigid]
+    across = along_width(faces[face], -size / half[1])
     aside = rotation.rotate(
-        base.turn, along_width(faces[face], -_by_slope(compliance.workspace, face, rigid) / half[1])
+        base.turn,
+        (across[0] - drawn_slopes.along(compliance, face)[rigid], across[1], across[2]),
     )
     if rigid == 0:
         return (

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
+import tipoff
 from tests.highfi.rail.test_own_rail import channels, from_file, saved
-from tipoff import highfi
-from tipoff.calibration import rail_compliance
+from tipoff import calibration, highfi, lowfi
+from tipoff.calibration import Curves, rail_compliance
 from tipoff.mechanics import drawn_walls
 from tipoff.meshes import channel
-from tipoff.scenes import SceneError
+from tipoff.scenes import SceneError, load
 
 START, END = channels().rail.start, channels().rail.end
 
@@ -32,8 +33,9 @@ def offsets(scene):
 
 def test_straight_walls_have_no_offset(tmp_path):
     """Nor those that a file format has rounded."""
-    assert rail_compliance.walls(channels()) is None
-    assert rail_compliance.walls(drawn(tmp_path, lambda x, z: 5e-10 * np.sin(1e3 * x))) is None
+    assert offsets(channels()) is None
+    assert offsets(drawn(tmp_path, lambda x, z: 5e-10 * np.sin(1e3 * x))) is None
+    assert rail_compliance.walls(load("tiny")) is None  # the built-in section has no file
 
 
 def test_a_draft_is_found_to_rounding(tmp_path):
@@ -136,3 +138,44 @@ def test_a_step_is_refused(tmp_path, height, gap):
         return draft(x, z) - height * np.clip((x - START - 0.052) / 6e-3, 0.0, 1.0)
 
     highfi.prepare(drawn(tmp_path, ramp))
+
+
+@pytest.mark.parametrize("away", [None, draft], ids=["straight", "drawn"])
+def test_springs_without_the_walls_of_a_file_are_refused(tmp_path, away):
+    """They silently stood on straight walls, another answer than that of ``tipoff.run``. Nor does it
+    depend on the walls of the file."""
+    scene = channels() if away is None else drawn(tmp_path, away)
+    time, rest = np.linspace(0.0, 0.04, 41), np.zeros((41, 3))
+    curve = Curves(time, np.ones(41), rest, 0.02, np.zeros(3), "rest")
+    for asked in (
+        lambda: lowfi.run(scene, "springs"),
+        lambda: lowfi.run_many(scene, [{}, {"payload.mass": 9.0}], "springs"),
+        lambda: calibration.run(scene, {"phi15": curve}),
+    ):
+        with pytest.raises(SceneError) as caught:
+            asked()
+        (fault,) = caught.value.faults
+        assert fault.key == "compliance" and "rail_compliance.walls(scene)" in fault.expected
+    without = scene.replace({"contact": None, "friction": None})
+    lowfi.models.require(without, "springs", None, None, None)  # nothing touches the walls
+    lowfi.models.require(scene, "springs", rail_compliance.walls(scene), None, None)
+
+
+def test_walls_of_another_rail_are_refused(tmp_path):
+    """Straight ones too."""
+    other = drawn(tmp_path, draft)
+    for scene, given in ((other, channels()), (channels(), other)):
+        with pytest.raises(SceneError, match="another rail, or other pads"):
+            lowfi.run(scene, "springs", compliance=rail_compliance.walls(given))
+
+
+def test_springs_on_straight_walls_of_a_file():
+    """Those of the built-in section, from both doors."""
+    scene = channels()
+    walls = rail_compliance.walls(scene)
+    runs = [lowfi.run(scene, "springs", compliance=walls), tipoff.run(scene, "springs")]
+    assert runs[0].status == "exited"
+    assert runs[0].outcome.rate == runs[1].outcome.rate
+    same = scene.resolved()["rail"]
+    section = scene.replace({"rail": {key: same[key] for key in ("start", "end", "material")}})
+    assert lowfi.run(section, "springs").outcome.rate == runs[0].outcome.rate

@@ -5,9 +5,10 @@ import meshio
 import numpy as np
 import pytest
 
+import tipoff
 from tests.highfi.support import COARSE, tiny
 from tests.meshes.test_solid import drawn, l_sections, l_surfaces, scene_of
-from tipoff import highfi, lowfi
+from tipoff import highfi
 from tipoff.highfi.mesh.rail_mesh import MeshError
 from tipoff.highfi.rail.scene_mesh import geometry
 from tipoff.meshes import channel, l_rail, msh
@@ -64,7 +65,7 @@ def test_promises_hold_on_a_rail_that_is_no_extrusion(duration):
 def test_both_fidelities_leave_the_channels():
     reference, surrogate = (
         highfi.run(channels(duration="30 ms")),
-        lowfi.run(channels(duration="30 ms"), "springs"),
+        tipoff.run(channels(duration="30 ms"), "springs"),
     )
     assert reference.status == surrogate.status == "exited"
     assert_promises(reference)
@@ -75,7 +76,7 @@ def test_both_fidelities_leave_the_channels():
 
 
 def test_the_surrogate_runs_it_too():
-    found = lowfi.run(channels(duration="30 ms"), "springs")
+    found = tipoff.run(channels(duration="30 ms"), "springs")
     assert found.status == "exited"
     assert found.checks["energy_error"] <= 1e-5 and found.checks["linear_momentum_error"] <= 1e-12
 
@@ -179,7 +180,7 @@ def test_a_rail_without_mounts_is_refused_wherever_it_gives_way():
         with pytest.raises(SceneError) as caught:
             make(scene)
         assert [fault.key for fault in caught.value.faults] == ["rail.mounts"]
-    held, loose = lowfi.run(tiny(), "springs"), lowfi.run(scene, "springs")
+    held, loose = tipoff.run(tiny(), "springs"), tipoff.run(scene, "springs")
     np.testing.assert_array_equal(loose.rate, held.rate)
 
 

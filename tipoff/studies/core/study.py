@@ -173,8 +173,8 @@ class Study:
         return {name: found[key] for name, key in keys.items()}
 
     def rigid_rails(self, scene: Scene) -> RailCompliance | None:
-        """The rails of springs in ``scene``: rigid, with their offset if they are warm or not
-        straight as drawn, else None."""
+        """The rails of springs in ``scene``: rigid, with their offset if they are warm or from a file,
+        else None."""
         if scene.thermal is not None:
             found = self.rail_compliance(scene)
             return found and found.rigid()

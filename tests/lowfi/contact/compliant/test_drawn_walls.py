@@ -1,5 +1,5 @@
 """Walls that are not straight as drawn, on compliant contact: one potential of all forces, and an
-offset that is the same everywhere is another clearance."""
+offset that is the same everywhere is another clearance; the step limit with their slopes."""
 
 from dataclasses import replace
 
@@ -9,10 +9,13 @@ import pytest
 from tests.lowfi.compliance import REFERENCE, SMOOTH, pressed, reference_compliance
 from tests.lowfi.contact.compliant.test_statics import (
     BASES,
+    POSES,
     derivative,
     energy,
     generalised,
+    limits,
     pose_of,
+    spectrum,
 )
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant import cells
@@ -79,3 +82,38 @@ def test_a_constant_offset_is_another_clearance():
     assert drawn[0] == pytest.approx(shifted[0], rel=1e-12)
     assert drawn[1] == pytest.approx(shifted[1], rel=1e-11, abs=1e-12 * np.abs(shifted[1]).max())
     assert abs(plain[0] / shifted[0] - 1.0) > 1e-3
+
+
+STEEP, HALF, TOUCH = np.tan(np.radians(4.9)), 8e-3, 0.85  # slope, half a pad (m), where it touches
+SHAPES = {
+    "draft": lambda x: (STEEP * (x + TOUCH * HALF), 0.0),
+    "tilt": lambda x: (STEEP * TOUCH * HALF, STEEP * HALF),
+    "draft and tilt": lambda x: (STEEP * (x + 2.0 * TOUCH * HALF), STEEP * HALF),
+    "bow": lambda x: (0.5 * STEEP / HALF * x * x, 0.0),
+    "twist": lambda x: (STEEP * TOUCH**2 * HALF, STEEP * x),
+    "ramp": lambda x: (STEEP * np.maximum(x, 0.0), 0.0),
+}
+
+
+def pressed_alone(shape, travel):
+    """Model and records with walls of a ``shape`` around the middle of each face after ``travel`` (m),
+    those of all but one face on the first leg 1 mm farther away."""
+    model, flexible, face = models.build(REFERENCE), reference_compliance(), 12
+    middle = model.payload.mass_centre[0] - model.platform.mass_centre[0] + travel
+    places = drawn_walls.grid(model.rail_start, model.rail_end)
+    drawn = np.full((places.size, flexible.rail.size, 3), 1e-3)
+    for column, values in enumerate((*shape(places - model.faces.centre[face, 0] - middle), 0.0)):
+        drawn[:, face, column] = values
+    return pressed(REFERENCE.replace(SMOOTH), replace(flexible, drawn=drawn))
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_step_limit_bounds_the_spectrum_on_slopes(name):
+    """One pad presses, so the trace is hardly more than the largest eigenvalue, and a bound without
+    slopes is not above it. Where the slope is not linear under the pad the bound is wider."""
+    model, system = pressed_alone(SHAPES[name], POSES["one leg"][0])
+    pose = pose_of(model, "one leg", BASES["moved and turned"])
+    fastest = np.abs(np.linalg.eigvals(spectrum(system, model, pose))).max()
+    springs = limits(system, model, pose)[0]
+    assert fastest > 1e5
+    assert fastest < springs < (1.3 if name == "ramp" else 1.01) * fastest
