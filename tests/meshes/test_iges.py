@@ -6,6 +6,8 @@ import pytest
 from tests.meshes.test_solid import NONE, in_iges
 from tipoff.meshes import solid
 
+pytestmark = pytest.mark.gmsh
+
 
 @pytest.mark.parametrize("unit, metres", [("1,2HIN", 0.0254), ("2,2HMM", 1e-3), ("6,1HM ", 1.0)])
 def test_lengths_of_iges_are_in_the_unit_of_the_file(tmp_path, unit, metres):

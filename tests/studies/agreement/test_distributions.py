@@ -18,7 +18,7 @@ from tipoff.studies.core.store import Store
 from tipoff.studies.core.study import Study
 from tipoff.studies.render import document
 from tipoff.studies.render.interactive import to_html
-from tipoff.studies.report import further
+from validation.documents import further
 
 LIMIT = 0.1  # deg/s
 
