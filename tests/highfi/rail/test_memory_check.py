@@ -4,6 +4,7 @@ when that is less."""
 import importlib
 
 import pytest
+import typer
 from typer.testing import CliRunner
 
 from tests.highfi.support import tiny
@@ -15,7 +16,8 @@ from tipoff.highfi.rail import memory_estimate
 from tipoff.highfi.rail.scene_mesh import geometry, make_mesh
 from tipoff.meshes import l_rail
 from tipoff.scenes import SceneError, load
-from tipoff.studies.cli import app
+from tipoff.studies.runs import command as commands
+from validation.bench.command import bench
 
 runs = importlib.import_module("tipoff.highfi.run")  # the name in the package is the function
 MEMINFO = "MemTotal:       16000000 kB\nMemFree:         1000000 kB\nMemAvailable:    8000000 kB\n"
@@ -155,13 +157,13 @@ def test_a_solid_is_not_filled_where_its_elements_do_not_fit(
         mesh_of(scene, 1e-5)
 
 
-@pytest.mark.parametrize("command", ["highfi", "bench"])
+@pytest.mark.parametrize("command", [commands.highfi, bench])
 def test_commands_report_it_without_a_traceback(tmp_path, monkeypatch, command):
     monkeypatch.setattr(memory_estimate, "available", lambda: 100_000_000)
     runs.MESHES.clear()
-    result = CliRunner().invoke(
-        app, [command, "--element-size", "1", "--out", str(tmp_path / "out")]
-    )
+    app = typer.Typer()
+    app.command()(command)
+    result = CliRunner().invoke(app, ["--element-size", "1", "--out", str(tmp_path / "out")])
     assert result.exit_code == 2
     assert (
         "GB of memory" in result.stderr
