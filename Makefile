@@ -24,7 +24,7 @@ QUICK = tests/test_layers.py tests/test_sources.py tests/scenes tests/mechanics 
   $(patsubst %,tests/lowfi/test_%.py,ejection flying numerics statuses tip_off) \
   $(patsubst %,tests/lowfi/contact/test_%.py,thermal_offset extreme_contacts friction) tests/lowfi/dynamics/test_momentum.py \
   tests/studies/test_names.py tests/studies/agreement tests/studies/cost/test_choice.py tests/studies/sweeps/test_knee.py \
-  tests/studies/core/test_models.py tests/studies/report
+  tests/workspace/test_models.py tests/studies/report
 
 .DEFAULT_GOAL := help
 .PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest paper recovery report view pictures peers convergence rails full-report bench docs examples examples-ready check coverage hooks test test-slow fuzz clean

@@ -31,10 +31,10 @@ from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies import cli, registry
 from tipoff.studies.commands.running import study_of
-from tipoff.studies.core.study import Study, read
 from tipoff.studies.render import document
 from tipoff.studies.report.page import Page
 from tipoff.studies.runs.figures import Runs
+from tipoff.workspace.study import Study, read
 from validation import STUDIES
 from validation.bench.surrogate import varied
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import tipoff
-from tipoff.studies.agreement.metrics import Difference
+from tipoff.comparison.metrics import Difference
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "reference" / "python.md"
 FLAGS = doctest.ELLIPSIS | doctest.IGNORE_EXCEPTION_DETAIL

@@ -215,3 +215,35 @@ def test_a_scene_is_run_on_the_wheel(python, tmp_path):
     )
     assert said.startswith("mine / phi15, model springs, with the scene's constants: exited")
     assert list((tmp_path / "out" / "mine" / "lowfi").glob("phi15-*.nc"))
+
+
+def test_make_targets_are_phony():
+    """Folders are named like targets; without .PHONY `make calibrate` would find the folder and do
+    nothing."""
+    text = (ROOT / "Makefile").read_text()
+    targets = set(re.findall(r"^([a-z][a-z-]*):", text, re.MULTILINE))
+    phony = set(re.search(r"^\.PHONY: (.*)$", text, re.MULTILINE).group(1).split())
+    assert {"report", "test", "calibrate"} <= targets
+    assert targets == phony
+
+
+def test_lock_holds_every_dependency():
+    """The project is installed with --no-deps, so what the lock forgets is missing in a fresh
+    clone."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    extras = project["optional-dependencies"]
+    asked = project["dependencies"] + extras["test"] + extras["cluster"]
+    pinned = set(
+        re.findall(r"^([A-Za-z0-9_.-]+)==", (ROOT / "requirements.lock").read_text(), re.MULTILINE)
+    )
+    normal = {re.sub(r"[-_.]+", "-", name).lower() for name in pinned}
+    assert {re.match(r"[A-Za-z0-9_.-]+", name).group().lower() for name in asked} <= normal
+    # Each of the other extras has a lock of its own, beside the first one.
+    for extra in ("view", "check", "docs", "examples", "peers"):
+        lock = (ROOT / f"requirements-{extra}.lock").read_text()
+        added = set(re.findall(r"^([A-Za-z0-9_.-]+)==", lock, re.MULTILINE))
+        wanted = {re.match(r"[A-Za-z0-9_.-]+", name).group() for name in extras[extra]}
+        assert {name.replace("-", "_") for name in wanted} <= {
+            name.replace("-", "_") for name in added
+        }
+        assert not added & pinned

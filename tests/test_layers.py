@@ -8,7 +8,6 @@ others; the sources show an import that hides inside a function.
 import ast
 import functools
 import importlib
-import re
 import statistics
 import subprocess
 import sys
@@ -24,15 +23,20 @@ from scipy.sparse.csgraph import connected_components
 from tipoff import sources as digests
 
 ROOT = Path(__file__).resolve().parent.parent
-PACKAGES = ("kernels", "scenes", "mechanics", "meshes", "highfi", "lowfi", "calibration", "studies")
+PACKAGES = (
+    *("kernels", "scenes", "mechanics", "comparison", "meshes", "highfi", "lowfi"),
+    *("calibration", "workspace", "studies"),
+)
 FORBIDDEN = {
     "kernels": {*PACKAGES[1:], "gmsh", "matplotlib", "plotly"},
     "scenes": {*PACKAGES[2:], "gmsh", "matplotlib", "plotly"},
     "mechanics": {*PACKAGES[3:], "gmsh", "matplotlib", "plotly"},
+    "comparison": {*PACKAGES[4:], "gmsh", "matplotlib", "plotly"},
     "meshes": set(PACKAGES) - {"meshes"},
-    "highfi": {"lowfi", "calibration", "studies"},
-    "lowfi": {"highfi", "meshes", "calibration", "studies", "skfem", "gmsh"},
-    "calibration": {"studies"},
+    "highfi": {"lowfi", "comparison", *PACKAGES[7:]},
+    "lowfi": {"highfi", "meshes", "comparison", *PACKAGES[7:], "skfem", "gmsh"},
+    "calibration": {*PACKAGES[8:]},
+    "workspace": {"studies"},
 }
 SERIALISERS = {"pickle", "cPickle", "dill", "cloudpickle", "joblib", "marshal", "shelve"}
 COMPILERS = {"njit", "jit", "vectorize", "guvectorize", "cfunc", "stencil"}
@@ -216,6 +220,12 @@ def test_sources_name_no_higher_layer(package):
     assert not wrong
 
 
+def test_the_python_interface_needs_no_study():
+    used = digests.closure("tipoff", "tipoff.front")
+    assert "tipoff.workspace.run" in used
+    assert [name for name in used if name.startswith("tipoff.studies")] == []
+
+
 def test_no_module_has_two_names():
     """The folders at the top are parts of the package, and are imported by that name alone."""
     for path in [*product(), *sources("tests", "validation")]:
@@ -275,6 +285,23 @@ def _components(graph: dict[str, set[str]]) -> list[list[str]]:
         edges[place[name], [place[other] for other in others]] = True
     count, label = connected_components(csr_array(edges), connection="strong")
     return [[names[at] for at in np.flatnonzero(label == part)] for part in range(count)]
+
+
+def test_no_study_imports_back():
+    """Folders of studies have an order: none needs one that needs it."""
+    graph: dict[str, set[str]] = {}
+    for path in _below("studies"):
+        own = _study(_name(path))
+        graph.setdefault(own, set()).update(
+            {_study(used) for used in digests.used_by(_name(path)) if "tipoff.studies." in used}
+        )
+    assert graph["agreement"] - {"agreement"}
+    assert [circle for circle in _components(graph) if len(circle) > 1] == []
+
+
+def _study(module: str) -> str:
+    """The folder of a module of studies, or the module that lies in none."""
+    return module.split(".")[2] if module.count(".") > 1 else ""
 
 
 @pytest.mark.parametrize(
@@ -360,35 +387,3 @@ def test_every_house_rule_can_fail(source):
 )
 def test_import_check_sees_hidden_imports(source):
     assert "tipoff.lowfi" in imported(ast.parse(source))
-
-
-def test_make_targets_are_phony():
-    """Folders are named like targets; without .PHONY `make calibrate` would find the folder and do
-    nothing."""
-    text = (ROOT / "Makefile").read_text()
-    targets = set(re.findall(r"^([a-z][a-z-]*):", text, re.MULTILINE))
-    phony = set(re.search(r"^\.PHONY: (.*)$", text, re.MULTILINE).group(1).split())
-    assert {"report", "test", "calibrate"} <= targets
-    assert targets == phony
-
-
-def test_lock_holds_every_dependency():
-    """The project is installed with --no-deps, so what the lock forgets is missing in a fresh
-    clone."""
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    extras = project["optional-dependencies"]
-    asked = project["dependencies"] + extras["test"] + extras["cluster"]
-    pinned = set(
-        re.findall(r"^([A-Za-z0-9_.-]+)==", (ROOT / "requirements.lock").read_text(), re.MULTILINE)
-    )
-    normal = {re.sub(r"[-_.]+", "-", name).lower() for name in pinned}
-    assert {re.match(r"[A-Za-z0-9_.-]+", name).group().lower() for name in asked} <= normal
-    # Each of the other extras has a lock of its own, beside the first one.
-    for extra in ("view", "check", "docs", "examples", "peers"):
-        lock = (ROOT / f"requirements-{extra}.lock").read_text()
-        added = set(re.findall(r"^([A-Za-z0-9_.-]+)==", lock, re.MULTILINE))
-        wanted = {re.match(r"[A-Za-z0-9_.-]+", name).group() for name in extras[extra]}
-        assert {name.replace("-", "_") for name in wanted} <= {
-            name.replace("-", "_") for name in added
-        }
-        assert not added & pinned

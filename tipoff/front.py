@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     import xarray
 
     from tipoff.calibration import Curves
-    from tipoff.studies.agreement.metrics import Difference
+    from tipoff.comparison.metrics import Difference
 
 
 def load(name_or_path: str | Path) -> Scene:
@@ -108,8 +108,8 @@ def run(
         [5, 2, 9]
     """
     from tipoff import highfi, lowfi
-    from tipoff.studies.core import kernel_marks
-    from tipoff.studies.core.run import Run
+    from tipoff.workspace import kernel_marks
+    from tipoff.workspace.run import Run
 
     scene = arguments.scene_of(scene)
     _require(scene, model, MODELS)
@@ -183,8 +183,8 @@ def ensemble(
         2
     """
     from tipoff import highfi, lowfi
-    from tipoff.studies.core import kernel_marks
-    from tipoff.studies.core.run import Run
+    from tipoff.workspace import kernel_marks
+    from tipoff.workspace.run import Run
 
     scene = arguments.scene_of(scene)
     _require(scene, model, SURROGATES)
@@ -246,7 +246,7 @@ def compliance(
         53
     """
     from tipoff.calibration import rail_compliance
-    from tipoff.studies.core.progress import say
+    from tipoff.workspace.progress import say
 
     scene = arguments.scene_of(scene)
     size = studies.element_size(scene.studies)
@@ -334,7 +334,7 @@ def compare(reference: Trajectory, surrogate: Trajectory) -> "Difference":
         >>> tipoff.compare(ours, other).settled_rate_error_deg_s > 0.1
         True
     """
-    from tipoff.studies.agreement import metrics
+    from tipoff.comparison import metrics
 
     for name, given in (("reference", reference), ("surrogate", surrogate)):
         if not isinstance(given, Trajectory):

@@ -16,8 +16,8 @@ from tipoff.calibration.objective import VELOCITY_WEIGHT, Objective, Parts, targ
 from tipoff.mechanics.outcome import Outcome
 from tipoff.scenes import Calibration, SceneError
 from tipoff.studies.calibration import stage
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study
 
 
 @pytest.fixture(scope="module")

@@ -21,6 +21,7 @@ from tests.fuzz import mutants
 from tests.studies import synthetic
 from tipoff import files, scenes
 from tipoff.calibration import rail_compliance
+from tipoff.comparison import metrics
 from tipoff.highfi.dynamics.checkpoint import FORMAT, Checkpoint, CheckpointError, restore
 from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.columns import Columns
@@ -28,12 +29,12 @@ from tipoff.lowfi.ensemble.store import CHUNK, Chunk, Store, StoreError
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.faults import Fault, SceneError
-from tipoff.studies.agreement import metrics, other_rails
+from tipoff.studies.agreement import other_rails
 from tipoff.studies.calibration import forecast
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.study import Study, read
 from tipoff.studies.limits import constants, results
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.study import Study, read
 from validation.bench import reference
 from validation.peers import stage as peers
 

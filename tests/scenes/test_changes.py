@@ -13,7 +13,7 @@ from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.rows import Listed
 from tipoff.mechanics import model as models
 from tipoff.scenes import SceneError, changes, load
-from tipoff.studies.core.run import Run
+from tipoff.workspace.run import Run
 
 SCENE = load("reference")
 TILT = 2e-3

@@ -16,10 +16,10 @@ from tests.written_names import RUN_ROW
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import CATALOG, load
 from tipoff.studies.cli import app, flowed
-from tipoff.studies.core import store as store_module
 from tipoff.studies.report import assembly
 from tipoff.studies.report.page import Page
 from tipoff.studies.runs.figures import Runs
+from tipoff.workspace import store as store_module
 
 ROOT = Path(__file__).resolve().parents[2]
 STAGES = (

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 from tests.studies.synthetic import flight
 from tipoff.studies.cli import app
 from tipoff.studies.commands import options, running
-from tipoff.studies.core import store as store_module
+from tipoff.workspace import store as store_module
 
 
 def call(*arguments):

@@ -7,8 +7,8 @@ from tests.scenes.support import small
 from tipoff.scenes import SceneError, load, parse
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.cli import app
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study
 
 WRONG = [
     "../../../escaped",

@@ -10,15 +10,15 @@ from typer.testing import CliRunner
 
 from tipoff import scenes
 from tipoff.studies import registry
-from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.study import Study
 from tipoff.studies.report import stage as report
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.study import Study
 
 STAGE = """
 from dataclasses import dataclass
 
 from tipoff.scenes.faults import Fault, SceneError
-from tipoff.studies.core.stage import Stage
+from tipoff.workspace.stage import Stage
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ def run(study, options=Options()):
     return STAGE.run(study, options, make)
 
 
-STAGE = Stage("heavier", "tipoff.studies.core.stage", Options)
+STAGE = Stage("heavier", "tipoff.workspace.stage", Options)
 """
 PAGE = """
 def draw(found):

@@ -14,12 +14,12 @@ from tipoff.lowfi.compiled import LAWS as lowfi_laws
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.studies.ablation import stage as ablation
 from tipoff.studies.agreement import interface, refined, twins
-from tipoff.studies.core import machine
-from tipoff.studies.core.settings import Settings, defaults
-from tipoff.studies.core.study import Study
 from tipoff.studies.cost import stage as cost
 from tipoff.studies.stability import weaker_methods
 from tipoff.studies.sweeps import stage as sweeps
+from tipoff.workspace import machine
+from tipoff.workspace.settings import Settings, defaults
+from tipoff.workspace.study import Study
 
 
 def test_area_of_quadrilaterals():

@@ -3,7 +3,7 @@ expected one."""
 
 import difflib
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 from pydantic import ValidationError
@@ -104,6 +104,20 @@ def listed(faults: list[Fault]) -> list[str]:
             found += [f"{alike[0].source}: and {more:,} more of this kind"] if more > 0 else []
     if (left := len(found) - MOST_LINES) > 1:
         found[MOST_LINES:] = [f"and {left:,} more lines of other kinds"]
+    return found
+
+
+def together(*makes: Callable[[], Any]) -> list:
+    """The results of all calls, in order. Raises SceneError with the faults of all of them."""
+    found: list[Any] = []
+    faults: list[Fault] = []
+    for make in makes:
+        try:
+            found.append(make())
+        except SceneError as error:
+            faults += error.faults
+    if faults:
+        raise SceneError(faults)
     return found
 
 

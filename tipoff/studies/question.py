@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
-    from tipoff.studies.core.study import Study
     from tipoff.studies.render.document import Part
     from tipoff.studies.report.page import Page
+    from tipoff.workspace.study import Study
 
 
 class Result(NamedTuple):

@@ -17,6 +17,7 @@ from tipoff.studies import (
     nominal,
     runs,
     sensitivity,
+    single,
     stability,
     sweeps,
     view,
@@ -36,7 +37,7 @@ COMPARISON: tuple[Entry, ...] = (
     convergence.ENTRY,
     view.ENTRY,
 )
-ON_DEMAND: tuple[Entry, ...] = (runs.SINGLE, ensemble.ENTRY)
+ON_DEMAND: tuple[Entry, ...] = (single.ENTRY, ensemble.ENTRY)
 # Studies that answer a question of an engineer.
 QUESTIONS: tuple[Entry, ...] = (
     blind.QUESTION,

@@ -16,9 +16,9 @@ import numpy as np
 from tipoff.files import content_hash, write_json
 from tipoff.highfi.dynamics.checkpoint import arrays
 from tipoff.scenes.scene import Scene, load
-from tipoff.studies.core import machine
-from tipoff.studies.core.progress import say
-from tipoff.studies.core.study import read
+from tipoff.workspace import machine
+from tipoff.workspace.progress import say
+from tipoff.workspace.study import read
 
 SIZES = (0.002, 0.001, 0.0005)  # m: 19,360, 154,880 and 1,239,040 elements of the reference rails
 # elements of the baseline, whose matrix fits into memory; a larger one is no faster per element

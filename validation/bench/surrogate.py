@@ -21,8 +21,8 @@ from tipoff.files import write_json
 from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.scenes.scene import load
-from tipoff.studies.core import machine
-from tipoff.studies.core.progress import say
+from tipoff.workspace import machine
+from tipoff.workspace.progress import say
 from validation.bench.methods import (
     MODELS,
     Method,

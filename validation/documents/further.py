@@ -5,10 +5,10 @@ from pathlib import Path
 from tipoff.files import read_json
 from tipoff.studies.agreement import distribution_page
 from tipoff.studies.convergence import summary
-from tipoff.studies.core.study import read
 from tipoff.studies.cost import scaling_page
 from tipoff.studies.render.document import Bullets, Part, markdown
 from tipoff.studies.render.table import Cells, Column, Table, number
+from tipoff.workspace.study import read
 from validation.bench import reference
 
 

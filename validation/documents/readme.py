@@ -11,15 +11,14 @@ from pathlib import Path
 
 from tipoff.files import read_json, write_text
 from tipoff.mechanics.models import FINITE_ELEMENTS
-from tipoff.studies.agreement import growth_page, rails_page, verdicts
+from tipoff.studies.agreement import equal_accuracy, growth_page, rails_page, verdicts
 from tipoff.studies.agreement.other_rails import beside
 from tipoff.studies.agreement.page import by_factor
-from tipoff.studies.convergence import equal_accuracy
-from tipoff.studies.core.study import read
 from tipoff.studies.montecarlo import tails_page
 from tipoff.studies.render.document import Part, markdown
 from tipoff.studies.render.table import Cells, Column, Table, number, percent
 from tipoff.studies.render.uncertain import STEPS
+from tipoff.workspace.study import read
 from validation.documents import further
 
 _ROOT = Path(__file__).resolve().parents[2]

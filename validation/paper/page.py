@@ -4,12 +4,12 @@ inferred inputs."""
 import numpy as np
 
 from tipoff.studies import published
-from tipoff.studies.core.words import counted
 from tipoff.studies.populations import answers
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Cells, Column, Table
+from tipoff.workspace.words import counted
 from validation.paper import summary
 
 _AXES = tuple(zip("xyz", (NAVY, VERMILION, AMBER), ("o", "s", "^")))

@@ -19,11 +19,11 @@ from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene, load
 from tipoff.studies import published
 from tipoff.studies.agreement import stage as compare
-from tipoff.studies.core.progress import Board, team
-from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.study import Study, StudyError, read
-from tipoff.studies.core.words import counted
 from tipoff.studies.render.document import with_figures
+from tipoff.workspace.progress import Board, team
+from tipoff.workspace.stage import Stage
+from tipoff.workspace.study import Study, StudyError, read
+from tipoff.workspace.words import counted
 from validation.paper import (
     catalogued,
     exits,

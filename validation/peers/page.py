@@ -14,8 +14,8 @@ from validation.peers import stage
 from validation.peers.case import OURS
 
 if TYPE_CHECKING:
-    from tipoff.studies.core.study import Study
     from tipoff.studies.report.page import Page
+    from tipoff.workspace.study import Study
 
 _STYLES = (
     (VERMILION, "s"),

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from tipoff.files import read_json, write_json
 from tipoff.scenes.faults import Fault, SceneError
-from tipoff.studies.core import machine
-from tipoff.studies.core.progress import say
+from tipoff.workspace import machine
+from tipoff.workspace.progress import say
 from validation.peers import (
     calculix,
     calculix_event,

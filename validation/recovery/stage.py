@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tipoff.studies.core.progress import Board
-from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.study import Study, StudyError, require_success
-from tipoff.studies.core.words import counted
+from tipoff.workspace.progress import Board
+from tipoff.workspace.stage import Stage
+from tipoff.workspace.study import Study, StudyError, require_success
+from tipoff.workspace.words import counted
 
 if TYPE_CHECKING:
     from validation.recovery.draws import Draw

@@ -13,11 +13,11 @@ from tipoff.scenes import load
 from tipoff.studies.agreement import distribution_page, distributions, growth, interface, verdicts
 from tipoff.studies.agreement.candidates import Candidate
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.store import Store
-from tipoff.studies.core.study import Study
 from tipoff.studies.render import document
 from tipoff.studies.render.interactive import to_html
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.store import Store
+from tipoff.workspace.study import Study
 from validation.documents import further
 
 LIMIT = 0.1  # deg/s

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from tests.studies.synthetic import flight
+from tipoff.comparison.extrapolation import estimate
 from tipoff.highfi.rail import memory_estimate, refinement
 from tipoff.scenes import load
 from tipoff.studies.agreement import refined, verdicts
 from tipoff.studies.agreement.verdicts import NOT_KNOWN, Context
-from tipoff.studies.core.extrapolation import estimate
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study
 
 # The walls of the catalogue's channel are 4 mm thick, in one element.
 FILE_SIZE, SLOPE = 0.004, 50.0  # m; deg/s per m: error of a rate by the mesh

@@ -7,9 +7,9 @@ import pytest
 from tests.studies.synthetic import flight
 from tipoff import scenes
 from tipoff.studies.agreement import twins
-from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.store import Store
-from tipoff.studies.core.study import Study
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.store import Store
+from tipoff.workspace.study import Study
 
 
 @pytest.mark.parametrize("chosen", [{"modes": 3, "modes_why": "3 of 20"}, {"modes": "auto"}])

@@ -11,10 +11,10 @@ from tipoff.scenes import load
 from tipoff.studies.agreement import growth, interface, page, verdicts
 from tipoff.studies.agreement.refinement import Refinement
 from tipoff.studies.agreement.verdicts import Context
-from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.store import Store
-from tipoff.studies.core.study import Study
 from tipoff.studies.render import document
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.store import Store
+from tipoff.workspace.study import Study
 
 GATES = {"rate_relative_l2": 0.05, "velocity_relative_l2": 1e-3, "settled_rate_error_deg_s": 0.1}
 

@@ -4,9 +4,9 @@ import pytest
 
 from tipoff.scenes import load
 from tipoff.studies.agreement import stage
-from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.study import Study
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.stage import Stage
+from tipoff.workspace.study import Study
 
 
 @pytest.mark.parametrize(

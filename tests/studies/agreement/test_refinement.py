@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from tests.studies.synthetic import flight
+from tipoff.comparison.extrapolation import NOT_CONVERGED
 from tipoff.studies.agreement.refinement import MESH, STEP, refinement
-from tipoff.studies.core.extrapolation import NOT_CONVERGED
 
 SIZES = [8.0, 4.0, 2.0]
 

@@ -9,13 +9,14 @@ import pytest
 from tests.studies.synthetic import flight
 from tests.written_names import AGREEMENT_ROW
 from tipoff import highfi, lowfi
+from tipoff.comparison import metrics
 from tipoff.scenes import load
-from tipoff.studies.agreement import metrics, page, verdicts
+from tipoff.studies.agreement import page, verdicts
 from tipoff.studies.agreement import refined as refined_runs
 from tipoff.studies.agreement.refinement import Refinement
 from tipoff.studies.agreement.verdicts import Context, Spread
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study
 
 
 def constant(*rate, **parts):

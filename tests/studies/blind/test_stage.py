@@ -16,10 +16,10 @@ from tipoff.studies.blind import page
 from tipoff.studies.blind import stage as blind
 from tipoff.studies.blind.stage import Options
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.core.settings import Settings, defaults
-from tipoff.studies.core.store import Store
-from tipoff.studies.core.study import Study
 from tipoff.studies.render import document
+from tipoff.workspace.settings import Settings, defaults
+from tipoff.workspace.store import Store
+from tipoff.workspace.study import Study
 
 
 def study_of(name: str = "reference") -> Study:

@@ -13,8 +13,8 @@ from tipoff.calibration import parameters, refine, search
 from tipoff.files import sealed, write_json
 from tipoff.mechanics.models import COMPLIANT
 from tipoff.studies.calibration import forecast, page, stage
-from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.study import Study
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.study import Study
 
 
 def study(folder, **settings) -> Study:

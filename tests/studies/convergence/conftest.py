@@ -8,10 +8,10 @@ from tests.studies.convergence import stub
 from tests.studies.synthetic import kept_in_memory
 from tipoff import scenes
 from tipoff.studies.convergence import stage as convergence
-from tipoff.studies.core import store as store_module
-from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.study import Study
-from tipoff.studies.cost import timing
+from tipoff.workspace import store as store_module
+from tipoff.workspace import timing
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.study import Study
 
 
 class Labels(list):

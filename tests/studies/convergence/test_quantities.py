@@ -9,12 +9,12 @@ from tests.studies.convergence import stub
 from tipoff import scenes
 from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.convergence.page import draw
-from tipoff.studies.core import store as store_module
-from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.study import Study
 from tipoff.studies.render import document
 from tipoff.studies.report.page import Page
 from tipoff.studies.runs.figures import Runs
+from tipoff.workspace import store as store_module
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.study import Study
 
 
 def test_a_deflection_of_first_order_stands_beside_the_rates(finished):

@@ -15,13 +15,13 @@ from tipoff.studies.cli import app
 from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.convergence import summary
 from tipoff.studies.convergence.page import draw
-from tipoff.studies.core.settings import Settings, defaults
-from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.render import document
 from tipoff.studies.render.table import inline
 from tipoff.studies.report import stage as report
 from tipoff.studies.report.page import Page
 from tipoff.studies.runs.figures import Runs
+from tipoff.workspace.settings import Settings, defaults
+from tipoff.workspace.study import Study, StudyError
 
 
 def page_of(study, found):

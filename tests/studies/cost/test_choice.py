@@ -5,11 +5,11 @@ from typer.testing import CliRunner
 
 from tipoff import scenes
 from tipoff.studies.cli import app
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.cost import stage as cost_stage
 from tipoff.studies.cost.choice import choose, elsewhere
-from tipoff.studies.runs import single
+from tipoff.studies.single import single
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study, StudyError
 
 # name, error (deg/s), wall (s); None is the finest mesh, whose error bound is the band of 0.02.
 POINTS = [

@@ -9,9 +9,9 @@ from tests.studies.synthetic import flight
 from tipoff import scenes
 from tipoff.lowfi.numerics import AUTO
 from tipoff.studies.agreement.candidates import Candidate
-from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.study import Study
 from tipoff.studies.cost import stage as cost
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.study import Study
 
 COMPLIANT = Candidate(
     "compliant",

@@ -7,11 +7,11 @@ from tests.studies.shown import html
 from tipoff import scenes
 from tipoff.mechanics.model import build
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
-from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.study import Study
 from tipoff.studies.cost import scaling
 from tipoff.studies.cost import scaling_page as page
 from tipoff.studies.cost.scaling import effects, fitted, power_law, shares, with_pads
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.study import Study
 
 SIZES = [520, 2420, 4500, 19360]
 

@@ -17,12 +17,12 @@ from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import SceneError
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.cli import app
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.droptest import page, stage
 from tipoff.studies.droptest.sheet import SAMPLES
 from tipoff.studies.populations import answers
 from tipoff.studies.render import document
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study, StudyError
 
 xarray = pytest.importorskip("xarray")
 

@@ -12,14 +12,14 @@ from tests.studies.synthetic import undrawn
 from tipoff.files import write_json
 from tipoff.scenes import load
 from tipoff.studies.cli import app
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study
 from tipoff.studies.flight import page as section
 from tipoff.studies.flight import stage as flight
 from tipoff.studies.flight import summary
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render.table import Noted
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study
 
 xarray = pytest.importorskip("xarray")
 

@@ -10,9 +10,6 @@ from scipy import stats
 
 from tests.studies import free_flight
 from tipoff.scenes.faults import SceneError
-from tipoff.studies.core import store
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study
 from tipoff.studies.limits import certificate, certificate_page, inputs
 from tipoff.studies.limits.certificate import Within
 from tipoff.studies.limits.inputs import Options
@@ -20,6 +17,9 @@ from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.populations.stratified import Runs
 from tipoff.studies.render.document import terminal
+from tipoff.workspace import store
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study
 
 LIMIT = Limit("total", 6.0)
 TILT = math.radians(0.35)  # three sigma

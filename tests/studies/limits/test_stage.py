@@ -17,8 +17,6 @@ from tipoff.scenes import load
 from tipoff.scenes.calibration import Calibration
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.cli import app
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study
 from tipoff.studies.limits import constants, within
 from tipoff.studies.limits import page as pictures
 from tipoff.studies.limits import stage as limits
@@ -28,6 +26,8 @@ from tipoff.studies.populations import answers, exceedance
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render import chart, document
 from tipoff.studies.render import table as tables
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study
 
 LIMIT, PROBABILITY = 6.0, 0.9
 QUICK = Options(limits=("6 deg/s",), probability=PROBABILITY, cases=120)

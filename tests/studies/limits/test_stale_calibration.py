@@ -2,9 +2,9 @@
 
 from tipoff.files import write_json
 from tipoff.scenes import load
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study
 from tipoff.studies.limits import constants
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study
 
 RESIDUALS = {"phi15": {"settled_rate_error_deg_s": 0.5}}
 

@@ -12,13 +12,13 @@ from tests.studies.shown import html
 from tipoff import lowfi
 from tipoff.lowfi import Numerics
 from tipoff.scenes import load
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study
 from tipoff.studies.montecarlo import own_modes_page, paired_statistics
 from tipoff.studies.populations import draws, own_modes
 from tipoff.studies.populations.own_modes import OwnModes, Series
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render.document import terminal
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study
 
 # modes that do not matter, and one that does
 ROWS = [{"thrust_offset.misalignment.radial": math.radians(angle)} for angle in (60.0, 15.0)]

@@ -14,8 +14,6 @@ from tests.studies.shown import html
 from tipoff.lowfi.ensemble import columns
 from tipoff.scenes import load
 from tipoff.studies.cli import app
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.montecarlo import page as pictures
 from tipoff.studies.montecarlo import stage as montecarlo
 from tipoff.studies.montecarlo.stage import Options
@@ -24,6 +22,8 @@ from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render import chart
 from tipoff.studies.render import table as tables
 from tipoff.studies.render.document import terminal
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study, StudyError
 
 
 @pytest.fixture(scope="module")

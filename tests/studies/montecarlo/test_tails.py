@@ -14,9 +14,6 @@ from tests.studies.shown import html
 from tipoff.scenes import load
 from tipoff.scenes.faults import SceneError
 from tipoff.studies.cli import app
-from tipoff.studies.core import store
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study
 from tipoff.studies.montecarlo import paired_statistics, tails, tails_page
 from tipoff.studies.montecarlo.stage import Options as Cases
 from tipoff.studies.populations import answers, draws, exceedance, random_factors
@@ -24,6 +21,9 @@ from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.populations.random_factors import Reading
 from tipoff.studies.render import chart
 from tipoff.studies.render.document import terminal
+from tipoff.workspace import store
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study
 
 DRAWS = 10
 OPTIONS = tails.Options(DRAWS, None, Cases(cases=120, limits=("y=6 deg/s", "8 deg/s")))

@@ -8,11 +8,11 @@ import pytest
 
 from tests.studies import free_flight
 from tipoff.scenes import SceneError, load
-from tipoff.studies.core.settings import Settings, defaults
-from tipoff.studies.core.study import Study
 from tipoff.studies.ensemble import stage as ensemble
 from tipoff.studies.nominal import page, spread
 from tipoff.studies.populations import answers
+from tipoff.workspace.settings import Settings, defaults
+from tipoff.workspace.study import Study
 
 TILT = """cases = 10
 seed = 3

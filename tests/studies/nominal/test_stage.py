@@ -14,10 +14,10 @@ from tests.studies.shown import html
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes.scene import NOMINAL
 from tipoff.studies.cli import app
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study
 from tipoff.studies.nominal import page, spread, stage
-from tipoff.studies.runs import single
+from tipoff.studies.single import single
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study
 
 TILT, MOST = math.radians(0.3), math.radians(0.4)  # of the scene itself, and at most of a launch
 FILE = """cases = 10

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from tipoff.comparison import order_statistics
 from tipoff.scenes.faults import SceneError
-from tipoff.studies.populations import exceedance, order_statistics
+from tipoff.studies.populations import exceedance
 from tipoff.studies.populations.exceedance import Limit
 
 

@@ -12,12 +12,12 @@ from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.scenes import load
 from tipoff.studies.agreement import kept
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.limits import stage as limits
 from tipoff.studies.montecarlo import stage as montecarlo
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Surrogate
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study, StudyError
 
 SCENE = load("reference")
 FLEXIBLE = SimpleNamespace(flexibility=1.0)

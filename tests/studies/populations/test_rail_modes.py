@@ -18,8 +18,6 @@ from tipoff.lowfi.ensemble import fill, pilot, store
 from tipoff.lowfi.ensemble.batch import Case
 from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.outcome import Outcome
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study
 from tipoff.studies.limits import page as limits_page
 from tipoff.studies.limits import stage as limits
 from tipoff.studies.limits import within
@@ -31,6 +29,8 @@ from tipoff.studies.populations.draws import Kept
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render import chart
 from tipoff.studies.render.document import terminal
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study
 
 WALLS = handmade(REFERENCE, {})
 HELD = 5  # modes of each rail

@@ -9,10 +9,10 @@ from tests.studies import free_flight
 from tipoff.lowfi.ensemble.rows import numbers
 from tipoff.scenes import load
 from tipoff.scenes.faults import SceneError
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study
 from tipoff.studies.populations import answers, population, random_factors, spread
 from tipoff.studies.populations.random_factors import ERRORS, READINGS, Reading
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study
 
 SCENE, COUNT = load("reference"), 20_000
 

@@ -7,16 +7,16 @@ from tipoff import scenes
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies import registry
 from tipoff.studies.commands.running import Output, guarded
-from tipoff.studies.core.errors import StudyError
-from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.study import Study
 from tipoff.studies.question import Result
 from tipoff.studies.render import document
 from tipoff.studies.report import assembly, stage
-from tipoff.studies.report.inputs import thrust_facts
 from tipoff.studies.report.page import Page
-from tipoff.studies.runs import single
 from tipoff.studies.runs.figures import Runs
+from tipoff.studies.runs.thrust_facts import thrust_facts
+from tipoff.studies.single import single
+from tipoff.workspace.errors import StudyError
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.study import Study
 
 CURVES = {
     "three points": "0,0\n0.0045,30000\n0.009,0\n",

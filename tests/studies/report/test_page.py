@@ -13,8 +13,6 @@ from tipoff.studies import registry
 from tipoff.studies.agreement import rails_page, verdicts
 from tipoff.studies.agreement.page import starred
 from tipoff.studies.calibration.page import calibration
-from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.study import Study
 from tipoff.studies.cost.page import picture as cost_picture
 from tipoff.studies.render.chart import Chart, Line, Panel, to_files
 from tipoff.studies.render.interactive import to_html
@@ -26,6 +24,8 @@ from tipoff.studies.report.promises import promises
 from tipoff.studies.runs import figures
 from tipoff.studies.runs.figures import Runs
 from tipoff.studies.runs.stage import row
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.study import Study
 
 COSTS = {
     "wall_s": 1.0,

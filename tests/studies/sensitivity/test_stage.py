@@ -13,13 +13,13 @@ from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.columns import STATUSES
 from tipoff.scenes import load
 from tipoff.studies.cli import app
-from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.study import Study, StudyError, read
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render import table as tables
 from tipoff.studies.sensitivity import page as section
 from tipoff.studies.sensitivity import stage as sensitivity
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.study import Study, StudyError, read
 
 TOLERANCES = """
 [vary."thrust_offset.misalignment.y"]

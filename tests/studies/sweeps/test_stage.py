@@ -12,14 +12,14 @@ from tests.studies.shown import html
 from tipoff.scenes import load, moments
 from tipoff.scenes.effects import thrust, thrust_offset
 from tipoff.studies.cli import app
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study, read
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render import table as tables
 from tipoff.studies.sweeps import burnout, factors, sides
 from tipoff.studies.sweeps import page as sections
 from tipoff.studies.sweeps import stage as sweeps
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study, read
 
 # Of the reference scene, whose pulse begins three widths before its peak.
 IMPULSE, ARM = (

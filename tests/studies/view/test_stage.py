@@ -19,14 +19,14 @@ from tipoff.highfi.stress import monitor
 from tipoff.highfi.stress.peak import STRESS, no_peak
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.cli import app
-from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.study import Study
 from tipoff.studies.report.page import Page
 from tipoff.studies.runs import stress_page as section
 from tipoff.studies.runs.figures import Runs
 from tipoff.studies.runs.stage import row
 from tipoff.studies.view import frames, vtk_files
 from tipoff.studies.view import stage as view
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.study import Study
 
 TOUCHING = 115  # a sample at which pads of ``tiny`` touch
 

@@ -11,9 +11,9 @@ from tests.studies.shown import html
 from tests.studies.synthetic import undrawn
 from tipoff import scenes
 from tipoff.studies import published
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study
 from tipoff.studies.render import document
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study
 from validation.paper import inputs, solutions
 from validation.paper import page as section
 from validation.paper import stage as paper

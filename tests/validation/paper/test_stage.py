@@ -16,9 +16,9 @@ from tipoff.lowfi.numerics import Numerics
 from tipoff.scenes.faults import SceneError
 from tipoff.studies import published
 from tipoff.studies.agreement import stage as compare
-from tipoff.studies.core.progress import Interrupted
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.study import Study, StudyError
+from tipoff.workspace.progress import Interrupted
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study, StudyError
 from validation.paper import catalogued, misfit, solutions
 from validation.paper import page as section
 from validation.paper import stage as paper

@@ -12,9 +12,9 @@ from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets, read
 from tipoff.meshes import bricks
 from tipoff.scenes import load
 from tipoff.scenes.faults import SceneError
-from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.study import Study
 from tipoff.studies.render import document
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.study import Study
 from validation.peers import (
     calculix,
     calculix_impact,

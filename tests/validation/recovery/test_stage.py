@@ -9,9 +9,9 @@ import pytest
 from tests.highfi.support import tiny
 from tests.scenes.test_calibration import CALIBRATION
 from tipoff import calibration
-from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.render import document
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.study import Study, StudyError
 from validation.recovery import page, stage
 from validation.recovery.draws import LOCAL, Draw
 

@@ -17,11 +17,11 @@ import numpy as np
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.scenes.scene import Scene
-from tipoff.studies.core import machine
-from tipoff.studies.core.compiling import compile_ahead, warm_up
-from tipoff.studies.core.run import Run
-from tipoff.studies.core.study import Study
-from tipoff.studies.cost.timing import timed
+from tipoff.workspace import machine
+from tipoff.workspace.compiling import compile_ahead, warm_up
+from tipoff.workspace.run import Run
+from tipoff.workspace.study import Study
+from tipoff.workspace.timing import timed
 
 EVERYTHING = "all effects, every rail stepped"
 ADDED = {effect.key: effect.example for effect in EFFECTS if effect.example}

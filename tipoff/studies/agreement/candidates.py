@@ -9,8 +9,8 @@ from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.core.run import Run
-from tipoff.studies.core.study import Study
+from tipoff.workspace.run import Run
+from tipoff.workspace.study import Study
 
 _TAGS = {AUTO: "", 0: "-static"}  # in names of files; any other number of modes is "-modal"
 

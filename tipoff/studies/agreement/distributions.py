@@ -17,10 +17,10 @@ from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.agreement import equivalence, neighbours, verdicts
 from tipoff.studies.agreement.growth import Growth
-from tipoff.studies.core.announcing import announce
-from tipoff.studies.core.progress import Board
-from tipoff.studies.core.run import Run
-from tipoff.studies.core.study import Study
+from tipoff.workspace.announcing import announce
+from tipoff.workspace.progress import Board
+from tipoff.workspace.run import Run
+from tipoff.workspace.study import Study
 
 FURTHER = 8  # draws of the surrogates beside each of the reference; more would add little
 _CURVE = tuple(round(0.01 * share, 2) for share in range(1, 100))  # of distributions that are drawn

@@ -35,7 +35,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import betainc, ndtr, stdtrit
 
-from tipoff.studies.populations import order_statistics
+from tipoff.comparison import order_statistics
 
 SHARES = (0.1, 0.5, 0.9)
 MARGIN_SHARE = 0.25

@@ -22,8 +22,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tipoff.comparison.metrics import common_time
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.studies.agreement.metrics import common_time
 from tipoff.studies.agreement.verdicts import largest, settled_change
 
 STABLE, SENSITIVE, CHAOTIC = "stable", "sensitive, not chaotic", "chaotic"

@@ -15,13 +15,13 @@ which that is not known, is judged as a distribution (``agreement.distributions`
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
+from tipoff.comparison.metrics import compare
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.agreement import growth, verdicts
-from tipoff.studies.agreement.metrics import compare
 from tipoff.studies.agreement.verdicts import Context
-from tipoff.studies.core.run import Run
-from tipoff.studies.core.study import Study
+from tipoff.workspace.run import Run
+from tipoff.workspace.study import Study
 
 FACTORS = (0.25, 1.0, 4.0)
 _NOT_JUDGED = {

@@ -16,7 +16,7 @@ from tipoff.studies.agreement.candidates import Candidate, on_coarse
 from tipoff.studies.agreement.growth import Growth
 from tipoff.studies.agreement.refinement import Refinement
 from tipoff.studies.agreement.verdicts import Context, Spread
-from tipoff.studies.core.study import Study, require_success
+from tipoff.workspace.study import Study, require_success
 
 
 class Curves(NamedTuple):

@@ -4,8 +4,9 @@ from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes.scene import NOMINAL
 from tipoff.studies.agreement import verdicts
-from tipoff.studies.core.study import Study
-from tipoff.studies.core.words import counted
+from tipoff.workspace.errors import StudyError
+from tipoff.workspace.study import Study
+from tipoff.workspace.words import counted
 
 
 def rows(study: Study, model: str, calibrated: bool = False, modes: int | str = AUTO) -> list[dict]:
@@ -40,6 +41,20 @@ def missed(study: Study, model: str, condition: str | None = None) -> list[dict]
             else row["condition"] == condition
         )
     ]
+
+
+def require_accepted(study: Study, name: str | None, condition: str | None = None) -> None:
+    """Raises StudyError where ``name`` is None and the stored agreement table rejects the default
+    model: on ``condition`` or, without one, on any condition of the scene."""
+    if name is not None:
+        return
+    if found := missed(study, COMPLIANT, condition):
+        listed = "\n  ".join(f"{row['condition']}: {row['verdict']}" for row in found)
+        raise StudyError(
+            f"compliant contact does not agree with the converged reference:\n  {listed}\n"
+            f"name a model: --model {FINITE_ELEMENTS} for the reference, or --model {COMPLIANT} "
+            "to use compliant contact anyway"
+        )
 
 
 def words(

@@ -16,9 +16,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tipoff.lowfi.ensemble.derived import Derived, Numbers, law
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
-from tipoff.studies.populations.derived import Derived, Numbers, law
 
 SEED = 20261123
 _AXES = ("x", "y", "z")

@@ -6,8 +6,8 @@ from pathlib import Path
 from tipoff import scenes
 from tipoff.mechanics.rail_compliance import digest
 from tipoff.studies.agreement import stage as compare
-from tipoff.studies.core.settings import defaults
-from tipoff.studies.core.study import Study, picked
+from tipoff.workspace.settings import defaults
+from tipoff.workspace.study import Study, picked
 
 
 def beside(folder: Path) -> list[dict]:

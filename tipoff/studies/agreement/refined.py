@@ -13,9 +13,9 @@ from tipoff.studies.agreement.refinement import (
     Refinement,
     refinement,
 )
-from tipoff.studies.core.progress import say
-from tipoff.studies.core.run import Run
-from tipoff.studies.core.study import Study
+from tipoff.workspace.progress import say
+from tipoff.workspace.run import Run
+from tipoff.workspace.study import Study
 
 _TWO = 2  # meshes show a change
 _SAFETIES = (Numerics().safety, 0.45)

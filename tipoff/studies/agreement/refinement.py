@@ -1,7 +1,7 @@
 """Uncertainty of the reference by its own refinements: mesh, step, contact cells.
 
 Each is refined alone, and the settled rates are extrapolated with the order that they show
-(``studies.core.extrapolation``). The uncertainty is that of the run which every other stage uses:
+(``comparison.extrapolation``). The uncertainty is that of the run which every other stage uses:
 the mesh of the scene; for step and cells, which are refined further on the coarse mesh, that of the
 finest run and the distance to it. A mesh file that cannot be coarsened is refined instead.
 """
@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tipoff.comparison.extrapolation import Estimate, estimate
+from tipoff.comparison.metrics import compare
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.studies.agreement.metrics import compare
-from tipoff.studies.core.extrapolation import Estimate, estimate
 
 MESH, STEP, CELLS = "mesh", "step", "cells"
 

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from tipoff.studies import published
-from tipoff.studies.convergence import equal_accuracy
+from tipoff.studies.agreement import equal_accuracy
 from tipoff.studies.render.document import Caption, Part
 from tipoff.studies.render.table import Column, Table, span
 from tipoff.studies.render.uncertain import LEAST, Measured, rounded

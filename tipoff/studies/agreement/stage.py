@@ -5,16 +5,17 @@ of a 1 um disturbance; speed-up."""
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from tipoff.comparison import metrics
 from tipoff.mechanics.rail_compliance import PATTERNS
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.studies.agreement import interface, judging, metrics, verdicts
+from tipoff.studies.agreement import interface, judging, verdicts
 from tipoff.studies.agreement.candidates import Candidate, candidates, on_coarse
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.core.progress import Board
-from tipoff.studies.core.settings import Settings
-from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.study import Study
-from tipoff.studies.cost.timing import speedups
+from tipoff.workspace.progress import Board
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.stage import Stage
+from tipoff.workspace.study import Study
+from tipoff.workspace.timing import speedups
 
 _SIMPLER = {
     "mean pressure of each face by itself": (1, False),

@@ -8,8 +8,8 @@ from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.agreement import growth, verdicts
 from tipoff.studies.agreement.candidates import Candidate
 from tipoff.studies.agreement.verdicts import Spread, spread
-from tipoff.studies.core.run import Run, with_modes_of
-from tipoff.studies.core.study import Study
+from tipoff.workspace.run import Run, with_modes_of
+from tipoff.workspace.study import Study
 
 
 def floors(study: Study, model: str, request: Callable[..., Run]) -> list[Spread]:

@@ -21,9 +21,9 @@ import math
 from dataclasses import dataclass
 from typing import TypeVar
 
+from tipoff.comparison.metrics import Difference, compare, settled_rate_errors
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
-from tipoff.studies.agreement.metrics import Difference, compare, settled_rate_errors
 from tipoff.studies.agreement.refinement import Refinement
 
 VELOCITY_LIMIT = 0.001

@@ -15,8 +15,8 @@ from tipoff.scenes import uncertainty
 from tipoff.studies.agreement import judging, verdicts
 from tipoff.studies.agreement.candidates import calibrated, compliant
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.study import Study
+from tipoff.workspace.stage import Stage
+from tipoff.workspace.study import Study
 
 NAME = "blind"
 _CODE = ("tipoff.highfi", "tipoff.lowfi", "tipoff.calibration")

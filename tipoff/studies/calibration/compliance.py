@@ -11,7 +11,7 @@ import numpy as np
 from tipoff.mechanics import model as scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.scene import Scene
-from tipoff.studies.core.study import Study
+from tipoff.workspace.study import Study
 
 NAME = "compliance"
 _SAME = 1e-9  # m

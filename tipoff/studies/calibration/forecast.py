@@ -26,9 +26,9 @@ from tipoff.files import read_json, require_whole
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
-from tipoff.studies.core.run import Run
-from tipoff.studies.core.study import Study
-from tipoff.studies.core.words import counted
+from tipoff.workspace.run import Run
+from tipoff.workspace.study import Study
+from tipoff.workspace.words import counted
 
 PATIENCE = 1.0  # s
 # Numba names its settings while it loads, where no type checker sees them.

@@ -18,10 +18,10 @@ from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import NOMINAL
 from tipoff.studies.calibration import compliance, forecast
-from tipoff.studies.core.progress import Board, say
-from tipoff.studies.core.run import Run
-from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.study import Study, StudyError, picked, require_success
+from tipoff.workspace.progress import Board, say
+from tipoff.workspace.run import Run
+from tipoff.workspace.stage import Stage
+from tipoff.workspace.study import Study, StudyError, picked, require_success
 
 FILE = "calibration.toml"
 _OF_COMPLIANT = f"calibration-{COMPLIANT}"

@@ -21,7 +21,7 @@ from tipoff.studies.commands.options import (
 from tipoff.studies.commands.running import Output, guarded, study_of
 
 if TYPE_CHECKING:
-    from tipoff.studies.core.study import Study
+    from tipoff.workspace.study import Study
 
 
 @dataclass(frozen=True)

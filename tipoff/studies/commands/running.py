@@ -47,9 +47,9 @@ def study_of(
     from tipoff import scenes
     from tipoff.scenes import plausibility, reading
     from tipoff.scenes.faults import Fault, SceneError
-    from tipoff.studies.core.progress import say
-    from tipoff.studies.core.settings import defaults
-    from tipoff.studies.core.study import Study
+    from tipoff.workspace.progress import say
+    from tipoff.workspace.settings import defaults
+    from tipoff.workspace.study import Study
 
     pairs = [item.partition("=") for item in overrides or []]
     if wrong := [item for item, (_, equals, _) in zip(overrides or [], pairs) if not equals]:
@@ -163,7 +163,7 @@ def guarded(work: Callable[[], Output], as_json: bool = False) -> None:
     from tipoff.files import remove_temporaries
     from tipoff.meshes.generator import GmshUnavailable
     from tipoff.scenes.faults import InputError, SceneError
-    from tipoff.studies.core.study import StudyError
+    from tipoff.workspace.study import StudyError
 
     try:
         output = work()
@@ -189,7 +189,7 @@ def guarded(work: Callable[[], Output], as_json: bool = False) -> None:
     except MemoryError as fault:
         stop(f"memory does not suffice ({fault})" if str(fault) else "memory does not suffice", 1)
     if as_json:
-        from tipoff.studies.core import words
+        from tipoff.workspace import words
 
         print(json.dumps({"quantities": words.QUANTITIES, **output.result}, indent=1))
         unshown = ""
@@ -205,8 +205,8 @@ def _print(output: Output) -> str:
     result, shown, out = output
     reason = ""
     if shown is not None:
-        from tipoff.studies.core.attempt import attempt
         from tipoff.studies.render import document
+        from tipoff.workspace.attempt import attempt
 
         text, reason = attempt("the text of the result", lambda: document.terminal(shown(result)))
         if text is not None:

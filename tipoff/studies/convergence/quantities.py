@@ -4,9 +4,9 @@ stress."""
 import math
 from collections.abc import Iterator, Sequence
 
+from tipoff.comparison.metrics import AXES
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
-from tipoff.studies.agreement.metrics import AXES
 from tipoff.studies.convergence import contact_loads, stresses
 
 RATE = "settled rate"

@@ -1,32 +1,32 @@
 """Stage ``convergence``: the error of the finite-element reference, on one condition.
 
 Meshes and steps are refined separately, and the uncertainty of every quantity is estimated from its
-observed order (``studies.core.extrapolation``). Deflection and natural frequencies of the rail
+observed order (``comparison.extrapolation``). Deflection and natural frequencies of the rail
 (``studies.convergence.statics``) stand beside the settled rates. Interface stiffness and contact cells
 are changed and compared. A straight slide shows the ripple of a constant force by the facets
 (``studies.convergence.ripple``). A finer mesh has a smaller step, and contact cells no longer than
 half a facet. A wall has at least one element through its thickness, so coarse meshes differ in length and width only;
 ``meshes`` holds the numbers of elements. Finally both fidelities are timed at equal accuracy
-(``studies.convergence.equal_accuracy``)."""
+(``studies.agreement.equal_accuracy``)."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import NamedTuple
 
+from tipoff.comparison.extrapolation import Estimate, estimate
 from tipoff.highfi.numerics import Numerics
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
-from tipoff.studies.agreement import interface, refined, verdicts
+from tipoff.studies.agreement import equal_accuracy, interface, refined, verdicts
 from tipoff.studies.agreement.candidates import compliant
-from tipoff.studies.convergence import contact_loads, equal_accuracy, ripple, statics, stresses
+from tipoff.studies.convergence import contact_loads, ripple, statics, stresses
 from tipoff.studies.convergence.quantities import RATE, quantities, settled_rate
-from tipoff.studies.core.extrapolation import Estimate, estimate
-from tipoff.studies.core.progress import Board
-from tipoff.studies.core.run import Run
-from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.study import Study, require_success
-from tipoff.studies.cost.timing import speedups
+from tipoff.workspace.progress import Board
+from tipoff.workspace.run import Run
+from tipoff.workspace.stage import Stage
+from tipoff.workspace.study import Study, require_success
+from tipoff.workspace.timing import speedups
 
 NAME = "convergence"
 _LEAST = 3  # meshes, of which an order can be observed

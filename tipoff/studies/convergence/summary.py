@@ -1,10 +1,9 @@
 """Results of the convergence study as sentences."""
 
+from tipoff.comparison.extrapolation import NOT_CONVERGED
 from tipoff.highfi.numerics import Numerics
-from tipoff.studies.agreement import verdicts
-from tipoff.studies.convergence import equal_accuracy
+from tipoff.studies.agreement import equal_accuracy, verdicts
 from tipoff.studies.convergence.quantities import RATE
-from tipoff.studies.core.extrapolation import NOT_CONVERGED
 from tipoff.studies.render.uncertain import LEAST, number
 
 

@@ -10,8 +10,8 @@ not chosen.
 
 import math
 
-from tipoff.studies.core.settings import COARSER
-from tipoff.studies.core.study import StudyError
+from tipoff.workspace.settings import COARSER
+from tipoff.workspace.study import StudyError
 
 _ROUNDING = 1e-9
 

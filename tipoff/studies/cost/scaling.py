@@ -25,11 +25,11 @@ from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.rail import MeshTable
 from tipoff.scenes.scene import Scene
-from tipoff.studies.core.compiling import warm_up
-from tipoff.studies.core.progress import Board
-from tipoff.studies.core.run import Run
-from tipoff.studies.core.study import Study
-from tipoff.studies.cost.timing import timed
+from tipoff.workspace.compiling import warm_up
+from tipoff.workspace.progress import Board
+from tipoff.workspace.run import Run
+from tipoff.workspace.study import Study
+from tipoff.workspace.timing import timed
 
 _TIME = {"highfi": "cpu_s", "lowfi": "kernel_s"}
 _SHARES = (0.125, 0.25, 0.5, 1.0, 2.0)  # of the scene's own number of pads

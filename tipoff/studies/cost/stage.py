@@ -15,6 +15,7 @@ import statistics
 from collections.abc import Iterable
 from pathlib import Path
 
+from tipoff.comparison.metrics import compare
 from tipoff.files import write_text
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
@@ -22,17 +23,16 @@ from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.ablation import stage as ablation
 from tipoff.studies.agreement import refined, verdicts
 from tipoff.studies.agreement.candidates import Candidate, candidates
-from tipoff.studies.agreement.metrics import compare
 from tipoff.studies.agreement.verdicts import Context
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.core import machine
-from tipoff.studies.core.compiling import warm_up
-from tipoff.studies.core.progress import Board
-from tipoff.studies.core.run import Run, execute, with_modes_of
-from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.study import Study
 from tipoff.studies.cost import choice, scaling
-from tipoff.studies.cost.timing import timed
+from tipoff.workspace import machine
+from tipoff.workspace.compiling import warm_up
+from tipoff.workspace.progress import Board
+from tipoff.workspace.run import Run, execute, with_modes_of
+from tipoff.workspace.stage import Stage
+from tipoff.workspace.study import Study
+from tipoff.workspace.timing import timed
 
 BY_MODES = f"{COMPLIANT}, modes varied"
 MODES = (0, 1, 2, 8)  # of each rail, beside those of the agreement study

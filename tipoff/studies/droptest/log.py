@@ -16,11 +16,11 @@ import numpy as np
 from tipoff.scenes.csv_file import listed, numbers, places
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.units import to_si
-from tipoff.studies.core.words import counted
 from tipoff.studies.droptest import sheet as sheets
 from tipoff.studies.droptest.channel_class import SAMPLES_PER_CLASS
 from tipoff.studies.droptest.saturation import saturated
 from tipoff.studies.droptest.sheet import Sheet
+from tipoff.workspace.words import counted
 
 _BRIDGED = 2  # samples that a straight line may stand for
 _JITTER = 0.01  # of an interval: less is the rounding of a clock, and left as it is

@@ -14,16 +14,15 @@ import numpy as np
 
 from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.scenes import uncertainty
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.faults import Fault, SceneError, together
 from tipoff.scenes.scene import Scene
-from tipoff.studies.core.checked import together
-from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.droptest import sheet, signals
 from tipoff.studies.droptest.analysis import Drop, analyse
 from tipoff.studies.droptest.results import joint, quantiles, row_of
 from tipoff.studies.populations import population
 from tipoff.studies.populations.population import Population
+from tipoff.workspace.stage import Stage
+from tipoff.workspace.study import Study, StudyError
 
 NAME = "droptest"
 CASES = 1000

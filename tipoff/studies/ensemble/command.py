@@ -124,8 +124,8 @@ def ensemble(
     also to an existing store. They are NaN if the case or its disturbed run does not settle. The
     change by clearance is 0 for a case without contact.
     """
-    from tipoff.studies.core import models
     from tipoff.studies.ensemble import page, stage
+    from tipoff.workspace import models
 
     chosen = models.Options(model and model.value, calibration, modes)
     models.require(chosen)

@@ -1,10 +1,10 @@
 """An ensemble for the terminal: quantiles with bounds, and the distributions of the inputs."""
 
-from tipoff.studies.core.words import counted
 from tipoff.studies.ensemble.sensitivity import CAUSES
 from tipoff.studies.render.document import Bullets, Part
 from tipoff.studies.render.table import Table, estimate, percent
 from tipoff.studies.render.uncertain import LEAST, number
+from tipoff.workspace.words import counted
 
 _LABELS = {
     "rate_deg_s": "total rate (deg/s)",

@@ -1,7 +1,7 @@
 """How many cases of an ensemble are sensitive: 1 um more of every clearance, or a tighter tolerance,
 moves a settled rate by more than the limit of agreement, or keeps the case from settling.
 
-``tipoff run`` tells the same of one run (``studies.runs.disturbed``). Chaos is the usual cause.
+``tipoff run`` tells the same of one run (``studies.single.disturbed``). Chaos is the usual cause.
 """
 
 from collections.abc import Mapping

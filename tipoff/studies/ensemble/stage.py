@@ -22,12 +22,12 @@ from tipoff.scenes import plausibility, uncertainty
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
-from tipoff.studies.core import kernel_marks, machine, models, words
-from tipoff.studies.core.progress import Board, say
-from tipoff.studies.core.run import Run
-from tipoff.studies.core.study import Study, StudyError
-from tipoff.studies.core.words import counted
 from tipoff.studies.ensemble import sensitivity, summary
+from tipoff.workspace import kernel_marks, machine, models, words
+from tipoff.workspace.progress import Board, say
+from tipoff.workspace.run import Run
+from tipoff.workspace.study import Study, StudyError
+from tipoff.workspace.words import counted
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
         raise SceneError([Fault("--tolerance, --modes", "numerics", given, str(fault))]) from None
     if options.store is not None and options.store.exists() and not options.store.is_dir():
         raise SceneError([Fault("--store", "path", str(options.store), "a folder")])
-    models.require_accepted(study, options.model.name)
+    kept.require_accepted(study, options.model.name)
     springs = options.model.model == SPRINGS
     found = study.rigid_rails(study.scene) if springs else study.rail_compliance(study.scene)
     scene = study.scene

@@ -4,12 +4,12 @@ from collections.abc import Callable
 
 import numpy as np
 
+from tipoff.comparison import order_statistics
 from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.lowfi.ensemble.store import Store
-from tipoff.studies.core import words
-from tipoff.studies.populations import order_statistics
+from tipoff.workspace import words
 
 SHARES = (0.05, 0.5, 0.95, 0.99, 0.9973)
 CONFIDENCE = 0.95

@@ -52,7 +52,7 @@ def flight(
       tipoff flight --range "1 km" --cases 10000
       tipoff flight --scene my_launcher.toml --altitude "600 km" --range "200 m" --set flight.elevation="90 deg"
     """
-    from tipoff.studies.core.checked import together
+    from tipoff.scenes.faults import together
     from tipoff.studies.flight import page, stage
 
     given = {"range": range_, "altitude": altitude, "duration": duration}

@@ -4,13 +4,13 @@ tables of conditions and cases."""
 import math
 from collections.abc import Callable, Sequence
 
-from tipoff.studies.core.words import counted
 from tipoff.studies.flight.summary import WORDS
 from tipoff.studies.populations import answers, population
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Noted, Table, estimate, percent
+from tipoff.workspace.words import counted
 
 _LOOKS = (
     (NAVY, "-", "o"),

@@ -15,13 +15,13 @@ from tipoff.scenes.effects.registry import body_forces
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.variation import Variations
-from tipoff.studies.core.progress import Board
-from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.study import Study, StudyError
-from tipoff.studies.core.words import counted
 from tipoff.studies.flight import bodies, curves, flown, summary
 from tipoff.studies.populations import population
 from tipoff.studies.populations.population import Population
+from tipoff.workspace.progress import Board
+from tipoff.workspace.stage import Stage
+from tipoff.workspace.study import Study, StudyError
+from tipoff.workspace.words import counted
 
 NAME = "flight"
 

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from tipoff.comparison import order_statistics
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.flight import bodies
 from tipoff.studies.flight.flown import Flown
-from tipoff.studies.populations import answers, exceedance, order_statistics
+from tipoff.studies.populations import answers, exceedance
 from tipoff.studies.populations.answers import Left
 from tipoff.studies.populations.population import Population
 

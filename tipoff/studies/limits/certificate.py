@@ -14,13 +14,13 @@ import numpy as np
 
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.scenes.scene import NOMINAL, Scene
-from tipoff.studies.core.study import Study
 from tipoff.studies.limits.inputs import Options
 from tipoff.studies.limits.within import Cases
 from tipoff.studies.populations import draws, exceedance, stratified
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.populations.stratified import Runs
+from tipoff.workspace.study import Study
 
 TIMES = 10  # cases for each case of the search, so that the weights are known well
 NEAR = 0.9  # of a limit

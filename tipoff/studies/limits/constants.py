@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from tipoff.lowfi.ensemble.derived import law
 from tipoff.lowfi.ensemble.sampling import Points
 from tipoff.mechanics.models import COMPLIANT
 from tipoff.scenes.calibration import Calibration
@@ -10,9 +11,8 @@ from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.core.study import Study
-from tipoff.studies.core.words import counted
-from tipoff.studies.populations.derived import law
+from tipoff.workspace.study import Study
+from tipoff.workspace.words import counted
 
 _TWO_SIDED_95 = 1.959963984540054  # standard deviations
 

@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 
+from tipoff.comparison import order_statistics
 from tipoff.mechanics.models import SPRINGS
-from tipoff.scenes.faults import Fault, SceneError
-from tipoff.studies.core.checked import together
-from tipoff.studies.populations import exceedance, order_statistics
+from tipoff.scenes.faults import Fault, SceneError, together
+from tipoff.studies.populations import exceedance
 from tipoff.studies.populations.exceedance import Limit
 
 # times the fewest cases: some cases may then be above a limit

@@ -4,7 +4,6 @@ share of cases above a limit by tolerance, and a map of two tolerances."""
 from collections.abc import Callable
 from typing import Any
 
-from tipoff.studies.core.words import counted
 from tipoff.studies.limits import certificate_page
 from tipoff.studies.limits.search import ALL, FOUND, LOST, NONE, SMALL
 from tipoff.studies.limits.within import TOGETHER
@@ -13,6 +12,7 @@ from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table, estimate, span
+from tipoff.workspace.words import counted
 
 _CURVES = (
     "Share of {cases:,} cases above a limit against the tolerance, with the same draws at every "

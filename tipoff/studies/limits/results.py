@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from tipoff.files import DamageError, require_whole, write_netcdf
-from tipoff.studies.core.progress import say
 from tipoff.studies.populations import answers
+from tipoff.workspace.progress import say
 
 
 def save(path: Path, values: np.ndarray, scale: float, tolerances: Mapping[str, float]) -> None:

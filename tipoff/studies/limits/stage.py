@@ -19,10 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from tipoff.mechanics.models import COMPLIANT
-from tipoff.studies.core.checked import together
-from tipoff.studies.core.progress import Board
-from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.study import Study
+from tipoff.scenes.faults import together
 from tipoff.studies.limits import certificate, constants, search, within
 from tipoff.studies.limits.inputs import DRAWS, Options, checked
 from tipoff.studies.limits.search import Found
@@ -30,6 +27,9 @@ from tipoff.studies.limits.within import ADVISED, SETS, TOGETHER, Cases, Factor
 from tipoff.studies.populations import answers, exceedance, population, spread
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.population import Surrogate
+from tipoff.workspace.progress import Board
+from tipoff.workspace.stage import Stage
+from tipoff.workspace.study import Study
 
 NAME = "limits"
 PAIR = ("misalignment", "mass_eccentricity")

@@ -11,15 +11,15 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.lowfi.ensemble import columns, pilot
+from tipoff.lowfi.ensemble.derived import Derived, Numbers, around_zero, friction, law
 from tipoff.lowfi.ensemble.threads import PIECE, completed
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
-from tipoff.studies.core.study import Study
 from tipoff.studies.limits import results
 from tipoff.studies.populations import answers
-from tipoff.studies.populations.derived import Derived, Numbers, around_zero, friction, law
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.populations.random_factors import ERRORS, pointing
+from tipoff.workspace.study import Study
 
 CLEARANCE, FRICTION, TOGETHER = "clearance", "friction", "together"
 # from the abstract of the paper

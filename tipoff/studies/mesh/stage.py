@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from tipoff.files import replacing
-from tipoff.studies.core.progress import say
-from tipoff.studies.core.study import Study
+from tipoff.workspace.progress import say
+from tipoff.workspace.study import Study
 
 
 def run(study: Study) -> dict:

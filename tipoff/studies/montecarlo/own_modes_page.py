@@ -1,9 +1,9 @@
 """The draws by rail modes: one number for all draws, beside the modes that each draw chooses."""
 
 from tipoff.lowfi.numerics import AUTO
-from tipoff.studies.core.words import counted
 from tipoff.studies.render.document import Part
 from tipoff.studies.render.table import Cells, Column, Table, number, percent
+from tipoff.workspace.words import counted
 
 _NOTE = (
     "Errors are those of single runs on the mesh of the reference, and the largest of the three "

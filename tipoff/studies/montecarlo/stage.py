@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.scenes.faults import together
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.core.checked import together
-from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.limits import within
 from tipoff.studies.populations import answers, exceedance, population, random_factors, spread
 from tipoff.studies.populations.population import Population
 from tipoff.studies.populations.random_factors import READINGS, Reading
+from tipoff.workspace.stage import Stage
+from tipoff.workspace.study import Study, StudyError
 
 NAME = "montecarlo"
 PAPER = 1000  # number of cases in the paper

@@ -9,12 +9,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tipoff.lowfi.ensemble import columns
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.lowfi.ensemble.derived import Derived
+from tipoff.scenes.faults import Fault, SceneError, together
 from tipoff.studies.agreement import verdicts
-from tipoff.studies.core.checked import together
-from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.study import Study, StudyError
-from tipoff.studies.core.words import counted
 from tipoff.studies.montecarlo import paired_statistics
 from tipoff.studies.montecarlo import stage as montecarlo
 from tipoff.studies.montecarlo.paired_statistics import RATES, both_settled
@@ -28,9 +25,11 @@ from tipoff.studies.populations import (
     spread,
 )
 from tipoff.studies.populations import draws as paired
-from tipoff.studies.populations.derived import Derived
 from tipoff.studies.populations.draws import Draws, Rows
 from tipoff.studies.populations.population import Population, Surrogate
+from tipoff.workspace.stage import Stage
+from tipoff.workspace.study import Study, StudyError
+from tipoff.workspace.words import counted
 
 NAME = "tails"
 FEWEST = 10  # draws; fewer have no useful interval

@@ -85,7 +85,7 @@ def new(
 
     def work() -> Output:
         from tipoff.files import write_text
-        from tipoff.studies.core.checked import together
+        from tipoff.scenes.faults import together
         from tipoff.studies.new_scene import template
 
         _, text = together(
@@ -141,8 +141,7 @@ def _next(found: dict) -> list[str]:
 
 def _numbers(given: dict[str, str | None], thrust_curve: Path | None, pads: int | None):
     """The numbers of the new scene in SI. Raises SceneError, every fault listed."""
-    from tipoff.scenes.faults import Fault, SceneError
-    from tipoff.studies.core.checked import together
+    from tipoff.scenes.faults import Fault, SceneError, together
     from tipoff.studies.new_scene.template import Numbers
 
     def read(name: str):

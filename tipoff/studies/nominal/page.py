@@ -3,12 +3,11 @@
 import math
 
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
-from tipoff.studies.core.words import counted
 from tipoff.studies.nominal.spread import QUANTITIES, doubt
 from tipoff.studies.populations.answers import RATES, TOTAL_RATE, Quantity
 from tipoff.studies.render.document import Caption, KeyFigures, Part
-from tipoff.studies.render.uncertain import LEAST, STEPS, number, rounded
-from tipoff.studies.report.neighbours import SHARE, text
+from tipoff.studies.render.uncertain import LEAST, SHARE, STEPS, number, range_of, rounded
+from tipoff.workspace.words import counted
 
 _MEANINGS = {
     "rate_x_deg_s": "rate about X, roll",
@@ -72,7 +71,7 @@ def _under(spread: dict | None, item: Quantity) -> str:
 
 
 def _text(ends: dict) -> str:
-    return text(ends["low"], ends["high"])
+    return range_of(ends["low"], ends["high"])
 
 
 def notes(found: dict) -> list[str]:

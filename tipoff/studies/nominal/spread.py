@@ -10,14 +10,15 @@ from typing import Any
 
 import numpy as np
 
+from tipoff.comparison import order_statistics
 from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.mechanics.models import COMPLIANT
 from tipoff.scenes import uncertainty
 from tipoff.scenes.scene import Scene
-from tipoff.studies.core.study import Study
-from tipoff.studies.populations import answers, order_statistics, population
+from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.answers import Quantity
 from tipoff.studies.populations.population import Population, Surrogate
+from tipoff.workspace.study import Study
 
 SHARES = (0.025, 0.975)
 CASES = (4000, 16_000)  # the second where the first is not accurate enough

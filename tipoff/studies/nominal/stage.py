@@ -7,10 +7,10 @@ from pathlib import Path
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes import uncertainty
 from tipoff.scenes.scene import NOMINAL
-from tipoff.studies.core.run import Run
-from tipoff.studies.core.study import Study
 from tipoff.studies.nominal import spread
 from tipoff.studies.runs import stage as runs
+from tipoff.workspace.run import Run
+from tipoff.workspace.study import Study
 
 NAME = "nominal"
 

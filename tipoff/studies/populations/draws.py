@@ -23,11 +23,11 @@ from tipoff.mechanics.models import COMPLIANT
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import NOMINAL, Scene
 from tipoff.studies.agreement import growth
-from tipoff.studies.core import kernel_marks
-from tipoff.studies.core.announcing import announce
-from tipoff.studies.core.run import Run
-from tipoff.studies.core.study import Study
 from tipoff.studies.populations.population import TOLERANCE, Surrogate
+from tipoff.workspace import kernel_marks
+from tipoff.workspace.announcing import announce
+from tipoff.workspace.run import Run
+from tipoff.workspace.study import Study
 
 _PIECE = 16  # runs held in memory at once
 _REPEATS = 3  # of the timed surrogate

@@ -15,11 +15,11 @@ import numpy as np
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.lowfi.numerics import AUTO, Numerics
 from tipoff.mechanics.rail_compliance import may_vibrate
-from tipoff.studies.core.run import Run, execute
-from tipoff.studies.core.study import Study
 from tipoff.studies.populations import draws
 from tipoff.studies.populations.draws import Rows
 from tipoff.studies.populations.population import Surrogate
+from tipoff.workspace.run import Run, execute
+from tipoff.workspace.study import Study
 
 _REPEATS = 2  # of the timed runs
 

@@ -27,13 +27,13 @@ from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import kept
+from tipoff.studies.agreement.kept import require_accepted
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.core import kernel_marks, words
-from tipoff.studies.core.models import require_accepted
-from tipoff.studies.core.progress import Board
-from tipoff.studies.core.run import Run
-from tipoff.studies.core.study import Study, StudyError
-from tipoff.studies.core.words import counted
+from tipoff.workspace import kernel_marks, words
+from tipoff.workspace.progress import Board
+from tipoff.workspace.run import Run
+from tipoff.workspace.study import Study, StudyError
+from tipoff.workspace.words import counted
 
 TOLERANCE = 1e-2  # relative error of a step: 95 % of reference cases within 0.2 % of their rate
 

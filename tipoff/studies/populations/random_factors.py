@@ -17,11 +17,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tipoff.lowfi.ensemble.derived import Derived, Numbers, around_zero, law
 from tipoff.scenes.distributions import Distribution
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
-from tipoff.studies.populations.derived import Derived, Numbers, around_zero, law
 
 # Known to this factor either way: ground metal under light pressure, docs/interface_stiffness.md.
 INTERFACE_FACTOR = 4.0

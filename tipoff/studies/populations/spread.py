@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.stats import ks_2samp
 
-from tipoff.studies.populations import order_statistics
+from tipoff.comparison import order_statistics
 
 SHARES = (0.0027, 0.05, 0.5, 0.95, 0.99, 0.9973)
 CONFIDENCE = 0.95

@@ -8,11 +8,11 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from tipoff.studies.core.attempt import attempt
 from tipoff.studies.render import chart as charts
 from tipoff.studies.render import table as tables
 from tipoff.studies.render.chart import Chart, Picture
 from tipoff.studies.render.table import Table, inline
+from tipoff.workspace.attempt import attempt
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 NOTHING = "–"
+SHARE = 0.02  # of a range, the digit to which its ends are rounded
 LEAST = 1e-3  # the smallest step that is shown where no unit says otherwise
 _POWERS = 1e7  # larger numbers are written with a power of ten
 # The smallest step (in the unit) that has a meaning in this field. A gyroscope of a payload reads
@@ -78,6 +79,12 @@ def rounded(
             return f"<{least:g}"
         return _fixed(value, _decimals(least), sign)
     return _fixed(value, min(_decimals(uncertainty), _decimals(least)), sign)
+
+
+def range_of(low: float, high: float) -> str:
+    """``low to high``, both rounded to a part of the width of the range; one number where they agree."""
+    ends = [rounded(end, SHARE * (high - low)) for end in (low, high)]
+    return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 
 def _decimals(uncertainty: float) -> int:

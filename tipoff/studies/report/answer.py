@@ -13,7 +13,6 @@ from tipoff.scenes import provenance
 from tipoff.scenes.overrides import is_drop
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.page import counts
-from tipoff.studies.core.words import counted
 from tipoff.studies.nominal import page as nominal_page
 from tipoff.studies.populations.exceedance import TOTAL, Limit
 from tipoff.studies.render.document import Bullets, Heading, KeyFigures, Part
@@ -23,10 +22,12 @@ from tipoff.studies.render.uncertain import (
     STEPS,
     Measured,
     number,
+    range_of,
     rounded,
     uncertain,
 )
 from tipoff.studies.report import drawing, inputs, neighbours
+from tipoff.workspace.words import counted
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
@@ -135,7 +136,7 @@ def _largest(
         def shown(names: Iterable[str], measure=measure, most=most) -> tuple[str, str]:
             name = max(names, key=most)
             if name in spreads:
-                return neighbours.text(*spreads[name].within(measure)), name
+                return range_of(*spreads[name].within(measure)), name
             return uncertain(measure(settled[name]), _uncertainty(compared.get(name))), name
 
         value, name = shown(settled)
@@ -231,7 +232,7 @@ def _rates(
 ) -> list:
     if spread is not None:
         ranges = (spread.within(measure) for measure in (roll, transverse))
-        return [settled["velocity_m_s"][0], *(neighbours.text(*ends) for ends in ranges)]
+        return [settled["velocity_m_s"][0], *(range_of(*ends) for ends in ranges)]
     return [
         settled["velocity_m_s"][0],
         uncertain(settled["rate_deg_s"][0], uncertainty),

@@ -6,8 +6,6 @@ from collections.abc import Sequence
 
 from tipoff.mechanics.trajectory import versions
 from tipoff.scenes import plausibility
-from tipoff.studies.core import machine
-from tipoff.studies.core.attempt import attempt
 from tipoff.studies.question import Section
 from tipoff.studies.registry import sections
 from tipoff.studies.render.document import Caption, Missing, Notice, Part
@@ -16,6 +14,8 @@ from tipoff.studies.report import answer, inputs, template
 from tipoff.studies.report.page import Page
 from tipoff.studies.report.promises import promises, table
 from tipoff.studies.report.template import Drawn, Group
+from tipoff.workspace import machine
+from tipoff.workspace.attempt import attempt
 
 _VALIDATION = (
     "Promises are checked on the runs of this page. `docs/verification_and_validation.md` has the cases "

@@ -1,23 +1,18 @@
-"""The scene as the report shows it: every value with its unit and origin, and the impulse of the
-thrust."""
+"""The scene as the report shows it: every value with its unit and origin."""
 
 import math
 import typing
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
 from pydantic import BaseModel
 
 from tipoff.scenes import provenance as origin
-from tipoff.scenes.effects import thrust_law
-from tipoff.scenes.effects.measured import GaussianFit
-from tipoff.scenes.effects.thrust import GaussiansTable, GaussianTable
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.units import registry
-from tipoff.studies.core.words import counted
 from tipoff.studies.render.document import Fold, Part
 from tipoff.studies.render.table import Table, number
+from tipoff.workspace.words import counted
 
 _SCALED = ("m", "s", "N", "Pa", "m/s", "Hz")
 _ASSUMED = ("assumed", "not stated", "inferred")  # origins that stand first
@@ -137,43 +132,4 @@ def _role(scene: Scene, name: str) -> str:
             if name in getattr(scene.agreement, role)
         ),
         "",
-    )
-
-
-def thrust_facts(scene: Scene) -> Table:
-    """Impulse, its share outside the duration or the cutoff, and the fit of a measured curve."""
-    record = scene.thrust.record()
-    delivered = thrust_law.impulse(record, scene.time_limit)
-    rows = [
-        ("impulse delivered within the scene", f"{delivered:.6g} N s"),
-        ("velocity change of the payload alone", f"{delivered / scene.payload.mass:.5g} m/s"),
-        ("thrust at ignition", f"{thrust_law.sample(record, np.zeros(1))[0]:.4g} N"),
-    ]
-    if record.pulses is not None:
-        p = record.pulses
-        whole = float((p.peaks * p.widths).sum() * math.sqrt(2.0 * math.pi))
-        words = f"{whole:.6g} N s"
-        if whole:
-            words += (
-                f", of which {100.0 * (1.0 - delivered / whole):.3g} % falls before ignition, after "
-                "the end, or beyond the cutoff"
-            )
-        rows.append(("impulse of the whole Gaussian", words))
-        cut = "none"
-        if isinstance(scene.thrust, (GaussianTable, GaussiansTable)) and scene.thrust.cutoff:
-            kept = "rescaled" if scene.thrust.rescale else "not rescaled"
-            cut = f"{scene.thrust.cutoff:g} widths, {kept}"
-        rows.append(("cutoff", cut))
-    if scene.thrust.kind == "measured":
-        rows.append(("Gaussian fit of the measured curve", _fit(scene.thrust.fit())))
-    return Table(("thrust", ""), rows)
-
-
-def _fit(fit: GaussianFit | None) -> str:
-    if fit is None:
-        return "none fits"
-    return (
-        f"peak {fit.peak:.5g} N at {1e3 * fit.centre:.4g} ms, width {1e3 * fit.width:.4g} ms, "
-        f"impulse {fit.impulse:.5g} N s against {fit.curve_impulse:.5g} N s of the curve, "
-        f"residual {100.0 * fit.relative_residual:.3g} %"
     )

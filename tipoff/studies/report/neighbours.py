@@ -8,13 +8,10 @@ agreement study ran does (``agreement.neighbours``).
 from collections.abc import Callable
 from typing import NamedTuple
 
-from tipoff.studies.render.uncertain import rounded
-
 NOTE = (
     "A range in place of a value: from the smallest to the largest settled rate of the same launch with "
     "payload and walls moved by less than 1 µm, by finite elements on the coarse mesh."
 )
-SHARE = 0.02  # of a range, the digit to which its ends are rounded
 
 
 class Spread(NamedTuple):
@@ -39,10 +36,3 @@ def of(agreement: dict | None) -> dict[str, Spread]:
     items = (agreement or {}).get("distributions", [])
     found = {item["condition"]: Spread(item["reference_deg_s"]) for item in items}
     return {name: spread for name, spread in found.items() if spread.settled > 1}
-
-
-def text(low: float, high: float) -> str:
-    """A range, rounded to a part of its width."""
-    digit = SHARE * (high - low)
-    ends = [rounded(end, digit) for end in (low, high)]
-    return ends[0] if ends[0] == ends[1] else " to ".join(ends)

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from tipoff.mechanics.promises import FINITE_ELEMENTS, RIGID
 from tipoff.studies.agreement import verdicts
-from tipoff.studies.core.words import counted
 from tipoff.studies.render.table import Table, number
+from tipoff.workspace.words import counted
 
 
 class Promise(NamedTuple):

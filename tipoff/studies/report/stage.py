@@ -10,14 +10,14 @@ from tipoff import sources
 from tipoff.files import content_hash, write_text
 from tipoff.scenes.faults import InputError
 from tipoff.studies.agreement import stage as compare
-from tipoff.studies.core.attempt import attempt
-from tipoff.studies.core.progress import say
-from tipoff.studies.core.run import Run
-from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.question import Result
 from tipoff.studies.registry import results
 from tipoff.studies.runs import stage as runs
+from tipoff.workspace.attempt import attempt
+from tipoff.workspace.progress import say
+from tipoff.workspace.run import Run
+from tipoff.workspace.study import Study, StudyError
 
 
 def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict:

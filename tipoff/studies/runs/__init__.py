@@ -1,4 +1,4 @@
-"""Runs of all conditions in both models, and single runs."""
+"""Runs of all conditions in both models."""
 
 from tipoff.studies.question import Contents, Entry, Result, Section
 from tipoff.studies.runs import command
@@ -23,4 +23,3 @@ def _load() -> Contents:
 
 
 ENTRY = Entry((command.highfi, command.lowfi), _load)
-SINGLE = Entry((command.run,))

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 from tipoff.studies.render.document import Figure, Part
 from tipoff.studies.render.table import Column, Table
-from tipoff.studies.report.inputs import thrust_facts
 from tipoff.studies.runs import figures
+from tipoff.studies.runs.thrust_facts import thrust_facts
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page

@@ -8,9 +8,9 @@ from tipoff.mechanics import hand_calculation, unfinished
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.convergence import stresses
-from tipoff.studies.core import kernel_marks
-from tipoff.studies.core.run import Run
-from tipoff.studies.core.study import FAILED, Study
+from tipoff.workspace import kernel_marks
+from tipoff.workspace.run import Run
+from tipoff.workspace.study import FAILED, Study
 
 
 def requests(study: Study, fidelity: str) -> dict[str, Run]:

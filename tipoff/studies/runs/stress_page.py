@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tipoff.studies.core.words import counted
 from tipoff.studies.render.document import Caption, Image, Notice, Part
 from tipoff.studies.render.table import Cells, Column, Table
+from tipoff.workspace.words import counted
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page

@@ -7,13 +7,13 @@ from itertools import chain
 
 import numpy as np
 
-from tipoff.studies.core.words import counted
 from tipoff.studies.populations import answers, population
 from tipoff.studies.render.chart import Chart, Line, Panel, Picture
 from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Cells, Column, Table, span
 from tipoff.studies.render.uncertain import Measured
+from tipoff.workspace.words import counted
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s", "rate_deg_s")
 _STILL = 1e-6  # deg/s, the error of integration at the relative tolerance of the tables, 2e-7

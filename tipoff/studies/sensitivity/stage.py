@@ -12,13 +12,13 @@ from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies import published
-from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render.document import with_figures
 from tipoff.studies.sensitivity import contact_table, indices, tolerances
 from tipoff.studies.sensitivity import page as drawing
+from tipoff.workspace.stage import Stage
+from tipoff.workspace.study import Study, StudyError
 
 NAME = "sensitivity"
 _HALVINGS = 3  # parts of the points, each half of the next, for convergence

@@ -23,6 +23,7 @@ from pydantic import ValidationError
 
 from tipoff.calibration.parameters import REFERENCE_PENETRATION
 from tipoff.files import content_hash
+from tipoff.lowfi.ensemble.derived import friction
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.scenes import overrides as keys
 from tipoff.scenes import reading
@@ -30,7 +31,6 @@ from tipoff.scenes.distributions import BY_NAME, Distribution
 from tipoff.scenes.effects.contact import LinearTable
 from tipoff.scenes.faults import Fault, SceneError, faults_of, renamed
 from tipoff.scenes.scene import Scene
-from tipoff.studies.populations.derived import friction
 
 DEFAULT = Path(__file__).with_name("tolerances.toml")
 _KINDS = ("vary", "factor")

@@ -7,9 +7,9 @@ A case is a function without arguments that returns a ``Verdict``.
 from pathlib import Path
 
 from tipoff import sources
-from tipoff.studies.core.progress import Board
-from tipoff.studies.core.study import Study
 from tipoff.studies.stability import contacts, elastic, guides, thrusts
+from tipoff.workspace.progress import Board
+from tipoff.workspace.study import Study
 
 CASES = {**contacts.CASES, **guides.CASES, **thrusts.CASES, **elastic.CASES}
 

@@ -9,15 +9,15 @@ import numpy as np
 
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies import published
-from tipoff.studies.core.progress import Board
-from tipoff.studies.core.stage import Stage
-from tipoff.studies.core.study import Study
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render.document import with_figures
 from tipoff.studies.sweeps import burnout, factors, knee, sides
 from tipoff.studies.sweeps import figures as drawing
 from tipoff.studies.sweeps.factors import FACTORS, SIZES, Factor
+from tipoff.workspace.progress import Board
+from tipoff.workspace.stage import Stage
+from tipoff.workspace.study import Study
 
 NAME = "sweeps"
 JUDGED = (*answers.RATES, answers.TOTAL_RATE)  # quantities whose growth is judged

@@ -18,10 +18,10 @@ import numpy as np
 
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.faults import Fault, SceneError
-from tipoff.studies.core.progress import Board, say
-from tipoff.studies.core.run import Run
-from tipoff.studies.core.study import Study, read, require_success
-from tipoff.studies.core.words import counted
+from tipoff.workspace.progress import Board, say
+from tipoff.workspace.run import Run
+from tipoff.workspace.study import Study, read, require_success
+from tipoff.workspace.words import counted
 
 if TYPE_CHECKING:
     from tipoff.studies.view.frames import Camera

@@ -1,0 +1,70 @@
+"""How far small disturbances move a run: against runs made by hand, and the words."""
+
+import numpy as np
+import pytest
+
+from tipoff import lowfi, scenes
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.studies.single import disturbed
+from tipoff.workspace.run import Run
+
+REFERENCE = scenes.load("reference")
+
+
+def moved(condition: str, change: float = 1e-6) -> tuple[dict, Trajectory]:
+    """The result on springs, and the run itself."""
+    scene = REFERENCE.condition(condition)
+    run = Run("lowfi", condition, scene, lowfi.Numerics())
+    nominal = lowfi.run(scene, "springs")
+    return disturbed.of(run, nominal, change), nominal
+
+
+def test_changes_are_those_of_runs_made_by_hand():
+    found, nominal = moved("phi60")
+    scene, clearance = REFERENCE.condition("phi60"), REFERENCE.contact.clearance
+    by_hand = [
+        lowfi.run(scene.replace({"contact.clearance": clearance + change}), "springs").outcome.rate
+        for change in (1e-6, -1e-6)
+    ]
+    apart = np.degrees(np.abs(np.subtract(by_hand, nominal.outcome.rate)).max())
+    assert apart > 1e-3
+    assert found["by_clearance_deg_s"] == pytest.approx(apart, rel=1e-12)
+    finest = lowfi.run(scene, "springs", numerics=lowfi.Numerics(relative_tolerance=1e-10))
+    apart = np.degrees(np.abs(np.subtract(finest.outcome.rate, nominal.outcome.rate)).max())
+    assert 0.0 < apart < 1e-3
+    assert found["by_tolerance_deg_s"] == pytest.approx(apart, rel=1e-12)
+
+
+def test_a_negative_clearance_is_left_out_and_free_flight_has_none():
+    scene = REFERENCE.condition("phi60").replace({"contact.clearance": 0.0})
+    found = disturbed.of(
+        Run("lowfi", "phi60", scene, lowfi.Numerics()), lowfi.run(scene, "springs"), 1e-6
+    )
+    assert found["by_clearance_deg_s"] > 0.0
+    free = REFERENCE.replace({"contact": None, "friction": None})
+    found = disturbed.of(Run("lowfi", "free", free, lowfi.Numerics()), lowfi.run(free), 1e-6)
+    assert "by_clearance_deg_s" not in found and found["by_tolerance_deg_s"] < 1e-6
+
+
+def test_clearances_along_the_axes_are_disturbed_too():
+    """Both change as the one clearance does, up to the arms. Control: the run does not see that one
+    where both axes state their own."""
+    axes = {f"contact.clearance_{axis}": REFERENCE.contact.clearance for axis in "yz"}
+    scene = REFERENCE.condition("phi60").replace(axes)
+    nominal = lowfi.run(scene, "springs")
+    found = disturbed.of(Run("lowfi", "phi60", scene, lowfi.Numerics()), nominal, 1e-6)
+    expected = moved("phi60")[0]["by_clearance_deg_s"]
+    assert found["by_clearance_deg_s"] == pytest.approx(expected, rel=0.05)
+
+
+@pytest.mark.parametrize("condition, warned", [("phi60", False), ("h8", True)])
+def test_a_sensitive_run_says_so(condition, warned):
+    words = disturbed.lines(moved(condition)[0], 0.1)
+    assert "deg/s by 1 µm of clearance" in words[0]
+    assert any("warning       sensitive" in line for line in words) is warned
+
+
+def test_a_disturbed_run_that_does_not_settle_is_a_warning():
+    words = disturbed.lines(moved("phi60")[0] | {"by_clearance_deg_s": None}, 0.1)
+    assert "1 µm of clearance: does not settle" in words[0]
+    assert "1 µm of clearance prevents the run from settling" in words[1]

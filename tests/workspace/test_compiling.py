@@ -1,0 +1,131 @@
+"""Kernels that several runs need are compiled side by side, each once."""
+
+import pytest
+
+from tests.lowfi.compliance import REFERENCE, reference_compliance
+from tests.studies.synthetic import flight
+from tipoff import lowfi, scenes
+from tipoff.workspace import compiling, kernel_marks
+from tipoff.workspace.run import Run
+from tipoff.workspace.store import Store
+
+FALLING = scenes.load("tiny").replace({"contact": None, "friction": None})
+FLYING = FALLING.replace({"platform": None})
+
+
+@pytest.fixture
+def runs(monkeypatch, tmp_path):
+    """A free flight with and without gravity, and one that needs the kernel of the first."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    changes = ({}, {"gravity.x": "1 m/s**2"}, {"payload.mass": "3 kg"})
+    return [
+        Run("lowfi", f"{number}", FLYING.replace(change), lowfi.Numerics())
+        for number, change in enumerate(changes)
+    ]
+
+
+def machine_codes(folder):
+    """Number of machine codes of the time loop below ``folder``."""
+    return len(list(folder.glob("kernels/*integrate*/**/integrate.integrate-*.nbc")))
+
+
+@pytest.mark.slow
+def test_each_kernel_is_compiled_once(runs, tmp_path, capfd):
+    compiling.compile_ahead("kernels", runs, workers=2)
+    assert machine_codes(tmp_path) == 2
+    assert "kernels 2/2" in capfd.readouterr().err
+    compiling.compile_ahead("kernels", runs, workers=2)
+    assert capfd.readouterr().err == ""
+
+
+@pytest.mark.parametrize("count, workers", [(3, 1), (1, 2)])
+def test_a_run_alone_compiles_its_own(runs, tmp_path, count, workers):
+    compiling.compile_ahead("kernels", runs[:count], workers)
+    assert machine_codes(tmp_path) == 0
+
+
+def test_the_first_compilation_is_announced_once(runs, capfd):
+    first, other, same = runs
+    kernel_marks.announce(first)
+    assert "compiling the kernels of model compliant" in capfd.readouterr().err
+    kernel_marks.remember(first)
+    kernel_marks.announce(same)  # the same effects
+    assert capfd.readouterr().err == ""
+    kernel_marks.announce(other)
+    said = capfd.readouterr().err
+    assert "once" in said and "modes" not in said  # nothing presses a rail
+
+
+def test_gravity_that_all_bodies_share_needs_no_kernel_of_its_own():
+    """It is in no kernel where a free platform falls with the payload (``tests/lowfi/test_compiled``)."""
+
+    def mark(scene):
+        return kernel_marks.mark(Run("lowfi", "a", scene, lowfi.Numerics()))
+
+    gravity = {"gravity.x": "1 m/s**2"}
+    assert mark(FALLING.replace(gravity)) == mark(FALLING)
+    assert mark(FLYING.replace(gravity)) != mark(FLYING)
+
+
+def pressed(modes) -> Run:
+    """A run whose rails have ``modes``."""
+    numerics = lowfi.Numerics(modes=modes)
+    return Run("lowfi", "a", REFERENCE, numerics, compliance=reference_compliance())
+
+
+def test_kernels_with_modes_of_the_rails_are_others(monkeypatch, tmp_path, capfd):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+
+    def announced(modes, chosen=False) -> str:
+        kernel_marks.announce(pressed(modes), chosen)
+        kernel_marks.remember(pressed(modes), chosen)
+        return capfd.readouterr().err
+
+    assert "again if modes" in announced("auto")
+    # it began without modes, so those with modes are not there
+    assert "with modes of the rails" in announced("auto", chosen=True)
+    assert [announced(modes) for modes in ("auto", 0, 4, 20)] == [""] * 4
+
+
+def test_runs_of_given_modes_leave_kernels_for_those_that_choose(monkeypatch, tmp_path, capfd):
+    """And so for many cases alone, which may need those with modes and those without."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    for modes, expected in ((4, "with modes"), (0, "once\n"), ("auto", "")):
+        kernel_marks.announce(pressed(modes))
+        said = capfd.readouterr().err
+        assert expected in said and bool(expected) == bool(said)
+        kernel_marks.remember(pressed(modes))
+    kernel_marks.remember(pressed("auto"), many=True)
+    kernel_marks.announce(pressed(0), many=True)
+    assert "once\n" in capfd.readouterr().err
+
+
+def test_modes_that_are_there_are_not_announced_as_missing(monkeypatch, tmp_path, capfd):
+    """Control: above, where they are not there."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    kernel_marks.remember(pressed("auto"), chosen=True)
+    kernel_marks.announce(pressed("auto"))
+    assert "once\n" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("chosen", [(), (2, 20)])
+def test_a_run_that_chooses_modes_announces_their_kernels_before_it_goes_on(
+    monkeypatch, tmp_path, capfd, chosen
+):
+    """And notes them only then. Control: a run that chooses none."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    said = []
+
+    def run(scene, model, *, vibrates, **_):
+        for modes in chosen:
+            vibrates(modes)
+            said.append(capfd.readouterr().err)
+        return flight(model=model)
+
+    monkeypatch.setattr(lowfi, "run", run)
+    store = Store(tmp_path / "out")
+    asked = pressed("auto")
+    store.fill("lowfi", [asked])
+    assert ["with modes of the rails" in text for text in said] == ([True, False] if chosen else [])
+    assert kernel_marks.mark(asked, chosen=True).is_file() == bool(chosen)
+    assert not kernel_marks.mark(asked).is_file()  # who asked for the run notes what it begins with

@@ -1,0 +1,113 @@
+"""``tipoff run``."""
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tipoff.studies.commands.options import (
+    CalibrationFile,
+    CheckpointEvery,
+    Model,
+    Modes,
+    Resume,
+    condition_names,
+)
+from tipoff.studies.commands.request import Request, scene_command
+from tipoff.studies.commands.running import Output, quantity
+
+if TYPE_CHECKING:
+    from tipoff.studies.render.document import Part
+
+
+@scene_command(without=["workers"])
+def run(
+    request: Request,
+    condition: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--condition",
+            metavar="NAME",
+            autocompletion=condition_names,
+            help="Named condition. Repeatable, or several with commas. Default: the scene itself.",
+        ),
+    ] = None,
+    model: Model = None,
+    modes: Modes = None,
+    calibration: CalibrationFile = None,
+    accuracy: Annotated[
+        str | None,
+        typer.Option(
+            "--accuracy",
+            metavar="RATE",
+            help="Largest error of the settled rates, "
+            '"0.1 deg/s": chooses the fastest model within it, as measured by tipoff cost.',
+        ),
+    ] = None,
+    budget: Annotated[
+        str | None,
+        typer.Option(
+            "--budget",
+            metavar="TIME",
+            help='Largest wall time, "2 s": chooses the '
+            "most accurate model within it, as measured by tipoff cost.",
+        ),
+    ] = None,
+    range_: Annotated[
+        bool,
+        typer.Option(
+            "--range",
+            help="Also print the 95 % range under the random errors of the scene (studies.errors): "
+            "thousands of launches of compliant contact.",
+        ),
+    ] = False,
+    *,
+    checkpoint_every: CheckpointEvery = None,
+    resume: Resume = True,
+) -> Output:
+    """Run one or more conditions in one model; prints velocity and rates after the exit.
+
+    The output names the model and, after tipoff compare, its error. The rail compliance is computed
+    once for a rail with its pads. --accuracy and --budget choose a model from the results of tipoff
+    cost.
+
+      tipoff run --range
+      tipoff run --condition phi35
+      tipoff run --condition phi15,phi35,phi60
+      tipoff run --condition phi35 --model finite-elements
+      tipoff run --condition h4 --accuracy "0.1 deg/s"
+    """
+    from tipoff.scenes.faults import Fault, SceneError, together
+    from tipoff.studies.runs import page
+    from tipoff.studies.single import single
+    from tipoff.workspace import models
+
+    def shown(found: dict) -> "list[Part]":
+        return [page.settled(found["conditions"])] if "conditions" in found else []
+
+    options, quiet = models.Options(model and model.value, calibration, modes), request.json_
+    study = request.study(
+        condition or ["nominal"], checkpoint_every=checkpoint_every, resume=resume
+    )
+    names = list(study.conditions)
+
+    def ranged(name: str, found: dict) -> dict:
+        return found | (single.ranged(study, name, quiet) if range_ else {})
+
+    if accuracy is None and budget is None:
+        models.require(options, checkpoint_every=checkpoint_every)
+        found = single.several(
+            names, lambda name: ranged(name, single.run(study, name, options, quiet))
+        )
+        return Output(found, shown)
+    given = {"--model": model, "--calibration": calibration, "--modes": modes}
+    if wrong := [name for name, value in given.items() if value is not None]:
+        expected = "none: --accuracy and --budget choose the model"
+        raise SceneError([Fault(name, "option", "given", expected) for name in wrong])
+    error, wall = together(
+        lambda: quantity("--accuracy", accuracy, "deg/s", "0.1 deg/s"),
+        lambda: quantity("--budget", budget, "s", "2 s"),
+    )
+    found = single.several(
+        names, lambda name: ranged(name, single.chosen(study, name, error, wall, quiet))
+    )
+    return Output(found, shown)

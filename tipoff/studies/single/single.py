@@ -1,0 +1,179 @@
+"""One run of one condition in one model; prints the result."""
+
+import math
+from collections.abc import Callable, Sequence
+from functools import partial
+
+from tipoff.lowfi.numerics import AUTO
+from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
+from tipoff.scenes.faults import InputError
+from tipoff.studies.agreement import kept, verdicts
+from tipoff.studies.agreement import stage as compare
+from tipoff.studies.calibration.files import constants
+from tipoff.studies.cost import choice
+from tipoff.studies.cost import stage as cost
+from tipoff.studies.render.uncertain import uncertain
+from tipoff.studies.runs.stage import beside, failure, row
+from tipoff.studies.single import disturbed
+from tipoff.workspace import kernel_marks, models, words
+from tipoff.workspace.attempt import attempt
+from tipoff.workspace.progress import say
+from tipoff.workspace.run import Run
+from tipoff.workspace.study import Study, StudyError
+
+
+def run(
+    study: Study, condition: str, options: models.Options = models.Options(), quiet: bool = False
+) -> dict:
+    """The result of the run, as in the result file of a stage; prints it unless ``quiet``.
+
+    Raises SceneError for an unreadable calibration and for options of another model, StudyError
+    where no model is named and the agreement table rejects the default on ``condition``.
+    """
+    fitted = constants(options.calibration, options.model, study.scene.name)
+    scene = study.condition(condition)
+    if options.model == FINITE_ELEMENTS:
+        return result_of(study, condition, study.highfi(condition), quiet)
+    if options.model == SPRINGS:
+        return result_of(study, condition, study.lowfi(condition, fitted), quiet)
+    kept.require_accepted(study, options.name, condition)
+    # checks the number of modes before the rail compliance is computed
+    vibrating = study.lowfi(condition, fitted, modes=options.asked)
+    if scene.contact is None:
+        return result_of(study, condition, vibrating, quiet)
+    found = study.rail_compliance(scene)
+    request = study.lowfi(condition, fitted, compliance=found, modes=options.asked)
+    return result_of(study, condition, request, quiet)
+
+
+def several(names: Sequence[str], make: Callable[[str], dict]) -> dict:
+    """The result that ``make`` has for one condition; of more than one, ``conditions`` holds a
+    result each and ``failed`` the failures of all. An error of the program in one leaves the
+    others."""
+    if len(names) == 1:
+        return make(names[0])
+    rows, failed = [], []
+    for name in names:
+        found, reason = attempt(name, partial(make, name), (InputError, StudyError))
+        if found is None:
+            failed.append(f"{name}: {reason}")
+        else:
+            rows.append(found)
+            failed += found["failed"]
+    return {"conditions": rows, "failed": failed}
+
+
+def chosen(
+    study: Study, condition: str, accuracy: float | None, budget: float | None, quiet: bool = False
+) -> dict:
+    """The same in the model that the cost study recommends; ``chosen`` is the model and the reason.
+    Raises StudyError where no model meets the limits, or without a cost study of this scene and
+    code."""
+    whole = study.unrestricted()  # stored results are those of all conditions
+    measured = cost.stored(whole)
+    if measured is None:
+        raise StudyError(
+            "there is no cost study of this scene with this code: run tipoff cost --scene "
+            f"{study.scene.name} first"
+        )
+    point = choice.choose(measured, condition, compare.stored(whole), accuracy, budget)
+    say(point["why"])
+    if point["rung"] == "highfi":
+        request = study.highfi(condition, element_size=point["setting"])
+    else:
+        candidate = next(
+            item for item in cost.surrogates(whole, [condition]) if item.name == point["rung"]
+        )
+        if point["modes"] is not None:
+            candidate = candidate._replace(modes=point["modes"])
+        request = candidate.request(study, condition, relative_tolerance=point["setting"])
+    return result_of(study, condition, request, quiet) | {"chosen": point}
+
+
+def result_of(study: Study, condition: str, request: Run, quiet: bool) -> dict:
+    found = study.store.load(request)
+    if found is None:
+        kernel_marks.announce(request)
+        found = study.store.get(request)
+        kernel_marks.remember(request)
+    calibrated, modes = request.calibration is not None, getattr(request.numerics, "modes", AUTO)
+    result = row(condition, found, study.relative(study.store.path(request)))
+    result |= beside(request, found) | {"implausible": request.scene.warnings}
+    result["agreement"] = kept.words(study, request.model, condition, calibrated, modes)
+    if request.fidelity == "lowfi" and found.outcome.rate is not None:
+        result["disturbed"] = disturbed.of(request, found, study.settings.clearance_change)
+    if not quiet:
+        print("\n".join(lines(result, model(request), study)))
+    return result | {"failed": failure(condition, request, found)}
+
+
+def ranged(study: Study, condition: str, quiet: bool = False) -> dict:
+    """``spread``: the ranges of a condition under the random errors of the scene (``nominal.spread``);
+    prints them unless ``quiet``."""
+    from tipoff.studies.nominal import page, spread
+
+    found = spread.of(study, study.condition(condition))
+    if not quiet:
+        print("\n".join(f"  {line}" for line in page.ranges(found)))
+    return {"spread": found}
+
+
+def model(request: Run) -> str:
+    """The model of a run with its numerics."""
+    if request.fidelity == "highfi":
+        return f"{FINITE_ELEMENTS}, {1e3 * request.numerics.element_size:g} mm"
+    found = words.model(request.scene, request.calibration is not None, request.compliance)
+    modes = request.numerics.count
+    return found + (
+        f", {words.counted(modes, 'mode')} of each rail"
+        if modes and request.model == COMPLIANT
+        else ""
+    )
+
+
+def lines(result: dict, made_with: str, study: Study) -> list[str]:
+    """The result as lines of text with units."""
+    text = [
+        f"{study.scene.name} / {result['condition']}, model {made_with}: {result['status']}"
+        + (f" ({result['message']})" if result["message"] else "")
+    ]
+    text.append(f"  thrust        {result['thrust']['text']}")
+    if result["exit_time_s"] is not None:
+        text.append(f"  exit          {1e3 * result['exit_time_s']:.4g} ms after ignition")
+    if settled := result["settled"]:
+        text.append(
+            "  velocity      "
+            + ", ".join(uncertain(value, least=1e-4) for value in settled["velocity_m_s"])
+            + " m/s (x, y, z)"
+        )
+        text.append(
+            "  rate          "
+            + ", ".join(map(uncertain, settled["rate_deg_s"]))
+            + f" deg/s (x, y, z), {uncertain(math.hypot(*settled['rate_deg_s']))} in total"
+        )
+        if hand := result.get("by_hand"):
+            rates = ", ".join(map(uncertain, hand["rate_deg_s"]))
+            text.append(f"  by hand       {rates} deg/s: {hand['words']}")
+        text.append(
+            f"  direction     {settled['direction_error_deg']:.4g} deg off axis, "
+            f"{1e3 * settled['lateral_velocity_m_s']:.4g} mm/s across"
+        )
+    if result.get("peak_stress_pa") is not None:
+        place = ", ".join(f"{1e3 * value:.4g}" for value in result["peak_stress_place_m"])
+        text.append(
+            f"  peak stress   {1e-6 * result['peak_stress_pa']:.4g} MPa (von Mises) at x, y, z = "
+            f"{place} mm, rail {result['peak_stress_rail']}, "
+            f"{1e3 * result['peak_stress_time_s']:.4g} ms after ignition"
+        )
+        text += [f"  warning       {warning}" for warning in result["warnings"]]
+    if "disturbed" in result:
+        limit = verdicts.gates(study.scene)["settled_rate_error_deg_s"]
+        text += disturbed.lines(result["disturbed"], limit)
+    if why := result["numerics"].get("modes_why"):
+        text.append(f"  rail modes    {why}")
+    if under := result.get("rail_compliance"):
+        text.append(f"  rails         {under['words']}")
+    text.append(f"  agreement     {result['agreement']}")
+    text.append(f"  took          {result['wall_s']:.3g} s, {result['steps']} steps")
+    text.append(f"  trajectory    {study.path(result['trajectory'])}")
+    return text

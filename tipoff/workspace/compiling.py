@@ -1,0 +1,56 @@
+"""Kernels compiled before the runs that need them, side by side in processes.
+
+Numba compiles one kernel at a time in a process, so that threads which make runs with different
+effects would wait for each other.
+"""
+
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import replace
+from multiprocessing import get_context
+from pathlib import Path
+
+from tipoff.workspace import kernel_marks
+from tipoff.workspace.progress import Board, say
+from tipoff.workspace.run import Run, execute, prepare
+
+
+def warm_up(run: Run) -> None:
+    """Compile or load the kernels of ``run`` by its first milliseconds. A run that chooses its modes of
+    the rails begins without any; kernels with modes are compiled when it needs them."""
+    prepare(run)
+    scene = run.scene
+    first = min(scene.time_limit, max(scene.output.interval, 1e-3))
+    execute(replace(run, scene=scene.replace({"duration": first})))
+
+
+def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
+    """Compile the kernels of ``runs`` that no earlier call has compiled, ``workers`` at a time, with
+    progress under ``title`` on standard error.
+
+    Runs with the same model and the same effects count as one. With one worker, or one kernel to
+    compile, this does nothing, and the run compiles its own.
+    """
+    missing: dict[Path, Run] = {}
+    for run in runs:
+        if not (mark := kernel_marks.mark(run)).is_file():
+            missing.setdefault(mark, run)
+    if min(workers, len(missing)) < 2:
+        return
+    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"))
+    try:
+        with Board(title, len(missing)) as board:
+            pending = {}
+            for run in missing.values():
+                board.callback(run.label)(0.0)
+                pending[pool.submit(warm_up, run)] = run
+            for future in as_completed(pending):
+                run = pending[future]
+                future.result()
+                kernel_marks.remember(run)
+                board.finished(run.label, "compiled")
+    except BrokenProcessPool:
+        say("  a process that compiled kernels was ended; the runs compile their own")
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)

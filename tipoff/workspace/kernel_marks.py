@@ -1,0 +1,109 @@
+"""Which kernels runs have compiled: a mark in the cache for each, so that a user is told before the first
+run that has to wait for them.
+
+A surrogate run that chooses its modes of the rails begins with kernels without modes. Those with modes
+are others; they are compiled only where the run turns out to need them, and have a mark of their own.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from tipoff import sources
+from tipoff.files import content_hash
+from tipoff.kernels.jit import kernel_digest
+from tipoff.lowfi.numerics import AUTO
+from tipoff.mechanics.models import COMPLIANT
+from tipoff.scenes.effects.registry import EFFECTS
+from tipoff.scenes.scene import Scene
+from tipoff.workspace.progress import say
+from tipoff.workspace.run import Run
+
+_WITH_MODES = ", and the same time again if modes of the rails are needed"
+_SAID: set[Path] = set()  # marks of kernels that this process has announced
+
+
+@contextmanager
+def first_use(run: Run, many: bool = False) -> Iterator[None]:
+    """Announce the kernels of ``run``, or of ``many`` cases like it, and note that they are there
+    once the block has used them."""
+    announce(run, many=many)
+    yield
+    remember(run, many=many)
+
+
+@contextmanager
+def chosen_modes(run: Run) -> Iterator[Callable[[int], None]]:
+    """The argument ``vibrates`` of ``lowfi.run`` for ``run``: it announces the kernels with modes once
+    the run has chosen some. They are noted when the block has used them."""
+    chosen: list[int] = []
+
+    def vibrates(modes: int) -> None:
+        if not chosen:
+            announce(run, chosen=True)
+        chosen.append(modes)
+
+    yield vibrates
+    if chosen:
+        remember(run, chosen=True)
+
+
+def announce(run: Run, chosen: bool = False, many: bool = False) -> None:
+    """Print, once in a process, that the kernels of ``run``, or of ``many`` cases like it, have to be
+    compiled, where no run has compiled them: those that it begins with, or where modes were ``chosen``
+    in it those with modes."""
+    path = mark(run, chosen, many)
+    if path.is_file() or path in _SAID:
+        return
+    _SAID.add(path)
+    vibrates = _vibrates(run, chosen)
+    chooses = _modes(run) == AUTO and not chosen
+    say(
+        f"compiling the kernels of model {run.model}"
+        + (" with modes of the rails" if vibrates else "")
+        + " for these effects: about 20 s, once"
+        + (_WITH_MODES if chooses and not mark(run, True, many).is_file() else "")
+    )
+
+
+def remember(run: Run, chosen: bool = False, many: bool = False) -> None:
+    """Note in the cache that ``run``, or ``many`` cases like it, compiled its kernels, or where modes
+    were ``chosen`` those with modes."""
+    path = mark(run, chosen, many)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.touch()
+
+
+def mark(run: Run, chosen: bool = False, many: bool = False) -> Path:
+    """File in the cache of kernels that says that those of ``run``, or of ``many`` cases like it, are
+    there."""
+    key = content_hash(
+        kernel_digest(f"tipoff.{run.fidelity}"),
+        run.model,
+        _not_compiled(run.scene),
+        _vibrates(run, chosen),
+        many,
+        # many cases that choose their modes need the kernels without modes and those with
+        many and not chosen and _modes(run) == AUTO,
+    )
+    return sources.cache_folder() / "kernels" / f"compiled-{key[:16]}"
+
+
+def _not_compiled(scene: Scene) -> list[str]:
+    """Effects without code in the kernels of ``scene``: those that it lacks, and body forces where a
+    free platform falls with the payload (``mechanics.comoving``)."""
+    falls = scene.platform is not None
+    absent = scene.absent_effects()
+    return [item.key for item in EFFECTS if item.key in absent or (falls and item.is_body_force)]
+
+
+def _vibrates(run: Run, chosen: bool) -> bool:
+    """Whether the run needs the kernels with modes of the rails: it asks for some, or has ``chosen``
+    some."""
+    return chosen or _modes(run) not in (AUTO, 0)
+
+
+def _modes(run: Run) -> str | int:
+    """Modes of the rails that ``run`` asks for, zero where nothing presses a rail."""
+    pressed = run.model == COMPLIANT and run.compliance is not None
+    return getattr(run.numerics, "modes", 0) if pressed else 0

@@ -1,0 +1,57 @@
+"""Choice of the model by options: compliant contact by default. An option of one model given with
+another model is bad input."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+from tipoff.lowfi.numerics import AUTO
+from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SURROGATES
+from tipoff.scenes.faults import Fault, SceneError
+
+_OWNERS = {
+    "--calibration": SURROGATES,
+    "--modes": (COMPLIANT,),
+    "--checkpoint-every": (FINITE_ELEMENTS,),
+}
+
+
+class Options(NamedTuple):
+    """Options of a model: its ``name``, None for the default; the file of a ``calibration`` of a
+    surrogate; the number of ``modes`` of each rail on compliant contact, or
+    ``"auto"``, the default."""
+
+    name: str | None = None
+    calibration: Path | None = None
+    modes: int | str | None = None
+
+    @property
+    def asked(self) -> int | str:
+        """The modes in numerics."""
+        return AUTO if self.modes is None else self.modes
+
+    @property
+    def model(self) -> str:
+        """The name of the model."""
+        return self.name or COMPLIANT
+
+
+def require(options: Options, **others: object) -> None:
+    """Raises SceneError, every fault listed, for an unknown name of a model and for options of
+    another model. ``others`` are further options by the name of their parameter, None where they
+    were not given."""
+    if options.model not in MODELS:
+        raise SceneError([Fault("--model", "name", options.model, f"one of {', '.join(MODELS)}")])
+    given: dict[str, object] = {"--calibration": options.calibration, "--modes": options.modes}
+    given |= {f"--{name.replace('_', '-')}": value for name, value in others.items()}
+    faults = [
+        Fault(
+            option,
+            "option",
+            str(value),
+            f"none with --model {options.model}: it is an option of {' and '.join(_OWNERS[option])}",
+        )
+        for option, value in given.items()
+        if value is not None and options.model not in _OWNERS[option]
+    ]
+    if faults:
+        raise SceneError(faults)

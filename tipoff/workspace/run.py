@@ -1,0 +1,97 @@
+"""A request for one run, and how it is made."""
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+from tipoff import sources
+from tipoff.files import content_hash
+from tipoff.mechanics.models import FINITE_ELEMENTS
+from tipoff.mechanics.rail_compliance import RailCompliance, model_of
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.scene import Scene
+from tipoff.workspace.progress import say
+
+_SAID: set[str] = set()  # warnings about meshes that this process has printed
+
+
+@dataclass(frozen=True)
+class Run:
+    """A request for a run: a fidelity, a label that is unique for the scene, the scene of one
+    condition, numerics, and for a surrogate the calibration or the rail compliance."""
+
+    fidelity: str
+    label: str
+    scene: Scene
+    numerics: Any
+    calibration: Calibration | None = None
+    compliance: RailCompliance | None = None
+
+    @property
+    def model(self) -> str:
+        """Name of its model."""
+        return (
+            FINITE_ELEMENTS if self.fidelity == "highfi" else model_of(self.scene, self.compliance)
+        )
+
+    @property
+    def key(self) -> str:
+        """Hexadecimal digest of everything the result depends on."""
+        used = self.calibration.applied if self.calibration else None
+        return content_hash(
+            self.fidelity,
+            self.scene.hash,
+            asdict(self.numerics),
+            used,
+            self.compliance.hash if self.compliance else None,
+            sources.digest(f"tipoff.{self.fidelity}"),
+        )
+
+
+def with_modes_of(nominal: Trajectory, run: Run) -> Run:
+    """``run`` with the rail modes that the ``nominal`` run chose. Two runs that are compared have the
+    same equations, or a change of modes would show as a change by what differs between them."""
+    if "modes_why" not in nominal.numerics:
+        return run
+    return replace(run, numerics=replace(run.numerics, modes=nominal.numerics["modes"]))
+
+
+def execute(
+    run: Run,
+    progress: Callable[[float], None] | None = None,
+    threads: int | None = None,
+    **further: Any,
+) -> Trajectory:
+    """Make a run without a store. ``further`` are arguments of ``highfi.run`` for checkpoints, or
+    ``vibrates`` of ``lowfi.run``. For the reference, ``threads`` is their number, None for the
+    default."""
+    if run.fidelity == "highfi":
+        from tipoff import highfi
+
+        return highfi.run(
+            run.scene, numerics=run.numerics, progress=progress, threads=threads, **further
+        )
+    from tipoff import lowfi
+
+    return lowfi.run(
+        run.scene,
+        run.model,
+        compliance=run.compliance,
+        calibration=run.calibration,
+        numerics=run.numerics,
+        progress=progress,
+        **further,
+    )
+
+
+def prepare(run: Run) -> None:
+    """The part of a run that needs the main thread; call it before ``execute`` in another thread.
+    Prints each warning about its mesh once."""
+    if run.fidelity == "highfi":
+        from tipoff import highfi
+
+        for warning in highfi.prepare(run.scene, run.numerics).warnings:
+            if warning not in _SAID:
+                _SAID.add(warning)
+                say(f"  mesh: {warning}")

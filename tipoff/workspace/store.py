@@ -1,0 +1,147 @@
+"""Stored results of runs: ``out/<scene>/<fidelity>/<label>-<key>.nc``.
+
+    key = SHA-256(physical inputs of the scene, numerics, calibrated constants, rail compliance,
+                  code that the fidelity depends on)
+
+A run is loaded if its file exists and matches its digest; otherwise it is made and written
+atomically. So an interrupted study continues with the missing runs, and a change of inputs or code
+or a damaged file never gives an old result. A run of the reference in progress has a checkpoint
+``<label>-<key>.checkpoint``, which is removed after the result is written.
+
+Runs are parallel in threads: the kernels release the interpreter. The mesh generator needs the main
+thread, so it is called before.
+"""
+
+import functools
+from collections.abc import Callable, Sequence
+from concurrent.futures import as_completed
+from pathlib import Path
+
+from tipoff.files import discard
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.faults import InputError
+from tipoff.workspace import kernel_marks
+from tipoff.workspace.attempt import attempt
+from tipoff.workspace.errors import StudyError
+from tipoff.workspace.progress import Board, Interrupted, say, team
+from tipoff.workspace.run import Run, execute, prepare
+
+# what stops all runs: bad input, Ctrl-C, and what this machine refuses
+_STOPPING = (InputError, StudyError, Interrupted, OSError, MemoryError)
+
+
+def _surrogate(
+    run: Run, progress: Callable[[float], None], threads: int | None = None
+) -> Trajectory:
+    """Run the surrogate. Kernels with modes of the rails are announced once it has chosen some."""
+    with kernel_marks.chosen_modes(run) as vibrates:
+        return execute(run, progress, threads, vibrates=vibrates)
+
+
+class Store:
+    """Trajectories below one folder."""
+
+    def __init__(
+        self, folder: Path, workers: int = 1, checkpoint_every: float = 60.0, resume: bool = True
+    ):
+        self.folder, self.workers = Path(folder), workers
+        self.checkpoint_every, self.resume = checkpoint_every, resume
+
+    def path(self, run: Run) -> Path:
+        """File of the result of ``run``."""
+        return self.folder / run.fidelity / f"{run.label}-{run.key[:8]}.nc"
+
+    def checkpoint(self, run: Run) -> Path:
+        """File of the checkpoint of ``run``."""
+        return self.path(run).with_suffix(".checkpoint")
+
+    def load(self, run: Run) -> Trajectory | None:
+        """The stored result, or None without a readable one. Names a damaged file on standard
+        error."""
+        path = self.path(run)
+        if not path.is_file():
+            return None
+        try:
+            return Trajectory.load(path)
+        # damaged bytes raise many types of exceptions in the netCDF libraries
+        except Exception as fault:
+            say(
+                f"  {path} is damaged or was edited ({type(fault).__name__}), so {run.label} is "
+                f"run again"
+            )
+            return None
+
+    def get(self, run: Run) -> Trajectory:
+        """The result of one run, from the store or made now."""
+        return self.fill(run.fidelity, [run])[0]
+
+    def fill(self, title: str, runs: Sequence[Run]) -> list[Trajectory]:
+        """Results of ``runs`` in their order; those missing are run, ``workers`` at a time, with
+        progress on standard error.
+
+        Ctrl-C stops the runs in progress and raises KeyboardInterrupt; finished results stay. An
+        error of the program in one run leaves the others; then StudyError is raised.
+        """
+        found = {run.key: trajectory for run in runs if (trajectory := self.load(run)) is not None}
+        missing = list({run.key: run for run in runs if run.key not in found}.values())
+        if missing:
+            found |= self._make(title, missing)
+        return [found[run.key] for run in runs]
+
+    def _make(self, title: str, runs: list[Run]) -> dict[str, Trajectory]:
+        for run in runs:
+            prepare(run)
+        made: dict[str, Trajectory] = {}
+        # Parallel runs are fastest with one thread each: threads of one run wait for each other.
+        threads = None if min(self.workers, len(runs)) == 1 else 1
+        with Board(title, len(runs)) as board, team(board, self.workers) as pool:
+            pending = {pool.submit(self._one, run, board, threads): run for run in runs}
+            failed = []
+            for future in as_completed(pending):
+                run = pending[future]
+                found, reason = attempt(run.label, future.result, _STOPPING)
+                if found is None:
+                    failed.append(f"{run.label}: {reason}")
+                else:
+                    made[run.key] = found
+        if failed:
+            raise StudyError("these runs failed:\n  " + "\n  ".join(failed))
+        return made
+
+    def _one(self, run: Run, board: Board, threads: int | None) -> Trajectory:
+        progress = board.callback(run.label)
+        progress(0.0)
+        make = self._kept if run.fidelity == "highfi" else _surrogate
+        trajectory = make(run, progress, threads)
+        trajectory.save(self.path(run))
+        discard(self.checkpoint(run))
+        message = f" ({trajectory.message})" if trajectory.message else ""
+        board.finished(
+            run.label, f"{trajectory.status}{message} in {trajectory.cost['wall_s']:.3g} s"
+        )
+        return trajectory
+
+    def _kept(self, run: Run, progress: Callable[[float], None], threads: int | None) -> Trajectory:
+        """Run the reference from its checkpoint, or from the beginning without a usable one."""
+        from tipoff import highfi
+
+        path = self.checkpoint(run)
+        if not self.resume:
+            discard(path)
+        make = functools.partial(
+            execute,
+            run,
+            progress,
+            threads,
+            checkpoint=path,
+            checkpoint_every=self.checkpoint_every,
+            resume=True,
+        )
+        if path.is_file():
+            say(f"  {run.label} continues from {path}")
+        try:
+            return make()
+        except highfi.CheckpointError as fault:
+            say(f"  {path} {fault.reason}, so {run.label} starts from the beginning")
+        discard(path)
+        return make()

@@ -1,0 +1,321 @@
+"""One scene under study: its conditions, folder, stored runs, and stages that are skipped when
+nothing changed.
+
+A stage writes ``out/<scene>/<stage>.json`` with the ``key`` of everything it depends on, the
+digests of the ``files`` it wrote, and the warnings of the scene as ``implausible``. It is made again
+if the key differs, if one of its files is missing or changed, or if the result does not match its own
+digest. Readers verify all files, so a stage never uses a damaged one.
+"""
+
+import hashlib
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, TypeVar
+
+from tipoff import sources
+from tipoff.files import DamageError, content_hash, read_json, write_json
+from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes import plausibility
+from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.rail import SectionTable
+from tipoff.scenes.scene import NOMINAL, Scene
+from tipoff.workspace import words
+from tipoff.workspace.errors import StudyError as StudyError
+from tipoff.workspace.progress import say
+from tipoff.workspace.run import Run
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.store import Store
+
+FAILED = ("diverged", "refused")
+_T = TypeVar("_T")
+
+
+@dataclass(frozen=True)
+class Study:
+    """``folder`` is out/<scene>; ``only`` restricts the conditions that highfi and lowfi run."""
+
+    scene: Scene
+    folder: Path
+    settings: Settings
+    only: tuple[str, ...] = ()
+    _announced: set = field(
+        default_factory=set, repr=False, compare=False
+    )  # stages already announced
+
+    def unrestricted(self) -> "Study":
+        """The same study of all its conditions."""
+        return replace(self, only=()) if self.only else self
+
+    @cached_property
+    def store(self) -> Store:
+        """Trajectories of this scene."""
+        return Store(
+            self.folder, self.settings.workers, self.settings.checkpoint_every, self.settings.resume
+        )
+
+    @cached_property
+    def conditions(self) -> dict[str, Scene]:
+        """Scene of every condition by name: fitted and held out, else every named one, else the
+        scene itself."""
+        roles = self.scene.agreement
+        names = (
+            self.only
+            or tuple(dict.fromkeys([*roles.fitted, *roles.held_out]))
+            or tuple(self.scene.conditions)
+        )
+        return {name: self.condition(name) for name in names} or {NOMINAL: self.scene}
+
+    def condition(self, name: str) -> Scene:
+        """The scene of one condition. Raises SceneError for a name the scene does not have."""
+        return self.scene.condition(name)
+
+    def fitted(self) -> list[str]:
+        """Names of the fitted conditions. Raises SceneError when the scene names none."""
+        if not self.scene.agreement.fitted:
+            raise SceneError(
+                [
+                    Fault(
+                        self.scene.name,
+                        "agreement.fitted",
+                        "nothing",
+                        "at least one condition to calibrate on",
+                    )
+                ]
+            )
+        return list(self.scene.agreement.fitted)
+
+    def highfi(
+        self,
+        name: str,
+        overrides: dict | None = None,
+        tag: str = "",
+        element_size: float | None = None,
+        **numerics: Any,
+    ) -> Run:
+        """A finite-element run of condition ``name`` with ``overrides``; ``tag`` distinguishes its
+        label. ``element_size`` is in m."""
+        from tipoff import highfi
+
+        numbers = _numerics(
+            highfi.Numerics,
+            element_size=element_size or self.settings.element_size,
+            **{"step_everything": self.settings.step_everything} | numerics,
+        )
+        return Run("highfi", name + tag, self.condition(name).replace(overrides or {}), numbers)
+
+    def coarse(
+        self, name: str, overrides: dict | None = None, tag: str = "", **numerics: Any
+    ) -> Run:
+        """The same on the coarse mesh, for differences of runs."""
+        return self.highfi(name, overrides, f"{tag}-coarse", self.settings.coarse_size, **numerics)
+
+    def lowfi(
+        self,
+        name: str,
+        calibration: Calibration | None = None,
+        overrides: dict | None = None,
+        tag: str = "",
+        compliance: RailCompliance | None = None,
+        **numerics: Any,
+    ) -> Run:
+        """A surrogate run of condition ``name``: compliant where its rail ``compliance`` is
+        given, else on springs, with the scene's own constants unless calibrated."""
+        from tipoff import lowfi
+
+        label = (
+            f"{name}{tag}{'-calibrated' if calibration else ''}{'-compliant' if compliance else ''}"
+        )
+        numbers = _numerics(lowfi.Numerics, **numerics)
+        scene = self.condition(name).replace(overrides or {})
+        return Run(
+            "lowfi",
+            label,
+            scene,
+            numbers,
+            calibration,
+            compliance or self.rigid_rails(scene),
+        )
+
+    def rail_compliance(
+        self, scene: Scene, element_size: float | None = None
+    ) -> RailCompliance | None:
+        """Rail compliance under the pads of ``scene``, on elements of ``element_size`` (m; None:
+        those of the reference). It is computed once for a rail with its pads and clearance, and
+        stored in this folder. None without contact."""
+        if scene.contact is None:
+            return None
+        from tipoff.calibration import rail_compliance  # slow to load
+
+        size = element_size or self.settings.element_size
+        return rail_compliance.kept(scene, self.folder, size, say)
+
+    def rail_compliances(
+        self, names: Iterable[str], element_size: float | None = None
+    ) -> dict[str, RailCompliance | None]:
+        """The same for each condition by name."""
+        return self.compliances_of({name: self.condition(name) for name in names}, element_size)
+
+    def compliances_of(
+        self, scenes: Mapping[str, Scene], element_size: float | None = None
+    ) -> dict[str, RailCompliance | None]:
+        """The same for each of ``scenes``; those from which the same is computed share it."""
+        from tipoff.calibration.rail_compliance import made_from  # slow to load
+
+        found: dict[str, RailCompliance | None] = {"": None}
+        keys = {name: made_from(scene) if scene.contact else "" for name, scene in scenes.items()}
+        for name, key in keys.items():
+            if key not in found:
+                found[key] = self.rail_compliance(scenes[name], element_size)
+        return {name: found[key] for name, key in keys.items()}
+
+    def rigid_rails(self, scene: Scene) -> RailCompliance | None:
+        """The rails of springs in ``scene``: rigid, with their offset if they are warm or from a file,
+        else None."""
+        if scene.thermal is not None:
+            found = self.rail_compliance(scene)
+            return found and found.rigid()
+        if isinstance(scene.rail, SectionTable):
+            return None
+        from tipoff.calibration import rail_compliance  # slow to load
+
+        return rail_compliance.walls(scene, self.settings.element_size)
+
+    def path(self, name: str) -> Path:
+        """A file in the folder of this scene."""
+        return self.folder / name
+
+    def relative(self, path: Path) -> str:
+        """A path relative to the folder of this scene, as in result files."""
+        return path.relative_to(self.folder).as_posix()
+
+    def key(self, module: str, *inputs: Any) -> str:
+        """Digest of the scene with its conditions and roles, settings, the code that the stage's
+        ``module`` depends on, and further inputs."""
+        described = self.scene.model_dump(
+            mode="json", include={"name", "conditions", "agreement", "provenance"}
+        )
+        return content_hash(
+            self.scene.hash,
+            described,
+            self.settings.hash,
+            list(self.only),
+            sources.digest(module),
+            inputs,
+        )
+
+    def stage(self, name: str, key: str, make: Callable[[], tuple[dict, list[Path]]]) -> dict:
+        """The result of a stage: the stored one if its key is the same and its files are intact,
+        else a new one, which is written.
+
+        ``make`` returns the result and the files it wrote.
+        """
+        path = self.path(f"{name}.json")
+        found = read(path, f"{name} is made again")
+        if (
+            found is not None
+            and found.get("key") == key
+            and self.whole(found, f"{name} is made again")
+        ):
+            self._announce(name, "nothing changed")
+            return found
+        self._announce(name, self.scene.name)
+        result, files = make()
+        return write_json(
+            path,
+            {
+                "stage": name,
+                "scene": self.scene.name,
+                "key": key,
+                "quantities": words.QUANTITIES,
+                "implausible": plausibility.of_all_conditions(self.scene),
+                **result,
+                "files": {self.relative(file): _digest(file) for file in files},
+            },
+        )
+
+    def stored(self, name: str, key: Callable[[dict], str]) -> dict | None:
+        """The stored result of a stage if it has the ``key`` of a new result with its options.
+        None otherwise, also where the options are invalid now or one of their files is missing."""
+        found = read(self.path(f"{name}.json"))
+        try:
+            return found if found and found["key"] == key(found) else None
+        except (SceneError, OSError, KeyError, TypeError, ValueError, AttributeError):
+            return None
+
+    def _announce(self, name: str, text: str) -> None:
+        if name not in self._announced:
+            say(f"{name}: {text}")
+        self._announced.add(name)
+
+    def whole(self, document: dict, remedy: str) -> bool:
+        """Whether every file of a result exists unchanged; prints the name of the first changed
+        file with the ``remedy``."""
+        listed = document.get("files", {})
+        if not isinstance(listed, dict):
+            return False
+        for name, expected in listed.items():
+            path = self.path(name)
+            try:
+                if not path.is_file():
+                    return False
+            except ValueError:  # a name that no file has
+                return False
+            if _digest(path) != expected:
+                say(f"  {path} has changed since it was written: {remedy}")
+                return False
+        return True
+
+
+def read(path: Path, remedy: str = "repeat the command that wrote it") -> dict | None:
+    """The content of a result file; None if it is missing or does not match its digest. Prints the
+    latter with the ``remedy``."""
+    try:
+        return read_json(path)
+    except DamageError as fault:
+        say(f"  {path} {fault.reason}: {remedy}")
+    except OSError:
+        pass
+    return None
+
+
+def picked(path: Path, pick: Callable[[dict], _T]) -> _T | None:
+    """What ``pick`` takes from a result file whose key is not compared, such as one that another
+    version of the program wrote; None where the file is missing, damaged, or lacks it. Prints the
+    latter two."""
+    found = read(path)
+    if found is None:
+        return None
+    try:
+        return pick(found)
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
+        say(f"  {path} was written by another version of the program: repeat the command")
+        return None
+
+
+def require_success(runs: dict[str, Trajectory], purpose: str) -> None:
+    """Raise StudyError naming every run that failed."""
+    failed = [
+        f"{name}: {run.status}{': ' + run.message if run.message else ''}"
+        for name, run in runs.items()
+        if run.status in FAILED
+    ]
+    if failed:
+        raise StudyError(f"cannot {purpose}, because these runs failed:\n  " + "\n  ".join(failed))
+
+
+def _numerics(kind: type, **values: Any) -> Any:
+    """The numerics of a fidelity. Raises SceneError for a bad value."""
+    try:
+        return kind(**values)
+    except ValueError as fault:
+        options = ", ".join(f"--{name.replace('_', '-')}" for name in values)
+        given = ", ".join(map(str, values.values()))
+        raise SceneError([Fault(options, "value", given, str(fault))]) from None
+
+
+def _digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()

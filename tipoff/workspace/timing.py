@@ -1,0 +1,98 @@
+"""Timed runs: the same case in both fidelities, alternately in one process, without compilation.
+
+    ratio = median wall time of highfi.run / median wall time of lowfi.run
+
+``low`` and ``high`` are the smallest and the largest ratio of any pair of repeats.
+"""
+
+import statistics
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.workspace import machine
+from tipoff.workspace.compiling import warm_up
+from tipoff.workspace.run import Run, execute
+
+
+def timed(
+    run: Run, progress: Callable[[float], None] | None = None
+) -> tuple[Trajectory, float, float]:
+    """Result, wall seconds and processor seconds of one run, both without compilation."""
+    wall, processor = time.perf_counter(), time.process_time()
+    found = execute(run, progress)
+    compiling = found.cost["compile_s"]
+    return (
+        found,
+        time.perf_counter() - wall - compiling,
+        time.process_time() - processor - compiling,
+    )
+
+
+def speedups(
+    highfi: Run,
+    surrogates: dict[str, Run],
+    highfi_repeats: int,
+    lowfi_repeats: int,
+    progress: Callable[[float], None] = lambda fraction: None,
+) -> dict[str, dict]:
+    """Speed of the reference and of each surrogate on one case; ``lowfi_repeats`` runs of each
+    surrogate follow each of the ``highfi_repeats`` reference runs."""
+    for run in (highfi, *surrogates.values()):
+        warm_up(run)
+    slow: list = []
+    fast: dict[str, list] = {name: [] for name in surrogates}
+
+    def part(repeat: int) -> Callable[[float], None]:
+        return lambda fraction: progress((repeat + fraction) / highfi_repeats)
+
+    for repeat in range(highfi_repeats):
+        slow.append(timed(highfi, part(repeat)))
+        for name, run in surrogates.items():
+            fast[name] += [timed(run) for _ in range(lowfi_repeats)]
+    return {name: _speedup(highfi.label, slow, found) for name, found in fast.items()}
+
+
+def _speedup(condition: str, slow: list, fast: list) -> dict:
+    slow_wall, fast_wall = [wall for _, wall, _ in slow], [wall for _, wall, _ in fast]
+    slow_median, fast_median = statistics.median(slow_wall), statistics.median(fast_wall)
+    return {
+        "condition": condition,
+        "ratio": slow_median / fast_median,
+        "low": min(slow_wall) / max(fast_wall),
+        "high": max(slow_wall) / min(fast_wall),
+        "highfi_wall_s": slow_median,
+        "lowfi_wall_s": fast_median,
+        "highfi_wall_range_s": [min(slow_wall), max(slow_wall)],
+        "lowfi_wall_range_s": [min(fast_wall), max(fast_wall)],
+        "elements": slow[0][0].cost["elements"],
+        "highfi_repeats": len(slow),
+        "lowfi_repeats": len(fast),
+        "kernel_ratio": _median_ratio(
+            [run.cost.get("kernel_s") for run, _, _ in slow],
+            [run.cost.get("kernel_s") for run, _, _ in fast],
+        ),
+        "cpu_ratio": _median_ratio([cpu for _, _, cpu in slow], [cpu for _, _, cpu in fast]),
+        "repeats_identical": _identical([[run for run, _, _ in runs] for runs in (slow, fast)]),
+        "hardware": machine.describe(),
+    }
+
+
+def _identical(repeats: list[list[Trajectory]]) -> bool | None:
+    """Whether all repeats of each model agree in every bit of their motion; None without any."""
+    pairs = [(run, first) for first, *others in repeats for run in others]
+    if not pairs:
+        return None
+    return all(
+        np.array_equal(getattr(run, name), getattr(first, name))
+        for run, first in pairs
+        for name in ("velocity", "rate", "quaternion", "pad_force", "transverse_energy")
+    )
+
+
+def _median_ratio(slow: list, fast: list) -> float | None:
+    if None in slow or None in fast or statistics.median(fast) <= 0.0:
+        return None
+    return statistics.median(slow) / statistics.median(fast)
