@@ -1,5 +1,5 @@
 """Solids from CAD files, meshed in a separate process: a damaged line in a file can stop the
-process that reads it, and a wrong number can use all its memory.
+process that reads it, keep it busy without end, or use all its memory.
 
 The process gets a scene and an element size as JSON on its standard input. It leaves the mesh, or
 its refusal, in a folder.
@@ -18,6 +18,7 @@ from typing import Any
 import meshio
 import numpy as np
 
+from tipoff.files import tell
 from tipoff.highfi.mesh.rail_mesh import MeshError
 from tipoff.highfi.rail import memory_estimate
 from tipoff.highfi.rail.solid_mesh import meshed
@@ -28,6 +29,8 @@ from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import GeometryTable
 from tipoff.scenes.scene import Scene
 
+CPU_SECONDS = 900  # s; millions of elements take a few minutes
+_SAID_AFTER = 5.0  # s; loading its libraries takes a second or two
 _REPLY, _ARRAYS = "reply.json", "mesh.npz"
 
 
@@ -37,7 +40,8 @@ def mesh_of(
     """Elements and surfaces of the solid of ``scene``, and the areas (m2) of the solid's own faces in
     the boxes of each surface, as ``solid_mesh.meshed`` makes them.
 
-    Raises SceneError, MeshError, also where the process ends before its time, and GmshUnavailable.
+    Raises SceneError, MeshError, also where the process ends before its time or takes more than
+    ``CPU_SECONDS``, and GmshUnavailable.
     """
     with tempfile.TemporaryDirectory(prefix="tipoff-") as name:
         folder = Path(name)
@@ -46,22 +50,22 @@ def mesh_of(
             "scene": scene.resolved(),
             "element_size": element_size,
             "memory": memory_estimate.available(),
+            "cpu_seconds": CPU_SECONDS,
         }
-        done = subprocess.run(
-            [sys.executable, "-c", f"from {__name__} import main; main()"],
-            input=json.dumps(order),
-            text=True,
-            capture_output=True,
-            env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
-        )
-        if done.returncode < 0:
-            how = signal.Signals(-done.returncode).name
+        code, errors = _run(json.dumps(order), rail.path())
+        if code == -signal.SIGXCPU:
+            raise MeshError(
+                f"{rail.path()} cannot be used: gmsh has not meshed it after {CPU_SECONDS} s of processor "
+                "time, so it is damaged, or the elements are too small"
+            )
+        if code < 0:
+            how = signal.Signals(-code).name
             raise MeshError(
                 f"{rail.path()} cannot be used: it is damaged, or too much for gmsh, whose process "
                 f"ended with {how}"
             )
-        if done.returncode:
-            raise RuntimeError(f"the process that meshes {rail.path()} failed:\n{done.stderr}")
+        if code:
+            raise RuntimeError(f"the process that meshes {rail.path()} failed:\n{errors}")
         reply = json.loads((folder / _REPLY).read_text(encoding="utf-8"))
         if "areas" not in reply:
             raise _refusal(reply)
@@ -70,6 +74,28 @@ def mesh_of(
     points, elements = found.pop("points"), found.pop("elements")
     surfaces = {surface: found[f"surface {surface}"] for surface in reply["areas"]}
     return msh.tagged(points, elements, surfaces), reply["areas"]
+
+
+def _run(order: str, file: Path) -> tuple[int, str]:
+    """Exit code and errors of the process. It is said where it takes long."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", f"from {__name__} import main; main()"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+    )
+    try:
+        try:
+            _, errors = process.communicate(order, timeout=_SAID_AFTER)
+        except subprocess.TimeoutExpired:
+            tell(f"  gmsh meshes {file}")
+            _, errors = process.communicate()
+    except BaseException:  # Ctrl-C
+        process.kill()
+        raise
+    return process.returncode, errors
 
 
 def _refusal(reply: dict[str, Any]) -> Exception:
@@ -86,6 +112,8 @@ def main() -> None:
     if order["memory"] is not None:
         _, hard = resource.getrlimit(resource.RLIMIT_DATA)
         resource.setrlimit(resource.RLIMIT_DATA, (order["memory"], hard))
+    _, hard = resource.getrlimit(resource.RLIMIT_CPU)
+    resource.setrlimit(resource.RLIMIT_CPU, (order["cpu_seconds"], hard))
     folder = Path(order["folder"])
     reply: dict[str, Any]
     try:

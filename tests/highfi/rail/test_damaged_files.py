@@ -15,7 +15,7 @@ from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.mesh.memory_limit import limited
 from tipoff.highfi.mesh.rail_mesh import MeshError, read
-from tipoff.highfi.rail import step_cost
+from tipoff.highfi.rail import solid_process, step_cost
 from tipoff.highfi.rail.scene_mesh import make_mesh
 from tipoff.scenes.scene import CATALOG
 
@@ -75,10 +75,24 @@ def test_a_solid_that_ends_the_process_of_gmsh_is_refused(block):
 
 
 @pytest.mark.gmsh
+def test_a_solid_that_keeps_gmsh_busy_without_end_is_refused(tmp_path, monkeypatch, capsys):
+    """The number of a surface is no whole number. The user reads what takes so long."""
+    path = drawn(tmp_path / "block.brep", lambda occ: occ.addBox(0.0, 0.0, 0.0, 40.0, 20.0, 8.0))
+    text = path.read_text()
+    edge = next(line for line in text.splitlines() if line.startswith("2  3 1 0 0 "))
+    path.write_text(text.replace(edge, edge.replace("3 1 ", "3 1e-9 "), 1))
+    monkeypatch.setattr(solid_process, "CPU_SECONDS", 8)
+    scene = scene_of(path, {"contact_top": [TOP], "mount": [BESIDE]}, 0.0, 0.04)
+    with pytest.raises(MeshError, match="has not meshed it after 8 s of processor time"):
+        make_mesh(scene, 0.002)
+    assert f"gmsh meshes {path}" in capsys.readouterr().err
+
+
+@pytest.mark.gmsh
 def test_an_end_by_a_signal_is_named(block, monkeypatch):
-    run, ends = subprocess.run, "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
+    begin, ends = subprocess.Popen, "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
     monkeypatch.setattr(
-        subprocess, "run", lambda command, **asked: run([*command[:2], ends], **asked)
+        subprocess, "Popen", lambda command, **asked: begin([*command[:2], ends], **asked)
     )
     scene, *_ = block
     with pytest.raises(MeshError, match="ended with SIGSEGV"):
