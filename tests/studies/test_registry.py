@@ -14,68 +14,74 @@ from tipoff.studies.report import stage as report
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.study import Study
 
-STAGE = """
+OPTIONS = """
 from dataclasses import dataclass
+from typing import Annotated
 
-from tipoff.scenes.faults import Fault, SceneError
-from tipoff.workspace.stage import Stage
+import typer
+
+from tipoff.workspace.options import between
 
 
 @dataclass(frozen=True)
 class Options:
-    times: int = 2
+    times: Annotated[int, between(1), typer.Option(metavar="N", help="How many payloads.")] = 2
+"""
+STAGE = """
+from dataclasses import dataclass
+from typing import Annotated
+
+from heavier.options import Options
+from tipoff.studies.render.column import Column
+from tipoff.workspace.stage import Stage
+
+
+@dataclass(frozen=True)
+class Row:
+    number: Annotated[int, Column("payloads")]
+    mass_kg: Annotated[float, Column("mass", "kg", ".4g")]
+    place_m: Annotated[tuple[float, float, float] | None, Column("place x, y, z", "m")] = None
+
+
+@dataclass(frozen=True)
+class Heavier:
+    mass_kg: float
+    rows: tuple[Row, ...]
 
 
 def run(study, options=Options()):
-    if options.times < 1:
-        raise SceneError([Fault("--times", "value", str(options.times), "1 or more")])
-
     def make():
-        mass = options.times * study.scene.payload.mass
-        return {"asked": STAGE.plain(options), "mass_kg": mass}, []
+        mass = study.scene.payload.mass
+        rows = tuple(Row(number + 1, (number + 1) * mass) for number in range(options.times))
+        return Heavier(rows[-1].mass_kg, rows), []
 
     return STAGE.run(study, options, make)
 
 
-STAGE = Stage("heavier", "tipoff.workspace.stage", Options)
+STAGE = Stage("heavier", "tipoff.workspace.stage", Options, result=Heavier)
 """
 PAGE = """
+from tipoff.studies.render.table import Table
+
+
 def draw(found):
-    return [f"It weighs {found['mass_kg']:g} kg."]
+    return [f"It weighs {found.mass_kg:g} kg.", Table.of_records(found.rows)]
 """
-COMMAND = '''
-from tipoff.studies.commands.request import scene_command
-from tipoff.studies.commands.running import Output
+ENTRY = '''
+"""A payload that is heavier."""
 
+from heavier.options import Options
+from tipoff.studies.question import Question
 
-@scene_command()
-def heavier(request, times: int = 2):
-    """A payload that is heavier."""
-    from heavier import stage
-
-    found = stage.run(request.study(), stage.Options(times))
-    return Output(found, lambda found: [f"{found['mass_kg']:g} kg"])
+QUESTION = Question(__name__, __doc__, "A heavier payload", "Heavier", Options)
 '''
-ENTRY = """
-from heavier import command
-from tipoff.studies.question import Parts, Question
-
-
-def _load():
-    from heavier import page, stage
-
-    return Parts(stage.run, stage.STAGE.stored, page.draw)
-
-
-QUESTION = Question("heavier", "A heavier payload", "Heavier", command.heavier, _load)
-"""
 
 
 @pytest.fixture
 def entry(tmp_path, monkeypatch):
     folder = tmp_path / "code" / "heavier"
     folder.mkdir(parents=True)
-    texts = {"stage": STAGE, "page": PAGE, "command": COMMAND, "__init__": ENTRY}
+    texts = {"options": OPTIONS, "stage": STAGE, "page": PAGE, "__init__": ENTRY}
     for name, text in texts.items():
         (folder / f"{name}.py").write_text(text)
     monkeypatch.syspath_prepend(str(folder.parent))
@@ -111,9 +117,14 @@ def test_a_new_study_has_a_command_a_result_and_a_section(entry, study, monkeypa
         f"heavier. <code>tipoff NAME --scene tiny --out {study.folder.parent}" in page.read_text()
     )
 
-    assert call(entry, study, "--times", "3").stdout == f"{mass:g} kg\n"
+    said = call(entry, study, "--times", "3").stdout
+    assert said.startswith(f"It weighs {mass:g} kg.\n") and "mass (kg)" in said
+    assert said.endswith("heavier.json\n  " + str(study.path("heavier.csv")) + "\n")
     written = json.loads(study.path("heavier.json").read_text())
     assert written["asked"] == {"times": 3} and written["mass_kg"] == mass
+    assert study.path("heavier.csv").read_text() == (
+        f"number,mass_kg,place_m\n1,{mass / 3.0},\n2,{2.0 * mass / 3.0},\n3,{mass},\n"
+    )
 
     report.run(study)
     shown = page.read_text()
@@ -131,5 +142,5 @@ def test_the_report_makes_it_with_every(entry, study, monkeypatch):
 
 def test_bad_options_are_bad_input(entry, study):
     found = call(entry, study, "--times", "0")
-    assert found.exit_code == 2 and "expected 1 or more" in found.stderr
+    assert found.exit_code == 2 and "--times: value: given 0, expected 1 or more" in found.stderr
     assert not study.folder.exists()

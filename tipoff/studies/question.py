@@ -2,7 +2,12 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+from tipoff.studies.commands.declared import command
+from tipoff.studies.commands.request import Request
+from tipoff.studies.commands.running import Output
 
 if TYPE_CHECKING:
     from tipoff.studies.render.document import Part
@@ -52,36 +57,49 @@ class Entry:
     load: Callable[[], Contents] = Contents
 
 
-class Parts(NamedTuple):
-    """The functions of a study with one result, of which ``run`` and ``stored`` are those of its
-    ``Result``; ``draw`` makes the parts of its section."""
-
-    run: Callable[["Study"], dict]
-    stored: Callable[["Study"], dict | None] | None
-    draw: Callable[[dict], "list[Part]"]
-
-
 class Question(Entry):
-    """A study with one result and one section.
+    """A study with one result and one section, whose name is that of its ``package``: of its command,
+    stage, result file and make target.
 
-    ``name``: of its command, stage, result file and make target. ``title``: of its section.
-    ``link``: the text of the link to the section. ``load``: imports the modules that do the work.
+    ``text``: the help of the command. ``title``: of its section. ``link``: the text of the link to the
+    section. ``options``: the dataclass of its options; None without any. ``always``: whether each report
+    makes the result. ``own``: a command in place of the one with these ``options``.
+
+    The package has a module ``stage`` with ``run`` and ``STAGE``, and ``stored`` if that is not the one of
+    ``STAGE``; and a module ``page`` with ``draw``, which makes the parts of the section of a result, and
+    ``terminal`` if the terminal shows others.
     """
 
     def __init__(
         self,
-        name: str,
+        package: str,
+        text: str | None,
         title: str,
         link: str,
-        command: Callable[..., None],
-        load: Callable[[], Parts],
+        options: type | None = None,
+        always: bool = False,
+        own: Callable[..., None] | None = None,
     ):
+        name = package.rpartition(".")[2]
+
+        def modules() -> tuple[Any, Any]:
+            return import_module(f"{package}.stage"), import_module(f"{package}.page")
+
+        def answer(request: Request, options: Any) -> Output:
+            stage, page = modules()
+            found = stage.run(request.study(), *([] if options is None else [options]))
+            shown = getattr(page, "terminal", page.draw)
+            return Output(found, lambda found: shown(stage.STAGE.read(found)), request.out)
+
         def contents() -> Contents:
-            run, stored, draw = load()
+            stage, page = modules()
 
-            def section(page: "Page") -> "list[Part]":
-                return page.shown(name, draw, name)
+            def section(shown: "Page") -> "list[Part]":
+                return shown.shown(name, lambda found: page.draw(stage.STAGE.read(found)), name)
 
-            return Contents((Result(name, run, stored),), (Section(name, link, section, title),))
+            stored = None if always else getattr(stage, "stored", stage.STAGE.stored)
+            return Contents(
+                (Result(name, stage.run, stored),), (Section(name, link, section, title),)
+            )
 
-        super().__init__((command,), contents)
+        super().__init__((own or command(name, text or "", options, answer),), contents)

@@ -3,32 +3,43 @@
 A stage of a study is written like this:
 
     @dataclass(frozen=True)
-    class Options:
-        cases: int = 100
+    class Heavier:
+        mass_kg: float
+        rows: tuple[Row, ...]  # Row is another dataclass
 
     def run(study: Study, options: Options = Options()) -> dict:
-        ...  # check the options; SceneError for bad input
-
-        def make() -> tuple[dict, list[Path]]:
+        def make() -> tuple[Heavier, list[Path]]:
             ...
-            return {"asked": STAGE.plain(options), ...}, files  # JSON values, and what was written
+            return Heavier(mass, rows), files  # and what was written
 
         return STAGE.run(study, options, make)
 
-    STAGE = Stage("name", __name__, Options)
+    STAGE = Stage("heavier", __name__, Options, result=Heavier)
 
-``STAGE.stored(study)`` finds a result of the present scene, code and settings, with any options.
-``studies/limits`` is an example, with further ``inputs``.
+``run`` returns the content of the result file, and ``STAGE.read`` makes the ``Heavier`` of it. Each field
+whose values are dataclasses is a CSV file too. ``STAGE.stored(study)`` finds a result of the present
+scene, code and settings, with any options. ``studies/ablation`` is an example, ``studies/limits`` one
+with further ``inputs``.
 """
 
-from collections.abc import Callable
+import csv
+import dataclasses
+import functools
+import io
+import typing
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from pydantic import TypeAdapter
 
+from tipoff import sources
+from tipoff.files import content_hash, write_text
+from tipoff.workspace import options as rules
 from tipoff.workspace.study import Study
+
+_AXES = ("x", "y", "z")
 
 
 def _nothing(study: Study, options: Any) -> None:
@@ -43,7 +54,9 @@ class Stage:
     imports, makes the result. ``options``: their type, a frozen dataclass of JSON values, paths,
     tuples and other such dataclasses; None without options. ``inputs``: makes the further inputs of
     the result, as JSON values; it may raise SceneError, OSError, KeyError, TypeError or ValueError
-    where there are none. ``field``: the key of the options in the result.
+    where there are none. ``field``: the key of the options in the result. ``result``: its type, a
+    frozen dataclass; None for JSON values without one. ``of_scene``: whether it depends on the scene
+    and the settings.
     """
 
     name: str
@@ -51,24 +64,44 @@ class Stage:
     options: Any = None
     inputs: Callable[[Study, Any], Any] = _nothing
     field: str = "asked"
+    result: Any = None
+    of_scene: bool = True
 
     def plain(self, options: Any) -> Any:
         """``options`` as JSON values."""
-        return TypeAdapter(self.options).dump_python(options, mode="json")
+        return _adapter(self.options).dump_python(options, mode="json")
 
     def key(self, study: Study, options: Any) -> str:
         """Digest of everything that the result depends on."""
+        if not self.of_scene:
+            return content_hash(self.name, self.plain(options), sources.digest(self.module))
         inputs = self.inputs(study, options)
         return study.key(self.module, self.name, self.plain(options), inputs)
 
-    def run(self, study: Study, options: Any, make: Callable[[], tuple[dict, list[Path]]]) -> dict:
-        """The stored result where nothing changed, else the result of ``make``, which returns it
-        with the files that it wrote. It must contain ``plain(options)`` under ``field``."""
-        return study.stage(self.name, self.key(study, options), make)
+    def run(self, study: Study, options: Any, make: Callable[[], tuple[Any, list[Path]]]) -> dict:
+        """The content of the result file: the stored one where nothing changed, else that of ``make``,
+        which returns the result with the files that it wrote. A result without a type must contain
+        ``plain(options)`` under ``field``. Raises SceneError where an option breaks its rule."""
+        if dataclasses.is_dataclass(options):
+            rules.require(options)
+
+        def document() -> tuple[dict, list[Path]]:
+            found, files = make()
+            if self.result is None:
+                return found, files
+            plain = _adapter(self.result).dump_python(found, mode="json")
+            asked = {} if self.options is None else {self.field: self.plain(options)}
+            return asked | plain, [*files, *self._tables(study, plain)]
+
+        return study.stage(self.name, self.key(study, options), document)
+
+    def read(self, found: dict) -> Any:
+        """The ``result`` in the content of a result file. Raises ValueError where it lacks one."""
+        return found if self.result is None else _adapter(self.result).validate_python(found)
 
     def asked(self, found: dict) -> Any:
         """The options of a stored result. Raises ValueError where they are invalid now."""
-        return TypeAdapter(self.options).validate_python(found.get(self.field))
+        return _adapter(self.options).validate_python(found.get(self.field))
 
     def stored(self, study: Study) -> dict | None:
         """The stored result if it was made from the present scene, code and settings, else None."""
@@ -77,3 +110,61 @@ class Stage:
             return self.key(study, self.asked(found))
 
         return study.stored(self.name, key)
+
+    def schema(self) -> dict:
+        """JSON schema of the result."""
+        return _adapter(self.result).json_schema(mode="serialization")
+
+    def _tables(self, study: Study, plain: dict) -> Iterator[Path]:
+        """Write each table of a result as CSV."""
+        for name, hint in typing.get_type_hints(self.result).items():
+            of, *_ = *typing.get_args(hint), None
+            if typing.get_origin(hint) is tuple and dataclasses.is_dataclass(of):
+                path = study.path(f"{self.name}{'' if name == 'rows' else f'_{name}'}.csv")
+                write_text(path, csv_of(plain[name]))
+                yield path
+
+
+def csv_of(rows: list[dict]) -> str:
+    """JSON ``rows`` as CSV: the keys as heads, several numbers in several columns, a list of words in one,
+    nothing where a value is missing."""
+    wide = {
+        name: max((len(_numbers(row[name])) for row in rows), default=0)
+        for name in dict.fromkeys(key for row in rows for key in row)
+    }
+    stream = io.StringIO()
+    table = csv.writer(stream, lineterminator="\n")
+    table.writerow(head for name, count in wide.items() for head in _heads(name, count))
+    for row in rows:
+        table.writerow(
+            cell
+            for name, count in wide.items()
+            for cell in (_numbers(row[name]) or [_text(row[name])] * max(count, 1))
+        )
+    return stream.getvalue()
+
+
+def _heads(name: str, count: int) -> list[str]:
+    if not count:
+        return [name]
+    ends = _AXES if count == len(_AXES) else map(str, range(1, count + 1))
+    return [f"{name}_{end}" for end in ends]
+
+
+def _numbers(value: Any) -> list:
+    """Several numbers; empty for anything else."""
+    is_list = isinstance(value, list) and bool(value)
+    return (
+        value if is_list and not any(isinstance(item, (str, list, dict)) for item in value) else []
+    )
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, list):
+        return " ".join(map(str, value))
+    return "" if value is None else str(value)
+
+
+@functools.cache
+def _adapter(kind: Any) -> TypeAdapter:
+    return TypeAdapter(kind)

@@ -1,16 +1,6 @@
-"""Recovery of hidden values by calibration: from noisy curves of the surrogate and from the
-reference."""
+"""Test whether calibration finds hidden values: 20 draws with 2 % of noise, and a reference
+with hidden clearance and friction; writes recovery.json."""
 
-from tipoff.studies.question import Parts, Question
-from validation.recovery import command
+from tipoff.studies.question import Question
 
-
-def _load() -> Parts:
-    from validation.recovery import page, stage
-
-    return Parts(stage.run, stage.STAGE.stored, page.draw)
-
-
-QUESTION = Question(
-    "recovery", "Whether calibration finds hidden values", "Recovery", command.recovery, _load
-)
+QUESTION = Question(__name__, __doc__, "Whether calibration finds hidden values", "Recovery")

@@ -156,10 +156,10 @@ def test_the_page_says_how_each_condition_was_judged(stubbed):
     assert [item["neighbours"] for item in found["distributions"]] == [5, 5]
     for text in (
         document.markdown(page.draw(found)),
-        document.terminal(page.verdicts(found)),
+        document.terminal(page.terminal(found)),
     ):
         words = " ".join(text.split())
         assert "judged as" in words and "distribution" in words and "curve" in words
-    assert "Conditions judged as distributions" in document.terminal(page.verdicts(found))
+    assert "Conditions judged as distributions" in document.terminal(page.terminal(found))
     (figure,) = [part for part in page.draw(found) if isinstance(part, document.Figure)]
     assert figure.chart.name == "blind-distributions"  # the agreement study has the other

@@ -12,7 +12,7 @@ from tests.studies import free_flight
 from tipoff.scenes.faults import SceneError
 from tipoff.studies.limits import certificate, certificate_page, inputs
 from tipoff.studies.limits.certificate import Within
-from tipoff.studies.limits.inputs import Options
+from tipoff.studies.limits.options import Options
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.populations.stratified import Runs

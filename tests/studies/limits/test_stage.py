@@ -20,7 +20,7 @@ from tipoff.studies.cli import app
 from tipoff.studies.limits import constants, within
 from tipoff.studies.limits import page as pictures
 from tipoff.studies.limits import stage as limits
-from tipoff.studies.limits.inputs import Options
+from tipoff.studies.limits.options import Options
 from tipoff.studies.limits.within import ADVISED
 from tipoff.studies.populations import answers, exceedance
 from tipoff.studies.populations.population import Surrogate

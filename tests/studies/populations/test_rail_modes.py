@@ -21,7 +21,7 @@ from tipoff.mechanics.outcome import Outcome
 from tipoff.studies.limits import page as limits_page
 from tipoff.studies.limits import stage as limits
 from tipoff.studies.limits import within
-from tipoff.studies.limits.inputs import Options as Limits
+from tipoff.studies.limits.options import Options as Limits
 from tipoff.studies.montecarlo import page, tails, tails_page
 from tipoff.studies.montecarlo import stage as montecarlo
 from tipoff.studies.populations import draws, own_modes, population
@@ -227,7 +227,7 @@ def test_the_search_its_margin_and_its_check_are_of_one_model(study, watch, monk
         assert 1.0 / 1.013 < 1e-3 * row["nominal"]["tolerance"] / exact < 1.0 + 1e-9
         assert 1.0 / 1.03 < 1e-3 * row["model"]["tolerance"] / (exact * 7.0 / 8.0) < 1.0 + 1e-9
     words = "no modes" if chosen == 0 else "3 modes"
-    shown = " ".join(terminal(limits_page.summary(found)).split())
+    shown = " ".join(terminal(limits_page.terminal(found)).split())
     assert f"model compliant with {words} of each rail (enough for" in shown
 
 

@@ -1,11 +1,14 @@
 """The table of hard cases of the surrogate: every line holds, its control fails, and its step and
 drift are real figures."""
 
+from dataclasses import replace
+
 import pytest
 
 from tests.studies.shown import html
 from tipoff.studies.stability import contacts, guides, thrusts
 from tipoff.studies.stability.page import draw
+from tipoff.studies.stability.stage import HardCases
 
 # The scenes of the table compile kernels of their own. `make report` computes the table, and the
 # same cases are tests of the surrogate in tests/lowfi.
@@ -32,16 +35,16 @@ def test_case_holds_and_its_control_fails(verdicts, name):
 
 
 def test_table_shows_steps_in_microseconds(verdicts):
-    page = html(draw({"cases": [found._asdict() for found in verdicts.values()]}))
+    page = html(draw(HardCases(tuple(verdicts.values()), ())))
     assert "7.56" in page and "largest step (µs)" in page and page.count("<tr") == len(CHEAP) + 1
     assert page.count('class="good"') == len(CHEAP)
 
 
 def test_a_case_that_does_not_hold_is_marked(verdicts):
     """Control: one wrong figure, one control that holds too."""
-    missed = verdicts["stiff_pad"]._replace(held=False)
-    useless = verdicts["stiff_pad"]._replace(control_failed=False)
-    page = html(draw({"cases": [missed._asdict(), useless._asdict()]}))
+    missed = replace(verdicts["stiff_pad"], held=False)
+    useless = replace(verdicts["stiff_pad"], control_failed=False)
+    page = html(draw(HardCases((missed, useless), ())))
     assert (
         page.count('class="bad"') == 2
         and "not held" in page

@@ -1,13 +1,5 @@
-"""Runs without each effect, one at a time: change of the result and of the time."""
+"""Run without one effect at a time: time, rates, compiled effects; writes ablation.json."""
 
-from tipoff.studies.ablation import command
-from tipoff.studies.question import Parts, Question
+from tipoff.studies.question import Question
 
-
-def _load() -> Parts:
-    from tipoff.studies.ablation import page, stage
-
-    return Parts(stage.run, None, page.draw)
-
-
-QUESTION = Question("ablation", "Runs without each effect", "Ablation", command.ablation, _load)
+QUESTION = Question(__name__, __doc__, "Runs without each effect", "Ablation", always=True)

@@ -10,21 +10,54 @@ runs all variants in turn, so that other load on the machine affects all of them
 
 import importlib
 import statistics
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.scenes.scene import Scene
+from tipoff.studies.render.column import Column
 from tipoff.workspace import machine
 from tipoff.workspace.compiling import compile_ahead, warm_up
 from tipoff.workspace.run import Run
+from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study
 from tipoff.workspace.timing import timed
 
+Rates = tuple[float, float, float]
 EVERYTHING = "all effects, every rail stepped"
 ADDED = {effect.key: effect.example for effect in EFFECTS if effect.example}
+
+
+@dataclass(frozen=True)
+class Row:
+    """One variant in one model."""
+
+    fidelity: Annotated[str, Column("model")]
+    variant: Annotated[str, Column("variant")]
+    status: Annotated[str, Column("status")]
+    time_s: Annotated[float, Column("time", "s")]
+    time_ratio: Annotated[float, Column("time ratio", form=".2f")]  # to that with all effects
+    ns_per_step: Annotated[float, Column("time per step", "ns", ",.0f")]
+    settled_rate_deg_s: Annotated[Rates | None, Column("settled x, y, z", "deg/s")]
+    settled_rate_change_deg_s: Annotated[Rates | None, Column("change x, y, z", "deg/s", "+.3g")]
+    compiled: Annotated[tuple[str, ...], Column("effects in the compiled kernel", nothing="none")]
+
+
+@dataclass(frozen=True)
+class Ablation:
+    """``rows`` of a ``condition``, with ``element_size_m`` of the reference; ``added`` values, as
+    overrides, by the effect that the scene lacks."""
+
+    condition: str
+    added: dict[str, dict]
+    element_size_m: float
+    rows: tuple[Row, ...]
+    hardware: dict
 
 
 def variants(scene: Scene) -> dict[str, dict]:
@@ -45,11 +78,10 @@ def variants(scene: Scene) -> dict[str, dict]:
 
 
 def run(study: Study) -> dict:
-    """``rows``: for each fidelity and variant the processor time (s) and its ratio, the settled
-    rates and their change (deg/s), the effects in the compiled kernel."""
+    """The content of ``Ablation``, of the first refined condition or else the first one."""
     name = (study.scene.agreement.refined or tuple(study.conditions))[0]
 
-    def make() -> tuple[dict, list[Path]]:
+    def make() -> tuple[Ablation, list[Path]]:
         lines = variants(study.condition(name))
         stepped = lines | {EVERYTHING: lines["all effects"]}
         reference = [
@@ -61,15 +93,13 @@ def run(study: Study) -> dict:
         rows = _rows("highfi", stepped, reference, *_timed_reference(study, reference)) + _rows(
             "lowfi", lines, surrogate, *timed_surrogate(study, surrogate)
         )
-        return {
-            "condition": name,
-            "added": ADDED,
-            "element_size_m": study.settings.coarse_size,
-            "rows": rows,
-            "hardware": machine.describe(),
-        }, []
+        size = study.settings.coarse_size
+        return Ablation(name, ADDED, size, tuple(rows), machine.describe()), []
 
-    return study.stage("ablation", study.key(__name__, name, ADDED), make)
+    return STAGE.run(study, None, make)
+
+
+STAGE = Stage("ablation", __name__, result=Ablation)
 
 
 def surrogate_runs(study: Study, name: str, lines: dict[str, dict]) -> list[Run]:
@@ -115,29 +145,32 @@ def _rows(
     requested: list[Run],
     runs: list[Trajectory],
     times: list[float],
-) -> list[dict]:
-    rows = []
-    for line, item, run, seconds in zip(lines, requested, runs, times):
-        rate, baseline = run.outcome.rate, runs[0].outcome.rate
-        change = (
-            None
-            if rate is None or baseline is None
-            else np.degrees(np.subtract(rate, baseline)).tolist()
+) -> list[Row]:
+    baseline = runs[0].outcome.rate
+    return [
+        Row(
+            fidelity=fidelity,
+            variant=line,
+            status=run.status,
+            time_s=seconds,
+            time_ratio=seconds / times[0],
+            ns_per_step=1e9 * seconds / max(run.cost["steps"], 1),
+            settled_rate_deg_s=_degrees(run.outcome.rate),
+            settled_rate_change_deg_s=_change(run.outcome.rate, baseline),
+            compiled=tuple(compiled(item)),
         )
-        rows.append(
-            {
-                "fidelity": fidelity,
-                "variant": line,
-                "status": run.status,
-                "time_s": seconds,
-                "ns_per_step": 1e9 * seconds / max(run.cost["steps"], 1),
-                "time_ratio": seconds / times[0],
-                "settled_rate_deg_s": None if rate is None else np.degrees(rate).tolist(),
-                "settled_rate_change_deg_s": change,
-                "compiled": compiled(item),
-            }
-        )
-    return rows
+        for line, item, run, seconds in zip(lines, requested, runs, times)
+    ]
+
+
+def _degrees(rate: Sequence[float] | None) -> Rates | None:
+    return None if rate is None else tuple(np.degrees(rate).tolist())
+
+
+def _change(rate: Sequence[float] | None, baseline: Sequence[float] | None) -> Rates | None:
+    if rate is None or baseline is None:
+        return None
+    return _degrees([own - other for own, other in zip(rate, baseline)])
 
 
 def compiled(run: Run) -> list[str]:

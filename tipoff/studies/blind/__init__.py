@@ -1,13 +1,8 @@
-"""Agreement on conditions drawn at random."""
+"""Compare the surrogates with the reference on random conditions, drawn after all constants are
+fixed; writes blind.json.
+"""
 
-from tipoff.studies.blind import command
-from tipoff.studies.question import Parts, Question
+from tipoff.studies.blind.options import Options
+from tipoff.studies.question import Question
 
-
-def _load() -> Parts:
-    from tipoff.studies.blind import page, stage
-
-    return Parts(stage.run, stage.STAGE.stored, page.draw)
-
-
-QUESTION = Question("blind", "Agreement on blind conditions", "Blind", command.blind, _load)
+QUESTION = Question(__name__, __doc__, "Agreement on blind conditions", "Blind", Options)

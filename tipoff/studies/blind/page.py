@@ -32,7 +32,7 @@ def draw(found: dict) -> list[Part]:
     ]
 
 
-def verdicts(found: dict) -> list[Part]:
+def terminal(found: dict) -> list[Part]:
     """The verdicts for the terminal."""
     columns: Cells = (
         ("model", "model"),

@@ -5,7 +5,7 @@ the default seed is a digest of the sources and the scene, so any change of the 
 They are judged as the chosen ones are: as curves, or as distributions where no single run can judge.
 """
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from tipoff import sources
@@ -14,24 +14,13 @@ from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.scenes import uncertainty
 from tipoff.studies.agreement import judging, verdicts
 from tipoff.studies.agreement.candidates import calibrated, compliant
+from tipoff.studies.blind.options import Options
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study
 
 NAME = "blind"
 _CODE = ("tipoff.highfi", "tipoff.lowfi", "tipoff.calibration")
-
-
-@dataclass(frozen=True)
-class Options:
-    """``cases`` conditions from the distributions ``vary``; ``seed`` None: the digest of the code
-    and the scene; ``neighbours`` of each condition that is judged as a distribution, None: those of
-    the settings."""
-
-    cases: int = 8
-    vary: str = uncertainty.DEFAULT
-    seed: int | None = None
-    neighbours: int | None = None
 
 
 def run(study: Study, options: Options = Options()) -> dict:

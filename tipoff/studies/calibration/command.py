@@ -97,9 +97,9 @@ def calibrate(
     chosen = None if fit is None else [name.strip() for one in fit for name in one.split(",")]
     default = SPRINGS if chosen is None else COMPLIANT
     if files:
-        found = stage.from_files(study, files, start, model.value if model else default, chosen)
+        found = stage.from_files(study, files, start, model or default, chosen)
     elif chosen is not None:
-        found = stage.on_reference(study, model.value if model else default, chosen)
+        found = stage.on_reference(study, model or default, chosen)
     else:
-        found = stage.of_models(study, model and model.value)
+        found = stage.of_models(study, model)
     return Output(found, shown)

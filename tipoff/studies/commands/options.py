@@ -1,8 +1,7 @@
 """Options that many commands share, with their help."""
 
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -12,22 +11,6 @@ def modes_of(text: str) -> int | str:
     if text == "auto" or text.isdecimal():
         return text if text == "auto" else int(text)
     raise typer.BadParameter(f"{text!r}: a whole number from zero, or auto")
-
-
-# The names of ``mechanics.models``, repeated because its import would slow ``--help`` down.
-class ModelName(StrEnum):
-    """All models."""
-
-    compliant = "compliant"
-    springs = "springs"
-    finite_elements = "finite-elements"
-
-
-class SurrogateName(StrEnum):
-    """All models except the reference."""
-
-    compliant = "compliant"
-    springs = "springs"
 
 
 def scene_names(incomplete: str) -> list[str]:
@@ -125,12 +108,14 @@ RefinedCondition = Annotated[
         help="Named condition; default: the first in agreement.refined of the scene.",
     ),
 ]
+# The names of ``mechanics.models``, repeated because its import would slow ``--help`` down.
+SurrogateName = Literal["compliant", "springs"]
 _COMPLIANT = (
     "compliant (default): rigid bodies on the static compliance of the rail, condensed from the "
     "finite elements; "
 )
 Model = Annotated[
-    ModelName | None,
+    Literal["compliant", "springs", "finite-elements"] | None,
     typer.Option(
         "--model",
         help=_COMPLIANT + "springs: one spring and damper at each pad face, "
@@ -176,7 +161,7 @@ ElementSize = Annotated[
         metavar="LENGTH",
         parser=in_millimetres,
         help='Element size of the reference and of the rail compliance, "4 mm" or 4; default that '
-        "of [studies] in the scene, else 2 mm. Studies with many runs, or with differences of runs, use "
+        "of \\[studies] in the scene, else 2 mm. Studies with many runs, or with differences of runs, use "
         "twice this size.",
     ),
 ]
@@ -203,7 +188,7 @@ Neighbours = Annotated[
         max=10_000,
         help="Number of neighbours of each condition that is judged as a distribution: runs of the "
         "reference within 1 µm of it. A condition that is not sensitive takes a quarter of them, at "
-        "least 5. Default: the number that the scene states ([studies]), else 32.",
+        "least 5. Default: the number that the scene states (\\[studies]), else 32.",
     ),
 ]
 CheckpointEvery = Annotated[

@@ -1,13 +1,21 @@
-"""Drop tests: change of rate by the ejection, from logs, compared with a model."""
+"""Compute the change of rate in drop tests, its uncertainty, and its rank among simulated cases.
 
-from tipoff.studies.droptest import command
-from tipoff.studies.question import Parts, Question
+Writes droptest.json, all signals to droptest.nc, and figures.
 
+A log is a CSV file with time and three rates; accelerations and temperature are optional. Its
+sheet is a .toml file in the same folder with units, axes, calibration and uncertainties.
+studies/droptest/logs/ has three examples. The arguments are the sheets:
 
-def _load() -> Parts:
-    from tipoff.studies.droptest import page, stage
+  tipoff droptest test1.toml test2.toml test3.toml
 
-    return Parts(stage.run, stage.STAGE.stored, page.draw)
+The simulated cases have the random errors of the paper. --vary replaces them:
 
+  tipoff droptest test1.toml --scene my_launcher.toml --vary my_errors.toml --condition heavy
 
-QUESTION = Question("droptest", "Drop tests", "Drop tests", command.droptest, _load)
+The logs of the package are simulated by a sensor model. All results mark them as simulated.
+"""
+
+from tipoff.studies.droptest.options import Options
+from tipoff.studies.question import Question
+
+QUESTION = Question(__name__, __doc__, "Drop tests", "Drop tests", Options)

@@ -7,7 +7,7 @@ and start at rest in free fall. ``studies.droptest.judgement`` ranks each test a
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +18,7 @@ from tipoff.scenes.faults import Fault, SceneError, together
 from tipoff.scenes.scene import Scene
 from tipoff.studies.droptest import sheet, signals
 from tipoff.studies.droptest.analysis import Drop, analyse
+from tipoff.studies.droptest.options import Options
 from tipoff.studies.droptest.results import joint, quantiles, row_of
 from tipoff.studies.populations import population
 from tipoff.studies.populations.population import Population
@@ -28,21 +29,6 @@ NAME = "droptest"
 CASES = 1000
 _FEWEST = 20  # settled cases for a useful covariance
 _SHOWN = 2000  # cases in the figure
-
-
-@dataclass(frozen=True)
-class Options:
-    """Options of ``tipoff droptest``: sheets of ``logs``, None for those of the package; ``vary``,
-    the distributions; number of ``cases`` and their ``seed``, None: that of the file; the
-    ``condition`` that was dropped, None: the scene itself; ``model`` by name, None: the
-    default."""
-
-    logs: tuple[Path, ...] | None = None
-    vary: str = uncertainty.DEFAULT
-    cases: int = CASES
-    seed: int | None = None
-    condition: str | None = None
-    model: str | None = None
 
 
 def run(study: Study, options: Options = Options()) -> dict:

@@ -1,22 +1,13 @@
 """``tipoff ensemble``."""
 
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
 from tipoff.studies.commands.options import CalibrationFile, Modes, Surrogate
 from tipoff.studies.commands.request import Request, scene_command
 from tipoff.studies.commands.running import Output
-
-
-class Sampling(StrEnum):
-    """Ways to draw the cases of an ensemble."""
-
-    random = "random"
-    latin_hypercube = "latin-hypercube"
-    sobol = "sobol"
 
 
 @scene_command()
@@ -50,7 +41,7 @@ def ensemble(
         ),
     ] = None,
     sampling: Annotated[
-        Sampling | None,
+        Literal["random", "latin-hypercube", "sobol"] | None,
         typer.Option("--sampling", help="Method of drawing; default: from the file."),
     ] = None,
     store: Annotated[
@@ -127,14 +118,14 @@ def ensemble(
     from tipoff.studies.ensemble import page, stage
     from tipoff.workspace import models
 
-    chosen = models.Options(model and model.value, calibration, modes)
+    chosen = models.Options(model, calibration, modes)
     models.require(chosen)
     options = stage.Options(
         vary,
         table,
         cases,
         seed,
-        sampling and sampling.value,
+        sampling,
         store,
         tolerance,
         scheduler,

@@ -1,13 +1,6 @@
 """Flight after separation: free rotation, relative motion in orbit, clearance of boxes."""
 
 from tipoff.studies.flight import command
-from tipoff.studies.question import Parts, Question
+from tipoff.studies.question import Question
 
-
-def _load() -> Parts:
-    from tipoff.studies.flight import page, stage
-
-    return Parts(stage.run, stage.STAGE.stored, page.draw)
-
-
-QUESTION = Question("flight", "After separation", "Flight", command.flight, _load)
+QUESTION = Question(__name__, __doc__, "After separation", "Flight", own=command.flight)

@@ -64,7 +64,7 @@ def flight(
     together(*(partial(_require, name, given[name], *kind) for name, kind in kinds.items()))
     table = [f"flight.{key}={value}" for key, value in given.items() if value is not None]
     study = request.study(condition, table)
-    options = stage.Options(vary, cases, seed, model and model.value)
+    options = stage.Options(vary, cases, seed, model)
     return Output(stage.run(study, options), page.terminal, request.out)
 
 

@@ -1,13 +1,15 @@
-"""The largest tolerances that keep the rates below limits with a given probability."""
+"""Find the largest tolerances of thrust, mass, clearance and friction that keep the rates
+below limits with a probability; writes limits.json.
 
-from tipoff.studies.limits import command
-from tipoff.studies.question import Parts, Question
+The result has each tolerance alone, all tolerances together, and pairs of misalignment and
+mass eccentricity. It includes the uncertainty of the constants and of the model.
 
+  tipoff limits --limit "x=2 deg/s" --limit "5 deg/s" --probability 0.99
+  tipoff limits --limit "10 deg/s" --others zero --tolerances table3
+  tipoff limits --limit "10 deg/s" --probability 0.95 --certify 200
+"""
 
-def _load() -> Parts:
-    from tipoff.studies.limits import page, stage
+from tipoff.studies.limits.options import Options
+from tipoff.studies.question import Question
 
-    return Parts(stage.run, stage.STAGE.stored, page.draw)
-
-
-QUESTION = Question("limits", "Tolerances that keep limits", "Tolerances", command.limits, _load)
+QUESTION = Question(__name__, __doc__, "Tolerances that keep limits", "Tolerances", Options)

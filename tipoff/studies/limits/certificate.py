@@ -14,7 +14,7 @@ import numpy as np
 
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.scenes.scene import NOMINAL, Scene
-from tipoff.studies.limits.inputs import Options
+from tipoff.studies.limits.options import Options
 from tipoff.studies.limits.within import Cases
 from tipoff.studies.populations import draws, exceedance, stratified
 from tipoff.studies.populations.exceedance import Limit

@@ -60,14 +60,14 @@ def figures(found: dict) -> list[Figure]:
 def draw(found: dict) -> list[Part]:
     """The section."""
     return [
-        *summary(found),
+        *terminal(found),
         *figures(found),
         *_beside(found),
         _ADVICE,
     ]
 
 
-def summary(found: dict) -> list[Part]:
+def terminal(found: dict) -> list[Part]:
     """The certified tolerances, also for the terminal."""
     limits = ", ".join(exceedance.Limit(**each).words for each in found["limits"])
     run = (

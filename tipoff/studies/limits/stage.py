@@ -21,7 +21,8 @@ import numpy as np
 from tipoff.mechanics.models import COMPLIANT
 from tipoff.scenes.faults import together
 from tipoff.studies.limits import certificate, constants, search, within
-from tipoff.studies.limits.inputs import DRAWS, Options, checked
+from tipoff.studies.limits.inputs import DRAWS, checked
+from tipoff.studies.limits.options import Options
 from tipoff.studies.limits.search import Found
 from tipoff.studies.limits.within import ADVISED, SETS, TOGETHER, Cases, Factor
 from tipoff.studies.populations import answers, exceedance, population, spread

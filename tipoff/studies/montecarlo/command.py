@@ -1,7 +1,6 @@
 """``tipoff montecarlo``: the paper's random errors."""
 
-from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -13,42 +12,20 @@ if TYPE_CHECKING:
     from tipoff.studies.render.document import Part
 
 
-class Values(StrEnum):
-    """Distributions of the axial value of an error."""
-
-    signed = "signed"
-    half = "half"
-    components = "components"
-
-
-class Angles(StrEnum):
-    """Whether errors share one radial angle."""
-
-    independent = "independent"
-    shared = "shared"
-
-
-class Rules(StrEnum):
-    """Treatment of a value beyond three sigma."""
-
-    redraw = "redraw"
-    clip = "clip"
-    none = "none"
-
-
 Cases = Annotated[int, typer.Option("--cases", metavar="N", min=100, help="Number of cases.")]
 Meaning = Annotated[
-    Values,
+    Literal["signed", "half", "components"],
     typer.Option(
         "--reading",
         help="Axial value of an error: signed normal, its magnitude, or two normal components.",
     ),
 ]
 Direction = Annotated[
-    Angles, typer.Option("--angles", help="One radial angle for each error, or one for all errors.")
+    Literal["independent", "shared"],
+    typer.Option("--angles", help="One radial angle for each error, or one for all errors."),
 ]
 Rule = Annotated[
-    Rules,
+    Literal["redraw", "clip", "none"],
     typer.Option("--rule", help="Redraw, clip or keep a value beyond three sigma."),
 ]
 Initial = Annotated[
@@ -94,9 +71,9 @@ def montecarlo(
     request: Request,
     cases: Cases = 1_000_000,
     seed: Seed = 1,
-    reading: Meaning = Values.signed,
-    angles: Direction = Angles.independent,
-    rule: Rule = Rules.redraw,
+    reading: Meaning = "signed",
+    angles: Direction = "independent",
+    rule: Rule = "redraw",
     initial: Initial = False,
     interface: Interface = False,
     limit: Limit = None,
@@ -121,10 +98,8 @@ def montecarlo(
     def shown(found: dict) -> "list[Part]":
         return page.summary(found) + tails_page.summary(found["reference"])
 
-    how = Reading(reading.value, angles.value, rule.value, initial, interface)
-    options = stage.Options(
-        cases, seed, how, tuple(limit or stage.Options.limits), model and model.value
-    )
+    how = Reading(reading, angles, rule, initial, interface)
+    options = stage.Options(cases, seed, how, tuple(limit or stage.Options.limits), model)
     study = request.study()
     if reference is None:
         return Output(stage.run(study, options), page.summary, request.out)

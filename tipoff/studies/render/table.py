@@ -6,83 +6,15 @@ import shutil
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from numbers import Integral, Real
+from operator import attrgetter
 from typing import Any
 
 from jinja2 import Environment
 from markupsafe import Markup, escape
 
+from tipoff.studies.render.column import Column as Column
+from tipoff.studies.render.column import of_record
 from tipoff.studies.render.uncertain import LEAST, NOTHING, STEPS, Measured, number, rounded
-from tipoff.studies.render.uncertain import uncertain as with_uncertainty
-
-
-@dataclass(frozen=True)
-class Column:
-    """Head of a column, and how the numbers below it are shown.
-
-    ``unit`` stands in brackets behind the ``title``. A number is multiplied by ``scale`` and shown
-    in ``form``, a format of Python, without digits below the smallest step of its unit; a whole
-    number is shown as it is.
-    """
-
-    title: str
-    unit: str = ""
-    form: str = ".3g"
-    scale: float = 1.0
-
-    @property
-    def head(self) -> str:
-        """Title and unit."""
-        return f"{self.title} ({self.unit})" if self.unit else self.title
-
-    @property
-    def least(self) -> float:
-        """The smallest step that is shown; 0 where the unit has none. The unit may stand in brackets
-        at the end of the title."""
-        return STEPS.get(self.unit or _unit(self.title), 0.0)
-
-    def text(self, value: float) -> str:
-        """A number as text."""
-        return number(self.scale * value, self.form, self.least)
-
-    def of_row(self, row: Sequence[Any]) -> "Column":
-        """The column as it is in a row: without a unit it has that of the row, which stands in
-        brackets at the end of its first cell."""
-        if self.least or self.unit or not row or not (unit := _unit(row[0])):
-            return self
-        return _InRow(self.title, self.unit, self.form, self.scale, STEPS.get(unit, 0.0))
-
-    def measured(self, cell: Measured) -> str:
-        """A number, or several, rounded to their uncertainty."""
-        if isinstance(cell.value, (list, tuple)):
-            parts = (Measured(part, cell.uncertainty, cell.apart) for part in cell.value)
-            return ", ".join(map(self.measured, parts))
-        if cell.value is None:
-            return NOTHING
-        value = self.scale * cell.value
-        error = None if cell.uncertainty is None else abs(self.scale) * cell.uncertainty
-        least = self.least or STEPS.get(cell.unit) or LEAST * (error or 0.0)
-        if error is None or not least:
-            return number(value, self.form, least)
-        if cell.apart:
-            return rounded(value, error, least, "+" if self.form.startswith("+") else "")
-        return with_uncertainty(value, error, least)
-
-
-@dataclass(frozen=True)
-class _InRow(Column):
-    """A column in a row that has a unit; ``own`` is the smallest step of that unit."""
-
-    own: float = 0.0
-
-    @property
-    def least(self) -> float:
-        return self.own
-
-
-def _unit(text: Any) -> str:
-    """The unit in brackets at the end of a text; empty without one."""
-    found = re.search(r"\(([^()]+)\)$", text) if isinstance(text, str) else None
-    return found[1] if found else ""
 
 
 @dataclass(frozen=True)
@@ -125,6 +57,22 @@ class Table:
         ]
         return cls([column for column, _ in columns], rows, **others)
 
+    @classmethod
+    def of_records(
+        cls,
+        records: Sequence[Any],
+        *columns: str | tuple[Column | str, Callable[[Any], Any]],
+        **others: Any,
+    ) -> "Table":
+        """The table of ``records`` of one dataclass, at least one. A column is the name of a field, which
+        declares it (``column.of_record``), or a head with what makes the cell of the record; without
+        ``columns`` all fields that declare one. ``others`` are further fields."""
+        declared = of_record(type(records[0]))
+        chosen = columns or tuple(declared)
+        heads = [declared[item] if isinstance(item, str) else item[0] for item in chosen]
+        cells = [attrgetter(item) if isinstance(item, str) else item[1] for item in chosen]
+        return cls(heads, [tuple(cell(record) for cell in cells) for record in records], **others)
+
     @property
     def heads(self) -> list[str]:
         """The head of every column."""
@@ -159,7 +107,7 @@ def estimate(row: dict, form: str = ".3g") -> Any:
 def plain(value: Any, column: Column = Column("")) -> str:
     """A cell as text."""
     if value is None:
-        return NOTHING
+        return column.nothing
     if isinstance(value, Noted):
         return f"{plain(value.value, column)} ({value.remark})"
     if isinstance(value, Measured):
@@ -171,7 +119,7 @@ def plain(value: Any, column: Column = Column("")) -> str:
     if isinstance(value, Real):
         return column.text(float(value))
     if isinstance(value, (list, tuple)):
-        return ", ".join(plain(part, column) for part in value)
+        return ", ".join(plain(part, column) for part in value) or column.nothing
     return str(value)
 
 
@@ -289,7 +237,7 @@ def _cell(value: Any, column: Column) -> tuple[bool, Markup]:
         right, shown = _cell(value.value, column)
         return right, shown + Markup(' <span class="small">{}</span>').format(inline(value.remark))
     if value is None:
-        return True, Markup(f'<span class="none">{NOTHING}</span>')
+        return True, Markup('<span class="none">{}</span>').format(column.nothing)
     text = plain(value, column)
     return not isinstance(value, bool) and _numeric(text), inline(text)
 

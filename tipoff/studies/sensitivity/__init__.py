@@ -1,15 +1,21 @@
-"""Sensitivity of the result to its inputs: one contact constant at a time, and Sobol' indices."""
+"""Compute the sensitivity to uncertain inputs: contact constants as in the paper's Table 2, and
+Sobol' indices; writes sensitivity.json.
 
-from tipoff.studies.question import Parts, Question
-from tipoff.studies.sensitivity import command
+A file of tolerances gives the distribution of an input (vary), or of a factor of its nominal
+value (factor):
 
+  \\[factor."friction.dynamic"]
+  distribution = "uniform"
+  low = "0.75"
+  high = "1.25"
 
-def _load() -> Parts:
-    from tipoff.studies.sensitivity import page, stage
+  \\[vary."thrust_offset.misalignment.y"]      y and z are components of an offset
+  distribution = "normal"
+  mean = "0 deg"
+  sd = "0.1 deg"
+"""
 
-    return Parts(stage.run, stage.STAGE.stored, page.draw)
+from tipoff.studies.question import Question
+from tipoff.studies.sensitivity.options import Options
 
-
-QUESTION = Question(
-    "sensitivity", "Sensitivity to uncertain inputs", "Sensitivity", command.sensitivity, _load
-)
+QUESTION = Question(__name__, __doc__, "Sensitivity to uncertain inputs", "Sensitivity", Options)

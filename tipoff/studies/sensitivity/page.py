@@ -109,7 +109,7 @@ def draw(found: dict) -> list[Part]:
     ]
 
 
-def summary(found: dict) -> list[Part]:
+def terminal(found: dict) -> list[Part]:
     """The largest changes and the total indices, for the terminal."""
     return [
         Bullets([population.model_line(found)]),

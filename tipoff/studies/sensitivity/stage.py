@@ -2,7 +2,6 @@
 changed one at a time, as in Table 2 of the paper; Sobol' indices cover all inputs of a file of
 tolerances."""
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -17,23 +16,13 @@ from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render.document import with_figures
 from tipoff.studies.sensitivity import contact_table, indices, tolerances
 from tipoff.studies.sensitivity import page as drawing
+from tipoff.studies.sensitivity.options import Options
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study, StudyError
 
 NAME = "sensitivity"
 _HALVINGS = 3  # parts of the points, each half of the next, for convergence
 _FINE = Numerics().relative_tolerance  # the tables show changes of a thousandth
-
-
-@dataclass(frozen=True)
-class Options:
-    """Options of ``tipoff sensitivity``: file of tolerances (None: ``tolerances.DEFAULT``), number
-    of base points (a power of two), seed, name of the model (None: the default)."""
-
-    vary: str | None = None
-    points: int = 1024
-    seed: int = 1
-    model: str | None = None
 
 
 def run(study: Study, options: Options = Options()) -> dict:

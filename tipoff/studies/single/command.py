@@ -84,7 +84,7 @@ def run(
     def shown(found: dict) -> "list[Part]":
         return [page.settled(found["conditions"])] if "conditions" in found else []
 
-    options, quiet = models.Options(model and model.value, calibration, modes), request.json_
+    options, quiet = models.Options(model, calibration, modes), request.json_
     study = request.study(
         condition or ["nominal"], checkpoint_every=checkpoint_every, resume=resume
     )

@@ -1,7 +1,9 @@
 """Hard cases on the page."""
 
 from tipoff.studies.render.document import Part
-from tipoff.studies.render.table import Cells, Column, Noted, Table
+from tipoff.studies.render.table import Noted, Table
+from tipoff.studies.stability.stage import HardCases
+from tipoff.studies.stability.verdict import Verdict
 
 _NOTE = (
     "Largest step: for the surrogate, the smallest value of the proven limit, which no step "
@@ -12,56 +14,37 @@ _NOTE = (
 )
 
 
-def draw(document: dict) -> list[Part]:
+def draw(found: HardCases) -> list[Part]:
     """Hard cases, held or not, each with a simpler method that fails."""
-    columns: Cells = (
-        (
-            "case",
-            lambda c: Noted(
-                c["name"], f"{c['measure']}; {c['note']}" if c["note"] else c["measure"]
-            ),
-        ),
-        ("model", "fidelity"),
-        ("measured", lambda c: _figure(c["figure"])),
-        ("limit", "limit"),
-        (Column("largest step", "µs", scale=1e6), "largest_step_s"),
-        (Column("critical step", "µs", scale=1e6), "critical_step_s"),
-        (Column("energy drift", form=".2g"), "energy_drift"),
-        ("simpler method", "control"),
-        ("its figure", lambda c: _figure(c["control_figure"])),
-        ("verdict", _verdict),
-    )
-    kinds = ["good" if c["held"] and c["control_failed"] else "bad" for c in document["cases"]]
+    steps = ("largest_step_s", "critical_step_s", "energy_drift")
+    case = ("case", lambda each: Noted(each.name, _measure(each)))
+    columns = (case, *_FIGURES, *steps, "control", "control_figure", _VERDICT)
+    kinds = ["good" if each.held and each.control_failed else "bad" for each in found.cases]
     title = "For each case a simpler method must fail. Otherwise the case proves nothing."
-    return [
-        Table.of(document["cases"], columns, notes=(_NOTE,), title=title, kinds=kinds, dense=True)
-    ]
+    shown = {"notes": (_NOTE,), "title": title, "kinds": kinds, "dense": True}
+    return [Table.of_records(found.cases, *columns, **shown)]
 
 
-def terminal(document: dict) -> list[Part]:
+def terminal(found: HardCases) -> list[Part]:
     """Each hard case with its verdict."""
-    columns: Cells = (
-        ("case", "name"),
-        ("model", "fidelity"),
-        ("measured", lambda c: _figure(c["figure"])),
-        ("limit", "limit"),
-        ("simpler method", "control"),
-        ("verdict", _verdict),
-    )
-    good = sum(c["held"] and c["control_failed"] for c in document["cases"])
-    title = f"{good} of {len(document['cases'])} hard cases are held where a simpler method fails:"
-    return [Table.of(document["cases"], columns, title=title)]
+    good = sum(each.held and each.control_failed for each in found.cases)
+    title = f"{good} of {len(found.cases)} hard cases are held where a simpler method fails:"
+    return [Table.of_records(found.cases, "name", *_FIGURES, "control", _VERDICT, title=title)]
 
 
-def _figure(value: float | None) -> float | str:
-    return "infinite" if value is None else value
+def _measure(case: Verdict) -> str:
+    return f"{case.measure}; {case.note}" if case.note else case.measure
 
 
-def _verdict(case: dict) -> str:
-    if not case["held"]:
+def _verdict(case: Verdict) -> str:
+    if not case.held:
         return "not held"
     return (
         "held; the simpler method fails"
-        if case["control_failed"]
+        if case.control_failed
         else "held, but the simpler method holds too"
     )
+
+
+_FIGURES = ("fidelity", "figure", "limit")
+_VERDICT = ("verdict", _verdict)

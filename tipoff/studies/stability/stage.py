@@ -4,21 +4,30 @@ must fail, else the case proves nothing.
 A case is a function without arguments that returns a ``Verdict``.
 """
 
+from dataclasses import dataclass
 from pathlib import Path
 
-from tipoff import sources
 from tipoff.studies.stability import contacts, elastic, guides, thrusts
+from tipoff.studies.stability.verdict import Verdict
 from tipoff.workspace.progress import Board
+from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study
 
 CASES = {**contacts.CASES, **guides.CASES, **thrusts.CASES, **elastic.CASES}
 
 
-def run(study: Study) -> dict:
-    """``cases``: one verdict each; ``failed``: the cases that are not held or whose control did not
-    fail."""
+@dataclass(frozen=True)
+class HardCases:
+    """``cases``, a verdict each; ``failed``: those that are not held or whose control did not fail."""
 
-    def make() -> tuple[dict, list[Path]]:
+    cases: tuple[Verdict, ...]
+    failed: tuple[str, ...]
+
+
+def run(study: Study) -> dict:
+    """The content of ``HardCases``."""
+
+    def make() -> tuple[HardCases, list[Path]]:
         found = []
         with Board("stability", len(CASES)) as board:
             for name, case in CASES.items():
@@ -30,7 +39,10 @@ def run(study: Study) -> dict:
             for item in found
             if not (item.held and item.control_failed)
         ]
-        return {"cases": [item._asdict() for item in found], "failed": failed}, []
+        return HardCases(tuple(found), tuple(failed)), []
 
-    # The cases bring their own scenes, so the scene under study is not part of the key.
-    return study.stage("stability", sources.digest(__name__), make)
+    return STAGE.run(study, None, make)
+
+
+# The cases bring their own scenes.
+STAGE = Stage("stability", __name__, result=HardCases, of_scene=False)

@@ -1,9 +1,13 @@
 """The verdict on a hard case: the measured value and that of a weaker method."""
 
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import Annotated, NamedTuple
 
 from tipoff.mechanics.trajectory import Trajectory
+from tipoff.studies.render.column import Column
+
+_INFINITE = "infinite"
 
 
 class Stability(NamedTuple):
@@ -17,24 +21,25 @@ class Stability(NamedTuple):
     energy_drift: float | None = None
 
 
-class Verdict(NamedTuple):
+@dataclass(frozen=True)
+class Verdict:
     """One line of the stability table. ``figure`` is what was measured against ``limit``
     (dimensionless unless ``measure`` says otherwise), ``control_figure`` the same measure of the
     weaker method; infinite values are given as None. The last three are those of ``Stability``."""
 
-    name: str
-    fidelity: str
+    name: Annotated[str, Column("case")]
+    fidelity: Annotated[str, Column("model")]
     measure: str
-    figure: float | None
-    limit: float
+    figure: Annotated[float | None, Column("measured", nothing=_INFINITE)]
+    limit: Annotated[float, Column("limit")]
     held: bool
-    control: str
-    control_figure: float | None
+    control: Annotated[str, Column("simpler method")]
+    control_figure: Annotated[float | None, Column("its figure", nothing=_INFINITE)]
     control_failed: bool
     note: str = ""
-    largest_step_s: float | None = None
-    critical_step_s: float | None = None
-    energy_drift: float | None = None
+    largest_step_s: Annotated[float | None, Column("largest step", "µs", scale=1e6)] = None
+    critical_step_s: Annotated[float | None, Column("critical step", "µs", scale=1e6)] = None
+    energy_drift: Annotated[float | None, Column("energy drift", form=".2g")] = None
 
 
 def stability(run: Trajectory, stiffness: float = 0.0, mass: float = 1.0) -> Stability:

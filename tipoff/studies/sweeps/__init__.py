@@ -1,14 +1,11 @@
-"""One error at a time over size and direction: the end of growth, the loaded faces, and the thrust
-after the exit."""
+"""Vary size and direction of misalignment, thrust eccentricity and mass eccentricity, up to 1 deg
+and 1 mm; writes sweeps.json.
 
-from tipoff.studies.question import Parts, Question
-from tipoff.studies.sweeps import command
+The result states whether the largest rate about each axis stops growing, and at which size, with
+an interval. The sweep is repeated with a thrust that continues after the exit, or ends before it.
+"""
 
+from tipoff.studies.question import Question
+from tipoff.studies.sweeps.options import Options
 
-def _load() -> Parts:
-    from tipoff.studies.sweeps import page, stage
-
-    return Parts(stage.run, stage.STAGE.stored, page.draw)
-
-
-QUESTION = Question("sweeps", "How large an error may be", "Sweeps", command.sweeps, _load)
+QUESTION = Question(__name__, __doc__, "How large an error may be", "Sweeps", Options)

@@ -62,7 +62,7 @@ def draw(found: dict) -> list[Part]:
     return [*parts, Caption(_METHOD), *_why(launches), *figures(found)]
 
 
-def summary(found: dict) -> list[Part]:
+def terminal(found: dict) -> list[Part]:
     """Runs, verdicts and the largest values, for the terminal."""
     parts = _runs(found)
     for launch in found["launches"]:

@@ -2,12 +2,10 @@
 vary one at a time in size and direction. Results: the size at which the largest rate stops growing,
 the walls that the payload touches, and both for a longer or shorter thrust."""
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies import published
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate
@@ -15,6 +13,7 @@ from tipoff.studies.render.document import with_figures
 from tipoff.studies.sweeps import burnout, factors, knee, sides
 from tipoff.studies.sweeps import figures as drawing
 from tipoff.studies.sweeps.factors import FACTORS, SIZES, Factor
+from tipoff.studies.sweeps.options import FEWEST, Options
 from tipoff.workspace.progress import Board
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study
@@ -24,18 +23,8 @@ JUDGED = (*answers.RATES, answers.TOTAL_RATE)  # quantities whose growth is judg
 # at the tolerance of other ensembles, a long thrust without contact takes six steps and loses 0.5 %
 # of its impulse
 _TOLERANCE = 1e-4
-_FEWEST = 8  # directions: fewer do not separate the walls
 _COARSER = 5  # directions of the ensemble for each direction of the maps of walls
 _DEPARTS = 0.05  # of the rate of a free payload: a larger difference is an effect of the rail
-
-
-@dataclass(frozen=True)
-class Options:
-    """Options of ``tipoff sweeps``: number of directions for each size, name of the model (None:
-    the default)."""
-
-    angles: int = 120
-    model: str | None = None
 
 
 def run(study: Study, options: Options = Options()) -> dict:
@@ -43,8 +32,6 @@ def run(study: Study, options: Options = Options()) -> dict:
 
     Raises SceneError for bad input, before anything runs.
     """
-    if options.angles < _FEWEST:
-        raise SceneError([Fault("--angles", NAME, str(options.angles), f"{_FEWEST} or more")])
 
     def make() -> tuple[dict, list[Path]]:
         model = population.surrogate(study, options.model)
@@ -131,7 +118,7 @@ def _sides(study: Study, model: Surrogate, options: Options) -> tuple[list[str],
     largest impulse, on a coarser grid of directions."""
     if model.scene.contact is None:
         return [], [None] * len(FACTORS)
-    directions = factors.angles(max(_FEWEST, options.angles // _COARSER))
+    directions = factors.angles(max(FEWEST, options.angles // _COARSER))
     rows = [row for factor in FACTORS for row in factor.rows(SIZES, directions)]
     with Board("which walls", 1) as board:
         seen = sides.found(

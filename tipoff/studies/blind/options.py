@@ -1,17 +1,17 @@
-"""``tipoff blind``."""
+"""Options of ``tipoff blind``."""
 
+from dataclasses import dataclass
 from typing import Annotated
 
 import typer
 
 from tipoff.studies.commands.options import Neighbours
-from tipoff.studies.commands.request import Request, scene_command
-from tipoff.studies.commands.running import Output
 
 
-@scene_command()
-def blind(
-    request: Request,
+@dataclass(frozen=True)
+class Options:
+    """``seed`` None: the digest of the code and the scene; ``neighbours`` None: those of the settings."""
+
     cases: Annotated[
         int,
         typer.Option(
@@ -21,7 +21,7 @@ def blind(
             help="Number of conditions. Each needs several runs of the reference. A condition that is "
             "judged as a distribution also needs runs of its neighbours.",
         ),
-    ] = 8,
+    ] = 8
     vary: Annotated[
         str,
         typer.Option(
@@ -29,7 +29,7 @@ def blind(
             metavar="NAME_OR_FILE",
             help="Distributions: a .toml file, or a name of the catalogue.",
         ),
-    ] = "paper",
+    ] = "paper"
     seed: Annotated[
         int | None,
         typer.Option(
@@ -38,12 +38,5 @@ def blind(
             min=0,
             help="Seed of the draws; default: a digest of the sources and the scene.",
         ),
-    ] = None,
-    neighbours: Neighbours = None,
-) -> Output:
-    """Compare the surrogates with the reference on random conditions, drawn after all constants are
-    fixed; writes blind.json."""
-    from tipoff.studies.blind import page, stage
-
-    options = stage.Options(cases, vary, seed, neighbours)
-    return Output(stage.run(request.study(), options), page.verdicts, request.out)
+    ] = None
+    neighbours: Neighbours = None

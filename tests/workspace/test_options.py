@@ -1,0 +1,56 @@
+"""Options of studies: rules and flags; results as CSV."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import pytest
+import typer
+
+from tipoff.scenes.faults import SceneError
+from tipoff.workspace.options import between, require
+from tipoff.workspace.stage import csv_of
+
+
+@dataclass(frozen=True)
+class Inner:
+    axial: Annotated[float, between(below=2.0), typer.Option("--reading")] = 1.0
+
+
+@dataclass(frozen=True)
+class Options:
+    limits: Annotated[tuple[str, ...], typer.Option("--limit")] = ("x=2 deg/s",)
+    share: Annotated[float, between(0.5, below=1.0)] = 0.9
+    runs: Annotated[int | None, between(20, noun="runs"), typer.Option(metavar="N")] = None
+    case_count: Annotated[int, between(1, 1000)] = 10
+    inner: Inner = Inner()
+
+
+def test_every_broken_rule_is_a_fault_under_its_flag():
+    """Control: options on their bounds."""
+    require(Options(share=0.5, runs=20, case_count=1000))
+    with pytest.raises(SceneError) as refused:
+        require(Options(share=1.0, runs=19, case_count=0, inner=Inner(2.0)))
+    assert list(map(str, refused.value.faults)) == [
+        "--share: value: given 1.0, expected 0.5 or more and less than 1",
+        "--runs: value: given 19, expected 20 or more runs",
+        "--case-count: value: given 0, expected 1 to 1,000",
+        "--reading: value: given 2.0, expected less than 2",
+    ]
+
+
+def test_an_option_of_another_type_is_a_fault():
+    with pytest.raises(SceneError, match="--limit"):
+        require(Options(limits=3))
+
+
+def test_a_table_has_a_column_for_each_number():
+    """Three numbers are axes, words stand in one cell, and a missing value in none."""
+    rows = [
+        {"name": "a, b", "rate_deg_s": [1.0, -2.5e-7, 0.1], "both": [1, 2], "words": ["p", "q"]},
+        {"name": "c", "rate_deg_s": None, "both": [3, 4], "words": []},
+    ]
+    assert csv_of(rows) == (
+        "name,rate_deg_s_x,rate_deg_s_y,rate_deg_s_z,both_1,both_2,words\n"
+        '"a, b",1.0,-2.5e-07,0.1,1,2,p q\n'
+        "c,,,,3,4,\n"
+    )

@@ -1,0 +1,88 @@
+"""Options of ``tipoff limits``."""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import typer
+
+from tipoff.studies.commands.options import Seed, Surrogate, condition_names
+from tipoff.workspace.options import between
+
+
+@dataclass(frozen=True)
+class Options:
+    """``limits`` in the form of ``exceedance.limits``; ``cases`` None: ten times the fewest; ``draws``
+    None: eight, for springs alone; ``condition`` None: the scene; ``certify`` None: no run of the
+    reference; ``model`` None: the default."""
+
+    limits: Annotated[
+        tuple[str, ...],
+        typer.Option(
+            "--limit",
+            metavar="[AXIS=]RATE",
+            help='Limit of a rate, "x=2 deg/s", or of the total rate, "5 deg/s"; repeatable. All '
+            "limits must be kept. Default: 5 deg/s for the total rate.",
+        ),
+    ] = ("5 deg/s",)
+    probability: Annotated[
+        float,
+        between(0.5, below=1.0),
+        typer.Option("--probability", metavar="P", help="Share of launches that keep all limits."),
+    ] = 0.99
+    confidence: Annotated[
+        float,
+        between(0.5, below=1.0),
+        typer.Option("--confidence", metavar="C", help="Confidence level of the probability."),
+    ] = 0.95
+    cases: Annotated[
+        int | None,
+        typer.Option(
+            "--cases",
+            metavar="N",
+            min=1,
+            help="Cases of each set of tolerances; default: ten times the smallest possible number.",
+        ),
+    ] = None
+    tolerances: Annotated[
+        Literal["advised", "table3"],
+        typer.Option(
+            "--tolerances",
+            help="Tolerances that are scaled together: those that the paper advises, or the ranges of its "
+            "Table 3.",
+        ),
+    ] = "advised"
+    others: Annotated[
+        Literal["scene", "zero"],
+        typer.Option("--others", help="Errors that do not vary: values of the scene, or zero."),
+    ] = "scene"
+    draws: Annotated[
+        int | None,
+        between(0, 1000),
+        typer.Option(
+            "--draws",
+            metavar="N",
+            help="Draws of the calibrated constants from their intervals, with --model springs; "
+            "default: 8.",
+        ),
+    ] = None
+    condition: Annotated[
+        str | None,
+        typer.Option(
+            "--condition",
+            metavar="NAME",
+            autocompletion=condition_names,
+            help="Named condition; default: the scene.",
+        ),
+    ] = None
+    certify: Annotated[
+        int | None,
+        between(20, noun="runs"),  # with fewer, a bound says nothing
+        typer.Option(
+            "--certify",
+            metavar="N",
+            help="Check the tolerances that are scaled together with N runs of the finite-element "
+            "reference. The result is an upper bound of the probability above a limit.",
+        ),
+    ] = None
+    seed: Seed = 1
+    model: Surrogate = None

@@ -1,0 +1,96 @@
+"""A column of a table: its head, and how the numbers below it are shown."""
+
+import re
+import typing
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from tipoff.studies.render.uncertain import LEAST, NOTHING, STEPS, Measured, number, rounded
+from tipoff.studies.render.uncertain import uncertain as with_uncertainty
+
+
+@dataclass(frozen=True)
+class Column:
+    """Head of a column, and how the numbers below it are shown.
+
+    ``unit`` stands in brackets behind the ``title``. A number is multiplied by ``scale`` and shown
+    in ``form``, a format of Python, without digits below the smallest step of its unit; a whole
+    number is shown as it is, and ``nothing`` where there is none.
+    """
+
+    title: str
+    unit: str = ""
+    form: str = ".3g"
+    scale: float = 1.0
+    nothing: str = NOTHING
+
+    @property
+    def head(self) -> str:
+        """Title and unit."""
+        return f"{self.title} ({self.unit})" if self.unit else self.title
+
+    @property
+    def least(self) -> float:
+        """The smallest step that is shown; 0 where the unit has none. The unit may stand in brackets
+        at the end of the title."""
+        return STEPS.get(self.unit or _unit(self.title), 0.0)
+
+    def text(self, value: float) -> str:
+        """A number as text."""
+        return number(self.scale * value, self.form, self.least)
+
+    def of_row(self, row: Sequence[Any]) -> "Column":
+        """The column as it is in a row: without a unit it has that of the row, which stands in
+        brackets at the end of its first cell."""
+        if self.least or self.unit or not row or not (unit := _unit(row[0])):
+            return self
+        return _InRow(
+            self.title, self.unit, self.form, self.scale, self.nothing, STEPS.get(unit, 0.0)
+        )
+
+    def measured(self, cell: Measured) -> str:
+        """A number, or several, rounded to their uncertainty."""
+        if isinstance(cell.value, (list, tuple)):
+            parts = (Measured(part, cell.uncertainty, cell.apart) for part in cell.value)
+            return ", ".join(map(self.measured, parts))
+        if cell.value is None:
+            return NOTHING
+        value = self.scale * cell.value
+        error = None if cell.uncertainty is None else abs(self.scale) * cell.uncertainty
+        least = self.least or STEPS.get(cell.unit) or LEAST * (error or 0.0)
+        if error is None or not least:
+            return number(value, self.form, least)
+        if cell.apart:
+            return rounded(value, error, least, "+" if self.form.startswith("+") else "")
+        return with_uncertainty(value, error, least)
+
+
+@dataclass(frozen=True)
+class _InRow(Column):
+    """A column in a row that has a unit; ``own`` is the smallest step of that unit."""
+
+    own: float = 0.0
+
+    @property
+    def least(self) -> float:
+        return self.own
+
+
+def _unit(text: Any) -> str:
+    """The unit in brackets at the end of a text; empty without one."""
+    found = re.search(r"\(([^()]+)\)$", text) if isinstance(text, str) else None
+    return found[1] if found else ""
+
+
+def of_record(kind: type) -> dict[str, Column]:
+    """The columns that the fields of a dataclass declare, by name:
+
+    time_s: Annotated[float, Column("time", "s")]
+    """
+    return {
+        name: note
+        for name, hint in typing.get_type_hints(kind, include_extras=True).items()
+        for note in getattr(hint, "__metadata__", ())
+        if isinstance(note, Column)
+    }

@@ -1,0 +1,23 @@
+"""Options of ``tipoff sweeps``."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import typer
+
+from tipoff.studies.commands.options import Surrogate
+from tipoff.workspace.options import between
+
+FEWEST = 8  # directions: fewer do not separate the walls
+
+
+@dataclass(frozen=True)
+class Options:
+    """``model`` None: the default."""
+
+    angles: Annotated[
+        int,
+        between(FEWEST),
+        typer.Option("--angles", metavar="N", help="Number of directions for each size."),
+    ] = 120
+    model: Surrogate = None

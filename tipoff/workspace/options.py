@@ -1,0 +1,78 @@
+"""Options of a study: a frozen dataclass that declares each of them once.
+
+    @dataclass(frozen=True)
+    class Options:
+        cases: Annotated[int, between(100), typer.Option(metavar="N", help="Number of cases.")] = 1000
+
+The command has an option ``--cases``, the result file has ``cases``, and ``require`` checks the rule. A
+field whose type is such a dataclass has further options of the same command.
+"""
+
+import dataclasses
+import typing
+from typing import Any
+
+from pydantic import AfterValidator, TypeAdapter, ValidationError
+
+from tipoff.scenes.faults import SceneError, faults_of
+
+
+def between(
+    least: float | None = None,
+    most: float | None = None,
+    below: float | None = None,
+    noun: str = "",
+) -> AfterValidator:
+    """Rule for the number of an option: ``least`` to ``most``, or less than ``below``; ``noun`` says what
+    it counts."""
+    words = "" if least is None else f"{least:,g} or more"
+    if most is not None:
+        words = f"at most {most:,g}" if least is None else f"{least:,g} to {most:,g}"
+    if below is not None:
+        words += f"{' and ' if words else ''}less than {below:,g}"
+    words = f"{words} {noun}".rstrip()
+
+    def check(value: float | None) -> float | None:
+        if value is not None and not (
+            (least is None or value >= least)
+            and (most is None or value <= most)
+            and (below is None or value < below)
+        ):
+            raise ValueError(words)
+        return value
+
+    return AfterValidator(check)
+
+
+def require(options: Any) -> None:
+    """Raises SceneError with a fault for each of the ``options`` that breaks its rule."""
+    try:
+        TypeAdapter(type(options)).validate_python(dataclasses.asdict(options))
+    except ValidationError as error:
+        names = dict(_flags(type(options)))
+        raise SceneError(
+            [
+                fault._replace(source=names.get(fault.key, fault.key), key="value")
+                for fault in faults_of(error, "")
+            ]
+        ) from None
+
+
+def _flags(kind: type, prefix: str = "") -> typing.Iterator[tuple[str, str]]:
+    """(dotted name, flag of the command) of each option of ``kind``."""
+    for name, hint in typing.get_type_hints(kind, include_extras=True).items():
+        if dataclasses.is_dataclass(hint):
+            assert isinstance(hint, type)
+            yield from _flags(hint, f"{prefix}{name}.")
+        else:
+            yield prefix + name, flag(name, hint)
+
+
+def flag(name: str, hint: Any) -> str:
+    """The flag of the option ``name`` with the type ``hint``."""
+    for note in getattr(hint, "__metadata__", ()):
+        if declared := [
+            item for item in getattr(note, "param_decls", None) or () if item[:2] == "--"
+        ]:
+            return declared[0].partition("/")[0]
+    return "--" + name.rstrip("_").replace("_", "-")
