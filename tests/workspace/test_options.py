@@ -39,7 +39,7 @@ def test_every_broken_rule_is_a_fault_under_its_flag():
 
 
 def test_an_option_of_another_type_is_a_fault():
-    with pytest.raises(SceneError, match="--limit"):
+    with pytest.raises(SceneError, match="--limit: value"):
         require(Options(limits=3))
 
 

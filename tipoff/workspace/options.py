@@ -70,9 +70,10 @@ def _flags(kind: type, prefix: str = "") -> typing.Iterator[tuple[str, str]]:
 
 def flag(name: str, hint: Any) -> str:
     """The flag of the option ``name`` with the type ``hint``."""
-    for note in getattr(hint, "__metadata__", ()):
-        if declared := [
-            item for item in getattr(note, "param_decls", None) or () if item[:2] == "--"
-        ]:
-            return declared[0].partition("/")[0]
+    notes = [note for note in getattr(hint, "__metadata__", ()) if hasattr(note, "param_decls")]
+    for note in notes:
+        # the first argument of typer.Option, which is a default outside of Annotated
+        for declared in (note.default, *(note.param_decls or ())):
+            if isinstance(declared, str) and declared.startswith("--"):
+                return declared.partition("/")[0]
     return "--" + name.rstrip("_").replace("_", "-")
