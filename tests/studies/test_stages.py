@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.studies.cost.made import point
 from tipoff import scenes
 from tipoff.files import write_json
 from tipoff.highfi.compiled import LAWS as highfi_laws
@@ -85,22 +86,12 @@ def test_surrogate_is_timed_by_turns(monkeypatch, tmp_path):
 def test_pareto_front():
     """Two with errors below the band of the finest mesh count as equal: the faster one is best."""
     points = [
-        {
-            "model": "a",
-            "rung": "a",
-            "setting": setting,
-            "numerics": f"{setting}",
-            "modes": None,
-            "error_deg_s": error,
-            "wall_s": wall,
-            "status": "exited",
-            "reference": False,
-        }
+        point(setting=setting, numerics=f"{setting}", error_deg_s=error, wall_s=wall)
         for setting, (error, wall) in enumerate(
             ((1.0, 1.0), (0.5, 2.0), (0.6, 3.0), (None, 9.0), (0.1, 6.0), (0.05, 7.0))
         )
     ]
-    assert [point["pareto"] for point in cost.marked(points, 0.2)] == [
+    assert [item.pareto for item in cost.marked(points, 0.2)] == [
         True,
         True,
         False,
@@ -109,31 +100,30 @@ def test_pareto_front():
         False,
     ]
     # an error band that is not known tells no two errors apart
-    assert not any(point["pareto"] for point in cost.marked(points, None))
+    assert not any(item.pareto for item in cost.marked(points, None))
 
 
 def test_matched_meshes():
     """An error that a loose tolerance hides by luck does not count, nor the time of one that spoils
     the model, nor what another number of modes reached."""
 
-    def point(model, setting, error, integration, wall):
-        return {
-            "model": model,
-            "setting": setting,
-            "numerics": f"{setting:g}",
-            "modes": None,
-            "error_deg_s": error,
-            "integration_error_deg_s": integration,
-            "wall_s": wall,
-            "reference": error is None,
-        }
+    def measured(model, setting, error, integration, wall):
+        return point(
+            model=model,
+            setting=setting,
+            numerics=f"{setting:g}",
+            error_deg_s=error,
+            integration_error_deg_s=integration,
+            wall_s=wall,
+            reference=error is None,
+        )
 
     meshes = [
-        point(cost.FINITE_ELEMENTS, *rest)
+        measured(cost.FINITE_ELEMENTS, *rest)
         for rest in ((8.0, 0.07, None, 3.0), (4.0, 0.02, None, 6.0), (2.0, None, None, 40.0))
     ]
     lucky = [
-        point("lucky", *rest)
+        measured("lucky", *rest)
         for rest in (
             (1e-2, 0.001, 0.04, 0.001),
             (1e-4, 0.031, 0.001, 0.002),
@@ -141,28 +131,29 @@ def test_matched_meshes():
         )
     ]
     exact = [
-        point("exact", *rest) for rest in ((1e-4, 0.011, 0.001, 0.002), (1e-8, 0.01, None, 0.004))
+        measured("exact", *rest)
+        for rest in ((1e-4, 0.011, 0.001, 0.002), (1e-8, 0.01, None, 0.004))
     ]
-    modes = point("exact", 2e-7, 0.001, None, 1e-4) | {"modes": 8}
+    modes = replace(measured("exact", 2e-7, 0.001, None, 1e-4), modes=8)
     first, second = cost.matched([*meshes, *lucky, *exact, modes])
-    assert (first["error_deg_s"], first["numerics"], first["mesh"], first["ratio"]) == (
+    assert (first.error_deg_s, first.numerics, first.mesh, first.ratio) == (
         0.03,
         "0.0001",
         "4",
         3000.0,
     )
     assert (
-        second["error_deg_s"],
-        second["numerics"],
-        second["mesh"],
-        second["mesh_error_deg_s"],
+        second.error_deg_s,
+        second.numerics,
+        second.mesh,
+        second.mesh_error_deg_s,
     ) == (0.01, "0.0001", "2", None)
     # a mesh that jammed has no error; it is no reference and matches nothing, however fast it is
-    jammed = meshes[0] | {"error_deg_s": None, "reference": False, "wall_s": 0.1}
-    assert cost.matched([jammed, *meshes[1:], *exact])[0]["mesh"] == "2"
+    jammed = replace(meshes[0], error_deg_s=None, reference=False, wall_s=0.1)
+    assert cost.matched([jammed, *meshes[1:], *exact])[0].mesh == "2"
     assert cost.matched([jammed, *exact]) == []
     # nor is a surrogate matched that does not settle at its tightest tolerance
-    lost = [exact[0], exact[1] | {"error_deg_s": None}]
+    lost = [exact[0], replace(exact[1], error_deg_s=None)]
     assert cost.matched([*meshes, *lost]) == []
 
 

@@ -59,7 +59,7 @@ class Entry:
 
 class Question(Entry):
     """A study with one result and one section, whose name is that of its ``package``: of its command,
-    stage, result file and make target.
+    section and make target.
 
     ``text``: the help of the command. ``title``: of its section. ``link``: the text of the link to the
     section. ``options``: the dataclass of its options; None without any. ``always``: whether each report
@@ -95,11 +95,14 @@ class Question(Entry):
             stage, page = modules()
 
             def section(shown: "Page") -> "list[Part]":
-                return shown.shown(name, lambda found: page.draw(stage.STAGE.read(found)), name)
+                return shown.shown(
+                    stage.STAGE.name, lambda found: page.draw(stage.STAGE.read(found)), name
+                )
 
             stored = None if always else getattr(stage, "stored", stage.STAGE.stored)
             return Contents(
-                (Result(name, stage.run, stored),), (Section(name, link, section, title),)
+                (Result(stage.STAGE.name, stage.run, stored),),
+                (Section(name, link, section, title),),
             )
 
         super().__init__((own or command(name, text or "", options, answer),), contents)

@@ -31,7 +31,7 @@ COMPARISON: tuple[Entry, ...] = (
     runs.ENTRY,
     calibration.ENTRY,
     agreement.ENTRY,
-    cost.ENTRY,
+    cost.QUESTION,
     stability.QUESTION,
     ablation.QUESTION,
     convergence.ENTRY,

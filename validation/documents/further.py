@@ -1,11 +1,14 @@
 """Tables of docs/results.md: balances, chaotic conditions, time at equal accuracy, error of the reference, speeds."""
 
+from operator import attrgetter
 from pathlib import Path
 
 from tipoff.files import read_json
 from tipoff.studies.agreement import distribution_page
 from tipoff.studies.convergence import summary
 from tipoff.studies.cost import scaling_page
+from tipoff.studies.cost import stage as cost_study
+from tipoff.studies.cost.results import Cost, Growth, Laws, Match, Scaling
 from tipoff.studies.render.document import Bullets, Part, markdown
 from tipoff.studies.render.table import Cells, Column, Table, number
 from tipoff.workspace.study import read
@@ -20,7 +23,7 @@ def details(folder: Path) -> str:
     )
     parts: list[Part] = [_promises(highfi, lowfi)]
     parts += distributions(agreement["distributions"]) if agreement is not None else []
-    parts += [_cost(cost), _scaling(cost["scaling"])] if cost is not None else []
+    parts += _cost(cost_study.STAGE.read(cost)) if cost is not None else []
     parts += _convergence(refined) if refined is not None else []
     if (found := reference.stored(folder.parent)) is not None:
         parts += [_bench(found["rows"])] if found["rows"] else []
@@ -41,46 +44,46 @@ def distributions(found: list[dict]) -> list[Part]:
     return [Table(table.columns, table.rows, title=title)]
 
 
-def _cost(found: dict) -> Table:
-    columns: Cells = (
-        ("model", lambda row: f"{row['model']}, {row['numerics']}"),
-        (Column("error, deg/s", form=".2g"), "error_deg_s"),
-        (Column("wall time, ms", form=".2g", scale=1e3), "wall_s"),
-        ("mesh", "mesh"),
+def _cost(found: Cost) -> list[Part]:
+    columns: tuple = (
+        ("model", lambda match: f"{match.model}, {match.numerics}"),
+        (Column("error, deg/s", form=".2g"), attrgetter("error_deg_s")),
+        (Column("wall time, ms", form=".2g", scale=1e3), attrgetter("wall_s")),
+        "mesh",
         (
             Column("its error, deg/s", form=".2g"),
-            lambda row: "reference" if row["mesh_is_reference"] else row["mesh_error_deg_s"],
+            lambda match: "reference" if match.mesh_is_reference else match.mesh_error_deg_s,
         ),
-        ("wall time, s", "mesh_wall_s"),
-        (Column("times as long", form=",.0f"), "ratio"),
+        ("wall time, s", attrgetter("mesh_wall_s")),
+        (Column("times as long", form=",.0f"), attrgetter("ratio")),
     )
-    return Table.of(
-        found["matched"],
-        columns,
-        title=f"Time at equal accuracy (`make cost`, {found['condition']}): each surrogate, and "
-        "the coarsest mesh whose error is not larger.",
+    title = (
+        f"Time at equal accuracy (`make cost`, {found.condition}): each surrogate, and the coarsest "
+        "mesh whose error is not larger."
     )
+    matched = Table.of_records(found.matched, *columns, title=title, kind=Match)
+    return [matched, _scaling(found.scaling)]
 
 
-def _scaling(found: dict) -> Table:
+def _scaling(found: Scaling) -> Table:
     """Exponents over elements and pads, and the time ratio of all effects to none."""
-    over = found["elements"]
-    laws = [
-        (f"{_ends(over)} elements", over),
-        ("the two finest meshes", over["finest"] | {"model": over["model"]}),
-        *((f"{_ends(law)} pads", law) for law in found["pads"]),
+    over = found.elements
+    laws: list[tuple[str, str, Growth | Laws]] = [
+        (f"{_ends(over)} elements", over.model, over),
+        ("the two finest meshes", over.model, over.finest),
+        *((f"{_ends(law)} pads", law.model, law) for law in found.pads),
     ]
     rows = [
-        (words, law["model"], scaling_page.exponent(law["run"]), scaling_page.exponent(law["step"]))
-        for words, law in laws
+        (words, model, scaling_page.exponent(law.run), scaling_page.exponent(law.step))
+        for words, model, law in laws
     ]
-    prices = "; ".join(f"{item['model']} {item['ratio']:.2f} times" for item in found["effects"])
+    prices = "; ".join(f"{item.model} {item.ratio:.2f} times" for item in found.effects)
     step = (
         ""
-        if over["fixed_s"] is None
+        if over.fixed_s is None or over.element_s is None
         else (
-            f"A step of the reference takes {1e6 * over['fixed_s']:.2g} µs on any mesh and "
-            f"{1e9 * over['element_s']:.2g} ns for each element. "
+            f"A step of the reference takes {1e6 * over.fixed_s:.2g} µs on any mesh and "
+            f"{1e9 * over.element_s:.2g} ns for each element. "
         )
     )
     return Table(
@@ -92,8 +95,8 @@ def _scaling(found: dict) -> Table:
     )
 
 
-def _ends(law: dict) -> str:
-    return f"{law['points'][0]['n']:,} to {law['points'][-1]['n']:,}"
+def _ends(law: Growth) -> str:
+    return f"{law.points[0].n:,} to {law.points[-1].n:,}"
 
 
 def _convergence(found: dict) -> list[Part]:

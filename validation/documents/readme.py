@@ -14,6 +14,8 @@ from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.studies.agreement import equal_accuracy, growth_page, rails_page, verdicts
 from tipoff.studies.agreement.other_rails import beside
 from tipoff.studies.agreement.page import by_factor
+from tipoff.studies.cost import stage as cost_study
+from tipoff.studies.cost.results import Cost
 from tipoff.studies.montecarlo import tails_page
 from tipoff.studies.render.document import Part, markdown
 from tipoff.studies.render.table import Cells, Column, Table, number, percent
@@ -135,7 +137,7 @@ def section(folder: Path) -> str:
     ]
     parts += [_rails(found)] if (found := beside(folder)) else []
     parts += [_blind(blind)] if blind is not None else []
-    parts += _ladder(cost) if cost is not None else []
+    parts += _ladder(cost_study.STAGE.read(cost)) if cost is not None else []
     return markdown(parts)
 
 
@@ -244,16 +246,16 @@ def _blind(found: dict) -> Table:
     )
 
 
-def _ladder(found: dict) -> list[Part]:
+def _ladder(found: Cost) -> list[Part]:
     rows = []
-    for point in found["points"]:
-        wall = point["wall_s"]
+    for point in found.points:
+        wall = point.wall_s
         errors = [
-            "reference" if point["reference"] else value if value is None else scale * value
-            for value, scale in ((point["error_deg_s"], 1.0), (point["curve_error"], 100.0))
+            "reference" if point.reference else value if value is None else scale * value
+            for value, scale in ((point.error_deg_s, 1.0), (point.curve_error, 100.0))
         ]
         time = f"{wall:.3g} s" if wall >= 0.1 else f"{1e3 * wall:.2g} ms"
-        rows.append((point["model"], point["numerics"], time, *errors))
+        rows.append((point.model, point.numerics, time, *errors))
     heads = (
         "model",
         "numerics",
@@ -262,11 +264,11 @@ def _ladder(found: dict) -> list[Part]:
         Column("rate L2", "%", ".2g"),
     )
     return [
-        f"Error and time of all models (`make cost`, {found['condition']}). Errors are relative "
-        f"to the finest mesh, whose own uncertainty is {number(found['band_deg_s'], '.2g')} "
+        f"Error and time of all models (`make cost`, {found.condition}). Errors are relative "
+        f"to the finest mesh, whose own uncertainty is {number(found.band_deg_s, '.2g')} "
         "deg/s; smaller errors count as this value. Bold: no faster model is as accurate.",
         "![Errors of all models against wall time](cost.png)",
-        Table(heads, rows, kinds=["best" if point["pareto"] else "" for point in found["points"]]),
+        Table(heads, rows, kinds=["best" if point.pareto else "" for point in found.points]),
     ]
 
 

@@ -1,8 +1,11 @@
 """The model that an accuracy or a time calls for, from measured cost."""
 
+from dataclasses import replace
+
 import pytest
 from typer.testing import CliRunner
 
+from tests.studies.cost.made import cost, point
 from tipoff import scenes
 from tipoff.studies.cli import app
 from tipoff.studies.cost import stage as cost_stage
@@ -23,24 +26,21 @@ POINTS = [
 ]
 
 
-COST = {
-    "condition": "phi15",
-    "band_deg_s": 0.02,
-    "points": [
-        {
-            "model": name,
-            "rung": "highfi" if "mm" in name else name.split()[0],
-            "numerics": "-",
-            "setting": 1e-3 * int(name[0]) if "mm" in name else 1e-6,
-            "modes": None,
-            "error_deg_s": error,
-            "reference": error is None,
-            "wall_s": wall,
-            "status": "diverged" if name == "lost" else "exited",
-        }
+COST = cost(
+    [
+        point(
+            model=name,
+            rung="highfi" if "mm" in name else name.split()[0],
+            setting=1e-3 * int(name[0]) if "mm" in name else 1e-6,
+            error_deg_s=error,
+            reference=error is None,
+            wall_s=wall,
+            status="diverged" if name == "lost" else "exited",
+        )
         for name, error, wall in POINTS
     ],
-}
+    0.02,
+)
 
 
 @pytest.mark.parametrize(
@@ -67,11 +67,8 @@ def test_cheapest_or_most_exact(accuracy, budget, expected):
             choose(COST, "phi15", None, accuracy, budget)
     else:
         found = choose(COST, "phi15", None, accuracy, budget)
-        assert (
-            found["model"] == expected
-            and expected in found["why"]
-            and found["why"].endswith("on phi15")
-        )
+        assert found.point.model == expected and expected in found.why
+        assert found.why.endswith("on phi15")
 
 
 def test_refusal_names_the_nearest():
@@ -117,61 +114,38 @@ def agreement(error, unsure):
 def test_what_holds_on_one_condition_is_not_promised_of_another():
     """Control: without the agreement study the errors of phi15 are taken, and that is said."""
     found = choose(COST, "phi60", agreement(13.0, 9.0), 0.03)
-    assert found["trusted_deg_s"] == 0.02 and found["why"].endswith(
-        "errors on phi60 from tipoff compare"
-    )
+    assert found.bound_deg_s == 0.02
+    assert found.why.endswith("errors on phi60 from tipoff compare")
+    assert found.plain()["trusted_deg_s"] == 0.02 and found.plain()["model"] == found.point.model
     with pytest.raises(StudyError, match="(?s)no model fits.*errors on h8 from tipoff compare"):
         choose(COST, "h8", agreement(13.0, 9.0), 0.03)
     # a model without an error there never counts
     nearest = choose(COST, "h8", agreement(13.0, 9.0), budget=0.01)
-    assert (nearest["model"], nearest["trusted_deg_s"]) == ("compliant", 13.0)
+    assert (nearest.point.model, nearest.bound_deg_s) == ("compliant", 13.0)
     with pytest.raises(StudyError, match="no model fits"):
         choose(COST, "h8", agreement(0.01, None), 0.03)
     for unknown in (None, agreement(13.0, 9.0)):
-        assert choose(COST, "nominal", unknown, 0.03)["why"].endswith(
-            "none are measured on nominal"
-        )
+        assert choose(COST, "nominal", unknown, 0.03).why.endswith("none are measured on nominal")
 
 
 def test_other_modes_are_chosen_only_where_they_were_measured():
-    fewer = {
-        "model": "fewer",
-        "rung": "modal",
-        "numerics": "1 mode",
-        "setting": 1.0,
-        "modes": 1,
-        "error_deg_s": 0.03,
-        "reference": False,
-        "wall_s": 0.0001,
-        "status": "exited",
-    }
-    cost = COST | {"points": [*COST["points"], fewer]}
-    assert choose(cost, "phi15", agreement(13.0, 9.0), 0.05)["model"] == "fewer"
+    fewer = point(model="fewer", rung="modal", modes=1, error_deg_s=0.03, wall_s=0.0001)
+    more = replace(COST, points=(*COST.points, fewer))
+    assert choose(more, "phi15", agreement(13.0, 9.0), 0.05).point.model == "fewer"
     # where no model is known any better
-    assert choose(cost, "nominal", agreement(13.0, 9.0), 0.05)["model"] == "fewer"
-    assert choose(cost, "phi60", agreement(13.0, 9.0), 0.05)["model"] == "compliant"
+    assert choose(more, "nominal", agreement(13.0, 9.0), 0.05).point.model == "fewer"
+    assert choose(more, "phi60", agreement(13.0, 9.0), 0.05).point.model == "compliant"
 
 
 def test_what_is_not_known_elsewhere_is_never_chosen():
     """A mesh coarser than any of the agreement study, and everything where a refinement did not
     settle. Control: a mesh it has."""
-    coarse = {
-        "model": "8 mm",
-        "rung": "highfi",
-        "numerics": "-",
-        "setting": 8e-3,
-        "modes": None,
-        "error_deg_s": 0.03,
-        "reference": False,
-        "wall_s": 3.0,
-        "status": "exited",
-    }
-    meshes = COST | {
-        "points": [coarse, *(point for point in COST["points"] if point["rung"] == "highfi")]
-    }
-    assert choose(meshes, "phi15", None, 0.05)["model"] == "8 mm"
+    coarse = point(model="8 mm", rung="highfi", setting=8e-3, error_deg_s=0.03, wall_s=3.0)
+    finer = (item for item in COST.points if item.rung == "highfi")
+    meshes = replace(COST, points=(coarse, *finer))
+    assert choose(meshes, "phi15", None, 0.05).point.model == "8 mm"
     for limit in ({"accuracy": 9.5}, {"budget": 60.0}):
-        assert choose(meshes, "h8", agreement(13.0, 9.0), **limit)["model"] == "4 mm"
+        assert choose(meshes, "h8", agreement(13.0, 9.0), **limit).point.model == "4 mm"
     with pytest.raises(StudyError, match="error unknown"):
         choose(COST, "h8", agreement(13.0, None), budget=60.0)
 
@@ -231,10 +205,10 @@ def test_refusal_of_both_limits_names_the_fastest_of_the_most_exact():
 def test_a_model_without_an_error_is_no_reference():
     """One that exits but does not settle has no error, and does not get that of the finest mesh. Without
     the uncertainty of that mesh no bound is known at all. Control: the finest mesh itself is chosen."""
-    meshes = [point for point in COST["points"] if point["rung"] == "highfi"]
-    restless = meshes[-1] | {"model": "restless", "reference": False, "wall_s": 1e-4}
-    asked = COST | {"points": [*meshes, restless]}
-    assert choose(asked, "phi15", None, budget=60.0)["model"] == "2 mm"
+    meshes = [item for item in COST.points if item.rung == "highfi"]
+    restless = replace(meshes[-1], model="restless", reference=False, wall_s=1e-4)
+    asked = replace(COST, points=(*meshes, restless))
+    assert choose(asked, "phi15", None, budget=60.0).point.model == "2 mm"
     with pytest.raises(StudyError, match="error unknown"):
-        choose(asked | {"band_deg_s": None}, "phi15", None, accuracy=1.0)
-    assert not any(point["pareto"] for point in cost_stage.marked(asked["points"], None))
+        choose(replace(asked, band_deg_s=None), "phi15", None, accuracy=1.0)
+    assert not any(item.pareto for item in cost_stage.marked(asked.points, None))

@@ -51,11 +51,11 @@ def test_the_error_of_time_integration_is_one_of_equal_modes(study, made):
     """Control: the difference of both runs as they are is that of three modes, 2.9 deg/s."""
     tolerances = (1e-2, 1e-4, 1e-6)
     points = cost.surrogate_points(study, "phi15", COMPLIANT, flight(), tolerances)
-    assert [point["setting"] for point in points] == list(tolerances)
-    errors = [point["integration_error_deg_s"] for point in points]
+    assert [point.setting for point in points] == list(tolerances)
+    errors = [point.integration_error_deg_s for point in points]
     assert errors[2] is None
     assert errors[:2] == pytest.approx([0.1 - 1e-5, 1e-3 - 1e-5], rel=1e-9)
-    loose, _, tight = (point["error_deg_s"] for point in points)
+    loose, _, tight = (point.error_deg_s for point in points)
     assert tight - loose == pytest.approx(2.9, abs=1e-3)
     # one run more: tight, with the modes of the loose one
     (further,) = [run for run in made if run.numerics.modes == 0]
@@ -72,15 +72,13 @@ def test_a_rail_without_modes_is_a_point_of_its_own(study, made):
     """Control: the candidate that chooses its modes has none of these numbers."""
     modal = COMPLIANT._replace(name="modal", modes=4)
     points = cost.points_by_modes(study, "phi15", modal, flight())
-    assert [(point["modes"], point["numerics"]) for point in points] == [
+    assert [(point.modes, point.numerics) for point in points] == [
         (0, "0 modes"),
         (1, "1 mode"),
         (2, "2 modes"),
         (8, "8 modes"),
     ]
-    assert [point["error_deg_s"] for point in points] == pytest.approx(
-        [0.0, 1.0, 2.0, 8.0], abs=1e-4
-    )
+    assert [point.error_deg_s for point in points] == pytest.approx([0.0, 1.0, 2.0, 8.0], abs=1e-4)
     assert {run.numerics.modes for run in made} == {0, 1, 2, 8}
     requests = [COMPLIANT, COMPLIANT._replace(modes=0), modal]
     found = [item.request(study, "phi15") for item in requests]

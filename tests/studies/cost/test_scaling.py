@@ -1,5 +1,7 @@
 """Growth of cost: exponents against exact laws, scenes of other pads, prices of effects."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,8 +9,10 @@ from tests.studies.shown import html
 from tipoff import scenes
 from tipoff.mechanics.model import build
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
+from tipoff.studies.ablation.stage import Ablation, Row
 from tipoff.studies.cost import scaling
 from tipoff.studies.cost import scaling_page as page
+from tipoff.studies.cost.results import Laws, MeshGrowth, PowerLaw, Scaling, Timing
 from tipoff.studies.cost.scaling import effects, fitted, power_law, shares, with_pads
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.study import Study
@@ -16,35 +20,40 @@ from tipoff.workspace.study import Study
 SIZES = [520, 2420, 4500, 19360]
 
 
+def timing(n, steps, seconds, element_size=None) -> Timing:
+    """A timing of one run."""
+    return Timing(
+        n=n,
+        steps=steps,
+        repeats=1,
+        time_s=seconds,
+        wall_s=seconds,
+        step_s=seconds / steps,
+        element_size_m=element_size,
+    )
+
+
+def growth(meshes, finest, fixed, each, pads) -> Scaling:
+    """All growth of the scene tiny."""
+    elements = MeshGrowth(**vars(meshes), finest=finest, fixed_s=fixed, element_s=each)
+    return Scaling(elements=elements, pads=(pads,), effects=effects(scenes.load("tiny"), ABLATION))
+
+
 def test_exponent_of_an_exact_law():
     found = power_law(SIZES, [3e-4 * size**1.25 for size in SIZES])
-    assert found["exponent"] == pytest.approx(1.25, rel=1e-12) and found[
-        "standard_error"
-    ] == pytest.approx(0.0, abs=1e-9)
-    assert power_law(SIZES[:2], SIZES[:2])["standard_error"] is None
+    assert found.exponent == pytest.approx(1.25, rel=1e-12)
+    assert found.standard_error == pytest.approx(0.0, abs=1e-9)
+    assert power_law(SIZES[:2], SIZES[:2]).standard_error is None
 
 
 def test_single_size_has_no_exponent():
     """A mesh from a file is the same whatever element size is asked for; nor does the page or its
     picture stumble over it."""
-    points = [
-        {"n": 500, "steps": 10, "time_s": time, "element_size_m": 1e-3, "repeats": 1}
-        for time in (1.0, 1.1, 0.9)
-    ]
-    law, finest = fitted(FINITE_ELEMENTS, points), fitted(FINITE_ELEMENTS, points[-2:])
-    assert law["run"] == law["step"] == {"exponent": None, "standard_error": None} and shares(
-        [500] * 3, [1.0, 1.1, 0.9]
-    ) == (None, None)
-    found = {
-        "elements": law
-        | {
-            "finest": {"run": finest["run"], "step": finest["step"]},
-            "fixed_s": None,
-            "element_s": None,
-        },
-        "pads": [fitted(SPRINGS, points[:1])],
-        "effects": effects(scenes.load("tiny"), ABLATION),
-    }
+    points = [timing(500, 10, time, 1e-3) for time in (1.0, 1.1, 0.9)]
+    law = fitted(FINITE_ELEMENTS, points)
+    assert law.run == law.step == PowerLaw(None, None)
+    assert shares([500] * 3, [1.0, 1.1, 0.9]) == (None, None)
+    found = growth(law, Laws(law.run, law.step), None, None, fitted(SPRINGS, points[:1]))
     assert "there is only one" in html(page.tables(found))
     assert [len(panel.lines) for panel in page.picture(found).panels] == [2, 1, 2]
 
@@ -54,23 +63,19 @@ def test_standard_error_covers_the_scatter_it_is_made_of():
     itself on the average."""
     draw, sizes = np.random.default_rng(1), np.geomspace(1.0, 16.0, 5)
     laws = [power_law(sizes, sizes * np.exp(0.05 * draw.standard_normal(5))) for _ in range(2000)]
-    spread = np.std([law["exponent"] for law in laws])
-    assert np.sqrt(np.mean([law["standard_error"] ** 2 for law in laws])) == pytest.approx(
+    spread = np.std([law.exponent for law in laws])
+    assert np.sqrt(np.mean([law.standard_error**2 for law in laws])) == pytest.approx(
         spread, rel=0.05
     )
 
 
 def test_steps_and_runs_have_laws_of_their_own():
     """Elements that shrink alike along all edges: 1 for a step, 4/3 for a run."""
-    points = [
-        {"n": n, "steps": 100.0 * n ** (1 / 3), "time_s": 1e-6 * n * 100.0 * n ** (1 / 3)}
-        for n in SIZES
-    ]
-    law = fitted("m", points)
-    assert law["step"]["exponent"] == pytest.approx(1.0) and law["run"][
-        "exponent"
-    ] == pytest.approx(4.0 / 3.0)
-    assert law["points"][0]["step_s"] == pytest.approx(520e-6)
+    steps = [100.0 * n ** (1 / 3) for n in SIZES]
+    law = fitted("m", [timing(n, each, 1e-6 * n * each) for n, each in zip(SIZES, steps)])
+    assert law.step.exponent == pytest.approx(1.0)
+    assert law.run.exponent == pytest.approx(4.0 / 3.0)
+    assert law.points[0].step_s == pytest.approx(520e-6)
 
 
 def test_what_is_the_same_on_any_mesh_is_told_from_the_elements():
@@ -78,7 +83,7 @@ def test_what_is_the_same_on_any_mesh_is_told_from_the_elements():
     what the elements alone take."""
     times = [40e-6 + 9e-9 * size for size in SIZES]
     assert shares(SIZES, times) == pytest.approx((40e-6, 9e-9))
-    assert power_law(SIZES, times)["exponent"] < 0.6
+    assert power_law(SIZES, times).exponent < 0.6
 
 
 @pytest.mark.parametrize("count, bands", [(1, 1), (2, 1), (4, 1), (8, 2), (12, 3), (16, 4)])
@@ -122,15 +127,10 @@ TIMES = {
 
 def test_mesh_from_a_file_is_not_run_ten_times(monkeypatch, tmp_path):
     """Control: the built-in rail has a coarse mesh, and the reference is asked."""
-    monkeypatch.setattr(
-        scaling, "over_pads", lambda model, runs, counts, board: {"model": model, "counts": counts}
-    )
+    monkeypatch.setattr(scaling, "over_pads", lambda model, runs, counts, board: model)
     monkeypatch.setattr(scaling, "coarse_walls", lambda study, name, change: None)
     models = {
-        name: [
-            law["model"]
-            for law in scaling.pads(Study(scenes.load(name), tmp_path, defaults(name)), "phi15")
-        ]
+        name: list(scaling.pads(Study(scenes.load(name), tmp_path, defaults(name)), "phi15"))
         for name in ("channel", "tiny")
     }
     assert models == {
@@ -139,55 +139,50 @@ def test_mesh_from_a_file_is_not_run_ten_times(monkeypatch, tmp_path):
     }
 
 
-ABLATION = {
-    "rows": [
-        {"fidelity": fidelity, "variant": variant, "time_s": factor * seconds}
+def rows(times) -> tuple[Row, ...]:
+    """Rows of the ablation study with these ``times`` (s) of the surrogate."""
+    nothing = dict.fromkeys(
+        ("ns_per_step", "time_ratio", "settled_rate_deg_s", "settled_rate_change_deg_s")
+    )
+    return tuple(
+        Row(
+            fidelity=fidelity,
+            variant=variant,
+            status="exited",
+            time_s=factor * seconds,
+            compiled=(),
+            **nothing,
+        )
         for fidelity, factor in (("highfi", 1e3), ("lowfi", 1.0))
-        for variant, seconds in TIMES.items()
-    ]
-}
+        for variant, seconds in times.items()
+    )
+
+
+ABLATION = Ablation("phi15", {}, 4e-3, rows(TIMES), {})
 
 
 def test_prices_of_effects():
     scene = scenes.load("tiny")
     reference, surrogate = effects(scene, ABLATION)
-    assert reference["ratio"] == surrogate["ratio"] == 2.0 and surrogate["model"] == COMPLIANT
-    assert {item["effect"]: item["time_s"] for item in surrogate["effects"]} == {
+    assert reference.ratio == surrogate.ratio == 2.0 and surrogate.model == COMPLIANT
+    assert {item.effect: item.time_s for item in surrogate.effects} == {
         "contact": 4.0,
         "friction": 1.0,
         "gravity": -0.5,
     }
-    assert [(step["on"], step["time_s"]) for step in surrogate["ladder"]] == [
-        (0, 5.0),
-        (1, 6.0),
-        (2, 9.0),
-        (3, 10.0),
-    ]
-    assert surrogate["asked"] == [2, 9.5]  # the scene has no gravity
-    without = {"rows": [row for row in ABLATION["rows"] if row["variant"] != "without contact"]}
-    assert [step["on"] for step in effects(scene, without)[0]["ladder"]] == [0, 2]
+    ladder = [(rung.on, rung.time_s) for rung in surrogate.ladder]
+    assert ladder == [(0, 5.0), (1, 6.0), (2, 9.0), (3, 10.0)]
+    assert surrogate.asked == (2, 9.5)  # the scene has no gravity
+    others = {name: seconds for name, seconds in TIMES.items() if name != "without contact"}
+    without = replace(ABLATION, rows=rows(others))
+    assert [rung.on for rung in effects(scene, without)[0].ladder] == [0, 2]
 
 
 def test_page_shows_exponents_with_their_errors():
-    law = fitted(
-        SPRINGS, [{"n": n, "steps": 10, "time_s": 1e-3 * n**0.5, "repeats": 1} for n in (1, 2, 4)]
-    )
-    meshes = fitted(
-        FINITE_ELEMENTS,
-        [
-            {"n": n, "steps": 10, "time_s": 1e-3 * n, "element_size_m": 1e-3, "repeats": 3}
-            for n in SIZES
-        ],
-    )
-    finest = {
-        "run": {"exponent": 1.3, "standard_error": None},
-        "step": {"exponent": 0.9, "standard_error": None},
-    }
-    found = {
-        "elements": meshes | {"finest": finest, "fixed_s": 4e-5, "element_s": 9e-9},
-        "pads": [law],
-        "effects": effects(scenes.load("tiny"), ABLATION),
-    }
+    law = fitted(SPRINGS, [timing(n, 10, 1e-3 * n**0.5) for n in (1, 2, 4)])
+    meshes = fitted(FINITE_ELEMENTS, [timing(n, 10, 1e-3 * n, 1e-3) for n in SIZES])
+    finest = Laws(PowerLaw(1.3, None), PowerLaw(0.9, None))
+    found = growth(meshes, finest, 4e-5, 9e-9, law)
     shown = html(page.tables(found))
     assert "0.50 ± 0.00" in shown and ">1.30<" in shown and "gravity alone" in shown
     assert [len(panel.lines) for panel in page.picture(found).panels] == [3, 2, 2]

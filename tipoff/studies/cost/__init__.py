@@ -1,16 +1,6 @@
-"""Wall time of the models, its growth, and the choice of a model for an accuracy or a time."""
+"""Measure error over wall time, and growth of time with elements, pads and effects; writes
+cost.json and cost_study.json."""
 
-from tipoff.studies.cost import command
-from tipoff.studies.question import Contents, Entry, Result, Section
+from tipoff.studies.question import Question
 
-
-def _load() -> Contents:
-    from tipoff.studies.cost import page, stage
-
-    return Contents(
-        (Result("cost_study", stage.run),),
-        (Section("cost", "Cost", page.draw, "Error over wall time"),),
-    )
-
-
-ENTRY = Entry((command.cost,), _load)
+QUESTION = Question(__name__, __doc__, "Error over wall time", "Cost", always=True)

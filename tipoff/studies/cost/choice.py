@@ -9,51 +9,75 @@ not chosen.
 """
 
 import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import NamedTuple
 
+from tipoff.studies.cost.results import Cost, Point
 from tipoff.workspace.settings import COARSER
 from tipoff.workspace.study import StudyError
 
 _ROUNDING = 1e-9
 
 
+class Trusted(NamedTuple):
+    """A point with its error bound; infinite where it is not known."""
+
+    point: Point
+    bound_deg_s: float
+
+
+class Choice(NamedTuple):
+    """The chosen point, its error bound, and the reason as a sentence."""
+
+    point: Point
+    bound_deg_s: float
+    why: str
+
+    def plain(self) -> dict:
+        """The choice as JSON values."""
+        return asdict(self.point) | {"trusted_deg_s": self.bound_deg_s, "why": self.why}
+
+
 def choose(
-    cost: dict,
+    cost: Cost,
     condition: str,
     agreement: dict | None,
     accuracy: float | None = None,
     budget: float | None = None,
-) -> dict:
-    """The point of the ``cost`` study with an error bound ``trusted_deg_s`` of the settled rates of
-    at most ``accuracy`` (deg/s) on ``condition`` and a wall time of at most ``budget`` (s); ``why``
-    is the reason as a sentence.
+) -> Choice:
+    """The point of the ``cost`` study with an error bound of the settled rates of at most ``accuracy``
+    (deg/s) on ``condition`` and a wall time of at most ``budget`` (s).
 
     Raises StudyError where no model fits, with the nearest ones.
     """
-    there = {} if condition == cost["condition"] else elsewhere(agreement, condition)
-    points = trusted(cost["points"], cost["band_deg_s"], there)
+    there = {} if condition == cost.condition else elsewhere(agreement, condition)
+    points = trusted(cost.points, cost.band_deg_s, there)
     fit = [
-        point
-        for point in points
-        if math.isfinite(point["trusted_deg_s"])
-        and _within(point["trusted_deg_s"], accuracy)
-        and _within(point["wall_s"], budget)
+        item
+        for item in points
+        if math.isfinite(item.bound_deg_s)
+        and _within(item.bound_deg_s, accuracy)
+        and _within(item.point.wall_s, budget)
     ]
     if not fit:
         raise StudyError(_refusal(points, accuracy, budget) + _measured(cost, condition, there))
-    by_time, by_error = (
-        (lambda p: (p["wall_s"], p["trusted_deg_s"])),
-        (lambda p: (p["trusted_deg_s"], p["wall_s"])),
-    )
-    best = min(fit, key=by_time if accuracy is not None else by_error)
+    best = min(fit, key=_by_time if accuracy is not None else _by_error)
     reason = (
         "the fastest with this accuracy"
         if accuracy is not None
         else "the most accurate within this time"
     )
-    return best | {
-        "why": f"{words(best)}: {reason}, of {len(points)} measured on {cost['condition']}"
-        + _measured(cost, condition, there)
-    }
+    why = f"{words(best)}: {reason}, of {len(points)} measured on {cost.condition}"
+    return Choice(*best, why + _measured(cost, condition, there))
+
+
+def _by_time(item: Trusted) -> tuple[float, float]:
+    return item.point.wall_s, item.bound_deg_s
+
+
+def _by_error(item: Trusted) -> tuple[float, float]:
+    return item.bound_deg_s, item.point.wall_s
 
 
 def elsewhere(agreement: dict | None, condition: str) -> dict[str, float]:
@@ -86,89 +110,70 @@ def elsewhere(agreement: dict | None, condition: str) -> dict[str, float]:
 
 
 def trusted(
-    points: list[dict], band: float | None, there: dict[str, float] | None = None
-) -> list[dict]:
-    """The points that have an error, and the reference, each with its error bound ``trusted_deg_s``,
-    which is at least the bound of its model ``there``; infinite where the uncertainty ``band`` of the
-    reference is not known."""
+    points: Sequence[Point], band: float | None, there: dict[str, float] | None = None
+) -> list[Trusted]:
+    """The points that have an error, and the reference, each with an error bound that is at least the
+    bound of its model ``there``; infinite where the uncertainty ``band`` of the reference is not
+    known."""
     found = []
     for point in points:
-        error = 0.0 if point["reference"] else point["error_deg_s"]
-        if error is not None and point["status"] == "exited":
+        error = 0.0 if point.reference else point.error_deg_s
+        if error is not None and point.status == "exited":
             bound = max(error, _known(band), _elsewhere(point, there) if there else 0.0)
-            found.append(point | {"trusted_deg_s": bound})
+            found.append(Trusted(point, bound))
     return found
 
 
-def _elsewhere(point: dict, there: dict[str, float]) -> float:
-    too_coarse = (
-        point["rung"] == "highfi" and point["setting"] > (1.0 + _ROUNDING) * there["coarsest_m"]
-    )
-    return (
-        math.inf if too_coarse or point["modes"] is not None else there.get(point["rung"], math.inf)
-    )
+def _elsewhere(point: Point, there: dict[str, float]) -> float:
+    too_coarse = point.rung == "highfi" and point.setting > (1.0 + _ROUNDING) * there["coarsest_m"]
+    return math.inf if too_coarse or point.modes is not None else there.get(point.rung, math.inf)
 
 
 def _known(value: float | None) -> float:
     return math.inf if value is None else value
 
 
-def _measured(cost: dict, condition: str, there: dict[str, float]) -> str:
+def _measured(cost: Cost, condition: str, there: dict[str, float]) -> str:
     """Origin of the errors, where they were measured on another condition."""
-    if condition == cost["condition"]:
+    if condition == cost.condition:
         return ""
     return (
         f"; errors on {condition} from tipoff compare"
         if there
-        else f"; the errors are those of {cost['condition']}, none are measured on {condition}"
+        else f"; the errors are those of {cost.condition}, none are measured on {condition}"
     )
 
 
-def words(point: dict) -> str:
+def words(item: Trusted) -> str:
     """A point in words and units."""
-    bound = (
-        f"{point['trusted_deg_s']:.2g} deg/s"
-        if math.isfinite(point["trusted_deg_s"])
-        else "error unknown"
-    )
-    return f"{point['model']}, {point['numerics']} ({bound}, {point['wall_s']:.2g} s)"
+    point, bound = item
+    error = f"{bound:.2g} deg/s" if math.isfinite(bound) else "error unknown"
+    return f"{point.model}, {point.numerics} ({error}, {point.wall_s:.2g} s)"
 
 
 def _within(value: float, limit: float | None) -> bool:
     return limit is None or value <= limit
 
 
-def _refusal(points: list[dict], accuracy: float | None, budget: float | None) -> str:
-    limits = " and ".join(
-        filter(
-            None,
-            [
-                None if accuracy is None else f"{accuracy:g} deg/s",
-                None if budget is None else f"{budget:g} s",
-            ],
-        )
-    )
+def _refusal(points: list[Trusted], accuracy: float | None, budget: float | None) -> str:
+    limits = [
+        *([] if accuracy is None else [f"{accuracy:g} deg/s"]),
+        *([] if budget is None else [f"{budget:g} s"]),
+    ]
+    in_time = [item for item in points if _within(item.point.wall_s, budget)]
+    accurate = [item for item in points if _within(item.bound_deg_s, accuracy)]
     nearest = []
-    in_time = [point for point in points if _within(point["wall_s"], budget)]
-    accurate = [point for point in points if _within(point["trusted_deg_s"], accuracy)]
     if in_time:
-        best = min(in_time, key=lambda point: (point["trusted_deg_s"], point["wall_s"]))
-        nearest.append(
-            ("most accurate: " if budget is None else "most accurate in this time: ") + words(best)
-        )
+        how = "most accurate: " if budget is None else "most accurate in this time: "
+        nearest.append(how + words(min(in_time, key=_by_error)))
     if accurate:
-        best = min(accurate, key=lambda point: point["wall_s"])
-        nearest.append(
-            ("fastest: " if accuracy is None else "fastest with this accuracy: ") + words(best)
-        )
-    if not nearest:
-        nearest = (
-            [
-                "most accurate: "
-                + words(min(points, key=lambda p: (p["trusted_deg_s"], p["wall_s"]))),
-                "fastest: " + words(min(points, key=lambda p: p["wall_s"])),
-            ]
-            if points
-            else ["no model settled"]
-        )
-    return f"no model fits {limits}\n  " + "\n  ".join(nearest)
+        how = "fastest: " if accuracy is None else "fastest with this accuracy: "
+        nearest.append(how + words(min(accurate, key=lambda item: item.point.wall_s)))
+    if points and not nearest:
+        fastest = min(points, key=lambda item: item.point.wall_s)
+        nearest = [
+            f"most accurate: {words(min(points, key=_by_error))}",
+            f"fastest: {words(fastest)}",
+        ]
+    lines = nearest or ["no model settled"]
+    return f"no model fits {' and '.join(limits)}\n  " + "\n  ".join(lines)

@@ -1,18 +1,18 @@
 """Error over wall time, and its growth, on the page."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from operator import attrgetter, itemgetter
+from typing import Any
 
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.cost import choice, scaling_page
+from tipoff.studies.cost.results import Cost, Match, Point
 from tipoff.studies.render.chart import Chart, Line, Panel
+from tipoff.studies.render.column import Column, of_record
 from tipoff.studies.render.document import Figure, Heading, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
-from tipoff.studies.render.table import Cells, Column, Table
-
-if TYPE_CHECKING:
-    from tipoff.studies.report.page import Page
+from tipoff.studies.render.table import Table
 
 _ERRORS = (
     "Condition {condition}. Errors are relative to the finest finite-element mesh. The band is "
@@ -34,116 +34,87 @@ _LOOKS = (
 )
 
 
-def draw(page: "Page") -> list[Part]:
-    """The section, or how to make its result."""
-
-    def body(found: dict) -> list[Part]:
-        growth = scaling_page.CAPTION.format(condition=found["condition"])
-        return [
-            Figure(picture(found), _ERRORS.format(condition=found["condition"])),
-            *tables(found),
-            Heading("Growth of the run time"),
-            Figure(scaling_page.picture(found["scaling"]), growth),
-            *scaling_page.tables(found["scaling"]),
-        ]
-
-    return page.shown("cost_study", body, "cost")
+def draw(found: Cost) -> list[Part]:
+    """Errors over wall time, and the growth of the run time."""
+    growth = scaling_page.CAPTION.format(condition=found.condition)
+    return [
+        Figure(picture(found), _ERRORS.format(condition=found.condition)),
+        *tables(found),
+        Heading("Growth of the run time"),
+        Figure(scaling_page.picture(found.scaling), growth),
+        *scaling_page.tables(found.scaling),
+    ]
 
 
-def _or_reference(key: str, mark: str = "reference") -> Callable[[dict], Any]:
-    """A cell with an error: that of the reference itself has its ``mark``, an unknown one is None."""
-    return lambda point: "reference" if point[mark] else point[key]
+def _of_point(name: str) -> tuple[Column, Callable[[Point], Any]]:
+    """The column of an error; that of the reference itself is called so."""
+    return POINT[name], lambda point: "reference" if point.reference else getattr(point, name)
 
 
-_ERROR = Column("error", "deg/s", ".2g")
-_POINTS: Cells = (
-    ("model", "model"),
-    ("numerics", "numerics"),
-    (Column("wall time", "s"), "wall_s"),
-    (_ERROR, _or_reference("error_deg_s")),
-    (Column("rate L2", "%", ".2g", 100.0), _or_reference("curve_error")),
+def _of_mesh(match: Match) -> Any:
+    return "reference" if match.mesh_is_reference else match.mesh_error_deg_s
+
+
+POINT = of_record(Point)
+_POINTS = ("model", "numerics", "wall_s", _of_point("error_deg_s"), _of_point("curve_error"))
+_MATCHES = (
+    *("model", "numerics", "wall_s", "error_deg_s", "mesh", "mesh_wall_s"),
+    (POINT["error_deg_s"], _of_mesh),
+    "ratio",
 )
 
 
-def terminal(document: dict) -> list[Part]:
+def terminal(found: Cost) -> list[Part]:
     """The points of the Pareto front: each the fastest with its accuracy."""
-    best = sorted(
-        (point for point in document["points"] if point["pareto"]), key=lambda item: item["wall_s"]
-    )
+    best = sorted((point for point in found.points if point.pareto), key=lambda item: item.wall_s)
     title = (
-        f"The fastest model of each accuracy, condition {document['condition']}, "
-        f"{len(best)} of {len(document['points'])} measured points:"
+        f"The fastest model of each accuracy, condition {found.condition}, "
+        f"{len(best)} of {len(found.points)} measured points:"
     )
-    return [Table.of(best, _POINTS, title=title)]
+    return [Table.of_records(best, *_POINTS, title=title, kind=Point)]
 
 
-def tables(document: dict) -> list[Part]:
+def tables(found: Cost) -> list[Part]:
     """Errors and wall times of all points, and meshes with the error of each surrogate."""
-    points: Cells = (
-        *_POINTS,
-        (Column("error of time integration", "deg/s"), "integration_error_deg_s"),
-    )
-    kinds = ["best" if point["pareto"] else "" for point in document["points"]]
-    matched: Cells = (
-        ("surrogate", "model"),
-        ("numerics", "numerics"),
-        (Column("wall time", "ms", scale=1e3), "wall_s"),
-        (_ERROR, "error_deg_s"),
-        ("mesh", "mesh"),
-        (Column("wall time", "s"), "mesh_wall_s"),
-        (_ERROR, _or_reference("mesh_error_deg_s", "mesh_is_reference")),
-        (Column("ratio of wall times", form=",.0f"), "ratio"),
-    )
+    kinds = ["best" if point.pareto else "" for point in found.points]
+    notes = ("Bold: points of the Pareto front.",)
+    columns = (*_POINTS, "integration_error_deg_s")
+    title = "Each surrogate, and the fastest finite-element mesh whose error is not larger:"
     return [
-        Table.of(
-            document["points"], points, kinds=kinds, notes=("Bold: points of the Pareto front.",)
-        ),
-        Table.of(
-            document["matched"],
-            matched,
-            title="Each surrogate, and the fastest finite-element mesh whose error is not larger:",
-        ),
+        Table.of_records(found.points, *columns, kinds=kinds, notes=notes),
+        Table.of_records(found.matched, *_MATCHES, title=title, kind=Match),
     ]
 
 
-def picture(cost: dict) -> Chart:
+def picture(cost: Cost) -> Chart:
     """Errors of the settled rates and of the curves over wall time, one line per model, with the
     uncertainty of the finest mesh and the Pareto front; and the surrogate's error of time
     integration."""
-    models = dict.fromkeys(point["model"] for point in cost["points"])
-    looks = dict(zip(models, _LOOKS))
-    shade = cost["band_deg_s"]
+    looks = dict(zip(dict.fromkeys(point.model for point in cost.points), _LOOKS))
+    shade = cost.band_deg_s
     band = (shade, "uncertainty of the finest mesh") if shade else None
-    settled = [
-        point | {"error_deg_s": shade if point["reference"] else point["error_deg_s"]}
-        for point in cost["points"]
-    ]
-    curves = [
-        point | {"curve_error": point["curve_error"] and 100.0 * point["curve_error"]}
-        for point in cost["points"]
-    ]
+
+    def settled(point: Point) -> float | None:
+        return shade if point.reference else point.error_deg_s
+
+    def curve(point: Point) -> float | None:
+        return point.curve_error and 100.0 * point.curve_error
+
     rates = "error of the settled rates (deg/s)"
     panels = []
-    for title, points, error, label, shaded in (
-        ("settled rates, against the finest mesh", settled, "error_deg_s", rates, band),
-        (
-            "curves of the rates, against the finest mesh",
-            curves,
-            "curve_error",
-            "rate L2 (%)",
-            None,
-        ),
+    for title, error, label, shaded in (
+        ("settled rates, against the finest mesh", settled, rates, band),
+        ("curves of the rates, against the finest mesh", curve, "rate L2 (%)", None),
         (
             "settled rates, error of time integration",
-            cost["points"],
-            "integration_error_deg_s",
+            attrgetter("integration_error_deg_s"),
             rates,
             None,
         ),
     ):
         lines = [
             _cost_line(
-                [p for p in points if p["model"] == model and (p[error] or 0.0) > 0.0],
+                [p for p in cost.points if p.model == model and (error(p) or 0.0) > 0.0],
                 error,
                 model,
                 look,
@@ -157,45 +128,45 @@ def picture(cost: dict) -> Chart:
     return Chart("cost", [panel for panel in panels if panel.lines], columns=2, height=420)
 
 
-def recommended(cost: dict) -> dict | None:
+def recommended(cost: Cost) -> Point | None:
     """The fastest surrogate whose error is no larger than the uncertainty of the finest mesh, or
     the limit of agreement if that is larger; without one, the most accurate surrogate. None where that
     uncertainty is not known."""
-    if cost["band_deg_s"] is None:
+    if cost.band_deg_s is None:
         return None
-    enough = max(cost["band_deg_s"], verdicts.CONVERGED_DEG_S)
+    enough = max(cost.band_deg_s, verdicts.CONVERGED_DEG_S)
     points = [
-        point
-        for point in cost["points"]
-        if point["error_deg_s"] is not None and point["model"] != FINITE_ELEMENTS
+        (point.error_deg_s, point)
+        for point in cost.points
+        if point.error_deg_s is not None and point.model != FINITE_ELEMENTS
     ]
-    good = [point for point in points if point["error_deg_s"] <= enough]
+    good = [point for error, point in points if error <= enough]
     if good:
-        return min(good, key=lambda point: point["wall_s"])
-    return min(points, key=lambda point: point["error_deg_s"], default=None)
+        return min(good, key=lambda point: point.wall_s)
+    return min(points, key=itemgetter(0))[1] if points else None
 
 
-def _recommended(cost: dict) -> list[Line]:
+def _recommended(cost: Cost) -> list[Line]:
     point = recommended(cost)
-    if point is None or not point["error_deg_s"]:
+    if point is None or not point.error_deg_s:
         return []
-    name = f"recommended: {point['model']}, {point['numerics']}"
-    place = [point["wall_s"]], [point["error_deg_s"]]
+    name = f"recommended: {point.model}, {point.numerics}"
+    place = [point.wall_s], [point.error_deg_s]
     return [Line(*place, name, "#000000", 1.6, "", marker="x", size=16.0)]
 
 
-def _front(cost: dict) -> Line:
+def _front(cost: Cost) -> Line:
     """Steps along the Pareto front; errors below the band count as the band."""
     front = sorted(
-        (p["wall_s"], p["trusted_deg_s"])
-        for p in choice.trusted(cost["points"], cost["band_deg_s"])
-        if p["pareto"]
+        (point.wall_s, bound)
+        for point, bound in choice.trusted(cost.points, cost.band_deg_s)
+        if point.pareto
     )
     walls, errors = [wall for wall, _ in front], [error for _, error in front]
     return Line(
         [
             wall
-            for pair in zip(walls, [*walls[1:], max(p["wall_s"] for p in cost["points"])])
+            for pair in zip(walls, [*walls[1:], max(p.wall_s for p in cost.points)])
             for wall in pair
         ],
         [error for error in errors for _ in range(2)],
@@ -208,21 +179,23 @@ def _front(cost: dict) -> Line:
 
 
 def _cost_line(
-    points: list[dict], error: str, model: str, look: tuple[str, str, str], beside: str
+    points: list[Point],
+    error: Callable[[Point], Any],
+    model: str,
+    look: tuple[str, str, str],
+    beside: str,
 ) -> Line:
     """One model, with its name at its slowest point; meshes and numbers of modes have their own labels."""
     colour, marker, dash = look
-    varied = any(point["modes"] is not None for point in points)
-    labels = [
-        str(point["modes"]) if varied else point["numerics"].split(",")[0] for point in points
-    ]
+    varied = any(point.modes is not None for point in points)
+    labels = [str(point.modes) if varied else point.numerics.split(",")[0] for point in points]
     if model != FINITE_ELEMENTS and not varied:
         # right of the slowest point no other surrogate is in the way
-        named = max(points, key=lambda point: point["wall_s"], default=None)
+        named = max(points, key=lambda point: point.wall_s, default=None)
         labels = [model.split(" of ")[0] if point is named else "" for point in points]
     return Line(
-        [p["wall_s"] for p in points],
-        [p[error] for p in points],
+        [p.wall_s for p in points],
+        [error(p) for p in points],
         model,
         colour,
         1.6,

@@ -18,6 +18,7 @@ reference, of the time loop of the surrogate.
 
 import statistics
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -25,6 +26,17 @@ from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.rail import MeshTable
 from tipoff.scenes.scene import Scene
+from tipoff.studies.ablation.stage import Ablation
+from tipoff.studies.cost.results import (
+    EffectTime,
+    EffectTimes,
+    Growth,
+    Laws,
+    MeshGrowth,
+    PowerLaw,
+    Rung,
+    Timing,
+)
 from tipoff.workspace.compiling import warm_up
 from tipoff.workspace.progress import Board
 from tipoff.workspace.run import Run
@@ -36,18 +48,14 @@ _SHARES = (0.125, 0.25, 0.5, 1.0, 2.0)  # of the scene's own number of pads
 _REPEATS = {"highfi": 2, "lowfi": 20}
 
 
-def power_law(sizes: Sequence[float], times: Sequence[float]) -> dict:
-    """``exponent`` p of t = c n^p, None for a single size (a mesh from a file), and its
-    ``standard_error``, None for two points."""
+def power_law(sizes: Sequence[float], times: Sequence[float]) -> PowerLaw:
+    """The law of ``times`` (s) over ``sizes``, such as those of a mesh from a file, which are one."""
     if len(set(sizes)) < 2:
-        return {"exponent": None, "standard_error": None}
+        return PowerLaw(None, None)
     from scipy.stats import linregress  # slow to load
 
     line = linregress(np.log(sizes), np.log(times))
-    return {
-        "exponent": float(line.slope),
-        "standard_error": float(line.stderr) if len(sizes) > 2 else None,
-    }
+    return PowerLaw(float(line.slope), float(line.stderr) if len(sizes) > 2 else None)
 
 
 def shares(
@@ -61,23 +69,20 @@ def shares(
     return float(fixed), float(each)
 
 
-def fitted(model: str, points: list[dict]) -> dict:
-    """``points`` (``n``, ``time_s`` of a run, ``steps``) of one model with their power laws, per
-    ``run`` and per ``step``."""
-    sizes = [point["n"] for point in points]
-    per_step = [point["time_s"] / point["steps"] for point in points]
-    return {
-        "model": model,
-        "points": [point | {"step_s": step} for point, step in zip(points, per_step)],
-        "run": power_law(sizes, [point["time_s"] for point in points]),
-        "step": power_law(sizes, per_step),
-    }
+def fitted(model: str, points: Sequence[Timing]) -> Growth:
+    """The ``points`` of one model with their power laws."""
+    sizes = [point.n for point in points]
+    return Growth(
+        model=model,
+        points=tuple(points),
+        run=power_law(sizes, [point.time_s for point in points]),
+        step=power_law(sizes, [point.step_s for point in points]),
+    )
 
 
-def elements(study: Study, name: str) -> dict:
-    """Law over the elements of the reference's meshes, and between its two finest (``finest``); and
-    time of a step on any mesh (``fixed_s``) and its increase by each element (``element_s``). The
-    runs are those of other stages, medians over conditions."""
+def elements(study: Study, name: str) -> MeshGrowth:
+    """Growth over the meshes of the reference. The runs are those of other stages, medians over
+    conditions."""
     names = dict.fromkeys([name, *study.scene.agreement.fitted])
     coarsest = 2.0 * study.settings.coarse_size
     wanted = {
@@ -89,32 +94,38 @@ def elements(study: Study, name: str) -> dict:
         study.store.fill("cost, elements", [run for group in wanted.values() for run in group])
     )
     points = [
-        _median([next(runs).cost for _ in group], "cpu_s") | {"element_size_m": size}
+        _median([next(runs).cost for _ in group], "cpu_s", element_size_m=size)
         for size, group in wanted.items()
     ]
-    law = fitted(FINITE_ELEMENTS, points)
-    fixed, each = shares(
-        [point["n"] for point in points], [point["step_s"] for point in law["points"]]
+    law, finest = fitted(FINITE_ELEMENTS, points), fitted(FINITE_ELEMENTS, points[-2:])
+    fixed, each = shares([point.n for point in points], [point.step_s for point in points])
+    return MeshGrowth(
+        model=law.model,
+        points=law.points,
+        run=law.run,
+        step=law.step,
+        finest=Laws(finest.run, finest.step),
+        fixed_s=fixed,
+        element_s=each,
     )
-    return law | {
-        "finest": {of: fitted(FINITE_ELEMENTS, points[-2:])[of] for of in ("run", "step")},
-        "fixed_s": fixed,
-        "element_s": each,
-    }
 
 
-def _median(costs: list[dict], time: str) -> dict:
-    """Repeats of a run as one point; ``n`` is the number of elements."""
-    return {
-        "n": costs[0].get("elements"),
-        "steps": statistics.median(cost["steps"] for cost in costs),
-        "repeats": len(costs),
-        "time_s": statistics.median(cost[time] for cost in costs),
-        "wall_s": statistics.median(cost["wall_s"] for cost in costs),
-    }
+def _median(costs: list[dict], time: str, n: int | None = None, **others: Any) -> Timing:
+    """Repeats of a run as one timing; ``n`` is the number of elements without another."""
+    seconds = statistics.median(cost[time] for cost in costs)
+    steps = statistics.median(cost["steps"] for cost in costs)
+    return Timing(
+        n=costs[0]["elements"] if n is None else n,
+        steps=steps,
+        repeats=len(costs),
+        time_s=seconds,
+        wall_s=statistics.median(cost["wall_s"] for cost in costs),
+        step_s=seconds / steps,
+        **others,
+    )
 
 
-def pads(study: Study, name: str) -> list[dict]:
+def pads(study: Study, name: str) -> tuple[Growth, ...]:
     """Law over the number of pads of each model; reference and rail compliance on the coarsest mesh.
     On a mesh from a file, which has no coarser one, the reference is left out: ten of its runs may
     take hours."""
@@ -137,10 +148,12 @@ def pads(study: Study, name: str) -> list[dict]:
             for count, change in variants.items()
         ]
     with Board("cost, pads", len(wanted)) as board:
-        return [over_pads(model, runs, list(variants), board) for model, runs in wanted.items()]
+        return tuple(
+            over_pads(model, runs, list(variants), board) for model, runs in wanted.items()
+        )
 
 
-def over_pads(model: str, runs: list[Run], counts: list[int], board: Board) -> dict:
+def over_pads(model: str, runs: list[Run], counts: list[int], board: Board) -> Growth:
     """Alternating runs, so that other load on the machine affects all numbers of pads alike."""
     fidelity, progress = runs[0].fidelity, board.callback(model)
     for run in runs:
@@ -150,8 +163,7 @@ def over_pads(model: str, runs: list[Run], counts: list[int], board: Board) -> d
         rounds.append([timed(run)[0] for run in runs])
         progress((repeat + 1) / _REPEATS[fidelity])
     points = [
-        _median([found.cost for found in repeats], _TIME[fidelity])
-        | {"n": count, "status": repeats[0].status}
+        _median([found.cost for found in repeats], _TIME[fidelity], count, status=repeats[0].status)
         for count, repeats in zip(counts, zip(*rounds))
     ]
     law = fitted(model, points)
@@ -223,46 +235,36 @@ def coarse_walls(study: Study, name: str, change: dict):
     )
 
 
-def effects(scene: Scene, ablation: dict) -> list[dict]:
-    """Times of the ablation study for each model: without effects ``none_s``, with all ``all_s`` and
-    their ``ratio``; ``ladder``, times with growing sets of effects; ``effects``, the time of each,
-    which is that of all effects minus that of all others; ``asked``, number and time of the scene's
-    effects."""
+def effects(scene: Scene, ablation: Ablation) -> tuple[EffectTimes, ...]:
+    """Times of the ablation study for each model."""
     found = []
     for fidelity, model in (("highfi", FINITE_ELEMENTS), ("lowfi", COMPLIANT)):
-        time = {
-            row["variant"]: row["time_s"] for row in ablation["rows"] if row["fidelity"] == fidelity
-        }
+        time = {row.variant: row.time_s for row in ablation.rows if row.fidelity == fidelity}
+        every, none = time["all effects"], time["no effect"]
         without = {
             name.removeprefix("without "): seconds
             for name, seconds in time.items()
             if name.startswith("without ")
         }
+        asked = sum(effect not in scene.absent_effects() for effect in without)
         found.append(
-            {
-                "model": model,
-                "none_s": time["no effect"],
-                "all_s": time["all effects"],
-                "ratio": time["all effects"] / time["no effect"],
-                "ladder": _ladder(time, len(without)),
-                "asked": [
-                    sum(effect not in scene.absent_effects() for effect in without),
-                    time["as the scene asks"],
-                ],
-                "effects": [
-                    {
-                        "effect": effect,
-                        "time_s": time["all effects"] - seconds,
-                        "of_none": (time["all effects"] - seconds) / time["no effect"],
-                    }
+            EffectTimes(
+                model=model,
+                none_s=none,
+                all_s=every,
+                ratio=every / none,
+                ladder=_ladder(time, len(without)),
+                asked=(asked, time["as the scene asks"]),
+                effects=tuple(
+                    EffectTime(effect, every - seconds, (every - seconds) / none)
                     for effect, seconds in without.items()
-                ],
-            }
+                ),
+            )
         )
-    return found
+    return tuple(found)
 
 
-def _ladder(time: dict[str, float], count: int) -> list[dict]:
+def _ladder(time: dict[str, float], count: int) -> tuple[Rung, ...]:
     """The nested sets of the ablation study, which need no further kernels. There is no friction
     without contact."""
     sets = [
@@ -273,4 +275,4 @@ def _ladder(time: dict[str, float], count: int) -> list[dict]:
     ]
     if {"without contact", "without friction"} - set(time):
         sets = [sets[0], ("all", count, "all effects")]
-    return [{"added": words, "on": on, "time_s": time[variant]} for words, on, variant in sets]
+    return tuple(Rung(words, on, time[variant]) for words, on, variant in sets)

@@ -12,7 +12,8 @@ tolerance, with the same modes of the rails; the rest of its error is the error 
 import json
 import math
 import statistics
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from tipoff.comparison.metrics import compare
@@ -26,6 +27,8 @@ from tipoff.studies.agreement.candidates import Candidate, candidates
 from tipoff.studies.agreement.verdicts import Context
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.cost import choice, scaling
+from tipoff.studies.cost.choice import Trusted
+from tipoff.studies.cost.results import Cost, Match, Point, Scaling
 from tipoff.workspace import machine
 from tipoff.workspace.compiling import warm_up
 from tipoff.workspace.progress import Board
@@ -33,6 +36,7 @@ from tipoff.workspace.run import Run, execute, with_modes_of
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study
 from tipoff.workspace.timing import timed
+from tipoff.workspace.words import counted
 
 BY_MODES = f"{COMPLIANT}, modes varied"
 MODES = (0, 1, 2, 8)  # of each rail, beside those of the agreement study
@@ -41,35 +45,33 @@ NAME, POINTS = "cost_study", "cost.json"
 
 
 def run(study: Study) -> dict:
-    """``points``: model, rung, numerics, setting (element size in m or relative tolerance), modes
-    (None where they are not varied), error_deg_s (None for the reference and where a run did not
-    settle), curve_error (rate L2), wall_s, status, reference (of the finest mesh, if it settled), pareto;
-    ``band_deg_s``: uncertainty of the finest mesh; ``matched``; ``scaling`` over ``elements``,
-    ``pads`` and ``effects``."""
+    """The content of ``Cost``."""
     name = _condition(study)
     compared = surrogates(study)
 
-    def make() -> tuple[dict, list[Path]]:
+    def make() -> tuple[Cost, list[Path]]:
         finest, band, points = _reference_points(study, name)
         for candidate in compared:
             points += surrogate_points(study, name, candidate, finest, study.settings.tolerances)
         points += points_by_modes(study, name, compared[-1], finest)
-        growing = {
-            "elements": scaling.elements(study, name),
-            "pads": scaling.pads(study, name),
-            "effects": scaling.effects(study.condition(name), ablation.run(study)),
-        }
+        without = ablation.STAGE.read(ablation.run(study))
+        growing = Scaling(
+            elements=scaling.elements(study, name),
+            pads=scaling.pads(study, name),
+            effects=scaling.effects(study.condition(name), without),
+        )
         path, points = study.path(POINTS), marked(points, band)
-        write_text(path, json.dumps(points, indent=1, allow_nan=False) + "\n")
-        return {
-            "condition": name,
-            "scene_hash": study.scene.hash,
-            "band_deg_s": band,
-            "points": points,
-            "matched": matched(points),
-            "scaling": growing,
-            "hardware": machine.describe(),
-        }, [path]
+        write_text(path, json.dumps(list(map(asdict, points)), indent=1, allow_nan=False) + "\n")
+        found = Cost(
+            condition=name,
+            scene_hash=study.scene.hash,
+            band_deg_s=band,
+            points=tuple(points),
+            matched=tuple(matched(points)),
+            scaling=growing,
+            hardware=machine.describe(),
+        )
+        return found, [path]
 
     return STAGE.run(study, None, make)
 
@@ -78,7 +80,7 @@ def _inputs(study: Study, _: None) -> list:
     return [_condition(study), calibrate.constants(study)]
 
 
-STAGE = Stage(NAME, __name__, inputs=_inputs)
+STAGE = Stage(NAME, __name__, inputs=_inputs, result=Cost)
 stored = STAGE.stored
 
 
@@ -103,29 +105,26 @@ def surrogates(study: Study, conditions: Iterable[str] | None = None) -> list[Ca
     ]
 
 
-def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None, list[dict]]:
+def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None, list[Point]]:
     settings = study.settings
     sizes = (2.0 * settings.coarse_size, settings.coarse_size, settings.element_size)
     wanted = refined.meshes(study, name, sizes)  # runs of the agreement study
     coarsest, coarse, finest = study.store.fill("cost, meshes", wanted)
     band = Context([], refined.refinements(study, [name]), {}).uncertainty(name)[0]
     points = [
-        {
-            "model": FINITE_ELEMENTS,
-            "rung": "highfi",
-            "setting": size,
-            "modes": None,
-            "numerics": f"{1e3 * size:g} mm, {found.cost['elements']:,} elements",
-            **(
-                dict.fromkeys(("error_deg_s", "curve_error"))
-                if found is finest
-                else _errors(finest, found)
-            ),
-            "integration_error_deg_s": None,
-            "wall_s": wall,
-            "status": found.status,
-            "reference": found is finest and found.outcome.rate is not None,
-        }
+        Point(
+            model=FINITE_ELEMENTS,
+            rung="highfi",
+            setting=size,
+            modes=None,
+            numerics=f"{1e3 * size:g} mm, {found.cost['elements']:,} elements",
+            error_deg_s=None if found is finest else _error(finest, found),
+            curve_error=None if found is finest else _curve_error(finest, found),
+            integration_error_deg_s=None,
+            wall_s=wall,
+            status=found.status,
+            reference=found is finest and found.outcome.rate is not None,
+        )
         for size, found, wall in zip(sizes, (coarsest, coarse, finest), _wall_times(wanted))
     ]
     return finest, band, points
@@ -142,22 +141,23 @@ def _wall_times(runs: list[Run]) -> list[float]:
     return found
 
 
-def _errors(finest: Trajectory, found: Trajectory) -> dict[str, float | None]:
-    """Errors against the finest mesh: of the settled rates (deg/s) and of the curves (rate L2,
-    relative)."""
-    return {
-        "error_deg_s": verdicts.settled_change(finest, found),
-        "curve_error": compare(finest, found).rate_relative_l2,
-    }
+def _error(finest: Trajectory, found: Trajectory) -> float | None:
+    """Error of the settled rates against the finest mesh (deg/s)."""
+    return verdicts.settled_change(finest, found)
+
+
+def _curve_error(finest: Trajectory, found: Trajectory) -> float | None:
+    """Error of the curves against the finest mesh (rate L2, relative)."""
+    return compare(finest, found).rate_relative_l2
 
 
 def points_by_modes(
     study: Study, name: str, candidate: Candidate, finest: Trajectory
-) -> list[dict]:
+) -> list[Point]:
     """Points with other numbers of modes than the ``candidate`` has, at the tolerance of all other
     studies; errors against the ``finest`` mesh."""
     return [
-        point | {"model": BY_MODES, "numerics": f"{count} mode{'s' * (count != 1)}", "modes": count}
+        replace(point, model=BY_MODES, numerics=counted(count, "mode"), modes=count)
         for count in MODES
         if count != candidate.modes
         for point in surrogate_points(
@@ -168,7 +168,7 @@ def points_by_modes(
 
 def surrogate_points(
     study: Study, name: str, candidate: Candidate, finest: Trajectory, tolerances: Iterable[float]
-) -> list[dict]:
+) -> list[Point]:
     """Points of one surrogate, the loosest of the ``tolerances`` first; errors against the ``finest``
     mesh."""
     tolerances = sorted(tolerances)
@@ -179,18 +179,19 @@ def surrogate_points(
     measured = [[timed(run) for _ in range(study.settings.lowfi_repeats)] for run in wanted]
     runs = [repeats[0][0] for repeats in measured]
     points = [
-        {
-            "model": candidate.title,
-            "rung": candidate.name,
-            "setting": tolerance,
-            "modes": None,
-            "numerics": f"tolerance {tolerance:g}",
-            **_errors(finest, found),
-            "integration_error_deg_s": error,
-            "wall_s": statistics.median(wall for _, wall, _ in repeats),
-            "status": found.status,
-            "reference": False,
-        }
+        Point(
+            model=candidate.title,
+            rung=candidate.name,
+            setting=tolerance,
+            modes=None,
+            numerics=f"tolerance {tolerance:g}",
+            error_deg_s=_error(finest, found),
+            curve_error=_curve_error(finest, found),
+            integration_error_deg_s=error,
+            wall_s=statistics.median(wall for _, wall, _ in repeats),
+            status=found.status,
+            reference=False,
+        )
         for tolerance, found, error, repeats in zip(
             tolerances, runs, _integration_errors(wanted[0], runs), measured
         )
@@ -212,66 +213,63 @@ def _integration_errors(tightest: Run, runs: list[Trajectory]) -> list[float | N
     ]
 
 
-def matched(points: list[dict]) -> list[dict]:
+def matched(points: Sequence[Point]) -> list[Match]:
     """For each surrogate: the fastest mesh with an error at most as large, and the ratio of wall
     times. The error of a surrogate is that at its tightest tolerance, because step errors can cancel
     it by chance; its time is that of the fastest tolerance that adds at most a tenth to it. The
     error of the finest mesh, the reference, is zero by definition; a mesh that did not settle has none and
     matches nothing. A surrogate that did not settle at its tightest tolerance is left out, and so are
     other numbers of modes, because no tolerance was varied there."""
-    points = [point for point in points if point["modes"] is None]
-    meshes = [point for point in points if point["model"] == FINITE_ELEMENTS]
+    points = [point for point in points if point.modes is None]
+    meshes = [point for point in points if point.model == FINITE_ELEMENTS]
     found = []
-    for model in dict.fromkeys(
-        point["model"] for point in points if point["model"] != FINITE_ELEMENTS
-    ):
-        own = [point for point in points if point["model"] == model]
-        tightest = min(own, key=lambda point: point["setting"])
-        error = tightest["error_deg_s"]
-        accurate = [mesh for mesh in meshes if _is_within(mesh, "error_deg_s", error)]
+    for model in dict.fromkeys(point.model for point in points if point.model != FINITE_ELEMENTS):
+        own = [point for point in points if point.model == model]
+        tightest = min(own, key=lambda point: point.setting)
+        error = tightest.error_deg_s
+        accurate = [mesh for mesh in meshes if _is_within(mesh, mesh.error_deg_s, error)]
         if error is not None and accurate:
             enough = [
                 point
                 for point in own
-                if point is tightest or _is_within(point, "integration_error_deg_s", 0.1 * error)
+                if point is tightest
+                or _is_within(point, point.integration_error_deg_s, 0.1 * error)
             ]
-            point = min(enough, key=lambda point: point["wall_s"])
-            mesh = min(accurate, key=lambda point: point["wall_s"])
+            point = min(enough, key=lambda point: point.wall_s)
+            mesh = min(accurate, key=lambda point: point.wall_s)
             found.append(
-                {
-                    "model": model,
-                    "numerics": point["numerics"],
-                    "error_deg_s": error,
-                    "wall_s": point["wall_s"],
-                    "mesh": mesh["numerics"],
-                    "mesh_error_deg_s": mesh["error_deg_s"],
-                    "mesh_is_reference": mesh["reference"],
-                    "mesh_wall_s": mesh["wall_s"],
-                    "ratio": mesh["wall_s"] / point["wall_s"],
-                }
+                Match(
+                    model=model,
+                    numerics=point.numerics,
+                    error_deg_s=error,
+                    wall_s=point.wall_s,
+                    mesh=mesh.numerics,
+                    mesh_error_deg_s=mesh.error_deg_s,
+                    mesh_is_reference=mesh.reference,
+                    mesh_wall_s=mesh.wall_s,
+                    ratio=mesh.wall_s / point.wall_s,
+                )
             )
     return found
 
 
-def _is_within(point: dict, key: str, limit: float | None) -> bool:
-    """Whether the error ``key`` of a point is known and at most ``limit``, an unknown one None."""
+def _is_within(point: Point, error: float | None, limit: float | None) -> bool:
+    """Whether an ``error`` of a point is known and at most ``limit``, an unknown one None."""
     if limit is None:
         return False
-    return point["reference"] or (point[key] is not None and point[key] <= limit)
+    return point.reference or (error is not None and error <= limit)
 
 
-def marked(points: list[dict], band: float | None) -> list[dict]:
+def marked(points: Sequence[Point], band: float | None) -> list[Point]:
     """The points with ``pareto``: whether no faster point has an error bound as small. Without a
     ``band`` no bound is known."""
-    known = [
-        point for point in choice.trusted(points, band) if math.isfinite(point["trusted_deg_s"])
-    ]
+    known = [item for item in choice.trusted(points, band) if math.isfinite(item.bound_deg_s)]
 
-    def beaten(point: dict) -> bool:
+    def beaten(item: Trusted) -> bool:
         return any(
-            other["trusted_deg_s"] <= point["trusted_deg_s"] and other["wall_s"] < point["wall_s"]
+            other.bound_deg_s <= item.bound_deg_s and other.point.wall_s < item.point.wall_s
             for other in known
         )
 
-    best = [(point["model"], point["numerics"]) for point in known if not beaten(point)]
-    return [point | {"pareto": (point["model"], point["numerics"]) in best} for point in points]
+    best = [item.point for item in known if not beaten(item)]
+    return [replace(point, pareto=point in best) for point in points]

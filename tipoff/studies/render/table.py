@@ -62,12 +62,14 @@ class Table:
         cls,
         records: Sequence[Any],
         *columns: str | tuple[Column | str, Callable[[Any], Any]],
+        kind: type | None = None,
         **others: Any,
     ) -> "Table":
-        """The table of ``records`` of one dataclass, at least one. A column is the name of a field, which
-        declares it (``column.of_record``), or a head with what makes the cell of the record; without
-        ``columns`` all fields that declare one. ``others`` are further fields."""
-        declared = of_record(type(records[0]))
+        """The table of ``records`` of the dataclass ``kind``, by default that of the first. A column is
+        the name of a field, which declares it (``column.of_record``), or a head with what makes the
+        cell of the record; without ``columns`` all fields that declare one. ``others`` are further
+        fields."""
+        declared = of_record(kind or type(records[0]))
         chosen = columns or tuple(declared)
         heads = [declared[item] if isinstance(item, str) else item[0] for item in chosen]
         cells = [attrgetter(item) if isinstance(item, str) else item[1] for item in chosen]

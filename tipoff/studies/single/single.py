@@ -76,18 +76,21 @@ def chosen(
             "there is no cost study of this scene with this code: run tipoff cost --scene "
             f"{study.scene.name} first"
         )
-    point = choice.choose(measured, condition, compare.stored(whole), accuracy, budget)
-    say(point["why"])
-    if point["rung"] == "highfi":
-        request = study.highfi(condition, element_size=point["setting"])
+    found = choice.choose(
+        cost.STAGE.read(measured), condition, compare.stored(whole), accuracy, budget
+    )
+    say(found.why)
+    point = found.point
+    if point.rung == "highfi":
+        request = study.highfi(condition, element_size=point.setting)
     else:
         candidate = next(
-            item for item in cost.surrogates(whole, [condition]) if item.name == point["rung"]
+            item for item in cost.surrogates(whole, [condition]) if item.name == point.rung
         )
-        if point["modes"] is not None:
-            candidate = candidate._replace(modes=point["modes"])
-        request = candidate.request(study, condition, relative_tolerance=point["setting"])
-    return result_of(study, condition, request, quiet) | {"chosen": point}
+        if point.modes is not None:
+            candidate = candidate._replace(modes=point.modes)
+        request = candidate.request(study, condition, relative_tolerance=point.setting)
+    return result_of(study, condition, request, quiet) | {"chosen": found.plain()}
 
 
 def result_of(study: Study, condition: str, request: Run, quiet: bool) -> dict:

@@ -1,5 +1,7 @@
 """Hard cases on the page."""
 
+from dataclasses import replace
+
 from tipoff.studies.render.document import Part
 from tipoff.studies.render.table import Noted, Table
 from tipoff.studies.stability.stage import HardCases
@@ -21,8 +23,8 @@ def draw(found: HardCases) -> list[Part]:
     columns = (case, *_FIGURES, *steps, "control", "control_figure", _VERDICT)
     kinds = ["good" if each.held and each.control_failed else "bad" for each in found.cases]
     title = "For each case a simpler method must fail. Otherwise the case proves nothing."
-    shown = {"notes": (_NOTE,), "title": title, "kinds": kinds, "dense": True}
-    return [Table.of_records(found.cases, *columns, **shown)]
+    table = Table.of_records(found.cases, *columns, notes=(_NOTE,), title=title, kinds=kinds)
+    return [replace(table, dense=True)]
 
 
 def terminal(found: HardCases) -> list[Part]:
