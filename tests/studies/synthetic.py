@@ -11,6 +11,15 @@ from tipoff.mechanics.outcome import Outcome
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.render import chart
 
+COSTS = {  # of a run of the reference
+    "wall_s": 1.0,
+    "compile_s": 0.0,
+    "steps": 1,
+    "dt_s": 1e-6,
+    "elements": 1,
+    "ns_per_element_step": 1.0,
+}
+
 
 def flight(
     rate=None,

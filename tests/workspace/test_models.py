@@ -3,6 +3,7 @@ model."""
 
 import json
 from dataclasses import replace
+from typing import get_args
 
 import pytest
 from typer.testing import CliRunner
@@ -84,8 +85,8 @@ def test_what_could_not_be_judged_is_not_called_unmeasured(study, monkeypatch):
 
 
 def test_the_command_line_has_the_names_of_the_models():
-    assert tuple(item.value for item in options.ModelName) == MODELS
-    assert tuple(item.value for item in options.SurrogateName) == SURROGATES
+    assert get_args(options.ModelName) == MODELS
+    assert get_args(options.SurrogateName) == SURROGATES
 
 
 @pytest.mark.parametrize(

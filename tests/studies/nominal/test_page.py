@@ -1,44 +1,65 @@
 """What the page and the terminal say of the scene itself."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from tests.studies.shown import html
+from tests.studies.synthetic import COSTS, flight
 from tipoff.studies.nominal import page, spread
-from tipoff.studies.nominal.stage import answer
+from tipoff.studies.nominal.spread import Range
+from tipoff.studies.nominal.stage import Nominal, answer
+from tipoff.studies.runs.results import Row
+from tipoff.studies.runs.stage import row
 
-ROW = {
-    "settled": {"rate_deg_s": [-2.0, 1.0, 2.0], "velocity_m_s": [13.64567, 0.1, 0.0]},
-    "exit_time_s": 0.0123,
-}
 LOW = {"rate_deg_s": 0.4123, "rate_x_deg_s": -4.0}
+
+
+def answered(*rate) -> dict:
+    """The answer of a run with this settled rate (deg/s)."""
+    outcome = flight().outcome._replace(
+        rate=np.radians(rate).tolist(), velocity=[13.64567, 0.1, 0.0], exit_time=0.0123
+    )
+    return answer(row("nominal", flight(outcome=outcome, cost=COSTS), ""))
+
+
+def ends(name) -> Range:
+    low = LOW.get(name, 1.0)
+    return Range(low=low, high=10.4, low_bounds=(low, low + 0.4), high_bounds=(10.0, 10.4))
+
+
+def ended(*statuses) -> tuple[Row, ...]:
+    """Runs of both models with these statuses."""
+    one = row("nominal", flight(cost=COSTS), "")
+    models = ("finite-elements", "compliant")
+    return tuple(
+        replace(one, model=model, status=status) for model, status in zip(models, statuses)
+    )
 
 
 @pytest.fixture
 def found():
-    ranges = {
-        item.name: {
-            "low": LOW.get(item.name, 1.0),
-            "high": 10.4,
-            "low_bounds": [LOW.get(item.name, 1.0), LOW.get(item.name, 1.0) + 0.4],
-            "high_bounds": [10.0, 10.4],
-        }
-        for item in spread.QUANTITIES
-    }
-    nearby = {**ROW, "settled": ROW["settled"] | {"rate_deg_s": [-2.0, 1.25, 2.0]}}
-    return {
-        "rows": [
-            {"model": "finite-elements", "status": "exited"},
-            {"model": "compliant", "status": "exited"},
-        ],
-        "answer": {"finite-elements": answer(ROW), "compliant": answer(nearby)},
-        "spread": {
-            "errors": "paper",
-            "vary": ["thrust_offset.misalignment.axial", "thrust_offset.misalignment.radial"],
-            "cases": 4000,
-            "settled": 4000,
-            "ranges": ranges,
+    known = spread.Spread(
+        errors="paper",
+        vary=("thrust_offset.misalignment.axial", "thrust_offset.misalignment.radial"),
+        seed=1,
+        cases=4000,
+        settled=4000,
+        model="compliant",
+        shares=spread.SHARES,
+        ranges={item.name: ends(item.name) for item in spread.QUANTITIES},
+        store="",
+    )
+    return Nominal(
+        rows=ended("exited", "exited"),
+        answer={
+            "finite-elements": answered(-2.0, 1.0, 2.0),
+            "compliant": answered(-2.0, 1.25, 2.0),
         },
-    }
+        spread=known,
+        failed=(),
+    )
 
 
 def test_each_number_has_its_unit_its_meaning_and_its_range(found):
@@ -62,19 +83,19 @@ def test_what_the_numbers_are_is_said(found):
 
 
 def test_without_errors_no_range_is_claimed(found):
-    found["spread"] = None
+    found = replace(found, spread=None)
     assert page.figures(found)[0] == ("3.00 deg/s", "total rate")
     assert "no range is known" in html(page.draw(found))
 
 
 def test_a_run_that_does_not_settle_is_no_number(found):
-    found["answer"]["finite-elements"] = None
-    found["rows"][0]["status"] = "jammed"
+    found.answer["finite-elements"] = None
+    found = replace(found, rows=ended("jammed", "exited"))
     said = html(page.draw(found))
     assert "The scene itself, by compliant contact" in said
     assert "The run of finite-elements did not settle: jammed" in said
-    found["answer"]["compliant"] = answer({"settled": None, "exit_time_s": None})
-    found["rows"][1]["status"] = "time_limit"
+    found.answer["compliant"] = answer(replace(found.rows[0], settled=None))
+    found = replace(found, rows=ended("jammed", "time_limit"))
     assert page.figures(found)[0][0] == "–"
     assert (
         "does not settle (finite-elements: jammed, compliant: time_limit)" in page.lines(found)[0]

@@ -40,17 +40,17 @@ def test_the_range_of_a_launch_whose_distribution_is_known(tilted, tmp_path):
     """A uniform tilt gives a uniform rate. One percent of the range is four standard deviations of an
     end. Control: the quantiles 5 and 95 %, and the number of cases of the file, are further off."""
     found = spread.of(study(tilted, tmp_path), tilted)
-    assert found["settled"] == found["cases"] == spread.CASES[0]
+    assert found.settled == found.cases == spread.CASES[0]
     largest = math.radians(0.4) * free_flight.RATE_PER_RADIAN
     for name, sign in (("rate_deg_s", 1.0), ("rate_z_deg_s", -1.0)):
-        ends = found["ranges"][name]
+        ends = found.ranges[name]
         exact = sorted((0.025 * sign * largest, 0.975 * sign * largest))
-        assert [ends["low"], ends["high"]] == pytest.approx(exact, abs=0.01 * largest)
-        assert ends["low_bounds"][0] < ends["low"] < ends["low_bounds"][1]
+        assert [ends.low, ends.high] == pytest.approx(exact, abs=0.01 * largest)
+        assert ends.low_bounds[0] < ends.low < ends.low_bounds[1]
         # Control:
         assert abs(0.05 * largest - min(map(abs, exact))) > 0.01 * largest
-    across = found["ranges"]["rate_y_deg_s"]
-    assert max(map(abs, (across["low"], across["high"]))) < 1e-3 * largest
+    across = found.ranges["rate_y_deg_s"]
+    assert max(map(abs, (across.low, across.high))) < 1e-3 * largest
 
 
 def test_a_scene_without_errors_has_no_range_and_the_page_says_how_to_state_them(tmp_path):
@@ -96,7 +96,7 @@ def test_more_cases_are_drawn_where_the_ends_are_not_known_well(
 ):
     monkeypatch.setattr("tipoff.studies.populations.population.run", drawn(draw))
     found = spread.of(study(tilted, tmp_path), tilted)
-    assert found["cases"] == cases
+    assert found.cases == cases
 
 
 def test_cases_that_did_not_settle_are_said(tilted, tmp_path, monkeypatch):
@@ -104,14 +104,11 @@ def test_cases_that_did_not_settle_are_said(tilted, tmp_path, monkeypatch):
     monkeypatch.setattr("tipoff.studies.populations.population.run", normal)
     found = spread.of(study(tilted, tmp_path), tilted)
     said = " ".join(page.ranges(found))
-    assert (
-        f"{found['cases'] - found['settled']:,} of them" in said
-        and "did not leave and settle" in said
-    )
+    assert f"{found.cases - found.settled:,} of them" in said and "did not leave and settle" in said
     few = drawn(lambda random, n: random.normal(size=n), settled=0.01)
     monkeypatch.setattr("tipoff.studies.populations.population.run", few)
     found = spread.of(study(tilted, tmp_path), tilted)
-    assert found["ranges"] is None and "No range" in " ".join(page.ranges(found))
+    assert found.ranges is None and "No range" in " ".join(page.ranges(found))
 
 
 def test_bounds_of_the_ends_hold_the_true_quantiles():
@@ -119,7 +116,7 @@ def test_bounds_of_the_ends_hold_the_true_quantiles():
     held = 0
     for _ in range(200):
         found = spread.range_of(random.normal(size=4000))
-        held += found["low_bounds"][0] <= -1.959964 <= found["low_bounds"][1]
+        held += found.low_bounds[0] <= -1.959964 <= found.low_bounds[1]
     assert 180 <= held <= 199  # 95 % of 200, three standard deviations
 
 

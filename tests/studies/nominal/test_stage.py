@@ -52,13 +52,13 @@ def numbers(text: str) -> list[float]:
 def test_answer_and_range_of_a_launch_in_free_flight_are_those_of_the_closed_form(study):
     """In the result, and in the first figures of the page. Control: the range is not symmetric about the
     answer, so that no interval around it fits."""
-    found = stage.run(study)
+    found = stage.STAGE.read(stage.run(study))
     rate = free_flight.RATE_PER_RADIAN * math.sin(TILT)
     values = {"rate_deg_s": rate, "rate_x_deg_s": 0.0, "rate_y_deg_s": 0.0, "rate_z_deg_s": -rate}
     for model in (FINITE_ELEMENTS, COMPLIANT):
-        answer = found["answer"][model]
+        answer = found.answer[model]
         assert {name: answer[name] for name in values} == pytest.approx(values, abs=2e-3 * rate)
-    assert found["failed"] == [] and found["spread"]["cases"] == spread.CASES[0]
+    assert found.failed == () and found.spread.cases == spread.CASES[0]
     (total, words), *_ = page.figures(found)
     assert words.startswith("total rate; 95 % of launches: ") and total.endswith(" deg/s")
     low, high = numbers(words)

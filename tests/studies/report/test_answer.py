@@ -1,6 +1,7 @@
 """The first screen of the page: what it says of known rows."""
 
 import re
+from dataclasses import asdict
 
 import numpy as np
 import pytest
@@ -52,7 +53,7 @@ def page(tmp_path):
     return Page(
         scenes.load("tiny"),
         tmp_path,
-        {"highfi": {"conditions": rows}, "agreement": agreement},
+        {"highfi": {"conditions": list(map(asdict, rows)), "failed": []}, "agreement": agreement},
         Runs({}, {}, {}),
         {},
         [Limit("x", 6.0), Limit("total", 50.0)],
@@ -188,6 +189,7 @@ def test_the_scene_itself_comes_first(page):
         "rows": [],
         "answer": {"finite-elements": values, "compliant": values},
         "spread": None,
+        "failed": [],
     }
     shown = html(answer.draw(page))
     assert shown.startswith('<div class="figures"><div><b>5.000 deg/s</b><span>total rate</span>')

@@ -2,12 +2,14 @@
 network."""
 
 import re
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
 
+from tests.studies.cost.made import cost, point
 from tests.studies.shown import html
-from tests.studies.synthetic import flight
+from tests.studies.synthetic import COSTS, flight
 from tipoff import scenes
 from tipoff.studies import registry
 from tipoff.studies.agreement import rails_page, verdicts
@@ -26,15 +28,6 @@ from tipoff.studies.runs.figures import Runs
 from tipoff.studies.runs.stage import row
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.study import Study
-
-COSTS = {
-    "wall_s": 1.0,
-    "compile_s": 0.0,
-    "steps": 1,
-    "dt_s": 1e-6,
-    "elements": 1,
-    "ns_per_element_step": 1.0,
-}
 
 
 @pytest.mark.parametrize(
@@ -128,7 +121,10 @@ def test_page_of_a_reference_alone_names_the_targets_that_make_the_rest(tmp_path
     made = Page(
         scene,
         tmp_path,
-        {"highfi": {"key": "k", "conditions": rows}, "rails": [other]},
+        {
+            "highfi": {"key": "k", "conditions": list(map(asdict, rows)), "failed": []},
+            "rails": [other],
+        },
         Runs(runs, {}, {}),
         {"calibration": "phi15 diverged"},
     )
@@ -178,10 +174,10 @@ def promised(rows, documents=None):
 def test_a_promise_is_kept_only_by_runs_that_keep_it():
     """No run keeps nothing, a diverged one breaks, and a NaN is found. Control: a sound run keeps it."""
     name, sound = "no NaN leaves the program", row("phi15", flight(cost=COSTS), "")
-    lost = sound | {"status": "diverged", "settled": None}
-    late = sound | {"status": "time_limit", "settled": None}
-    jam = sound | {"status": "jammed", "settled": None}
-    wild = sound | {"settled": sound["settled"] | {"rate_deg_s": [0.0, float("nan"), 0.0]}}
+    lost = replace(sound, status="diverged", settled=None)
+    late = replace(sound, status="time_limit", settled=None)
+    jam = replace(sound, status="jammed", settled=None)
+    wild = replace(sound, settled=replace(sound.settled, rate_deg_s=(0.0, float("nan"), 0.0)))
     for rows, kept in (
         ([], None),
         ([lost], False),
@@ -202,7 +198,7 @@ def test_a_check_that_one_run_does_not_report_is_not_kept():
 
     def found(*errors):
         one = row("phi15", flight(cost=COSTS), "")
-        rows = [one | {"checks": {"linear_momentum_error": error}} for error in errors]
+        rows = [replace(one, checks={"linear_momentum_error": error}) for error in errors]
         return promised({"highfi": rows, "lowfi": []})[name].kept
 
     assert found(1e-13, 1e-13) and not found(1e-13, None) and not found(float("nan"), 1e-13)
@@ -288,31 +284,23 @@ def test_other_rails_are_judged_where_a_pad_touches_and_the_reference_is_converg
 
 
 def test_pareto_front_counts_errors_below_the_band_as_the_band():
-    def point(model, error, wall, pareto):
-        return {
-            "model": model,
-            "rung": model,
-            "numerics": "-",
-            "modes": None,
-            "error_deg_s": error,
-            "curve_error": error and 0.1 * error,
-            "integration_error_deg_s": None,
-            "wall_s": wall,
-            "status": "exited",
-            "reference": error is None,
-            "pareto": pareto,
-        }
+    def measured(model, error, wall, pareto):
+        return point(
+            model=model,
+            rung="highfi" if model == "mesh" else model,
+            error_deg_s=error,
+            curve_error=error and 0.1 * error,
+            wall_s=wall,
+            reference=error is None,
+            pareto=pareto,
+        )
 
-    chart = cost_picture(
-        {
-            "band_deg_s": 0.04,
-            "points": [
-                point("rough", 0.3, 1e-3, True),
-                point("fine", 0.01, 5e-3, True),
-                point("mesh", None, 9.0, False),
-            ],
-        }
-    )
+    points = [
+        measured("rough", 0.3, 1e-3, True),
+        measured("fine", 0.01, 5e-3, True),
+        measured("mesh", None, 9.0, False),
+    ]
+    chart = cost_picture(cost(points, 0.04))
     settled, curves = chart.panels
     assert [line.name for line in settled.lines] == [
         "Pareto front",

@@ -2,6 +2,7 @@
 pyvista, and the page."""
 
 import json
+from dataclasses import asdict, replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -215,7 +216,7 @@ def test_page_shows_peaks_and_says_what_would_show_more(viewed):
     page = Page(
         study.scene,
         study.folder,
-        {"highfi": {"key": "k", "conditions": [known()]}},
+        {"highfi": {"key": "k", "conditions": [asdict(known())], "failed": []}},
         Runs({}, {}, {}),
         {},
     )
@@ -236,7 +237,7 @@ def test_page_shows_peaks_and_says_what_would_show_more(viewed):
 def test_page_warns_and_escapes():
     warned = html(section.shown([known(warnings=["stress <above> yield"])], [], Path("."), "tiny"))
     assert 'class="notice"' in warned and "stress &lt;above&gt; yield" in warned
-    without = section.shown([known() | {"peak_stress_pa": None}], [], Path("."), "tiny")
+    without = section.shown([replace(known(), peak_stress_pa=None)], [], Path("."), "tiny")
     assert without == ["No run of the reference contains peak stresses."]
 
 

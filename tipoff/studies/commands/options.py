@@ -109,13 +109,14 @@ RefinedCondition = Annotated[
     ),
 ]
 # The names of ``mechanics.models``, repeated because its import would slow ``--help`` down.
+ModelName = Literal["compliant", "springs", "finite-elements"]
 SurrogateName = Literal["compliant", "springs"]
 _COMPLIANT = (
     "compliant (default): rigid bodies on the static compliance of the rail, condensed from the "
     "finite elements; "
 )
 Model = Annotated[
-    Literal["compliant", "springs", "finite-elements"] | None,
+    ModelName | None,
     typer.Option(
         "--model",
         help=_COMPLIANT + "springs: one spring and damper at each pad face, "

@@ -27,6 +27,8 @@ def patch_peak(scene: Scene, run: Trajectory) -> float | None:
 def facts(run: Trajectory) -> dict:
     """Peak stress as rows of result files hold it, all None for a run without stress."""
     found = run.stress or {}
+    if place := found.get("peak_stress_place_m"):
+        found = found | {"peak_stress_place_m": tuple(place)}
     return {
         name: found.get(name)
         for name in (
@@ -38,4 +40,4 @@ def facts(run: Trajectory) -> dict:
             "largest_strain",
             "largest_rotation_rad",
         )
-    } | {"warnings": found.get("warnings", [])}
+    } | {"warnings": tuple(found.get("warnings", ()))}

@@ -3,7 +3,8 @@
 import math
 
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
-from tipoff.studies.nominal.spread import QUANTITIES, doubt
+from tipoff.studies.nominal.spread import QUANTITIES, Range, Spread
+from tipoff.studies.nominal.stage import Nominal
 from tipoff.studies.populations.answers import RATES, TOTAL_RATE, Quantity
 from tipoff.studies.render.document import Caption, KeyFigures, Part
 from tipoff.studies.render.uncertain import LEAST, SHARE, STEPS, number, range_of, rounded
@@ -22,17 +23,17 @@ _NO_ERRORS = (
 )
 
 
-def draw(found: dict) -> list[Part]:
+def draw(found: Nominal) -> list[Part]:
     """The values with their ranges in large type, and what they are."""
     return [KeyFigures(figures(found)), Caption(" ".join(f"{line}." for line in notes(found)))]
 
 
-def figures(found: dict) -> list[tuple[str, str]]:
+def figures(found: Nominal) -> list[tuple[str, str]]:
     """(value with its unit, meaning and range) of each quantity."""
     return [
         (
             f"{_shown(item, found)} {item.unit}" if _values(found) else "–",
-            _meaning(item) + _under(found["spread"], item),
+            _meaning(item) + _under(found.spread, item),
         )
         for item in QUANTITIES
     ]
@@ -42,42 +43,42 @@ def _meaning(item: Quantity) -> str:
     return _MEANINGS.get(item.name, item.label)
 
 
-def _values(found: dict) -> dict[str, float] | None:
+def _values(found: Nominal) -> dict[str, float] | None:
     """Those of the finite elements, or of the surrogate where they did not settle."""
-    return found["answer"][FINITE_ELEMENTS] or found["answer"][COMPLIANT]
+    return found.answer[FINITE_ELEMENTS] or found.answer[COMPLIANT]
 
 
-def _shown(item: Quantity, found: dict) -> str:
+def _shown(item: Quantity, found: Nominal) -> str:
     """The value as text, with the digits that its range leaves a meaning, or without one those in which
     both models agree."""
     values = _values(found)
     assert values is not None
     least = STEPS.get(item.unit, LEAST)
-    if (ends := _ends(found["spread"], item)) is not None:
-        return rounded(values[item.name], SHARE * (ends["high"] - ends["low"]), least)
-    both = [answer[item.name] for answer in found["answer"].values() if answer]
+    if (ends := _ends(found.spread, item)) is not None:
+        return rounded(values[item.name], SHARE * (ends.high - ends.low), least)
+    both = [answer[item.name] for answer in found.answer.values() if answer]
     apart = max(both) - min(both) if len(both) > 1 else None
     return rounded(values[item.name], apart, least)
 
 
-def _ends(spread: dict | None, item: Quantity) -> dict | None:
+def _ends(spread: Spread | None, item: Quantity) -> Range | None:
     """The range of a quantity; None where there is none."""
-    return None if spread is None or spread["ranges"] is None else spread["ranges"][item.name]
+    return None if spread is None or spread.ranges is None else spread.ranges[item.name]
 
 
-def _under(spread: dict | None, item: Quantity) -> str:
+def _under(spread: Spread | None, item: Quantity) -> str:
     ends = _ends(spread, item)
     return f"; 95 % of launches: {_text(ends)} {item.unit}" if ends else ""
 
 
-def _text(ends: dict) -> str:
-    return range_of(ends["low"], ends["high"])
+def _text(ends: Range) -> str:
+    return range_of(ends.low, ends.high)
 
 
-def notes(found: dict) -> list[str]:
+def notes(found: Nominal) -> list[str]:
     """Sentences: what the values are, how far both models differ, what the range is."""
-    reference, surrogate = (found["answer"][name] for name in (FINITE_ELEMENTS, COMPLIANT))
-    statuses = {row["model"]: row["status"] for row in found["rows"]}
+    reference, surrogate = (found.answer[name] for name in (FINITE_ELEMENTS, COMPLIANT))
+    statuses = {row.model: row.status for row in found.rows}
     of = "finite elements" if reference else "compliant contact" if surrogate else ""
     if not of:
         words = ", ".join(f"{model}: {status}" for model, status in statuses.items())
@@ -93,24 +94,24 @@ def notes(found: dict) -> list[str]:
     elif of:
         failed = COMPLIANT if reference else FINITE_ELEMENTS
         said.append(f"The run of {failed} did not settle: {statuses[failed]}")
-    return [*said, *_of_spread(found["spread"])]
+    return [*said, *_of_spread(found.spread)]
 
 
-def _of_spread(spread: dict | None) -> list[str]:
+def _of_spread(spread: Spread | None) -> list[str]:
     if spread is None:
         return [_NO_ERRORS]
-    cases, lost = spread["cases"], spread["cases"] - spread["settled"]
-    keys = ", ".join(dict.fromkeys(key.rpartition(".")[0] or key for key in spread["vary"]))
-    errors = f"{cases:,} launches of compliant contact with the errors {spread['errors']} ({keys})"
-    if spread["ranges"] is None:
-        return [f"No range: {counted(spread['settled'], 'case')} of {errors} settled"]
+    cases, lost = spread.cases, spread.cases - spread.settled
+    keys = ", ".join(dict.fromkeys(key.rpartition(".")[0] or key for key in spread.vary))
+    errors = f"{cases:,} launches of compliant contact with the errors {spread.errors} ({keys})"
+    if spread.ranges is None:
+        return [f"No range: {counted(spread.settled, 'case')} of {errors} settled"]
     said = [f"95 % of launches: between the 2.5 and 97.5 % quantiles of {errors}"]
     if lost:
         said.append(
             f"{lost:,} of them, {number(100.0 * lost / cases, '.2g')} %, did not leave and settle; "
             "the range is that of the others"
         )
-    known = max(doubt(spread["ranges"][item.name]) for item in (TOTAL_RATE, *RATES))
+    known = max(spread.ranges[item.name].doubt for item in (TOTAL_RATE, *RATES))
     said.append(
         f"The ends of the rates are known to ± {max(1, math.ceil(100.0 * known))} % of the range or better"
         if math.isfinite(known)
@@ -119,18 +120,18 @@ def _of_spread(spread: dict | None) -> list[str]:
     return said
 
 
-def lines(found: dict) -> list[str]:
+def lines(found: Nominal) -> list[str]:
     """The same for the terminal, one line for each quantity."""
     if _values(found) is None:
         return notes(found)
     own = [
-        f"  {_meaning(item):<22}{_shown(item, found)} {item.unit}{_under(found['spread'], item)}"
+        f"  {_meaning(item):<22}{_shown(item, found)} {item.unit}{_under(found.spread, item)}"
         for item in QUANTITIES
     ]
-    return ["The scene itself:", *own, *_of_spread(found["spread"])]
+    return ["The scene itself:", *own, *_of_spread(found.spread)]
 
 
-def ranges(spread: dict | None) -> list[str]:
+def ranges(spread: Spread | None) -> list[str]:
     """The 95 % range of each quantity, with what it is."""
     own = [
         f"95 % range  {_meaning(item):<22}{_text(ends)} {item.unit}"

@@ -6,6 +6,8 @@ distribution and 2.2 / sqrt(n) of a half normal one: 4,000 cases give 2 to 4 %. 
 rate, 16,000 cases are drawn, no more: the page states what was reached.
 """
 
+import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -41,11 +43,45 @@ _RATES = (answers.TOTAL_RATE, *answers.RATES)
 QUANTITIES = (*_RATES, SPEED, TIME)
 
 
-def of(study: Study, scene: Scene) -> dict | None:
-    """Ranges of ``QUANTITIES`` of ``scene``, by compliant contact: ``errors``, the file of
-    distributions as the scene names it, with its ``description``; numbers of ``cases`` and of
-    ``settled`` ones; ``ranges`` by name, None where fewer than 100 cases settled. None where the scene
-    states no errors.
+@dataclass(frozen=True, kw_only=True)
+class Range:
+    """Both ends, each with its 95 % bounds, None where there are too few cases for one."""
+
+    low: float
+    high: float
+    low_bounds: tuple[float | None, float | None]
+    high_bounds: tuple[float | None, float | None]
+
+    @property
+    def doubt(self) -> float:
+        """Half the distance of the bounds of the worse end, as a share of the range; infinite where an
+        end has no two bounds, zero where all values are alike."""
+        width, worst = self.high - self.low, 0.0
+        for low, high in (self.low_bounds, self.high_bounds):
+            if low is None or high is None:
+                return math.inf
+            worst = max(worst, high - low)
+        return 0.5 * worst / width if width > 0.0 else 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spread:
+    """``errors``: the file of distributions as the scene names it; ``vary``: its keys; ``ranges`` by the
+    names of ``QUANTITIES``, None where fewer than 100 of the ``cases`` settled."""
+
+    errors: str
+    vary: tuple[str, ...]
+    seed: int
+    cases: int
+    settled: int
+    model: str
+    shares: tuple[float, float]
+    ranges: dict[str, Range] | None
+    store: str
+
+
+def of(study: Study, scene: Scene) -> Spread | None:
+    """Ranges of ``QUANTITIES`` of ``scene``, by compliant contact; None where it states no errors.
 
     Raises SceneError for distributions that do not fit the scene, StudyError when the store fails.
     """
@@ -56,42 +92,30 @@ def of(study: Study, scene: Scene) -> dict | None:
         asked = Drawn(stated._replace(cases=cases, sampling="random"))
         found = population.run(study, "errors", model, asked)
         ranges = _ranges(found)
-        if ranges is None or all(doubt(ranges[item.name]) <= ACCURACY for item in _RATES):
+        if ranges is None or all(ranges[item.name].doubt <= ACCURACY for item in _RATES):
             break
-    assert scene.studies is not None  # it states the errors
-    return {
-        "errors": scene.studies.errors,
-        "vary": list(stated.vary),
-        "seed": stated.seed,
-        "cases": cases,
-        "settled": int(found.settled.sum()),
-        "model": COMPLIANT,
-        "shares": list(SHARES),
-        "ranges": ranges,
-        "store": found.store,
-    }
+    assert scene.studies is not None and scene.studies.errors is not None
+    return Spread(
+        errors=scene.studies.errors,
+        vary=tuple(stated.vary),
+        seed=stated.seed,
+        cases=cases,
+        settled=int(found.settled.sum()),
+        model=COMPLIANT,
+        shares=SHARES,
+        ranges=ranges,
+        store=found.store,
+    )
 
 
-def _ranges(found: Population) -> dict[str, dict] | None:
-    """Each range (``low``, ``high``) with the 95 % bounds of both ends."""
+def _ranges(found: Population) -> dict[str, Range] | None:
     if (settled := found.settled).sum() < _FEWEST:
         return None
     return {item.name: range_of(item.of(found.results)[settled]) for item in QUANTITIES}
 
 
-def range_of(values: np.ndarray) -> dict:
-    """``low`` and ``high``: the 2.5 and 97.5 % quantiles of independent ``values`` (n,), each with its
-    95 % bounds, None where n is too small for one."""
+def range_of(values: np.ndarray) -> Range:
+    """The 2.5 and 97.5 % quantiles of independent ``values`` (n,)."""
     low, high = np.quantile(values, SHARES).tolist()
-    ends = [order_statistics.bounds(values, share, _CONFIDENCE) for share in SHARES]
-    return {"low": low, "high": high, "low_bounds": list(ends[0]), "high_bounds": list(ends[1])}
-
-
-def doubt(found: dict) -> float:
-    """Half the distance of the bounds of the worse end, as a share of the range; infinite where an end
-    has no two bounds, zero where all values are alike."""
-    width = found["high"] - found["low"]
-    ends = (found["low_bounds"], found["high_bounds"])
-    if any(None in end for end in ends):
-        return float("inf")
-    return 0.5 * max(end[1] - end[0] for end in ends) / width if width > 0.0 else 0.0
+    of_low, of_high = (order_statistics.bounds(values, share, _CONFIDENCE) for share in SHARES)
+    return Range(low=low, high=high, low_bounds=of_low, high_bounds=of_high)

@@ -2,14 +2,18 @@
 errors that it states."""
 
 import math
+from dataclasses import dataclass
 from pathlib import Path
 
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes import uncertainty
 from tipoff.scenes.scene import NOMINAL
 from tipoff.studies.nominal import spread
+from tipoff.studies.nominal.spread import Spread
 from tipoff.studies.runs import stage as runs
+from tipoff.studies.runs.results import Row
 from tipoff.workspace.run import Run
+from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study
 
 NAME = "nominal"
@@ -24,18 +28,26 @@ def requests(study: Study) -> dict[str, Run]:
     }
 
 
+@dataclass(frozen=True, kw_only=True)
+class Nominal:
+    """The scene itself: ``rows`` of both models; ``answer`` of each, the values of ``spread.QUANTITIES`` by
+    name, None where its run did not settle; ``spread`` under random errors, None where the scene states
+    none; ``failed``, a line for each run without success."""
+
+    rows: tuple[Row, ...]
+    answer: dict[str, dict[str, float] | None]
+    spread: Spread | None
+    failed: tuple[str, ...]
+
+
 def run(study: Study) -> dict:
-    """``rows``: the scene itself in both models, as in the result files of runs; ``answer``, the values
-    of ``spread.QUANTITIES`` by name for each model, None where its run did not settle; ``spread``, as
-    ``spread.of``.
-
-    Raises SceneError where the distributions of the errors cannot be used.
-    """
+    """The content of ``Nominal``. Raises SceneError where the distributions of the errors cannot be
+    used."""
     scene = study.condition(NOMINAL)
-    stated = uncertainty.of_scene(scene)
-    requested = requests(study)
+    uncertainty.of_scene(scene)
 
-    def make() -> tuple[dict, list[Path]]:
+    def make() -> tuple[Nominal, list[Path]]:
+        requested = requests(study)
         found = runs.fill(study, NAME, requested)
         paths = [study.store.path(each) for each in requested.values()]
         rows = {
@@ -47,28 +59,30 @@ def run(study: Study) -> dict:
             for model, each in requested.items()
             for line in runs.failure(NOMINAL, each, found[model])
         ]
-        made = {
-            "rows": list(rows.values()),
-            "answer": {model: answer(row) for model, row in rows.items()},
-            "spread": spread.of(study, scene),
-            "failed": failed,
-        }
+        made = Nominal(
+            rows=tuple(rows.values()),
+            answer={model: answer(row) for model, row in rows.items()},
+            spread=spread.of(study, scene),
+            failed=tuple(failed),
+        )
         return made, paths
 
-    keys = [each.key for each in requested.values()]
-    key = study.key(__name__, NAME, keys, stated and stated.resolved())
-    return study.stage(NAME, key, make)
+    return STAGE.run(study, None, make)
 
 
-def answer(row: dict) -> dict[str, float] | None:
+def _inputs(study: Study, _: None) -> list:
+    stated = uncertainty.of_scene(study.condition(NOMINAL))
+    keys = [each.key for each in requests(study).values()]
+    return [keys, stated and stated.resolved()]
+
+
+STAGE = Stage(NAME, __name__, inputs=_inputs, result=Nominal)
+
+
+def answer(row: Row) -> dict[str, float] | None:
     """Values by the names of ``spread.QUANTITIES`` from the row of a run; None unless it settled."""
-    if (settled := row["settled"]) is None:
+    if (settled := row.settled) is None or row.exit_time_s is None:
         return None
-    rates = settled["rate_deg_s"]
-    values = (
-        math.hypot(*rates),
-        *rates,
-        settled["velocity_m_s"][0],
-        1e3 * row["exit_time_s"],
-    )
+    rates = settled.rate_deg_s
+    values = (math.hypot(*rates), *rates, settled.velocity_m_s[0], 1e3 * row.exit_time_s)
     return {item.name: value for item, value in zip(spread.QUANTITIES, values, strict=True)}

@@ -14,6 +14,7 @@ from tipoff.scenes.overrides import is_drop
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.page import counts
 from tipoff.studies.nominal import page as nominal_page
+from tipoff.studies.nominal import stage as nominal_stage
 from tipoff.studies.populations.exceedance import TOTAL, Limit
 from tipoff.studies.render.document import Bullets, Heading, KeyFigures, Part
 from tipoff.studies.render.table import Column, Table
@@ -27,6 +28,7 @@ from tipoff.studies.render.uncertain import (
     uncertain,
 )
 from tipoff.studies.report import drawing, inputs, neighbours
+from tipoff.studies.runs.results import Row, Settled, roll, transverse
 from tipoff.workspace.words import counted
 
 if TYPE_CHECKING:
@@ -48,7 +50,7 @@ def draw(page: "Page") -> list[Part]:
     """The answer of the scene itself, key figures over all conditions, what the answer rests on, the
     launcher with its axes, and one row a condition."""
     nominal = page.documents.get("nominal")
-    first = nominal_page.draw(nominal) if nominal else []
+    first = nominal_page.draw(nominal_stage.STAGE.read(nominal)) if nominal else []
     rows = page.rows()["highfi"]
     if not rows:
         return [*first, page.missing("highfi", "highfi"), drawing.launcher(page.scene)]
@@ -68,19 +70,9 @@ def draw(page: "Page") -> list[Part]:
     ]
 
 
-def transverse(settled: dict) -> float:
-    """Rate (deg/s) across the payload's axis."""
-    return math.hypot(*settled["rate_deg_s"][1:])
-
-
-def roll(settled: dict) -> float:
-    """Rate (deg/s) about the payload's axis, with its sign."""
-    return settled["rate_deg_s"][0]
-
-
-def above(settled: dict, limits: Sequence[Limit]) -> list[str]:
+def above(settled: Settled, limits: Sequence[Limit]) -> list[str]:
     """The axes of the limits that the rates of a condition are above."""
-    rates = settled["rate_deg_s"]
+    rates = settled.rate_deg_s
     return [
         limit.axis
         for limit in limits
@@ -89,15 +81,15 @@ def above(settled: dict, limits: Sequence[Limit]) -> list[str]:
     ]
 
 
-def _figures(page: "Page", rows: list[dict], compared: dict[str, dict]) -> list[tuple[str, str]]:
+def _figures(page: "Page", rows: Sequence[Row], compared: dict[str, dict]) -> list[tuple[str, str]]:
     spreads = neighbours.of(page.documents.get("agreement"))
     rates = [*_speed(page, rows), *_largest(rows, compared, spreads)]
     return [*rates, *_limits(rows, page.limits), *_models(page)]
 
 
-def _speed(page: "Page", rows: list[dict]) -> list[tuple[str, str]]:
+def _speed(page: "Page", rows: Sequence[Row]) -> list[tuple[str, str]]:
     """v_x over all conditions, with its uncertainty where the error of the reference was studied."""
-    speeds = [row["settled"]["velocity_m_s"][0] for row in rows if row["settled"]]
+    speeds = [row.settled.velocity_m_s[0] for row in rows if row.settled]
     if not speeds:
         return []
     low, high = (uncertain(speed, least=STEPS["m/s"]) for speed in (min(speeds), max(speeds)))
@@ -117,27 +109,29 @@ def _speed(page: "Page", rows: list[dict]) -> list[tuple[str, str]]:
 
 
 def _largest(
-    rows: list[dict], compared: dict[str, dict], spreads: dict[str, neighbours.Spread]
+    rows: Sequence[Row], compared: dict[str, dict], spreads: dict[str, neighbours.Spread]
 ) -> list[tuple[str, str]]:
-    settled = {row["condition"]: row["settled"] for row in rows if row["settled"]}
+    settled = {row.condition: row.settled for row in rows if row.settled}
     if not settled:
         return [("–", "no condition settled")]
     figures = []
     measures = {
         "largest transverse rate (deg/s)": transverse,
-        "largest roll rate (deg/s)": lambda found: abs(found["rate_deg_s"][0]),
+        "largest roll rate (deg/s)": lambda rate: abs(roll(rate)),
     }
     for words, measure in measures.items():
 
         def most(name: str, measure=measure) -> float:
-            own = measure(settled[name])
+            own = measure(settled[name].rate_deg_s)
             return max(own, spreads[name].within(measure)[1]) if name in spreads else own
 
         def shown(names: Iterable[str], measure=measure, most=most) -> tuple[str, str]:
             name = max(names, key=most)
             if name in spreads:
                 return range_of(*spreads[name].within(measure)), name
-            return uncertain(measure(settled[name]), _uncertainty(compared.get(name))), name
+            return uncertain(
+                measure(settled[name].rate_deg_s), _uncertainty(compared.get(name))
+            ), name
 
         value, name = shown(settled)
         sure = [one for one in settled if compared.get(one, {}).get("reference_converged", True)]
@@ -148,8 +142,8 @@ def _largest(
             words += ", not converged"
             words += "; of the converged ones {} ({})".format(*shown(sure)) if sure else ""
         figures.append((value, words))
-    name = max(settled, key=lambda name: settled[name]["direction_error_deg"])
-    off = settled[name]["direction_error_deg"]
+    name = max(settled, key=lambda name: settled[name].direction_error_deg)
+    off = settled[name].direction_error_deg
     return [*figures, (number(off, ".2g", LEAST), f"largest angle off axis (deg): {name}")]
 
 
@@ -157,13 +151,11 @@ def _uncertainty(row: dict | None) -> float | None:
     return None if row is None else row["reference_uncertainty_deg_s"]
 
 
-def _limits(rows: list[dict], limits: Sequence[Limit]) -> list[tuple[str, str]]:
+def _limits(rows: Sequence[Row], limits: Sequence[Limit]) -> list[tuple[str, str]]:
     if not limits:
         return []
     asked = ", ".join(limit.words for limit in limits)
-    failed = [
-        row["condition"] for row in rows if not row["settled"] or above(row["settled"], limits)
-    ]
+    failed = [row.condition for row in rows if not row.settled or above(row.settled, limits)]
     where = f"all {len(rows)} conditions" if len(failed) == len(rows) else ", ".join(failed)
     words = f"limits: {asked}" + (f"; above or not settled: {where}" if failed else "")
     return [("fail" if failed else "pass", words)]
@@ -184,7 +176,7 @@ def _models(page: "Page") -> list[tuple[str, str]]:
     return [*found, (f"{speed['ratio']:,.0f} ×", f"faster ({walls}); not at equal accuracy")]
 
 
-def _conditions(page: "Page", rows: list[dict], compared: dict[str, dict]) -> Table:
+def _conditions(page: "Page", rows: Sequence[Row], compared: dict[str, dict]) -> Table:
     columns: tuple[Column | str, ...] = (
         "condition",
         "what it changes",
@@ -200,22 +192,22 @@ def _conditions(page: "Page", rows: list[dict], compared: dict[str, dict]) -> Ta
     found, kinds = [], []
     spreads = neighbours.of(page.documents.get("agreement"))
     for row in rows:
-        settled, other = row["settled"], compared.get(row["condition"])
+        settled, other = row.settled, compared.get(row.condition)
         found.append(
             [
-                row["condition"],
-                stated(page, row["condition"]),
+                row.condition,
+                stated(page, row.condition),
                 *(
-                    _rates(settled, _uncertainty(other), spreads.get(row["condition"]))
+                    _rates(settled, _uncertainty(other), spreads.get(row.condition))
                     if settled
                     else [None] * 3
                 ),
                 *([_hand(row)] if _by_hand(rows) else []),
-                settled and settled["direction_error_deg"],
+                settled and settled.direction_error_deg,
                 other
                 and Measured(other["settled_rate_error_deg_s"], other["floor_deg_s"], apart=True),
                 *([_words(settled, page.limits)] if page.limits else []),
-                other["verdict"] if other else row["status"],
+                other["verdict"] if other else row.status,
             ]
         )
         kinds.append(_kind(other))
@@ -228,30 +220,32 @@ def _conditions(page: "Page", rows: list[dict], compared: dict[str, dict]) -> Ta
 
 
 def _rates(
-    settled: dict, uncertainty: float | None, spread: neighbours.Spread | None = None
+    settled: Settled, uncertainty: float | None, spread: neighbours.Spread | None = None
 ) -> list:
     if spread is not None:
         ranges = (spread.within(measure) for measure in (roll, transverse))
-        return [settled["velocity_m_s"][0], *(range_of(*ends) for ends in ranges)]
+        return [settled.velocity_m_s[0], *(range_of(*ends) for ends in ranges)]
     return [
-        settled["velocity_m_s"][0],
-        uncertain(settled["rate_deg_s"][0], uncertainty),
-        uncertain(transverse(settled), uncertainty),
+        settled.velocity_m_s[0],
+        uncertain(settled.rate_deg_s[0], uncertainty),
+        uncertain(transverse(settled.rate_deg_s), uncertainty),
     ]
 
 
-def _by_hand(rows: list[dict]) -> bool:
+def _by_hand(rows: Sequence[Row]) -> bool:
     """Whether one of the rates can be computed by hand."""
-    return any(row.get("by_hand") for row in rows)
+    return any(row.by_hand for row in rows)
 
 
-def _hand(row: dict) -> str | None:
+def _hand(row: Row) -> str | None:
     """Roll and transverse rate from moment impulse over inertia, where nothing or one pad touches."""
-    found = row.get("by_hand")
-    return found and f"{uncertain(found['rate_deg_s'][0])}, {uncertain(transverse(found))}"
+    if row.by_hand is None:
+        return None
+    rate = row.by_hand.rate_deg_s
+    return f"{uncertain(roll(rate))}, {uncertain(transverse(rate))}"
 
 
-def _words(settled: dict | None, limits: Sequence[Limit]) -> str:
+def _words(settled: Settled | None, limits: Sequence[Limit]) -> str:
     if settled is None:
         return "✗ not settled"
     over = above(settled, limits)

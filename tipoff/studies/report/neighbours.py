@@ -5,7 +5,7 @@ with an uncertainty larger than itself says nothing there; the range over the ne
 agreement study ran does (``agreement.neighbours``).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 NOTE = (
@@ -24,9 +24,9 @@ class Spread(NamedTuple):
         """How many neighbours settled."""
         return len(self.rates_deg_s)
 
-    def within(self, measure: Callable[[dict], float]) -> tuple[float, float]:
-        """The smallest and the largest ``measure`` of a settled state, in the form of result files."""
-        found = [measure({"rate_deg_s": rates}) for rates in self.rates_deg_s]
+    def within(self, measure: Callable[[Sequence[float]], float]) -> tuple[float, float]:
+        """The smallest and the largest ``measure`` of the rates."""
+        found = [measure(rates) for rates in self.rates_deg_s]
         return min(found), max(found)
 
 

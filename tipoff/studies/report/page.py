@@ -12,7 +12,9 @@ from tipoff.studies.render import document
 from tipoff.studies.render.chart import Chart, Picture, to_files
 from tipoff.studies.render.document import Caption, Missing, Notice, Part
 from tipoff.studies.render.interactive import to_html
+from tipoff.studies.runs import stage as runs
 from tipoff.studies.runs.figures import Runs
+from tipoff.studies.runs.results import Row
 
 
 class Page:
@@ -64,9 +66,9 @@ class Page:
         """The parts of a document as HTML."""
         return document.html(parts, self.figure)
 
-    def rows(self) -> dict[str, list[dict]]:
-        """Conditions of both models, as their result files have them."""
+    def rows(self) -> dict[str, Sequence[Row]]:
+        """Conditions of both models."""
         return {
-            name: (self.documents.get(name) or {"conditions": []})["conditions"]
-            for name in ("highfi", "lowfi")
+            name: stage.read(found).conditions if (found := self.documents.get(name)) else ()
+            for name, stage in runs.STAGES.items()
         }

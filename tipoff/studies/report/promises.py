@@ -1,12 +1,14 @@
 """The promises of the project: for each its limit and the worst value over all stored runs."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from typing import NamedTuple
 
 from tipoff.mechanics.promises import FINITE_ELEMENTS, RIGID
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.render.table import Table, number
+from tipoff.studies.runs.results import Row
 from tipoff.workspace.words import counted
 
 
@@ -45,7 +47,7 @@ _NOT_MEASURED = (
 )
 
 
-def promises(rows: dict[str, list[dict]], documents: dict[str, dict | None]) -> list[Promise]:
+def promises(rows: Mapping[str, Sequence[Row]], documents: dict[str, dict | None]) -> list[Promise]:
     """All promises; ``rows`` are the condition rows of every run by fidelity."""
     agreement, calibration = documents.get("agreement"), documents.get("calibration")
     found: list[Promise | None] = [
@@ -67,9 +69,9 @@ def promises(rows: dict[str, list[dict]], documents: dict[str, dict | None]) -> 
     ]
 
 
-def _check(name: str, rows: list[dict], limit: float, words: str) -> Promise:
+def _check(name: str, rows: Sequence[Row], limit: float, words: str) -> Promise:
     worst, where = _worst(rows, name)
-    silent = [row["condition"] for row in rows if row["checks"].get(name) is None]
+    silent = [row.condition for row in rows if row.checks.get(name) is None]
     said = [] if worst is None else [f"{number(worst, '.2g')} ({where})"]
     said += [f"not reported ({', '.join(silent)})"] if silent else []
     return Promise(
@@ -80,38 +82,34 @@ def _check(name: str, rows: list[dict], limit: float, words: str) -> Promise:
     )
 
 
-def _worst(rows: Iterable[dict], name: str) -> tuple[float | None, str]:
+def _worst(rows: Sequence[Row], name: str) -> tuple[float | None, str]:
     measured = [
-        (row["checks"][name], row["condition"])
-        for row in rows
-        if row["checks"].get(name) is not None
+        (row.checks[name], row.condition) for row in rows if row.checks.get(name) is not None
     ]
     # a number that is none is the worst
     return max(measured, key=lambda pair: (pair[0] != pair[0], pair)) if measured else (None, "")
 
 
-def _step(rows: list[dict]) -> Promise | None:
+def _step(rows: Sequence[Row]) -> Promise | None:
     measured = [
-        (row["cost"]["dt_s"] / row["cost"]["dt_limit_s"], row)
+        (row.cost["dt_s"] / row.cost["dt_limit_s"], row)
         for row in rows
-        if row["cost"].get("dt_limit_s")
+        if row.cost.get("dt_limit_s")
     ]
     if not measured:
         return None
     ratio, row = max(measured, key=lambda pair: pair[0])
     return Promise(
         "no step above the critical one, finite elements",
-        f"{1e9 * row['cost']['dt_s']:.4g} ns of {1e9 * row['cost']['dt_limit_s']:.4g} ns, "
-        f"{ratio:.3f} ({row['condition']})",
-        f"{row['numerics'].get('safety', 1.0):g} of the limit",
+        f"{1e9 * row.cost['dt_s']:.4g} ns of {1e9 * row.cost['dt_limit_s']:.4g} ns, "
+        f"{ratio:.3f} ({row.condition})",
+        f"{row.numerics.get('safety', 1.0):g} of the limit",
         ratio <= 1.0,
     )
 
 
-def _surrogate_step(rows: list[dict]) -> Promise | None:
-    measured = [
-        (row["cost"]["limit_used"], row["condition"]) for row in rows if "limit_used" in row["cost"]
-    ]
+def _surrogate_step(rows: Sequence[Row]) -> Promise | None:
+    measured = [(row.cost["limit_used"], row.condition) for row in rows if "limit_used" in row.cost]
     if not measured:
         return None
     used, where = max(measured)
@@ -123,7 +121,7 @@ def _surrogate_step(rows: list[dict]) -> Promise | None:
     )
 
 
-def _friction(rows: list[dict]) -> Promise | None:
+def _friction(rows: Sequence[Row]) -> Promise | None:
     worst, where = _worst(rows, "friction_power_max")
     return (
         None
@@ -137,14 +135,14 @@ def _friction(rows: list[dict]) -> Promise | None:
     )
 
 
-def _finite(rows: dict[str, list[dict]]) -> Promise:
+def _finite(rows: Mapping[str, Sequence[Row]]) -> Promise:
     every = [row for found in rows.values() for row in found]
     if not every:
         return Promise(_WELL, "no run", "all", None)
-    bad = [row["condition"] for row in every if row["status"] not in _ENDED_WELL]
-    wild = [row["condition"] for row in every if not _is_finite(row.get("settled"))]
+    bad = [row.condition for row in every if row.status not in _ENDED_WELL]
+    wild = [row.condition for row in every if not _is_finite(row.settled and asdict(row.settled))]
     statuses = dict.fromkeys(
-        f"{row['condition']} {row['status']}" for row in every if row["status"] not in _ENDED_WELL
+        f"{row.condition} {row.status}" for row in every if row.status not in _ENDED_WELL
     )
     lost = f", not {', '.join(statuses)}" if bad else ""
     return Promise(

@@ -87,9 +87,9 @@ def _answer(nominal: dict | None) -> list[str]:
     """The answer of the scene itself with its range; empty where it could not be made."""
     if not nominal:
         return []
-    from tipoff.studies.nominal import page
+    from tipoff.studies.nominal import page, stage
 
-    return page.lines(nominal)
+    return page.lines(stage.STAGE.read(nominal))
 
 
 def _verdict(agreement: dict | None) -> str:

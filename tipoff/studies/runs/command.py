@@ -42,5 +42,6 @@ def _every(
 ) -> Output:
     from tipoff.studies.runs import page, stage
 
+    read = stage.STAGES[fidelity].read
     found = stage.run(request.study(conditions, **settings), fidelity)
-    return Output(found, lambda found: [page.settled(found["conditions"])], request.out)
+    return Output(found, lambda found: [page.settled(read(found).conditions)], request.out)

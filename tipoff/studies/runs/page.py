@@ -1,11 +1,12 @@
 """Runs of both models on the page: thrust, curves, contact forces, energy."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from tipoff.studies.render.document import Figure, Part
 from tipoff.studies.render.table import Column, Table
 from tipoff.studies.runs import figures
+from tipoff.studies.runs.results import Row, Settled
 from tipoff.studies.runs.thrust_facts import thrust_facts
 
 if TYPE_CHECKING:
@@ -19,33 +20,26 @@ _CURVES = (
 )
 
 
-def settled(rows: list[dict]) -> Table:
-    """Velocity and rates of each condition for the terminal, from the ``rows`` of a result file."""
-    columns: tuple[Column | str, ...] = (
-        "condition",
-        "model",
-        "status",
-        Column("v_x", "m/s", ".4f"),
-        *(Column(f"rate {axis}", "deg/s", "+.3f") for axis in "xyz"),
-        Column("off axis", "deg", ".3g"),
-        Column("took", "s", ".2g"),
-    )
-    found = []
-    for row in rows:
-        own = row["settled"] or {}
-        found.append(
-            (
-                row["condition"],
-                row["model"],
-                row["status"],
-                own.get("velocity_m_s", [None])[0],
-                *own.get("rate_deg_s", [None] * 3),
-                own.get("direction_error_deg"),
-                row["wall_s"],
-            )
-        )
-    under = [row["rail_compliance"] for row in rows if row.get("rail_compliance")]
-    return Table(columns, found, notes=tuple(dict.fromkeys(own["words"] for own in under)))
+def settled(rows: Sequence[Row]) -> Table:
+    """Velocity and rates of each condition for the terminal."""
+    under = [row.rail_compliance["words"] for row in rows if row.rail_compliance]
+    notes = tuple(dict.fromkeys(under))
+    return Table.of_records(rows, *_SETTLED, notes=notes, kind=Row)
+
+
+def _of_settled(head: Column, cell: Callable[[Settled], float]) -> tuple[Column, Callable]:
+    return head, lambda row: row.settled and cell(row.settled)
+
+
+_SETTLED = (
+    *("condition", "model", "status"),
+    _of_settled(Column("v_x", "m/s", ".4f"), lambda own: own.velocity_m_s[0]),
+    _of_settled(Column("rate x", "deg/s", "+.3f"), lambda own: own.rate_deg_s[0]),
+    _of_settled(Column("rate y", "deg/s", "+.3f"), lambda own: own.rate_deg_s[1]),
+    _of_settled(Column("rate z", "deg/s", "+.3f"), lambda own: own.rate_deg_s[2]),
+    _of_settled(Column("off axis", "deg", ".3g"), lambda own: own.direction_error_deg),
+    "wall_s",
+)
 
 
 def thrust(page: "Page") -> list[Part]:

@@ -2,14 +2,19 @@
 compliant contact."""
 
 import math
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 from tipoff.mechanics import hand_calculation, unfinished
 from tipoff.mechanics.models import FINITE_ELEMENTS
+from tipoff.mechanics.outcome import Outcome
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.convergence import stresses
+from tipoff.studies.runs.results import ByHand, Row, Runs, Settled, Vector
 from tipoff.workspace import kernel_marks
 from tipoff.workspace.run import Run
+from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import FAILED, Study
 
 
@@ -22,26 +27,34 @@ def requests(study: Study, fidelity: str) -> dict[str, Run]:
 
 
 def run(study: Study, fidelity: str) -> dict:
-    """``{"conditions": [...]}``, each with ``advice``, empty unless it ended too early; ``failed``
-    names those that diverged, were refused, or reached the end of the scene too early."""
+    """The content of ``Runs``."""
     requested = requests(study, fidelity)
 
-    def make() -> tuple[dict, list[Path]]:
-        runs = fill(study, fidelity, requested)
+    def make() -> tuple[Runs, list[Path]]:
+        found = fill(study, fidelity, requested)
+        paths = {name: study.store.path(request) for name, request in requested.items()}
         rows = [
-            row(name, runs[name], study.relative(study.store.path(run))) | beside(run, runs[name])
-            for name, run in requested.items()
+            row(name, found[name], study.relative(paths[name]), request)
+            for name, request in requested.items()
         ]
         failed = [
-            line for name, run in requested.items() for line in failure(name, run, runs[name])
+            line
+            for name, request in requested.items()
+            for line in failure(name, request, found[name])
         ]
-        return {"conditions": rows, "failed": failed}, [
-            study.store.path(item) for item in requested.values()
-        ]
+        return Runs(conditions=tuple(rows), failed=tuple(failed)), list(paths.values())
 
-    return study.stage(
-        fidelity, study.key(__name__, [item.key for item in requested.values()]), make
-    )
+    return STAGES[fidelity].run(study, None, make)
+
+
+def _stage(fidelity: str) -> Stage:
+    def inputs(study: Study, _: None) -> list[str]:
+        return [request.key for request in requests(study, fidelity).values()]
+
+    return Stage(fidelity, __name__, inputs=inputs, result=Runs)
+
+
+STAGES = {fidelity: _stage(fidelity) for fidelity in ("highfi", "lowfi")}
 
 
 def fill(study: Study, name: str, requested: dict[str, Run]) -> dict[str, Trajectory]:
@@ -57,20 +70,6 @@ def fill(study: Study, name: str, requested: dict[str, Run]) -> dict[str, Trajec
     return found
 
 
-def beside(request: Run, found: Trajectory) -> dict:
-    """``advice`` for a run that ended too early; the rates ``by_hand`` (deg/s) with what they
-    count, None where more than one pad touches; the ``thrust`` that acted; ``rail_compliance``,
-    what that of the run states about its elements, None without one."""
-    hand = hand_calculation.rates(request.scene, found)
-    return {
-        "advice": unfinished.advice(request.scene, found),
-        "thrust": request.scene.thrust.describe(request.scene.time_limit),
-        "rail_compliance": request.compliance and request.compliance.stated(),
-        "by_hand": hand
-        and {"rate_deg_s": [math.degrees(rate) for rate in hand.rate], "words": hand.words},
-    }
-
-
 def failure(name: str, request: Run, found: Trajectory) -> list[str]:
     """One line on the run of a condition that is no success; empty for one that exited or jammed."""
     if found.status not in (*FAILED, "time_limit"):
@@ -79,41 +78,62 @@ def failure(name: str, request: Run, found: Trajectory) -> list[str]:
     return [f"{name}: {found.status}: {words}"]
 
 
-def row(name: str, run: Trajectory, path: str) -> dict:
-    """One condition as in the result files; ``settled`` is null for a run that did not settle."""
-    result, cost, checks = run.outcome, run.cost, run.checks
-    settled = None
-    if result.rate is not None:
-        assert result.direction_error is not None  # a settled run has all of them
-        settled = {
-            "velocity_m_s": result.velocity,
-            "rate_deg_s": [math.degrees(rate) for rate in result.rate],
-            "lateral_velocity_m_s": result.lateral_velocity,
-            "direction_error_deg": math.degrees(result.direction_error),
-        }
-    found = {
-        "condition": name,
-        "model": run.model,
-        "status": run.status,
-        "message": run.message,
-        "exit_time_s": result.exit_time,
-        "wall_s": cost["wall_s"],
-        "compile_s": cost["compile_s"],
-        "steps": cost["steps"],
-        "dt_s": cost["dt_s"],
-        "energy_error": checks.get("energy_error"),
-        "transverse_energy_error": checks.get("transverse_energy_error"),
-        "linear_momentum_error": checks.get("linear_momentum_error"),
-        "angular_momentum_error": checks.get("angular_momentum_error"),
-        "settled": settled,
-        "trajectory": path,
-        "checks": checks,
-        "cost": cost,
-        "numerics": run.numerics,
-    }
+def row(name: str, run: Trajectory, path: str, request: Run | None = None) -> Row:
+    """The row of a condition; advice, thrust and rates by hand are those of the ``request``."""
+    cost, checks = run.cost, run.checks
+    beside = {} if request is None else _beside(request, run)
     if run.model == FINITE_ELEMENTS:
-        found |= {
+        beside |= {
             "elements": cost["elements"],
             "ns_per_element_step": cost["ns_per_element_step"],
         } | stresses.facts(run)
-    return found
+    return Row(
+        condition=name,
+        model=run.model,
+        status=run.status,
+        message=run.message,
+        exit_time_s=run.outcome.exit_time,
+        wall_s=cost["wall_s"],
+        compile_s=cost["compile_s"],
+        steps=int(cost["steps"]),
+        dt_s=cost["dt_s"],
+        energy_error=checks.get("energy_error"),
+        transverse_energy_error=checks.get("transverse_energy_error"),
+        linear_momentum_error=checks.get("linear_momentum_error"),
+        angular_momentum_error=checks.get("angular_momentum_error"),
+        settled=_settled(run.outcome),
+        trajectory=path,
+        checks=checks,
+        cost=cost,
+        numerics=run.numerics,
+        **beside,
+    )
+
+
+def _settled(found: Outcome) -> Settled | None:
+    if found.rate is None:
+        return None
+    # a settled run has all of them
+    assert found.velocity and found.direction_error is not None
+    assert found.lateral_velocity is not None
+    return Settled(
+        velocity_m_s=_vector(found.velocity),
+        rate_deg_s=_vector(map(math.degrees, found.rate)),
+        lateral_velocity_m_s=found.lateral_velocity,
+        direction_error_deg=math.degrees(found.direction_error),
+    )
+
+
+def _vector(found: Iterable[float]) -> Vector:
+    x, y, z = found
+    return x, y, z
+
+
+def _beside(request: Run, found: Trajectory) -> dict[str, Any]:
+    hand = hand_calculation.rates(request.scene, found)
+    return {
+        "advice": unfinished.advice(request.scene, found),
+        "thrust": request.scene.thrust.describe(request.scene.time_limit),
+        "rail_compliance": request.compliance and request.compliance.stated(),
+        "by_hand": hand and ByHand(_vector(map(math.degrees, hand.rate)), hand.words),
+    }

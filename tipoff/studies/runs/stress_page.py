@@ -1,12 +1,14 @@
 """Stress of the rails on the page: the peak of each condition, warnings, pictures."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tipoff.studies.render.document import Caption, Image, Notice, Part
-from tipoff.studies.render.table import Cells, Column, Table
+from tipoff.studies.render.table import Column, Table
+from tipoff.studies.runs.results import Row
 from tipoff.workspace.words import counted
 
 if TYPE_CHECKING:
@@ -21,14 +23,14 @@ def draw(page: "Page") -> list[Part]:
     return shown(rows, page.documents.get("view") or [], page.folder, page.command("view"))
 
 
-def shown(rows: list[dict], views: list[dict], folder: Path, command: str) -> list[Part]:
+def shown(rows: Sequence[Row], views: list[dict], folder: Path, command: str) -> list[Part]:
     """The section: ``rows`` of highfi.json, ``views`` results of the stage ``view``, whose files
     are below ``folder``, ``command`` the one that makes them."""
-    measured = [row for row in rows if row.get("peak_stress_pa") is not None]
+    measured = [row for row in rows if row.peak_stress_pa is not None]
     if not measured:
         return ["No run of the reference contains peak stresses."]
-    warnings = [f"{row['condition']}: {line}" for row in measured for line in row["warnings"]]
-    strengths = {row["yield_strength_pa"] for row in measured} - {None}
+    warnings = [f"{row.condition}: {line}" for row in measured for line in row.warnings]
+    strengths = {row.yield_strength_pa for row in measured if row.yield_strength_pa is not None}
     strength = ", ".join(f"{1e-6 * value:g} MPa" for value in sorted(strengths))
     note = (
         "Largest von Mises stress at any node of any element, not averaged. Yield strength: "
@@ -37,34 +39,34 @@ def shown(rows: list[dict], views: list[dict], folder: Path, command: str) -> li
         "convergence study uses means over patches of 4 mm. Rails are elastic; strains and "
         "rotations are small."
     )
-    columns: Cells = (
-        ("condition", "condition"),
-        (Column("peak von Mises", "MPa", ".3g", 1e-6), "peak_stress_pa"),
+    columns = (
+        *("condition", "peak_stress_pa"),
         (Column("of yield", "%", scale=100.0), _of_yield),
         ("x, y, z (mm)", _place),
-        ("rail", "peak_stress_rail"),
-        (Column("at", "ms", ".4g", 1e3), "peak_stress_time_s"),
-        (Column("largest strain", "%", ".2g", 100.0), "largest_strain"),
-        (
-            Column("largest rotation", "deg", ".2g"),
-            lambda row: math.degrees(row["largest_rotation_rad"]),
-        ),
+        *("peak_stress_rail", "peak_stress_time_s", "largest_strain"),
+        (Column("largest rotation", "deg", ".2g"), _rotation),
     )
+    table = Table.of_records(measured, *columns, notes=(note,))
     return [
         *map(Notice, warnings),
-        Table.of(measured, columns, notes=(note,), dense=True),
+        replace(table, dense=True),
         *(part for view in views for part in _pictures(view, folder)),
         *([] if views else [_how(command)]),
     ]
 
 
-def _of_yield(row: dict) -> float | None:
-    strength = row["yield_strength_pa"]
-    return None if strength is None else row["peak_stress_pa"] / strength
+def _of_yield(row: Row) -> float | None:
+    if row.yield_strength_pa is None or row.peak_stress_pa is None:
+        return None
+    return row.peak_stress_pa / row.yield_strength_pa
 
 
-def _place(row: dict) -> str:
-    return ", ".join(f"{1e3 * value:.5g}" for value in row["peak_stress_place_m"])
+def _place(row: Row) -> str:
+    return ", ".join(f"{1e3 * value:.5g}" for value in row.peak_stress_place_m or ())
+
+
+def _rotation(row: Row) -> float | None:
+    return row.largest_rotation_rad and math.degrees(row.largest_rotation_rad)
 
 
 def _pictures(view: dict, folder: Path) -> Iterator[Part]:

@@ -82,7 +82,7 @@ def run(
     from tipoff.workspace import models
 
     def shown(found: dict) -> "list[Part]":
-        return [page.settled(found["conditions"])] if "conditions" in found else []
+        return [page.settled(single.rows(found))] if "conditions" in found else []
 
     options, quiet = models.Options(model, calibration, modes), request.json_
     study = request.study(

@@ -2,7 +2,11 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import asdict
 from functools import partial
+from typing import Any
+
+from pydantic import TypeAdapter
 
 from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
@@ -13,7 +17,8 @@ from tipoff.studies.calibration.files import constants
 from tipoff.studies.cost import choice
 from tipoff.studies.cost import stage as cost
 from tipoff.studies.render.uncertain import uncertain
-from tipoff.studies.runs.stage import beside, failure, row
+from tipoff.studies.runs.results import Row
+from tipoff.studies.runs.stage import failure, row
 from tipoff.studies.single import disturbed
 from tipoff.workspace import kernel_marks, models, words
 from tipoff.workspace.attempt import attempt
@@ -63,6 +68,11 @@ def several(names: Sequence[str], make: Callable[[str], dict]) -> dict:
     return {"conditions": rows, "failed": failed}
 
 
+def rows(found: dict) -> tuple[Row, ...]:
+    """The runs in a result of ``several`` conditions."""
+    return TypeAdapter(tuple[Row, ...]).validate_python(found["conditions"])
+
+
 def chosen(
     study: Study, condition: str, accuracy: float | None, budget: float | None, quiet: bool = False
 ) -> dict:
@@ -100,14 +110,16 @@ def result_of(study: Study, condition: str, request: Run, quiet: bool) -> dict:
         found = study.store.get(request)
         kernel_marks.remember(request)
     calibrated, modes = request.calibration is not None, getattr(request.numerics, "modes", AUTO)
-    result = row(condition, found, study.relative(study.store.path(request)))
-    result |= beside(request, found) | {"implausible": request.scene.warnings}
-    result["agreement"] = kept.words(study, request.model, condition, calibrated, modes)
+    made = row(condition, found, study.relative(study.store.path(request)), request)
+    further: dict[str, Any] = {
+        "implausible": request.scene.warnings,
+        "agreement": kept.words(study, request.model, condition, calibrated, modes),
+    }
     if request.fidelity == "lowfi" and found.outcome.rate is not None:
-        result["disturbed"] = disturbed.of(request, found, study.settings.clearance_change)
+        further["disturbed"] = disturbed.of(request, found, study.settings.clearance_change)
     if not quiet:
-        print("\n".join(lines(result, model(request), study)))
-    return result | {"failed": failure(condition, request, found)}
+        print("\n".join(lines(made, further, model(request), study)))
+    return asdict(made) | further | {"failed": failure(condition, request, found)}
 
 
 def ranged(study: Study, condition: str, quiet: bool = False) -> dict:
@@ -118,7 +130,7 @@ def ranged(study: Study, condition: str, quiet: bool = False) -> dict:
     found = spread.of(study, study.condition(condition))
     if not quiet:
         print("\n".join(f"  {line}" for line in page.ranges(found)))
-    return {"spread": found}
+    return {"spread": found and asdict(found)}
 
 
 def model(request: Run) -> str:
@@ -134,49 +146,57 @@ def model(request: Run) -> str:
     )
 
 
-def lines(result: dict, made_with: str, study: Study) -> list[str]:
-    """The result as lines of text with units."""
-    text = [
-        f"{study.scene.name} / {result['condition']}, model {made_with}: {result['status']}"
-        + (f" ({result['message']})" if result["message"] else "")
-    ]
-    text.append(f"  thrust        {result['thrust']['text']}")
-    if result["exit_time_s"] is not None:
-        text.append(f"  exit          {1e3 * result['exit_time_s']:.4g} ms after ignition")
-    if settled := result["settled"]:
-        text.append(
-            "  velocity      "
-            + ", ".join(uncertain(value, least=1e-4) for value in settled["velocity_m_s"])
-            + " m/s (x, y, z)"
-        )
-        text.append(
-            "  rate          "
-            + ", ".join(map(uncertain, settled["rate_deg_s"]))
-            + f" deg/s (x, y, z), {uncertain(math.hypot(*settled['rate_deg_s']))} in total"
-        )
-        if hand := result.get("by_hand"):
-            rates = ", ".join(map(uncertain, hand["rate_deg_s"]))
-            text.append(f"  by hand       {rates} deg/s: {hand['words']}")
-        text.append(
-            f"  direction     {settled['direction_error_deg']:.4g} deg off axis, "
-            f"{1e3 * settled['lateral_velocity_m_s']:.4g} mm/s across"
-        )
-    if result.get("peak_stress_pa") is not None:
-        place = ", ".join(f"{1e3 * value:.4g}" for value in result["peak_stress_place_m"])
-        text.append(
-            f"  peak stress   {1e-6 * result['peak_stress_pa']:.4g} MPa (von Mises) at x, y, z = "
-            f"{place} mm, rail {result['peak_stress_rail']}, "
-            f"{1e3 * result['peak_stress_time_s']:.4g} ms after ignition"
-        )
-        text += [f"  warning       {warning}" for warning in result["warnings"]]
-    if "disturbed" in result:
+def lines(row: Row, further: dict, made_with: str, study: Study) -> list[str]:
+    """A run as lines of text with units; ``further`` has its ``agreement`` and what has ``disturbed`` it."""
+    said = f" ({row.message})" if row.message else ""
+    text = [f"{study.scene.name} / {row.condition}, model {made_with}: {row.status}{said}"]
+    if row.thrust:
+        text.append(f"  thrust        {row.thrust['text']}")
+    if row.exit_time_s is not None:
+        text.append(f"  exit          {1e3 * row.exit_time_s:.4g} ms after ignition")
+    text += _settled(row)
+    text += _stress(row)
+    if "disturbed" in further:
         limit = verdicts.gates(study.scene)["settled_rate_error_deg_s"]
-        text += disturbed.lines(result["disturbed"], limit)
-    if why := result["numerics"].get("modes_why"):
+        text += disturbed.lines(further["disturbed"], limit)
+    if why := row.numerics.get("modes_why"):
         text.append(f"  rail modes    {why}")
-    if under := result.get("rail_compliance"):
-        text.append(f"  rails         {under['words']}")
-    text.append(f"  agreement     {result['agreement']}")
-    text.append(f"  took          {result['wall_s']:.3g} s, {result['steps']} steps")
-    text.append(f"  trajectory    {study.path(result['trajectory'])}")
+    if row.rail_compliance:
+        text.append(f"  rails         {row.rail_compliance['words']}")
+    text.append(f"  agreement     {further['agreement']}")
+    text.append(f"  took          {row.wall_s:.3g} s, {row.steps} steps")
+    text.append(f"  trajectory    {study.path(row.trajectory)}")
     return text
+
+
+def _settled(row: Row) -> list[str]:
+    found = row.settled
+    if found is None:
+        return []
+    velocity = ", ".join(uncertain(value, least=1e-4) for value in found.velocity_m_s)
+    rates = ", ".join(map(uncertain, found.rate_deg_s))
+    total = uncertain(math.hypot(*found.rate_deg_s))
+    text = [
+        f"  velocity      {velocity} m/s (x, y, z)",
+        f"  rate          {rates} deg/s (x, y, z), {total} in total",
+    ]
+    if hand := row.by_hand:
+        rates = ", ".join(map(uncertain, hand.rate_deg_s))
+        text.append(f"  by hand       {rates} deg/s: {hand.words}")
+    text.append(
+        f"  direction     {found.direction_error_deg:.4g} deg off axis, "
+        f"{1e3 * found.lateral_velocity_m_s:.4g} mm/s across"
+    )
+    return text
+
+
+def _stress(row: Row) -> list[str]:
+    if row.peak_stress_pa is None or row.peak_stress_time_s is None:
+        return []
+    place = ", ".join(f"{1e3 * value:.4g}" for value in row.peak_stress_place_m or ())
+    return [
+        f"  peak stress   {1e-6 * row.peak_stress_pa:.4g} MPa (von Mises) at x, y, z = "
+        f"{place} mm, rail {row.peak_stress_rail}, "
+        f"{1e3 * row.peak_stress_time_s:.4g} ms after ignition",
+        *(f"  warning       {warning}" for warning in row.warnings),
+    ]

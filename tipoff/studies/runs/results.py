@@ -1,0 +1,88 @@
+"""Result of runs: one row for each condition of a model."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from tipoff.studies.render.column import Column
+
+Vector = tuple[float, float, float]  # along or about x, y, z
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settled:
+    """Means over the settled window."""
+
+    velocity_m_s: Vector
+    rate_deg_s: Vector
+    lateral_velocity_m_s: float
+    direction_error_deg: float
+
+
+@dataclass(frozen=True)
+class ByHand:
+    """Rates of a rigid payload from moment impulses, and which impulses count."""
+
+    rate_deg_s: Vector
+    words: str
+
+
+def roll(rate: Sequence[float]) -> float:
+    """Of a ``rate`` (3,) the part about the payload's axis, with its sign."""
+    return rate[0]
+
+
+def transverse(rate: Sequence[float]) -> float:
+    """Of a ``rate`` (3,) the part across the payload's axis."""
+    return math.hypot(*rate[1:])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """One run. ``settled`` is None where it did not settle; ``advice`` is empty unless it ended too early;
+    ``by_hand`` None where more than one pad touches; ``rail_compliance``, what that of the run states about
+    its elements; ``trajectory``, the file in the folder of the scene. The fields from ``elements`` on are
+    those of the reference; stresses are None for a run without them."""
+
+    condition: Annotated[str, Column("condition")]
+    model: Annotated[str, Column("model")]
+    status: Annotated[str, Column("status")]
+    message: str
+    exit_time_s: float | None
+    wall_s: Annotated[float, Column("took", "s", ".2g")]
+    compile_s: float
+    steps: int
+    dt_s: float
+    energy_error: float | None
+    transverse_energy_error: float | None
+    linear_momentum_error: float | None
+    angular_momentum_error: float | None
+    settled: Settled | None
+    trajectory: str
+    checks: dict[str, Any]
+    cost: dict[str, Any]
+    numerics: dict[str, Any]
+    advice: str = ""
+    thrust: dict[str, Any] | None = None  # what acted
+    rail_compliance: dict[str, Any] | None = None
+    by_hand: ByHand | None = None
+    elements: int | None = None
+    ns_per_element_step: float | None = None
+    peak_stress_pa: Annotated[float | None, Column("peak von Mises", "MPa", ".3g", 1e-6)] = None
+    peak_stress_place_m: Vector | None = None
+    peak_stress_rail: Annotated[str | None, Column("rail")] = None
+    peak_stress_time_s: Annotated[float | None, Column("at", "ms", ".4g", 1e3)] = None
+    yield_strength_pa: float | None = None
+    largest_strain: Annotated[float | None, Column("largest strain", "%", ".2g", 100.0)] = None
+    largest_rotation_rad: float | None = None
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Runs:
+    """``failed``: a line for each run that diverged, was refused, or reached the end of the scene too
+    early."""
+
+    conditions: tuple[Row, ...]
+    failed: tuple[str, ...]
