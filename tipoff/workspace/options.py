@@ -10,11 +10,27 @@ field whose type is such a dataclass has further options of the same command.
 
 import dataclasses
 import typing
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
-from pydantic import AfterValidator, TypeAdapter, ValidationError
 
-from tipoff.scenes.faults import SceneError, faults_of
+@dataclass(frozen=True)
+class Rule:
+    """Which numbers an option may have: ``holds``, and the same in ``words``. None is what is not given."""
+
+    holds: Callable[[float], bool]
+    words: str
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Callable[[Any], Any]) -> Any:
+        from pydantic_core import core_schema  # slow to load
+
+        return core_schema.no_info_after_validator_function(self._checked, handler(source))
+
+    def _checked(self, value: float | None) -> float | None:
+        if value is not None and not self.holds(value):
+            raise ValueError(self.words)
+        return value
 
 
 def between(
@@ -22,7 +38,7 @@ def between(
     most: float | None = None,
     below: float | None = None,
     noun: str = "",
-) -> AfterValidator:
+) -> Rule:
     """Rule for the number of an option: ``least`` to ``most``, or less than ``below``; ``noun`` says what
     it counts."""
     words = "" if least is None else f"{least:,g} or more"
@@ -30,22 +46,23 @@ def between(
         words = f"at most {most:,g}" if least is None else f"{least:,g} to {most:,g}"
     if below is not None:
         words += f"{' and ' if words else ''}less than {below:,g}"
-    words = f"{words} {noun}".rstrip()
 
-    def check(value: float | None) -> float | None:
-        if value is not None and not (
+    def holds(value: float) -> bool:
+        return (
             (least is None or value >= least)
             and (most is None or value <= most)
             and (below is None or value < below)
-        ):
-            raise ValueError(words)
-        return value
+        )
 
-    return AfterValidator(check)
+    return Rule(holds, f"{words} {noun}".rstrip())
 
 
 def require(options: Any) -> None:
     """Raises SceneError with a fault for each of the ``options`` that breaks its rule."""
+    from pydantic import TypeAdapter, ValidationError  # slow to load, as the scenes are
+
+    from tipoff.scenes.faults import SceneError, faults_of
+
     try:
         TypeAdapter(type(options)).validate_python(dataclasses.asdict(options))
     except ValidationError as error:

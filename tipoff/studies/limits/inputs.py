@@ -43,7 +43,7 @@ def _cases(options: Options) -> int:
 
 
 def _draws(options: Options) -> None:
-    if options.draws is not None and options.model != SPRINGS:
+    if options.draws is not None and options.draws >= 0 and options.model != SPRINGS:
         expected = (
             f"used only with --model {SPRINGS}; the constants of compliant contact are not drawn"
         )
