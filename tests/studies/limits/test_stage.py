@@ -193,7 +193,7 @@ def test_limits_that_no_tolerance_or_every_tolerance_keeps_are_reported(study, m
             found["map"] is None
         ) == (state == "none")
         assert row_of(found, "thrust_eccentricity")["nominal"]["state"] == "found"
-        shown = document.markdown(pictures.summary(found))
+        shown = document.markdown(pictures.terminal(found))
         assert ("exceeded even at zero" in shown) == (state == "none")
     monkeypatch.setattr(
         limits.constants,
@@ -262,7 +262,7 @@ def test_section_of_the_page(found):
         and "assumed" in shown
         and "thrust misalignment" in shown
     )
-    assert tables.terminal(pictures.table_of(found)) in document.terminal(pictures.summary(found))
+    assert tables.terminal(pictures.table_of(found)) in document.terminal(pictures.terminal(found))
     assert {
         f"figures/limits-{name}.{kind}" for name in ("curves", "map") for kind in ("png", "svg")
     } == set(found["files"])
