@@ -75,25 +75,6 @@ def test_label_is_no_part_of_the_key(study):
     assert study.highfi("phi15", tag="-again").key == study.highfi("phi15").key
 
 
-@pytest.mark.parametrize(
-    "damage",
-    [
-        lambda path: path.write_bytes(b"no netCDF"),
-        lambda path: path.write_bytes(path.read_bytes()[:2000]),
-        lambda path: path.write_bytes(b""),
-    ],
-)
-def test_damaged_file_is_named_and_made_again(engine, study, capsys, damage):
-    run = study.highfi("phi15")
-    study.store.get(run)
-    path = study.store.path(run)
-    damage(path)
-    study.store.get(run)
-    assert engine == ["phi15", "phi15"]
-    assert "damaged" in capsys.readouterr().err
-    assert Trajectory.load(path).status == "exited"
-
-
 def test_one_failing_run_stops_the_rest_and_keeps_what_is_finished(study, monkeypatch):
     def execute(run, progress=None, threads=None, **kept):
         if run.label == "h2":
