@@ -112,7 +112,8 @@ def kept_file(scene: Scene, folder: Path, element_size: float) -> Path:
 
 
 def _key(scene: Scene, element_size: float) -> str:
-    return content_hash(made_from(scene), element_size, sources.digest(__name__))
+    program = sources.program(__name__, libraries=scene.rail.libraries())
+    return content_hash(made_from(scene), element_size, program)
 
 
 def made_from(scene: Scene) -> str:

@@ -161,9 +161,9 @@ def source(folder, monkeypatch) -> Kept:
     """The code and the imports of a module."""
     made, parse, modules = [], ast.parse, {MINE: "tipoff.toml", THEIRS: "tipoff.files"}
 
-    def parsed(content):
+    def parsed(content, *options, **named):
         made.append(len(content))
-        return parse(content)
+        return parse(content, *options, **named)
 
     def ask(name):
         sources.source.cache_clear()  # as in another process

@@ -12,7 +12,7 @@ import functools
 import hashlib
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -22,6 +22,7 @@ from tipoff.files import content_hash
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = "tipoff"
 WITH_CODE = (PACKAGE, "tests", "validation")  # the last two have kernels of their own
+LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "scikit-fem")  # other ones change last bits
 # What a Source follows from beside its file: syntax trees differ between versions of Python.
 _RULES = content_hash(sys.version_info[:2], Path(__file__).read_text(encoding="utf-8"))
 _DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
@@ -47,6 +48,23 @@ def digest(*modules: str) -> str:
     """Hexadecimal SHA-256 of the code that ``modules`` (dotted names) depend on."""
     parts = [f"{name} {source(name).code}" for name in closure(*modules)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def program(*modules: str, libraries: Sequence[str] = ()) -> str:
+    """Hexadecimal SHA-256 of all that the numbers of ``modules`` (dotted names) follow from beside their
+    inputs: the code, and the versions of ``LIBRARIES`` and of further ``libraries``."""
+    return content_hash(digest(*modules), [version(name) for name in (*LIBRARIES, *libraries)])
+
+
+@functools.cache  # reading the metadata takes longer than a run of the surrogate
+def version(library: str) -> str:
+    """Version of an installed ``library``, or ``not installed``."""
+    from importlib import metadata
+
+    try:
+        return metadata.version(library)
+    except metadata.PackageNotFoundError:
+        return "not installed"
 
 
 def closure(*modules: str) -> list[str]:

@@ -21,8 +21,7 @@ from typing import Any
 import numpy as np
 
 from tipoff import sources
-from tipoff.files import DamageError, content_hash, require_whole, write_sealed
-from tipoff.mechanics.trajectory import versions
+from tipoff.files import DamageError, require_whole, write_sealed
 
 # What a Loop is built from.
 CONSTANT = (
@@ -72,7 +71,7 @@ class Checkpoint:
         self.header = {
             "scene": loop.scene.hash,
             "numerics": numerics.as_dict(),
-            "program": content_hash(sources.digest("tipoff.highfi"), versions()),
+            "program": sources.program("tipoff.highfi"),
             "system": digest(arrays({"constants": loop.constants()})),
         }
 

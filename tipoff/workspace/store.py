@@ -1,12 +1,12 @@
 """Stored results of runs: ``out/<scene>/<fidelity>/<label>-<key>.nc``.
 
     key = SHA-256(physical inputs of the scene, numerics, calibrated constants, rail compliance,
-                  code that the fidelity depends on)
+                  code and versions of libraries that the fidelity depends on)
 
 A run is loaded if its file exists and matches its digest; otherwise it is made and written
 atomically (``tipoff.cache``). So an interrupted study continues with the missing runs, and a change of
-inputs or code or a damaged file never gives an old result. A run of the reference in progress has a checkpoint
-``<label>-<key>.checkpoint``, which is removed after the result is written.
+inputs, code or libraries or a damaged file never gives an old result. A run of the reference in
+progress has a checkpoint ``<label>-<key>.checkpoint``, which is removed after the result is written.
 
 Runs are parallel in threads: the kernels release the interpreter. The mesh generator needs the main
 thread, so it is called before.

@@ -194,8 +194,8 @@ class Study:
         return path.relative_to(self.folder).as_posix()
 
     def key(self, module: str, *inputs: Any) -> str:
-        """Digest of the scene with its conditions and roles, settings, the code that the stage's
-        ``module`` depends on, and further inputs."""
+        """Digest of the scene with its conditions and roles, settings, the code and libraries that the
+        stage's ``module`` depends on, and further inputs."""
         described = self.scene.model_dump(
             mode="json", include={"name", "conditions", "agreement", "provenance"}
         )
@@ -204,7 +204,7 @@ class Study:
             described,
             self.settings.hash,
             list(self.only),
-            sources.digest(module),
+            sources.program(module, libraries=self.scene.rail.libraries()),
             inputs,
         )
 

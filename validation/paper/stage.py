@@ -210,7 +210,7 @@ def _searches(study: Study, base: Scene, options: Options) -> list[solutions.Sea
             path = study.path(f"{NAME}/search-{stress:g}-{seed}.json")
             key = content_hash(
                 base.hash,
-                sources.digest("tipoff.lowfi", "validation.paper.solutions"),
+                sources.program("tipoff.lowfi", "validation.paper.solutions"),
                 STAGE.plain(options)["plan"],
                 stress,
                 seed,
