@@ -11,18 +11,19 @@ from pathlib import Path
 
 import numpy as np
 
-from tipoff import sources
+from tipoff import cache, sources
 from tipoff.files import content_hash
 from tipoff.highfi import compliance as statics
 from tipoff.highfi import discretisation
 from tipoff.highfi.statics import inputs
 from tipoff.mechanics import model as scene_model
-from tipoff.mechanics.rail_compliance import RailCompliance, digest
+from tipoff.mechanics.rail_compliance import RailCompliance, content, digest
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.studies import element_size as own_size
 
 _SAID: set[Path] = set()  # files whose uncertainty was said
 _PLACES = 4  # stations along the rail at which meshes are compared
+KEPT: cache.Cache[RailCompliance] = cache.binary(content, RailCompliance.load)
 
 
 def compliance(scene: Scene, element_size: float | None = None) -> RailCompliance:
@@ -53,23 +54,20 @@ def kept(
     """The same in elements of ``element_size`` (m), read from ``folder`` if it is stored there for
     this rail, these pads and this code, else made and stored there. ``say`` gets messages on what
     takes time, and once in a process for each file the uncertainty by the elements."""
-    path, say = kept_file(scene, folder, element_size), say or (lambda _: None)
-    found = _loaded_or_made(scene, path, element_size, say)
+    key, path = _key(scene, element_size), kept_file(scene, folder, element_size)
+    say = say or (lambda _: None)
+    found = KEPT.get_or_make(
+        path, key, "it is found again", lambda: _made(scene, element_size, path, say)
+    )
     if path not in _SAID:
         _SAID.add(path)
         say(f"  {found.accuracy()}")
     return found
 
 
-def _loaded_or_made(
-    scene: Scene, path: Path, element_size: float, say: Callable[[str], None]
+def _made(
+    scene: Scene, element_size: float, path: Path, say: Callable[[str], None]
 ) -> RailCompliance:
-    try:
-        return RailCompliance.load(path)
-    except FileNotFoundError:
-        pass
-    except ValueError as fault:
-        say(f"  {fault}, so it is found again")
     say(
         f"rail compliance, once per rail and pads: {1e3 * element_size:g} mm elements, and half of "
         f"that for its uncertainty, seconds to minutes"
@@ -77,7 +75,6 @@ def _loaded_or_made(
     began = time.perf_counter()
     with statics.progress_to(_Waiting(say, time.perf_counter)):
         found = compliance(scene, element_size)
-    found.save(path)
     say(f"  found in {time.perf_counter() - began:.3g} s, kept in {path}")
     return found
 
@@ -111,8 +108,12 @@ class _Waiting:
 
 def kept_file(scene: Scene, folder: Path, element_size: float) -> Path:
     """The file of ``kept``: named after all that the compliance is computed from."""
-    key = content_hash(made_from(scene), element_size, sources.digest(__name__))
-    return folder / f"compliance-{key[:8]}.npz"
+    return cache.file(folder, "compliance", _key(scene, element_size), ".npz")
+
+
+def _key(scene: Scene, element_size: float) -> str:
+    program = sources.program(__name__, libraries=scene.rail.libraries())
+    return content_hash(made_from(scene), element_size, program)
 
 
 def made_from(scene: Scene) -> str:

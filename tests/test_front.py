@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import tipoff
+from tests.in_memory import memory
 from tipoff import highfi, lowfi
 from tipoff.calibration import rail_compliance
 
@@ -13,7 +14,7 @@ SCENE = tipoff.load("tiny")
 CALIBRATION = tipoff.Calibration(
     {"contact.stiffness": 2.2e9}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0
 )
-STORED = SimpleNamespace(flexibility=1.0, accuracy=lambda: "")
+FOUND = SimpleNamespace(flexibility=1.0, accuracy=lambda: "")
 
 
 @pytest.fixture
@@ -34,22 +35,12 @@ def found(monkeypatch, tmp_path):
 
     def compute(scene, element_size):
         done.append(element_size)
-        return SimpleNamespace(
-            flexibility=1.0,
-            accuracy=lambda: "",
-            save=lambda path: (path.parent.mkdir(parents=True, exist_ok=True), path.touch()),
-        )
+        return FOUND
 
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     monkeypatch.setattr(rail_compliance, "compliance", compute)
-    monkeypatch.setattr(rail_compliance.RailCompliance, "load", _stored)
+    monkeypatch.setattr(rail_compliance, "KEPT", memory())
     return done
-
-
-def _stored(path):
-    if not path.is_file():
-        raise FileNotFoundError(path)
-    return STORED
 
 
 def test_every_name_is_there():
@@ -71,7 +62,7 @@ def test_compliant_contact_finds_its_compliance_once(solvers, found, capsys):
     assert capsys.readouterr().err.count("rail compliance, once") == 1
     (_, model, first), (_, _, again) = solvers
     assert model == "compliant" and first["numerics"] == lowfi.Numerics(modes=2)
-    assert again["compliance"] is STORED
+    assert again["compliance"] is FOUND
 
 
 def test_elements_do_not_depend_on_the_name_or_on_what_is_stored(solvers, found):

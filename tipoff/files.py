@@ -5,9 +5,10 @@ ends with the bytes::
 
     # sha-256 <hexadecimal digest of every byte before this line>
 
-a line that is a comment in TOML, and that readers of HDF5, netCDF and zip ignore. A JSON file has
-the digest under the key ``sha256`` instead: that of the canonical JSON of all its other keys, so
-that it does not depend on the layout.
+a line that is a comment in TOML, and that readers of HDF5, netCDF and zip ignore. A file of a cache
+(``tipoff.cache``) has a line ``# key <key>`` before it. A JSON file has the digest under the key
+``sha256`` instead: that of the canonical JSON of all its other keys, so that it does not depend on
+the layout.
 """
 
 import errno
@@ -32,6 +33,8 @@ KEY = "sha256"  # of the digest in a JSON object
 _MARK = b"# sha-256 "
 _LINE = re.compile(_MARK + rb"([0-9a-f]{64})\n")
 _LENGTH = len(_MARK) + 64 + 1
+_KEY_LINE = re.compile(rb"\n# key ([0-9a-f]{64})\n")
+_KEY_LENGTH = len("\n# key \n") + 64
 _temporaries: set[Path] = set()  # of this process, not yet renamed
 _CARRIES_NONE = "has no digest of its content, or a damaged one"
 _DIFFERS = "differs from its digest (damaged, or edited)"
@@ -140,23 +143,37 @@ def sealed(path: str | Path) -> Iterator[Path]:
             stream.write(_MARK + digest.encode() + b"\n")
 
 
+def write_sealed(path: str | Path, content: bytes | memoryview, key: str = "") -> None:
+    """Write ``content`` as ``sealed``, with the ``key`` (64 hexadecimal digits) of a cache if there is
+    one."""
+    with sealed(path) as temporary, open(temporary, "wb") as stream:
+        stream.write(content)
+        stream.write(f"\n# key {key}\n".encode() if key else b"")
+
+
+def netcdf(found: Any) -> bytes | memoryview:
+    """An xarray Dataset or DataTree as a file of netCDF. It is made in memory, because HDF5 ends the
+    whole process where the disk is full."""
+    return found.to_netcdf(engine="h5netcdf")
+
+
 def write_netcdf(path: str | Path, found: Any) -> None:
-    """Write an xarray Dataset or DataTree as ``sealed``. The bytes are made in memory, because HDF5
-    ends the whole process where the disk is full."""
-    content = found.to_netcdf(engine="h5netcdf")
-    with sealed(path) as temporary:
-        temporary.write_bytes(content)
+    """Write an xarray Dataset or DataTree as ``sealed``."""
+    write_sealed(path, netcdf(found))
 
 
-def require_whole(path: str | Path) -> None:
-    """Raises DamageError unless the file is as ``sealed`` left it, FileNotFoundError or another
-    OSError where it cannot be read."""
+def require_whole(path: str | Path) -> str:
+    """The key with which ``write_sealed`` left the file, empty without one. Raises DamageError unless
+    the file is as ``sealed`` left it, FileNotFoundError or another OSError where it cannot be read."""
     content = memoryview(_content(path))
     last = _LINE.fullmatch(content[-_LENGTH:])
     if last is None:
         raise DamageError(path, _CARRIES_NONE)
-    if hashlib.sha256(content[:-_LENGTH]).hexdigest().encode() != last[1]:
+    content = content[:-_LENGTH]
+    if hashlib.sha256(content).hexdigest().encode() != last[1]:
         raise DamageError(path, _DIFFERS)
+    named = _KEY_LINE.fullmatch(content[-_KEY_LENGTH:])
+    return named[1].decode() if named else ""
 
 
 def is_sealed(path: str | Path) -> bool:

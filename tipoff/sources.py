@@ -10,20 +10,21 @@ import ast
 import contextlib
 import functools
 import hashlib
-import json
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from tipoff.files import replacing
+from tipoff import cache
+from tipoff.files import content_hash
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = "tipoff"
 WITH_CODE = (PACKAGE, "tests", "validation")  # the last two have kernels of their own
-# Syntax trees differ between versions of Python.
-_SYNTAX = f"{sys.version_info[0]}.{sys.version_info[1]}"
+LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "scikit-fem")  # other ones change last bits
+# What a Source follows from beside its file: syntax trees differ between versions of Python.
+_RULES = content_hash(sys.version_info[:2], Path(__file__).read_text(encoding="utf-8"))
 _DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 
 
@@ -47,6 +48,23 @@ def digest(*modules: str) -> str:
     """Hexadecimal SHA-256 of the code that ``modules`` (dotted names) depend on."""
     parts = [f"{name} {source(name).code}" for name in closure(*modules)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def program(*modules: str, libraries: Sequence[str] = ()) -> str:
+    """Hexadecimal SHA-256 of all that the numbers of ``modules`` (dotted names) follow from beside their
+    inputs: the code, and the versions of ``LIBRARIES`` and of further ``libraries``."""
+    return content_hash(digest(*modules), [version(name) for name in (*LIBRARIES, *libraries)])
+
+
+@functools.cache  # reading the metadata takes longer than a run of the surrogate
+def version(library: str) -> str:
+    """Version of an installed ``library``, or ``not installed``."""
+    from importlib import metadata
+
+    try:
+        return metadata.version(library)
+    except metadata.PackageNotFoundError:
+        return "not installed"
 
 
 def closure(*modules: str) -> list[str]:
@@ -90,24 +108,27 @@ def _module(name: str) -> str | None:
     return parent if parent and path(parent) else None
 
 
+_KEPT: cache.Cache[Source] = cache.documents(
+    Source._asdict, lambda found: Source(found["code"], tuple(found["imports"]))
+)
+
+
 @functools.cache
 def source(module: str) -> Source:
-    """The source of ``module``. It is stored beside the kernels under the digest of the file, since
-    parsing all files takes a second."""
-    file = path(module)
-    assert file is not None
-    content = file.read_bytes()
-    kept = cache_folder() / "sources" / f"{_SYNTAX}-{hashlib.sha256(content).hexdigest()}.json"
-    try:
-        code, *imports = json.loads(kept.read_text(encoding="utf-8"))
-        return Source(code, tuple(imports))
-    except (OSError, ValueError, TypeError, RecursionError):  # none, or a damaged one
+    """The source of ``module``. It is stored beside the kernels, since parsing all files takes a
+    second."""
+    code = path(module)
+    assert code is not None
+    content = code.read_bytes()
+    key = content_hash(_RULES, hashlib.sha256(content).hexdigest())
+    kept = cache.file(cache_folder() / "sources", module, key, ".json")
+    if (found := _KEPT.get(kept, key, "it is made again")) is None:
         tree = ast.parse(content)
-        imports = sorted(set(_imports(tree)))
-        found = Source(hashlib.sha256(_code(tree).encode()).hexdigest(), tuple(imports))
-        with contextlib.suppress(OSError), replacing(kept) as file:
-            file.write_text(json.dumps([found.code, *imports]), encoding="utf-8")
-        return found
+        imports = tuple(sorted(set(_imports(tree))))
+        found = Source(hashlib.sha256(_code(tree).encode()).hexdigest(), imports)
+        with contextlib.suppress(OSError):
+            _KEPT.put(kept, key, found)
+    return found
 
 
 def _code(tree: ast.Module) -> str:

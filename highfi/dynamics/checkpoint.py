@@ -1,11 +1,9 @@
 """Checkpoints: the state of a run as a file, from which an interrupted run continues to the same
 bits.
 
-A checkpoint holds everything of a Loop that evolves, that is all but ``CONSTANT``. The file is one
-line of text and a NumPy archive of plain arrays, no code::
-
-    tipoff checkpoint <FORMAT> <SHA-256 of all that follows>
-    <.npz: ``header``, JSON that identifies the run, and one array per evolving value, by its dotted name>
+A checkpoint holds everything of a Loop that evolves, that is all but ``CONSTANT``. The file is a
+NumPy archive (.npz) of plain arrays, no code, with the line of its digest (``tipoff.files``):
+``header``, JSON that identifies the run, and one array per evolving value, by its dotted name.
 
 It is written between two steps, replaced atomically, and read only by a run of the same scene,
 numerics, program and constant arrays. The processor is not compared: on another kind the run
@@ -15,7 +13,6 @@ continues, but its last bits may differ.
 import hashlib
 import io
 import json
-import re
 import time
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -24,10 +21,8 @@ from typing import Any
 import numpy as np
 
 from tipoff import sources
-from tipoff.files import content_hash, replacing
-from tipoff.mechanics.trajectory import versions
+from tipoff.files import DamageError, require_whole, write_sealed
 
-FORMAT = 5
 # What a Loop is built from.
 CONSTANT = (
     "scene",
@@ -43,7 +38,6 @@ CONSTANT = (
     "watch",
     "reach",
 )
-_LINE = re.compile(rb"tipoff checkpoint (\d+) ([0-9a-f]{64})")
 _OTHER = {
     "scene": "belongs to another scene",
     "numerics": "belongs to a run with other numerics",
@@ -77,7 +71,7 @@ class Checkpoint:
         self.header = {
             "scene": loop.scene.hash,
             "numerics": numerics.as_dict(),
-            "program": content_hash(sources.digest("tipoff.highfi"), versions()),
+            "program": sources.program("tipoff.highfi"),
             "system": digest(arrays({"constants": loop.constants()})),
         }
 
@@ -96,33 +90,21 @@ class Checkpoint:
             header=json.dumps(self.header),
             **dict(arrays(evolving(loop))),
         )
-        content = archive.getbuffer()
-        with replacing(self.path) as temporary, open(temporary, "wb") as stream:
-            stream.write(
-                f"tipoff checkpoint {FORMAT} {hashlib.sha256(content).hexdigest()}\n".encode()
-            )
-            stream.write(content)
+        write_sealed(self.path, archive.getbuffer())
 
     def read(self) -> dict[str, np.ndarray] | None:
         """Saved arrays by name, or None without a file. Raises CheckpointError for one that is
         damaged or of another run."""
         try:
-            line, _, content = self.path.read_bytes().partition(b"\n")
+            require_whole(self.path)
         except FileNotFoundError:
             return None
         except OSError as fault:
             raise CheckpointError(self.path, f"cannot be read ({fault.strerror})") from fault
-        match = _LINE.fullmatch(line)
-        if match is None:
-            raise CheckpointError(self.path, "is no checkpoint, or damaged in its first line")
-        if int(match[1]) != FORMAT:
-            raise CheckpointError(
-                self.path, f"has format {int(match[1])}, this program reads {FORMAT}"
-            )
-        if hashlib.sha256(content).hexdigest().encode() != match[2]:
-            raise CheckpointError(self.path, "is damaged or was cut short")
+        except DamageError as fault:
+            raise CheckpointError(self.path, fault.reason) from fault
         try:
-            with np.load(io.BytesIO(content), allow_pickle=False) as archive:
+            with np.load(self.path, allow_pickle=False) as archive:
                 saved = dict(archive)
             header = json.loads(saved.pop("header").item())
             others = {name: header[name] for name in _OTHER}

@@ -3,7 +3,6 @@ numbers."""
 
 from collections.abc import Mapping
 from functools import lru_cache
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -79,5 +78,5 @@ def code() -> dict:
     """Digest of the sources, and versions of the libraries, that the numbers depend on."""
     return {
         "code": sources.digest("tipoff.lowfi"),
-        "versions": {name: version(name) for name in _LIBRARIES},
+        "versions": {name: sources.version(name) for name in _LIBRARIES},
     }

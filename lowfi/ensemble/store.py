@@ -4,13 +4,13 @@ later::
     cases.zarr/        a zarr group: status, exit_time, velocity ... and inputs/<dotted key>, SI,
                        one chunk per 4096 cases, with checksums; and the columns that ``add``
                        keeps, made from whole stores and made again on each request
-    done/000012.json   written last, in one piece: chunk 12 is whole; the ensemble it belongs to,
-                       the digest of its numbers, its counts, and each case that failed; with a
-                       digest of its own
+    done/000012.json   written last, in one piece (``tipoff.cache``): chunk 12 is whole; the ``key``
+                       is that of its ensemble, beside the digest of its numbers, its counts, and
+                       each case that failed
     twins/             stores of the same cases with a disturbance (``lowfi.ensemble.twins``)
 
-A chunk counts as done once its file in done/ is there, fits its own digest, and has the digest of
-what is read back; any other is run again. The descriptions of the arrays (``zarr.json``) are those
+A chunk counts as done once its file in done/ is there and whole, and has the digest of what is read
+back; any other is run again. The descriptions of the arrays (``zarr.json``) are those
 that a new store would have, and are written again where they are not. No time or place is stored,
 so two runs of one ensemble leave the same numbers, whoever ran them.
 """
@@ -28,15 +28,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tipoff.cache import Cache, documents
 from tipoff.files import (
     DamageError,
     content_hash,
     fits_digest,
-    read_json,
     replacing,
     tell,
     with_digest,
-    write_json,
 )
 from tipoff.lowfi.ensemble import arrays, columns
 from tipoff.lowfi.ensemble.columns import Columns
@@ -125,7 +124,7 @@ class Store:
         description is damaged, its chunks identify it."""
         there, expected = described(self.path), plain(identity)
         if there is None:
-            if not any(self._belongs(mark) for mark in (self.path / "done").glob("*.json")):
+            if not any(map(self._belongs, range(len(self)))):
                 raise StoreError(
                     f"{self.path} is no store of an ensemble, or its cases.zarr/zarr.json is "
                     f"damaged; "
@@ -137,10 +136,10 @@ class Store:
                 "give another --store, or remove it"
             )
 
-    def _belongs(self, mark: Path) -> bool:
+    def _belongs(self, number: int) -> bool:
         try:
-            return read_json(mark)["ensemble"] == self.ensemble
-        except (DamageError, OSError, KeyError):
+            return self._marks(number).read(self._mark(number), self.ensemble) is not None
+        except (DamageError, OSError):
             return False
 
     def _describe(self, attributes: dict) -> None:
@@ -209,10 +208,10 @@ class Store:
                 for n, text in enumerate(chunk.messages)
                 if text and begin + n not in failed
             }
-            write_json(
+            self._marks(chunk.number).put(
                 self._mark(chunk.number),
+                self.ensemble,
                 {
-                    "ensemble": self.ensemble,
                     "digest": _digest(chunk.results, inputs),
                     **columns.counts(chunk.results.status),
                     "failures": failures,
@@ -255,41 +254,35 @@ class Store:
 
     def _whole(self, number: int) -> bool:
         begin, end = self.bounds(number)
-        try:
-            if (mark := self._listed(number))["ensemble"] != self.ensemble:
-                return False
-        except FileNotFoundError:
-            return False
-        except (DamageError, OSError, KeyError):
-            tell(
-                f"{self._mark(number)} is damaged or was edited: the cases {begin:,} to "
-                f"{end - 1:,} are run again"
-            )
+        again = f"the cases {begin:,} to {end - 1:,} are run again"
+        mark = self._marks(number).get(self._mark(number), self.ensemble, again)
+        if mark is None:
             return False
         try:
             whole = mark["digest"] == _digest(*self.read(begin, end))
         except Exception:  # zarr raises many kinds on damaged bytes
             whole = False
         if not whole:
-            tell(
-                f"{self.path / 'cases.zarr'} is damaged or was edited: the cases {begin:,} to "
-                f"{end - 1:,} are run again"
-            )
+            tell(f"  {self.path / 'cases.zarr'} is damaged or was edited: {again}")
         return whole
 
     def _mark(self, number: int) -> Path:
         return self.path / "done" / f"{number:06}.json"
 
-    def _listed(self, number: int) -> dict:
-        """The mark of a chunk, as ``read_json``. Raises DamageError also for lists of another layout."""
-        if not _is_listed(mark := read_json(self._mark(number)), *self.bounds(number)):
-            raise DamageError(self._mark(number), "has another layout")
-        return mark
+    def _marks(self, number: int) -> Cache[dict]:
+        """Cache of the mark of a chunk. A mark of another layout counts as damaged."""
+
+        def listed(mark: dict) -> dict:
+            if not _is_listed(mark, *self.bounds(number)):
+                raise DamageError(self._mark(number), "has another layout")
+            return mark
+
+        return documents(dict, listed)
 
     def _read_mark(self, number: int) -> dict | None:
         """The mark of a chunk, None before it is done. Raises StoreError where it is damaged."""
         try:
-            return self._listed(number)
+            return self._marks(number).read(self._mark(number), self.ensemble)
         except FileNotFoundError:
             return None
         except (DamageError, OSError) as fault:

@@ -1,11 +1,13 @@
 """The rail compliance that is kept in a folder: its elements, what it is kept under, what is said."""
 
+import shutil
 from collections.abc import Iterator
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 from tests.highfi.rail.test_own_rail import channels
+from tests.in_memory import memory
 from tipoff import calibration
 from tipoff.calibration import rail_compliance
 from tipoff.highfi import compliance as statics
@@ -147,8 +149,9 @@ def _said(monkeypatch, tmp_path, seconds: float) -> list[str]:
         for part in range(4):
             now += seconds
             report(0.25 * (part + 1))
-        return SimpleNamespace(save=lambda path: None, accuracy=lambda: "")
+        return SimpleNamespace(accuracy=lambda: "")
 
+    monkeypatch.setattr(rail_compliance, "KEPT", memory())
     monkeypatch.setattr(rail_compliance.time, "perf_counter", lambda: now)
     monkeypatch.setattr(rail_compliance.statics, "condense", condense)
     monkeypatch.setattr(rail_compliance.discretisation, "stated", lambda scene, size, found: found)
@@ -173,12 +176,13 @@ def test_the_elements_and_their_uncertainty_are_stored_and_said_once(tmp_path):
     file, which is said too."""
     lines: list[str] = []
     scene = load("tiny")
-    made, found = (rail_compliance.kept(scene, tmp_path, 16e-3, lines.append) for _ in range(2))
+    folders = [tmp_path / "one"] * 2
+    made, found = (rail_compliance.kept(scene, each, 16e-3, lines.append) for each in folders)
     assert found.stated() == made.stated() and found.hash == made.hash
     assert found.uncertainty.min() > 0.1 and found.frequency_uncertainty > 0.01
     said = [line for line in lines if "mm elements: uncertainty" in line]
     assert said == [f"  {made.accuracy()}"] and "(from 16 and 8 mm)" in said[0]
-    made.save(rail_compliance.kept_file(scene, tmp_path / "other", 16e-3))
+    shutil.copytree(tmp_path / "one", tmp_path / "other")
     rail_compliance.kept(scene, tmp_path / "other", 16e-3, lines.append)
     assert lines[-1] == said[0] and lines.count(said[0]) == 2
 

@@ -252,20 +252,6 @@ def test_code_names_whole_functions_only():
     assert not contains(code.replace(b"6rotateB", b"9rotated_byB"), rotation.rotate)
 
 
-@pytest.mark.parametrize(
-    "harm",
-    [
-        lambda content: content[: len(content) // 2],
-        pytest.param(lambda _: b"", marks=pytest.mark.slow),
-    ],
-)
-def test_a_damaged_kernel_is_compiled_again(project, harm):
-    kept = of_the_caller(project)
-    kept.write_bytes(harm(kept.read_bytes()))
-    assert ask(project) == (2.0, 1)
-    assert ask(project) == (2.0, 0)  # it has been replaced
-
-
 def test_a_kernel_with_one_other_byte_is_compiled_again(project):
     """Numba would run it."""
     kept = of_the_caller(project)

@@ -6,10 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.in_memory import memory
 from tipoff.mechanics import ledger
 from tipoff.mechanics.outcome import Outcome
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.render import chart
+from tipoff.workspace import store
 
 COSTS = {  # of a run of the reference
     "wall_s": 1.0,
@@ -77,14 +79,7 @@ def flight(
 
 def kept_in_memory(patch: pytest.MonkeyPatch) -> None:
     """Trajectories are kept in memory beside empty files: to write one takes 0.08 s."""
-    kept: dict[Path, Trajectory] = {}
-
-    def save(run, path):
-        kept[Path(path)] = run
-        _touched(Path(path))
-
-    patch.setattr(Trajectory, "save", save)
-    patch.setattr(Trajectory, "load", lambda path: kept[Path(path)])
+    patch.setattr(store, "RUNS", memory())
 
 
 def undrawn(patch: pytest.MonkeyPatch, laid_out: bool = False) -> None:

@@ -127,5 +127,5 @@ def test_a_run_that_chooses_modes_announces_their_kernels_before_it_goes_on(
     asked = pressed("auto")
     store.fill("lowfi", [asked])
     assert ["with modes of the rails" in text for text in said] == ([True, False] if chosen else [])
-    assert kernel_marks.mark(asked, chosen=True).is_file() == bool(chosen)
-    assert not kernel_marks.mark(asked).is_file()  # who asked for the run notes what it begins with
+    assert kernel_marks.are_there(asked, chosen=True) == bool(chosen)
+    assert not kernel_marks.are_there(asked)  # who asked for the run notes what it begins with

@@ -91,7 +91,7 @@ def test_damaged_checkpoint_is_named_and_the_run_starts_anew(tmp_path, capsys):
     path.write_bytes(b"no checkpoint at all")
     assert it.store.get(run).status == "time_limit"
     assert (
-        f"{path} is no checkpoint, or damaged in its first line, so phi15 starts from the beginning"
+        f"{path} has no digest of its content, or a damaged one, so phi15 starts from the beginning"
         in capsys.readouterr().err
     )
     assert not path.exists()

@@ -7,15 +7,18 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from tests.studies.synthetic import flight
-from tipoff import scenes, sources
+from tipoff import highfi, lowfi, scenes, sources
+from tipoff.calibration import rail_compliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.workspace import store as store_module
+from tipoff.workspace.run import Run
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study, StudyError
 
@@ -71,27 +74,65 @@ def test_sources_are_part_of_the_key(study, monkeypatch):
     assert study.highfi("phi15").key != before
 
 
+def keys(study) -> list[str]:
+    """Of a run of either model, of a rail compliance, and of a stage."""
+    walls = rail_compliance.kept_file(study.scene, study.folder, 8e-3)
+    stage = study.key("tipoff.scenes.scene")
+    return [study.highfi("phi15").key, study.lowfi("phi15").key, walls.name, stage]
+
+
+@pytest.fixture
+def other_version(monkeypatch):
+    """Installs another version of a library."""
+    installed = sources.version
+
+    def install(library):
+        monkeypatch.setattr(
+            sources, "version", lambda name: "0" if name == library else installed(name)
+        )
+
+    return install
+
+
+@pytest.mark.parametrize("library", sources.LIBRARIES)
+def test_libraries_are_part_of_every_key(study, other_version, library):
+    """They may change the last bits. Controls: one that no number depends on; the generator of meshes,
+    for rails that it does not mesh."""
+    before = keys(study)
+    for beside in ("matplotlib", "gmsh"):
+        other_version(beside)
+        assert keys(study) == before
+    other_version(library)
+    assert not set(keys(study)) & set(before)
+
+
+def test_the_generator_of_meshes_is_part_of_the_keys_of_solids(tmp_path, study, other_version):
+    (tmp_path / "rail.step").touch()
+    own = study.scene.rail
+    box = {"low": [0.0, 0.0, 0.0], "high": [1.0, 1.0, 1.0]}
+    rail = {
+        **{"geometry": str(tmp_path / "rail.step"), "start": own.start, "end": own.end},
+        **{"material": own.material.model_dump(), "surfaces": {"contact": [box], "mount": [box]}},
+    }
+    solid = replace(
+        study, scene=study.scene.replace({"conditions": None, "agreement": None, "rail": rail})
+    )
+    scene = solid.scene
+
+    def keys():
+        runs = [
+            Run("highfi", "a", scene, highfi.Numerics()),
+            Run("lowfi", "a", scene, lowfi.Numerics()),
+        ]
+        return [solid.key("tipoff.scenes.scene"), *(run.key for run in runs)]
+
+    before = keys()
+    other_version("gmsh")
+    assert [new == old for new, old in zip(keys(), before)] == [False, False, True]
+
+
 def test_label_is_no_part_of_the_key(study):
     assert study.highfi("phi15", tag="-again").key == study.highfi("phi15").key
-
-
-@pytest.mark.parametrize(
-    "damage",
-    [
-        lambda path: path.write_bytes(b"no netCDF"),
-        lambda path: path.write_bytes(path.read_bytes()[:2000]),
-        lambda path: path.write_bytes(b""),
-    ],
-)
-def test_damaged_file_is_named_and_made_again(engine, study, capsys, damage):
-    run = study.highfi("phi15")
-    study.store.get(run)
-    path = study.store.path(run)
-    damage(path)
-    study.store.get(run)
-    assert engine == ["phi15", "phi15"]
-    assert "damaged" in capsys.readouterr().err
-    assert Trajectory.load(path).status == "exited"
 
 
 def test_one_failing_run_stops_the_rest_and_keeps_what_is_finished(study, monkeypatch):

@@ -11,14 +11,12 @@ full disk, is left out.
 
 import contextlib
 import hashlib
-import io
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from numba.core.caching import IndexDataCacheFile
 
-from tipoff.files import DamageError, require_whole, sealed
+from tipoff.cache import Cache, binary
 
 
 class KernelFiles(IndexDataCacheFile):
@@ -27,18 +25,18 @@ class KernelFiles(IndexDataCacheFile):
     def __init__(self, cache_path: str, filename_base: str, source_stamp: str):
         super().__init__(cache_path, filename_base, source_stamp)
         self._base = filename_base
+        self._files: Cache[tuple] = binary(self._dump, lambda path: self._load_data(path.name))
 
     def save(self, key: tuple, data: Any) -> None:
         """Keep ``data``, as Numba makes it, under ``key``."""
-        self._save_data(self._name(key), (self._origin(key), data))
+        with contextlib.suppress(OSError):
+            self._files.put(*self._place(key), (self._origin(key), data))
 
     def load(self, key: tuple) -> Any:
         """What is kept under ``key``, or None."""
-        try:
-            origin, data = self._load_data(self._name(key))
-        except OSError:
-            return None
-        return data if origin == self._origin(key) else None
+        found = self._files.get(*self._place(key), "the kernel is compiled again")
+        # types of one text may differ
+        return found[1] if found is not None and found[0] == self._origin(key) else None
 
     def flush(self) -> None:
         """Remove what is kept of this kernel."""
@@ -48,20 +46,6 @@ class KernelFiles(IndexDataCacheFile):
     def _origin(self, key: tuple) -> tuple:
         return self._version, self._source_stamp, key
 
-    def _name(self, key: tuple) -> str:
+    def _place(self, key: tuple) -> tuple[Path, str]:
         digest = hashlib.sha256(repr(self._origin(key)).encode()).hexdigest()
-        return f"{self._base}.{digest[:16]}.nbc"
-
-    def _load_data(self, name: str) -> Any:
-        try:
-            require_whole(self._data_path(name))
-        except DamageError as fault:
-            raise OSError(str(fault)) from fault  # which Numba takes for a file that is missing
-        return super()._load_data(name)
-
-    @contextlib.contextmanager
-    def _open_for_write(self, filepath: str) -> Iterator[io.BytesIO]:
-        content = io.BytesIO()
-        yield content
-        with contextlib.suppress(OSError), sealed(Path(filepath)) as temporary:
-            temporary.write_bytes(content.getvalue())
+        return Path(self._cache_path) / f"{self._base}.{digest[:16]}.nbc", digest

@@ -25,6 +25,7 @@ holds for the nominal stiffness, and ``RailCompliance.of`` gives it for the fact
 """
 
 import hashlib
+import io
 import threading
 from dataclasses import MISSING, dataclass, fields, replace
 from functools import cached_property
@@ -32,7 +33,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tipoff.files import DamageError, content_hash, require_whole, sealed
+from tipoff.files import DamageError, content_hash, require_whole, write_sealed
 from tipoff.mechanics import compliance_arrays, joint_terms
 from tipoff.mechanics.compliance_shown import Shown
 from tipoff.mechanics.joint_terms import LEAST, MOST, JointTerms
@@ -257,11 +258,7 @@ class RailCompliance(Shown):
         Example:
             >>> tipoff.compliance(tipoff.load("tiny"), 8e-3).save("rail.npz")
         """
-        with sealed(path) as temporary, open(temporary, "wb") as stream:
-            np.savez_compressed(
-                stream,
-                **{name: value for name, value in self._arrays().items() if value is not None},
-            )
+        write_sealed(path, content(self))
 
     def _arrays(self) -> dict:
         """The fields by name, those of ``joints`` one by one."""
@@ -310,6 +307,14 @@ class RailCompliance(Shown):
         except Exception as error:  # NumPy and zipfile raise many kinds on damaged bytes
             raise ValueError(f"{path}: not a file of rail compliance ({error})") from error
         return compliance
+
+
+def content(compliance: RailCompliance) -> bytes:
+    """The file that ``RailCompliance.save`` writes, without its digest."""
+    stream = io.BytesIO()
+    arrays = {name: value for name, value in compliance._arrays().items() if value is not None}
+    np.savez_compressed(stream, **arrays)
+    return stream.getvalue()
 
 
 def model_of(scene: Scene, compliance: RailCompliance | None) -> str:

@@ -7,16 +7,15 @@ the frame a run is solved in, which moves with the platform's mass centre as tha
 (``mechanics.comoving``).
 """
 
-import functools
 import json
 import math
 from dataclasses import dataclass, field, fields
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tipoff import sources
 from tipoff.cards import Carded
 from tipoff.files import DamageError, require_whole, write_csv, write_netcdf
 from tipoff.mechanics import ledger, outcome, shown
@@ -63,21 +62,10 @@ _UNITS = {
 }
 
 
-@functools.cache
-def _versions() -> dict[str, str]:
-    found = {}
-    for name in ("tipoff", "numpy", "scipy", "numba", "scikit-fem", "gmsh"):
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            found[name] = "not installed"
-    return found
-
-
 def versions() -> dict[str, str]:
     """Versions of the libraries a result depends on."""
-    # Read once: reading the metadata takes longer than a run of the surrogate.
-    return dict(_versions())
+    names = ("tipoff", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
+    return {name: sources.version(name) for name in names}
 
 
 @dataclass(frozen=True, eq=False)

@@ -103,6 +103,10 @@ class _RailTable(Table):
         """The keys that name files, each with the digest of the content of its file."""
         return {}
 
+    def libraries(self) -> tuple[str, ...]:
+        """Names of the libraries, beside ``sources.LIBRARIES``, that its mesh depends on."""
+        return ()
+
     def joint(self) -> MountStiffness | None:
         """Plain record of the joints under the mounts; None where these are rigid."""
         return self.mount_stiffness.record() if self.mount_stiffness else None
@@ -242,6 +246,10 @@ class GeometryTable(_FileTable):
     #: Boxes that contain the walls (names that start with contact) and the clamped surface
     #: (mount).
     surfaces: Annotated[dict[str, _Boxes], limited]
+
+    def libraries(self) -> tuple[str, ...]:
+        """The mesh generator."""
+        return ("gmsh",)
 
     @field_validator("geometry")
     @classmethod

@@ -9,7 +9,6 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from multiprocessing import get_context
-from pathlib import Path
 
 from tipoff.workspace import kernel_marks
 from tipoff.workspace.progress import Board, say
@@ -32,10 +31,8 @@ def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
     Runs with the same model and the same effects count as one. With one worker, or one kernel to
     compile, this does nothing, and the run compiles its own.
     """
-    missing: dict[Path, Run] = {}
-    for run in runs:
-        if not (mark := kernel_marks.mark(run)).is_file():
-            missing.setdefault(mark, run)
+    named = {kernel_marks.mark(run): run for run in reversed(runs)}
+    missing = {mark: run for mark, run in named.items() if not kernel_marks.are_there(run)}
     if min(workers, len(missing)) < 2:
         return
     pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"))

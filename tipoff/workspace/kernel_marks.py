@@ -6,10 +6,10 @@ are others; they are compiled only where the run turns out to need them, and hav
 """
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from tipoff import sources
+from tipoff import cache, sources
 from tipoff.files import content_hash
 from tipoff.kernels.jit import kernel_digest
 from tipoff.lowfi.numerics import AUTO
@@ -21,6 +21,7 @@ from tipoff.workspace.run import Run
 
 _WITH_MODES = ", and the same time again if modes of the rails are needed"
 _SAID: set[Path] = set()  # marks of kernels that this process has announced
+_MARKS: cache.Cache[dict] = cache.documents(dict, dict)
 
 
 @contextmanager
@@ -52,8 +53,8 @@ def announce(run: Run, chosen: bool = False, many: bool = False) -> None:
     """Print, once in a process, that the kernels of ``run``, or of ``many`` cases like it, have to be
     compiled, where no run has compiled them: those that it begins with, or where modes were ``chosen``
     in it those with modes."""
-    path = mark(run, chosen, many)
-    if path.is_file() or path in _SAID:
+    path, _ = mark(run, chosen, many)
+    if path in _SAID or are_there(run, chosen, many):
         return
     _SAID.add(path)
     vibrates = _vibrates(run, chosen)
@@ -62,21 +63,25 @@ def announce(run: Run, chosen: bool = False, many: bool = False) -> None:
         f"compiling the kernels of model {run.model}"
         + (" with modes of the rails" if vibrates else "")
         + " for these effects: about 20 s, once"
-        + (_WITH_MODES if chooses and not mark(run, True, many).is_file() else "")
+        + (_WITH_MODES if chooses and not are_there(run, True, many) else "")
     )
 
 
 def remember(run: Run, chosen: bool = False, many: bool = False) -> None:
     """Note in the cache that ``run``, or ``many`` cases like it, compiled its kernels, or where modes
     were ``chosen`` those with modes."""
-    path = mark(run, chosen, many)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.touch()
+    with suppress(OSError):  # they are announced again
+        _MARKS.put(*mark(run, chosen, many), {})
 
 
-def mark(run: Run, chosen: bool = False, many: bool = False) -> Path:
-    """File in the cache of kernels that says that those of ``run``, or of ``many`` cases like it, are
-    there."""
+def are_there(run: Run, chosen: bool = False, many: bool = False) -> bool:
+    """Whether ``remember`` noted these kernels."""
+    return _MARKS.get(*mark(run, chosen, many), "its kernels are announced again") is not None
+
+
+def mark(run: Run, chosen: bool = False, many: bool = False) -> tuple[Path, str]:
+    """The file in the cache of kernels that says that those of ``run``, or of ``many`` cases like it,
+    are there, and its key."""
     key = content_hash(
         kernel_digest(f"tipoff.{run.fidelity}"),
         run.model,
@@ -86,7 +91,7 @@ def mark(run: Run, chosen: bool = False, many: bool = False) -> Path:
         # many cases that choose their modes need the kernels without modes and those with
         many and not chosen and _modes(run) == AUTO,
     )
-    return sources.cache_folder() / "kernels" / f"compiled-{key[:16]}"
+    return cache.file(sources.cache_folder() / "kernels", "compiled", key, ".json"), key
 
 
 def _not_compiled(scene: Scene) -> list[str]:

@@ -39,13 +39,14 @@ class Run:
     def key(self) -> str:
         """Hexadecimal digest of everything the result depends on."""
         used = self.calibration.applied if self.calibration else None
+        libraries = self.scene.rail.libraries() if self.fidelity == "highfi" else ()
         return content_hash(
             self.fidelity,
             self.scene.hash,
             asdict(self.numerics),
             used,
             self.compliance.hash if self.compliance else None,
-            sources.digest(f"tipoff.{self.fidelity}"),
+            sources.program(f"tipoff.{self.fidelity}", libraries=libraries),
         )
 
 

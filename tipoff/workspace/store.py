@@ -1,12 +1,12 @@
 """Stored results of runs: ``out/<scene>/<fidelity>/<label>-<key>.nc``.
 
     key = SHA-256(physical inputs of the scene, numerics, calibrated constants, rail compliance,
-                  code that the fidelity depends on)
+                  code and versions of libraries that the fidelity depends on)
 
 A run is loaded if its file exists and matches its digest; otherwise it is made and written
-atomically. So an interrupted study continues with the missing runs, and a change of inputs or code
-or a damaged file never gives an old result. A run of the reference in progress has a checkpoint
-``<label>-<key>.checkpoint``, which is removed after the result is written.
+atomically (``tipoff.cache``). So an interrupted study continues with the missing runs, and a change of
+inputs, code or libraries or a damaged file never gives an old result. A run of the reference in
+progress has a checkpoint ``<label>-<key>.checkpoint``, which is removed after the result is written.
 
 Runs are parallel in threads: the kernels release the interpreter. The mesh generator needs the main
 thread, so it is called before.
@@ -17,7 +17,8 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import as_completed
 from pathlib import Path
 
-from tipoff.files import discard
+from tipoff import cache
+from tipoff.files import discard, netcdf
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.faults import InputError
 from tipoff.workspace import kernel_marks
@@ -28,6 +29,7 @@ from tipoff.workspace.run import Run, execute, prepare
 
 # what stops all runs: bad input, Ctrl-C, and what this machine refuses
 _STOPPING = (InputError, StudyError, Interrupted, OSError, MemoryError)
+RUNS: cache.Cache[Trajectory] = cache.binary(lambda run: netcdf(run.to_xarray()), Trajectory.load)
 
 
 def _surrogate(
@@ -49,7 +51,7 @@ class Store:
 
     def path(self, run: Run) -> Path:
         """File of the result of ``run``."""
-        return self.folder / run.fidelity / f"{run.label}-{run.key[:8]}.nc"
+        return cache.file(self.folder / run.fidelity, run.label, run.key, ".nc")
 
     def checkpoint(self, run: Run) -> Path:
         """File of the checkpoint of ``run``."""
@@ -58,18 +60,7 @@ class Store:
     def load(self, run: Run) -> Trajectory | None:
         """The stored result, or None without a readable one. Names a damaged file on standard
         error."""
-        path = self.path(run)
-        if not path.is_file():
-            return None
-        try:
-            return Trajectory.load(path)
-        # damaged bytes raise many types of exceptions in the netCDF libraries
-        except Exception as fault:
-            say(
-                f"  {path} is damaged or was edited ({type(fault).__name__}), so {run.label} is "
-                f"run again"
-            )
-            return None
+        return RUNS.get(self.path(run), run.key, f"{run.label} is run again")
 
     def get(self, run: Run) -> Trajectory:
         """The result of one run, from the store or made now."""
@@ -113,7 +104,7 @@ class Store:
         progress(0.0)
         make = self._kept if run.fidelity == "highfi" else _surrogate
         trajectory = make(run, progress, threads)
-        trajectory.save(self.path(run))
+        RUNS.put(self.path(run), run.key, trajectory)
         discard(self.checkpoint(run))
         message = f" ({trajectory.message})" if trajectory.message else ""
         board.finished(

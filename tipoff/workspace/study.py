@@ -14,8 +14,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
-from tipoff import sources
-from tipoff.files import DamageError, content_hash, read_json, write_json
+from tipoff import cache, sources
+from tipoff.files import content_hash, read_json
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import plausibility
@@ -32,6 +32,7 @@ from tipoff.workspace.store import Store
 
 FAILED = ("diverged", "refused")
 _T = TypeVar("_T")
+_RESULTS: cache.Cache[dict] = cache.documents(dict, dict)
 
 
 @dataclass(frozen=True)
@@ -193,8 +194,8 @@ class Study:
         return path.relative_to(self.folder).as_posix()
 
     def key(self, module: str, *inputs: Any) -> str:
-        """Digest of the scene with its conditions and roles, settings, the code that the stage's
-        ``module`` depends on, and further inputs."""
+        """Digest of the scene with its conditions and roles, settings, the code and libraries that the
+        stage's ``module`` depends on, and further inputs."""
         described = self.scene.model_dump(
             mode="json", include={"name", "conditions", "agreement", "provenance"}
         )
@@ -203,7 +204,7 @@ class Study:
             described,
             self.settings.hash,
             list(self.only),
-            sources.digest(module),
+            sources.program(module, libraries=self.scene.rail.libraries()),
             inputs,
         )
 
@@ -213,19 +214,16 @@ class Study:
 
         ``make`` returns the result and the files it wrote.
         """
-        path = self.path(f"{name}.json")
-        found = read(path, f"{name} is made again")
-        if (
-            found is not None
-            and found.get("key") == key
-            and self.whole(found, f"{name} is made again")
-        ):
+        path, again = self.path(f"{name}.json"), f"{name} is made again"
+        found = _RESULTS.get(path, key, again)
+        if found is not None and self.whole(found, again):
             self._announce(name, "nothing changed")
             return found
         self._announce(name, self.scene.name)
         result, files = make()
-        return write_json(
+        return _RESULTS.put(
             path,
+            key,
             {
                 "stage": name,
                 "scene": self.scene.name,
@@ -271,15 +269,9 @@ class Study:
 
 
 def read(path: Path, remedy: str = "repeat the command that wrote it") -> dict | None:
-    """The content of a result file; None if it is missing or does not match its digest. Prints the
-    latter with the ``remedy``."""
-    try:
-        return read_json(path)
-    except DamageError as fault:
-        say(f"  {path} {fault.reason}: {remedy}")
-    except OSError:
-        pass
-    return None
+    """The content of a result file of any key; None if it is missing or does not match its digest.
+    Prints the latter with the ``remedy``."""
+    return cache.whole(path, remedy, lambda: read_json(path))
 
 
 def picked(path: Path, pick: Callable[[dict], _T]) -> _T | None:

@@ -13,8 +13,8 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from tipoff import sources
-from tipoff.files import content_hash, write_json, write_text
+from tipoff import cache, sources
+from tipoff.files import content_hash, write_text
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene, load
 from tipoff.studies import published
@@ -22,7 +22,7 @@ from tipoff.studies.agreement import stage as compare
 from tipoff.studies.render.document import with_figures
 from tipoff.workspace.progress import Board, team
 from tipoff.workspace.stage import Stage
-from tipoff.workspace.study import Study, StudyError, read
+from tipoff.workspace.study import Study, StudyError
 from tipoff.workspace.words import counted
 from validation.paper import (
     catalogued,
@@ -40,6 +40,7 @@ NAME = "paper"
 SCENE = "paper_like.toml"
 CATALOGUED = "paper_like"  # scene of the catalogue with the best set of an earlier run
 STRESSES = (0.0, 1.0)  # without and with the rates that the paper calls negligible
+_SEARCHES: cache.Cache[solutions.Search] = cache.documents(solutions.plain, solutions.restored)
 _WRITTEN = 1e-5  # relative: a scene file has nine digits of most numbers, six of the mounts
 
 
@@ -209,14 +210,13 @@ def _searches(study: Study, base: Scene, options: Options) -> list[solutions.Sea
             path = study.path(f"{NAME}/search-{stress:g}-{seed}.json")
             key = content_hash(
                 base.hash,
-                sources.digest("tipoff.lowfi", "validation.paper.solutions"),
+                sources.program("tipoff.lowfi", "validation.paper.solutions"),
                 STAGE.plain(options)["plan"],
                 stress,
                 seed,
             )
-            kept = read(path)
-            if kept and kept.get("key") == key:
-                return solutions.restored(kept)
+            if (kept := _SEARCHES.get(path, key, "it is searched again")) is not None:
+                return kept
             label = f"search {seed + 1}, {'all five conditions' if stress else 'three conditions'}"
             found = solutions.run(
                 lambda tolerance: misfit.Launcher(base, tolerance),
@@ -225,7 +225,7 @@ def _searches(study: Study, base: Scene, options: Options) -> list[solutions.Sea
                 options.plan,
                 board.callback(label),
             )
-            write_json(path, {"key": key, **solutions.plain(found)})
+            _SEARCHES.put(path, key, found)
             board.finished(
                 label,
                 f"largest error of nine rates {np.abs(misfit.nine(found.rates)).max():.3g} deg/s, "

@@ -2,8 +2,6 @@
 file."""
 
 import copy
-import hashlib
-import io
 import os
 import random
 import threading
@@ -14,10 +12,10 @@ import pytest
 
 from tests.highfi.support import COARSE, SOON, begun, stopped, tiny
 from tipoff import highfi
-from tipoff.files import discard
+from tipoff.files import discard, sealed, write_sealed
 from tipoff.highfi import CheckpointError, Numerics
 from tipoff.highfi.dynamics import checkpoint
-from tipoff.highfi.dynamics.checkpoint import FORMAT, Checkpoint
+from tipoff.highfi.dynamics.checkpoint import Checkpoint
 from tipoff.highfi.run import Loop
 
 pytestmark = pytest.mark.case("X20")
@@ -40,12 +38,13 @@ def kept(tmp_path, loop) -> Checkpoint:
 @pytest.mark.case("X25")
 def test_one_flipped_bit_anywhere_is_refused(kept):
     content = kept.path.read_bytes()
-    places = [*range(90), *random.Random(7).sample(range(90, len(content)), 60), len(content) - 1]
+    last = range(len(content) - 76, len(content))
+    places = [0, *random.Random(7).sample(range(len(content) - 76), 60), *last]
     for place in places:
         damaged = bytearray(content)
         damaged[place] ^= 1 << place % 8
         kept.path.write_bytes(damaged)
-        with pytest.raises(CheckpointError, match="damaged|no checkpoint|has format"):
+        with pytest.raises(CheckpointError, match="damaged"):
             kept.read()
     kept.path.write_bytes(content)
     assert kept.read() is not None
@@ -54,22 +53,18 @@ def test_one_flipped_bit_anywhere_is_refused(kept):
 @pytest.mark.parametrize("length", [0, 1, 40, 85, 86, 4000, -1])
 def test_cut_file_is_refused(kept, length):
     kept.path.write_bytes(kept.path.read_bytes()[:length])
-    with pytest.raises(CheckpointError, match="cut short|no checkpoint"):
+    with pytest.raises(CheckpointError, match="has no digest of its content, or a damaged one"):
         kept.read()
 
 
 def resealed(kept, change) -> None:
     """Arrays of the checkpoint after ``change``, with a digest that fits, as a file of another program
     may have it."""
-    content = kept.path.read_bytes().partition(b"\n")[2]
-    with np.load(io.BytesIO(content)) as archive:
+    with np.load(kept.path) as archive:
         arrays = dict(archive)
     change(arrays)
-    stream = io.BytesIO()
-    np.savez(stream, **arrays)
-    content = stream.getvalue()
-    line = f"tipoff checkpoint {FORMAT} {hashlib.sha256(content).hexdigest()}\n"
-    kept.path.write_bytes(line.encode() + content)
+    with sealed(kept.path) as temporary, open(temporary, "wb") as stream:
+        np.savez(stream, **arrays)
 
 
 @pytest.mark.parametrize(
@@ -95,9 +90,7 @@ def test_whole_files_of_other_values_are_refused(kept, loop, change, words):
 
 
 def test_bytes_that_are_no_archive_are_refused(kept):
-    content = b"no archive"
-    line = f"tipoff checkpoint {FORMAT} {hashlib.sha256(content).hexdigest()}\n"
-    kept.path.write_bytes(line.encode() + content)
+    write_sealed(kept.path, b"no archive")
     with pytest.raises(CheckpointError, match="damaged or foreign"):
         kept.read()
 
@@ -128,7 +121,7 @@ def test_checkpoint_of_another_run_is_refused(kept, change, words):
     )
 
 
-def test_checkpoint_of_another_program_mesh_or_format_is_refused(kept, loop, monkeypatch):
+def test_checkpoint_of_another_program_or_mesh_is_refused(kept, loop, monkeypatch):
     other = copy.copy(loop)
     other.stepping = replace(loop.stepping, dt_s=np.nextafter(loop.stepping.dt_s, 0.0))
     with pytest.raises(CheckpointError, match="another mesh or with another step"):
@@ -136,10 +129,6 @@ def test_checkpoint_of_another_program_mesh_or_format_is_refused(kept, loop, mon
     monkeypatch.setattr(checkpoint.sources, "digest", lambda *modules: "another program")
     with pytest.raises(CheckpointError, match="another version of the program"):
         Checkpoint(kept.path, 0.0, loop, COARSE).read()
-    line = f"tipoff checkpoint {FORMAT} ".encode()
-    kept.path.write_bytes(kept.path.read_bytes().replace(line, b"tipoff checkpoint 99 ", 1))
-    with pytest.raises(CheckpointError, match=f"has format 99, this program reads {FORMAT};"):
-        kept.read()
 
 
 def test_no_file_is_a_run_from_the_beginning_and_a_folder_is_none(tmp_path, loop):

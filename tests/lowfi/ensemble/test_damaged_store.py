@@ -2,7 +2,6 @@
 reported and repaired to the same bits."""
 
 import json
-import shutil
 from pathlib import Path
 
 import numpy as np
@@ -171,16 +170,6 @@ def test_a_list_of_failures_of_another_layout_is_found(whole, capsys, change):
             ask()
     assert fill(store) == [1] and state_of(store) == expected
     assert "the cases 8 to 15 are run again" in capsys.readouterr().err
-
-
-def test_a_list_of_failures_of_another_ensemble_is_none_of_this_one(whole, tmp_path):
-    """A chunk copied from elsewhere, numbers and all: its own digests fit."""
-    path, expected = whole
-    other = opened(tmp_path / "other", IDENTITY | {"scene": "another"})
-    fill(other)
-    shutil.copyfile(tmp_path / "other" / "done" / "000002.json", path / "done" / "000002.json")
-    store = opened(path)
-    assert fill(store) == [2] and state_of(store) == expected
 
 
 def test_descriptions_are_written_again_only_for_whose_store_it_is(whole, capsys):

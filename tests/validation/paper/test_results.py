@@ -2,7 +2,7 @@
 rates, and paper.nc."""
 
 import dataclasses
-from pathlib import Path
+import os
 
 import numpy as np
 import pytest
@@ -199,11 +199,10 @@ def test_data_are_written_whole_or_not_at_all(quick, monkeypatch):
     study, _ = quick
     before = study.path("paper.nc").read_bytes()
 
-    def stops(self, content):
-        self.write_text("half")
+    def stops(_):
         raise OSError("disk full")
 
-    monkeypatch.setattr(Path, "write_bytes", stops)
+    monkeypatch.setattr(os, "fsync", stops)
     left = exits.run(misfit.Launcher(BASE), np.full(COUNT, 0.5))
     with pytest.raises(OSError, match="disk full"):
         results.save(study.path("paper.nc"), [stub()(None, 0.0, 0, None, None)], 0, left)

@@ -200,20 +200,27 @@ def _elements(scene: Scene, size: float, speed: Pace) -> float | None:
 
 
 def _stored(path: Path) -> Pace | None:
-    """The cost in the file of a stored run; does not read its arrays."""
+    names = ("ns_per_element_step", "elements", "steps")
+    if numbers := _numbers(
+        path, [("numerics", "element_size"), *(("cost", name) for name in names)]
+    ):
+        size, ns, elements, steps = numbers
+        return Pace(ns, size, int(elements), int(steps))
+    return None
+
+
+def _numbers(path: Path, names: Sequence[tuple[str, str]]) -> list[float] | None:
+    """Numbers in tables of the file of a stored run; None where one is missing or has no meaning. Does
+    not read arrays."""
     import h5py
 
     try:
         require_whole(path)
         with h5py.File(path) as file:
-            cost, numerics = json.loads(file.attrs["cost"]), json.loads(file.attrs["numerics"])
-        names = ("ns_per_element_step", "elements", "steps")
-        ns, elements, steps = (float(cost[name]) for name in names)
-        size = float(numerics["element_size"])
-        whole = all(0.0 < number < _LARGEST for number in (ns, size, elements, steps))
-        return Pace(ns, size, int(elements), int(steps)) if whole else None
+            found = [float(json.loads(file.attrs[table])[name]) for table, name in names]
     except Exception:  # that of HDF5 for a foreign file depends on the file
         return None
+    return found if all(0.0 < number < _LARGEST for number in found) else None
 
 
 def _search(
@@ -238,24 +245,14 @@ def _is_cold() -> bool:
 def _surrogate(folder: Path, model: str) -> float:
     """Seconds of one run of a ``model``: the fastest of the newest stored runs, since the first ones
     load kernels."""
-    import h5py
-
-    found = []
     own = [
         path
         for path in (folder / "lowfi").glob("*.nc")
         if ("-compliant-" in path.name) == (model == COMPLIANT)
     ]
-    for path in sorted(own, key=_age)[:_LOOKED_AT]:
-        try:
-            require_whole(path)
-            with h5py.File(path) as file:
-                seconds = float(json.loads(file.attrs["cost"])["wall_s"])
-            if 0.0 < seconds < _LARGEST:
-                found.append(seconds)
-        except Exception:  # as in ``_stored``
-            pass
-    return min(found, default=_TYPICAL_RUNS[model])
+    newest = sorted(own, key=_age)[:_LOOKED_AT]
+    found = [seconds for path in newest if (seconds := _numbers(path, [("cost", "wall_s")]))]
+    return min(found, default=[_TYPICAL_RUNS[model]])[0]
 
 
 def _age(path: Path) -> float:

@@ -7,14 +7,20 @@ from pathlib import Path
 
 import numpy as np
 
-from tipoff.files import DamageError, require_whole, write_netcdf
+from tipoff.cache import Cache, binary
+from tipoff.files import netcdf
 from tipoff.studies.populations import answers
-from tipoff.workspace.progress import say
 
 
-def save(path: Path, values: np.ndarray, scale: float, tolerances: Mapping[str, float]) -> None:
-    """Write ``values`` (n,k) of ``answers.ALL`` atomically, with ``scale`` and the ``tolerances``
-    (SI) at that scale as attributes."""
+def kept(scale: float, tolerances: Mapping[str, float]) -> Cache[np.ndarray]:
+    """Cache of values (n,k) of ``answers.ALL``, with ``scale`` and the ``tolerances`` (SI) at that
+    scale as attributes of each file."""
+    return binary(lambda values: _content(values, scale, tolerances), _load)
+
+
+def _content(
+    values: np.ndarray, scale: float, tolerances: Mapping[str, float]
+) -> bytes | memoryview:
     import xarray
 
     found = xarray.Dataset(
@@ -32,23 +38,11 @@ def save(path: Path, values: np.ndarray, scale: float, tolerances: Mapping[str, 
         },
         {"scale": scale, "tolerances_si": json.dumps(dict(tolerances))},
     )
-    write_netcdf(path, found)
+    return netcdf(found)
 
 
-def load(path: Path) -> np.ndarray | None:
-    """The values (n,k) that ``save`` wrote. None where there are none or they are of other
-    quantities; None with a message where the file is damaged."""
-    if not path.is_file():
-        return None
+def _load(path: Path) -> np.ndarray:
     import xarray
 
-    try:
-        require_whole(path)
-        with xarray.open_dataset(path, engine="h5netcdf") as found:
-            same = found["quantity"].values.tolist() == [item.name for item in answers.ALL]
-            return found["value"].transpose("case", "quantity").values if same else None
-    except DamageError as fault:
-        say(f"  {path} {fault.reason}: its cases are run again")
-        return None
-    except Exception:  # that of HDF5 for a foreign file depends on the file
-        return None
+    with xarray.open_dataset(path, engine="h5netcdf") as found:
+        return found["value"].transpose("case", "quantity").values

@@ -10,6 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tipoff import sources
+from tipoff.files import content_hash
 from tipoff.lowfi.ensemble import columns, pilot
 from tipoff.lowfi.ensemble.derived import Derived, Numbers, around_zero, friction, law
 from tipoff.lowfi.ensemble.threads import PIECE, completed
@@ -136,22 +138,19 @@ class Cases:
     def _run(self, scale: float) -> np.ndarray:
         drawn = self.source(scale)
         ensemble = self._model.ensemble(drawn)
-        path = self._study.path(f"{self._folder}/{ensemble.key[:16]}.nc")
-        if (stored := results.load(path)) is not None:
-            return stored
-        pieces = (
-            drawn.rows(begin, min(begin + PIECE, drawn.asked))
-            for begin in range(0, drawn.asked, PIECE)
-        )
-        found = columns.of(
-            [
-                case
-                for piece in completed(ensemble.family(), pieces, self._study.settings.workers)
-                for case in piece
-            ]
-        )
-        values = np.column_stack([quantity.of(found) for quantity in answers.ALL])
-        results.save(
-            path, values, scale, {name: scale * size for name, size in self._tolerances.items()}
-        )
-        return values
+        key = content_hash(ensemble.key, sources.digest(answers.__name__))
+        path = self._study.path(f"{self._folder}/{key[:16]}.nc")
+
+        def make() -> np.ndarray:
+            pieces = (
+                drawn.rows(begin, min(begin + PIECE, drawn.asked))
+                for begin in range(0, drawn.asked, PIECE)
+            )
+            workers = self._study.settings.workers
+            found = columns.of(
+                [case for piece in completed(ensemble.family(), pieces, workers) for case in piece]
+            )
+            return np.column_stack([quantity.of(found) for quantity in answers.ALL])
+
+        sizes = {name: scale * size for name, size in self._tolerances.items()}
+        return results.kept(scale, sizes).get_or_make(path, key, "its cases are run again", make)

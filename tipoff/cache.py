@@ -1,0 +1,88 @@
+"""Results in files, each under a key: the digest of everything that the result depends on.
+
+A file has its key and a digest of its content (``tipoff.files``), and is written atomically. So two
+processes that make one result at the same time write the same file, and a file that is missing,
+damaged or of another key is never taken for the result. Damage is said once on standard error.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+from tipoff.files import read_json, require_whole, tell, write_json, write_sealed
+
+_T = TypeVar("_T")
+_SAID: dict[Path, str] = {}  # what this process said of files that were not written again since
+
+
+def file(folder: Path, label: str, key: str, suffix: str) -> Path:
+    """The file of the result ``key`` in a folder. Its name has the first digits of the key."""
+    return folder / f"{label}-{key[:8]}{suffix}"
+
+
+@dataclass(frozen=True)
+class Cache(Generic[_T]):
+    """Results of one kind. ``read`` takes one from a file, or returns None for that of another key. It
+    raises FileNotFoundError, and any exception for a damaged file. ``write`` returns the result as
+    the file has it, and raises OSError."""
+
+    read: Callable[[Path, str], _T | None]
+    write: Callable[[Path, str, _T], _T]
+
+    def get(self, path: Path, key: str, again: str) -> _T | None:
+        """The result ``key`` in the file, None without a whole one. What damage leads to, ``again``,
+        follows the path in a message."""
+        return whole(path, again, lambda: self.read(path, key))
+
+    def put(self, path: Path, key: str, value: _T) -> _T:
+        """Write a result. Returns and raises as ``write``."""
+        _SAID.pop(path, None)
+        return self.write(path, key, value)
+
+    def get_or_make(self, path: Path, key: str, again: str, make: Callable[[], _T]) -> _T:
+        """The result ``key`` in the file, else what ``make`` returns, which is written."""
+        found = self.get(path, key, again)
+        return self.put(path, key, make()) if found is None else found
+
+
+def binary(content: Callable[[_T], bytes | memoryview], load: Callable[[Path], _T]) -> Cache[_T]:
+    """Results that ``content`` puts into bytes, and ``load`` reads from a file with further lines at
+    its end. Keys have 64 hexadecimal digits."""
+
+    def write(path: Path, key: str, value: _T) -> _T:
+        write_sealed(path, content(value), key)
+        return value
+
+    return Cache(lambda path, key: load(path) if require_whole(path) == key else None, write)
+
+
+def documents(plain: Callable[[_T], Mapping[str, Any]], load: Callable[[dict], _T]) -> Cache[_T]:
+    """Results that ``plain`` puts into JSON, and ``load`` takes from it. The key is under ``key``."""
+
+    def read(path: Path, key: str) -> _T | None:
+        found = read_json(path)
+        return load(found) if found.get("key") == key else None
+
+    return Cache(
+        read, lambda path, key, value: load(write_json(path, {**plain(value), "key": key}))
+    )
+
+
+def whole(path: Path, again: str, read: Callable[[], _T]) -> _T | None:
+    """What ``read`` makes of a file; None without one. Says once that it is damaged, and what that
+    leads to: ``again``."""
+    try:
+        found = read()
+    except FileNotFoundError:
+        return None
+    except Exception as fault:  # libraries raise many kinds on foreign bytes
+        refusal = fault.strerror if isinstance(fault, OSError) else None
+        reason = f"cannot be read ({refusal})" if refusal else "is damaged or was edited"
+        line = f"  {path} {reason}: {again}"
+        if _SAID.get(path) != line:
+            tell(line)
+        _SAID[path] = line
+        return None
+    _SAID.pop(path, None)
+    return found
