@@ -28,10 +28,10 @@ PACKAGES = (
     *("calibration", "workspace", "studies"),
 )
 FORBIDDEN = {
-    "kernels": {*PACKAGES[1:], "gmsh", "matplotlib", "plotly"},
-    "scenes": {*PACKAGES[2:], "gmsh", "matplotlib", "plotly"},
-    "mechanics": {*PACKAGES[3:], "gmsh", "matplotlib", "plotly"},
-    "comparison": {*PACKAGES[4:], "gmsh", "matplotlib", "plotly"},
+    "kernels": {*PACKAGES[1:], "gmsh", "matplotlib"},
+    "scenes": {*PACKAGES[2:], "gmsh", "matplotlib"},
+    "mechanics": {*PACKAGES[3:], "gmsh", "matplotlib"},
+    "comparison": {*PACKAGES[4:], "gmsh", "matplotlib"},
     "meshes": set(PACKAGES) - {"meshes"},
     "highfi": {"lowfi", "comparison", *PACKAGES[7:]},
     "lowfi": {"highfi", "meshes", "comparison", *PACKAGES[7:], "skfem", "gmsh"},

@@ -14,7 +14,7 @@ OLDEST_PYTHON = (3, 11)
 # No module here imports h5py, but h5netcdf needs it to write files.
 MODULES = (
     "numpy", "scipy", "numba", "skfem", "meshio", "pint", "pydantic", "typer", "rich",
-    "xarray", "h5netcdf", "h5py", "cma", "matplotlib", "plotly",
+    "xarray", "h5netcdf", "h5py", "cma", "matplotlib",
 )  # fmt: skip
 
 

@@ -14,7 +14,6 @@ from tipoff.studies.agreement import distribution_page, distributions, growth, i
 from tipoff.studies.agreement.candidates import Candidate
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.render import document
-from tipoff.studies.render.interactive import to_html
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.store import Store
 from tipoff.workspace.study import Study
@@ -215,7 +214,7 @@ def test_figure_and_tables(study, monkeypatch):
     assert distribution_page.parts({"distributions": []}) == further.distributions([]) == []
     assert "Springs are the control" in document.markdown(further.distributions(found))
     chart = distribution_page.picture(distribution_page.most_spread(found))
-    assert "settled rate" in to_html(chart)
+    assert "settled rate" in chart.panels[0].x_label
     reference, _, springs = chart.panels[0].lines
     assert (min(reference.y), max(reference.y), len(reference.y)) == (0.0, 1.0, 72)
     assert np.all(np.diff(reference.x) >= 0.0) and np.all(np.diff(reference.y) >= 0.0)

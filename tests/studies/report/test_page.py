@@ -17,7 +17,6 @@ from tipoff.studies.agreement.page import starred
 from tipoff.studies.calibration.page import calibration
 from tipoff.studies.cost.page import picture as cost_picture
 from tipoff.studies.render.chart import Chart, Line, Panel, to_files
-from tipoff.studies.render.interactive import to_html
 from tipoff.studies.render.table import Table, markdown, number
 from tipoff.studies.report import inputs, stage
 from tipoff.studies.report.assembly import render
@@ -76,8 +75,9 @@ def test_a_star_leaves_powers_of_ten_as_they_are():
     assert starred(number(0.5), True) == "0.5"
 
 
-def test_chart_is_drawn_twice(tmp_path):
-    x = np.linspace(0.0, 1.0, 5000)
+def test_a_chart_is_the_same_in_its_files_and_on_the_page(tmp_path):
+    """A long smooth curve takes no more room than its shape needs, and texts stay texts."""
+    x = np.linspace(0.0, 1.0, 100_000)
     chart = Chart(
         "twice",
         [
@@ -93,9 +93,11 @@ def test_chart_is_drawn_twice(tmp_path):
         ],
         columns=2,
     )
-    html = to_html(chart)
-    assert 'id="chart-twice"' in html and "square" in html and len(html) < 60_000
-    png, svg = to_files(chart, tmp_path)
+    page = Page(scenes.load("tiny"), tmp_path, {}, Runs({}, {}, {}), {})
+    shown = page.figure(chart, 'a "square" & <points>')
+    assert 'id="chart-twice"' in shown and ">square<" in shown and len(shown) < 60_000
+    assert 'aria-label="a &quot;square&quot; &amp; &lt;points&gt;"' in shown
+    png, svg = page.pictures
     drawn = svg.read_bytes()
     assert png.read_bytes()[:4] == b"\x89PNG" and b"<svg" in drawn
     assert to_files(chart, tmp_path)[1].read_bytes() == drawn

@@ -1,5 +1,4 @@
-"""A figure described once and drawn twice: with plotly for the page (``interactive``), here with
-matplotlib for PNG and SVG.
+"""A figure of lines, drawn by matplotlib as PNG and SVG; the page contains the SVG.
 
 Colours differ in lightness, and models differ in width and dash, so that figures read in grey and
 on paper.
@@ -14,22 +13,16 @@ from typing import Any
 import numpy as np
 
 from tipoff.files import replacing
-from tipoff.studies.render.palette import (
-    GREY,
-    INK,
-    NAVY,
-    RULE,
-)
+from tipoff.studies.render.palette import GREY, INK, NAVY, RULE
 
 _OFFSETS = {"top center": (4, 6), "top right": (7, 3), "bottom right": (7, -9)}  # points
-_VECTORS = 5000  # points of a line in an SVG, beyond which it holds a picture of them
+_MARKERS = 20000  # of a line in an SVG, beyond which it contains a picture of them
 
 
 @dataclass(frozen=True)
 class Line:
     """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^",
-    "v", "D", "x" or ""; ``labels`` are texts at the points, ``size`` that of a marker (px); about
-    ``kept`` points are on the page."""
+    "v", "D", "x" or ""; ``labels`` are texts at the points, ``size`` that of a marker (px)."""
 
     x: Sequence[float] | np.ndarray
     y: Sequence[float] | np.ndarray
@@ -43,7 +36,6 @@ class Line:
     labels: tuple[str, ...] = ()
     beside: str = "top center"  # where a label stands: "top right", "bottom right"
     size: float = 9.0
-    kept: int = 500
 
 
 @dataclass(frozen=True)
@@ -87,15 +79,14 @@ class Chart:
 
 @dataclass(frozen=True)
 class Picture:
-    """A ``figure`` of matplotlib where a chart has no such kind: a map, bars. It stands on the page
-    as SVG."""
+    """A ``figure`` of matplotlib that is no chart of lines: a map, bars."""
 
     name: str
     figure: Any
 
 
 def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
-    """Draw the same with matplotlib as PNG and SVG files called after the chart; their paths."""
+    """Draw a chart as a PNG and an SVG file called after it; their paths."""
     if isinstance(chart, Picture):
         return save(chart.figure, folder / chart.name)
     from matplotlib.figure import Figure
@@ -122,7 +113,7 @@ def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
                 alpha=line.opacity,
                 marker=line.marker or None,
                 markersize=line.size * 2.0 / 3.0,
-                rasterized=len(line.x) > _VECTORS,
+                rasterized=bool(line.marker) and len(line.x) > _MARKERS,
             )
             if line.legend:
                 handles.setdefault(line.name, handle)
@@ -136,6 +127,8 @@ def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
                     color=INK,
                 )
         _dress(axes, panel)
+        if chart.columns > 1 and axes.get_xscale() == "linear":
+            axes.locator_params(axis="x", nbins=5)  # long numbers would touch
     if len(handles) > 1:
         widest = 5.2 * max(map(len, handles)) + 45.0  # points, with the line before the words
         figure.legend(
@@ -155,7 +148,7 @@ def save(figure, stem: Path) -> list[Path]:
     import matplotlib
 
     paths = [stem.with_name(f"{stem.name}.{kind}") for kind in ("png", "svg")]
-    with matplotlib.rc_context({"svg.hashsalt": stem.name}):
+    with matplotlib.rc_context({"svg.hashsalt": stem.name, "svg.fonttype": "none"}):
         for path in paths:
             with replacing(path) as temporary:
                 figure.savefig(

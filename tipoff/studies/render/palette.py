@@ -6,6 +6,7 @@ value in a dark scheme. Colours differ in lightness, so that figures read in gre
 """
 
 import re
+from html import escape
 
 NAVY, VERMILION, AMBER, TEAL, GREY = "#1d3461", "#d1495b", "#e8a33d", "#2e8b7a", "#7a7f87"
 AXIS_COLOURS = {"x": NAVY, "y": VERMILION, "z": AMBER}
@@ -27,33 +28,26 @@ DARK = {  # the colour of each light one on a dark page
     RULE: "#2f3842",
     EDGE: "#6d7782",
     ZERO: "#4a545f",
-    "#444444": "#6d7782",  # ticks of plotly
-    "#b0b0b0": "#3d4752",  # grid of matplotlib
+    "#b0b0b0": "#3d4752",  # grid
     "#000000": "#e6e8eb",
     "#ffffff": "#13181e",
 }
 
 
 def css() -> str:
-    """The properties, light and dark, and the rules that give them to the charts of plotly."""
+    """The properties, light and dark."""
     light = "".join(f"{_property(colour)}: {colour}; " for colour in DARK)
     dark = "".join(f"{_property(colour)}: {other}; " for colour, other in DARK.items())
-    rules = "".join(
-        f'.js-plotly-plot [style*="{kind}: {_rgb(colour)}"] '
-        f"{{ {kind}: var({_property(colour)}) !important; }}\n"
-        for colour in DARK
-        for kind in ("stroke", "fill")
-    )
     return (
         f":root {{ {light}}}\n"
         f"@media screen and (prefers-color-scheme: dark) {{ :root {{ {dark}}} }}\n"
-        f"{rules}.js-plotly-plot .main-svg {{ background: none !important; }}\n"
     )
 
 
-def themed(svg: str, name: str) -> str:
-    """An SVG of matplotlib as part of the page: its colours are the properties, its text without a
-    colour is that of the page, and its ids begin with ``name``."""
+def themed(svg: str, name: str, words: str) -> str:
+    """An SVG of matplotlib as part of the page: its colours are the properties, text without a colour
+    has that of the page, its id is ``name``, and all ids in it begin so. ``words`` say what it shows
+    to a reader who does not see it."""
     body = svg[svg.index("<svg") :]
     body = re.sub(r"<metadata>.*?</metadata>", "", body, flags=re.DOTALL)
     body = re.sub(
@@ -62,13 +56,11 @@ def themed(svg: str, name: str) -> str:
         body,
     )
     body = re.sub(r'( id="|url\(#|href="#)', rf"\g<1>{name}-", body)
-    return body.replace("<svg", f'<svg class="picture" role="img" aria-label="{name}"', 1)
+    label = escape(words, quote=True)
+    return body.replace(
+        "<svg", f'<svg class="picture" id="{name}" role="img" aria-label="{label}"', 1
+    )
 
 
 def _property(colour: str) -> str:
     return f"--c{colour[1:]}"
-
-
-def _rgb(colour: str) -> str:
-    """A colour as browsers write it in a style."""
-    return f"rgb({', '.join(str(int(colour[i : i + 2], 16)) for i in (1, 3, 5))})"

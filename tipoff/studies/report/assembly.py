@@ -47,8 +47,6 @@ def render(page: Page) -> str:
     A section that raises an exception is shown as failed, with its reason; ``page.failures`` has
     them.
     """
-    from plotly.offline import get_plotlyjs
-
     drawn: dict[str, list[Drawn]] = {title: [] for title in (*_GROUPS, _STUDIES)}
     order = [name for names in _GROUPS.values() for name in names]
     ranked = {name: place for place, name in enumerate(order)}
@@ -69,9 +67,7 @@ def render(page: Page) -> str:
         Group("Appendix", last, page.parts(_not_made(page))),
     ]
     shown = [group for group in groups if group.sections or group.end]
-    return template.page(
-        f"tipoff: {page.scene.name}", page.scene.description, get_plotlyjs(), shown
-    )
+    return template.page(f"tipoff: {page.scene.name}", page.scene.description, shown)
 
 
 def _warnings(page: Page) -> list[str]:

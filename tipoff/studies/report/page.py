@@ -11,7 +11,7 @@ from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.render import document
 from tipoff.studies.render.chart import Chart, Picture, to_files
 from tipoff.studies.render.document import Caption, Missing, Notice, Part
-from tipoff.studies.render.interactive import to_html
+from tipoff.studies.render.palette import themed
 from tipoff.studies.runs import stage as runs
 from tipoff.studies.runs.figures import Runs
 from tipoff.studies.runs.results import Row
@@ -59,8 +59,10 @@ class Page:
 
     def figure(self, chart: Chart | Picture, words: str) -> Markup:
         """A chart with a caption as HTML. Writes the chart as PNG and SVG."""
-        self.pictures += to_files(chart, self.folder / "figures")
-        return Markup(to_html(chart)) + self.parts([Caption(words)])
+        png, svg = to_files(chart, self.folder / "figures")
+        self.pictures += [png, svg]
+        drawn = themed(svg.read_text(encoding="utf-8"), f"chart-{chart.name}", words)
+        return Markup(f'<div class="wide">{drawn}</div>') + self.parts([Caption(words)])
 
     def parts(self, parts: Sequence[Part]) -> Markup:
         """The parts of a document as HTML."""

@@ -34,7 +34,6 @@ _PAGE = _ENVIRONMENT.from_string(
 <title>{{ title }}</title>
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <style>{{ style }}</style>
-<script>{{ script }}</script>
 </head>
 <body>
 <header>
@@ -70,12 +69,9 @@ _SECTION = _ENVIRONMENT.from_string(
 )
 
 
-def page(title: str, lead: str, script: str, groups: Sequence[Group]) -> str:
-    """The whole page; ``script`` is the JavaScript of its charts, ``lead`` the line below the
-    title."""
-    return _PAGE.render(
-        title=title, lead=lead, style=Markup(CSS), script=Markup(script), groups=groups
-    )
+def page(title: str, lead: str, groups: Sequence[Group]) -> str:
+    """The whole page; ``lead`` is the line below the title."""
+    return _PAGE.render(title=title, lead=lead, style=Markup(CSS), groups=groups)
 
 
 def section(anchor: str, title: str, body: str) -> Markup:
