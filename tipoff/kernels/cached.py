@@ -1,67 +1,92 @@
-"""Files in which Numba keeps compiled kernels: one for each combination of types, with a digest of
-its content.
+"""Compiled kernels on disk: a file for each kernel and combination of types.
 
-Numba numbers these files and keeps the numbers in an index. Two processes that compile at the same
-time may take the same number; then one loads the machine code of the other, made for other types.
-Numba also loads damaged files, which ends the program with a traceback or a segmentation fault.
-Here the name of a file follows from the types, and there is no index. A damaged file counts as
-missing: the kernel is compiled again and the file replaced. A file that cannot be written, as on a
-full disk, is left out.
+This takes the place of ``numba.njit(cache=True)``, which keeps wrong code (Numba 0.68):
+
+- Its cache sees an edit of the file of a kernel, but not of the files that the kernel calls into.
+  Here a folder is named by the digest of the code that a module depends on (``sources``).
+- It numbers the files of a kernel in an index that processes overwrite. Processes compiled one
+  function at the same time, each for other types: 3 of 80 later calls ran the code of other types,
+  11 compiled again. Here the name of a file follows from the types.
+- It runs a file in which a byte is damaged. Here such a file counts as missing.
+- A full disk ends the program. Here the kernel is not kept.
 """
 
 import contextlib
 import hashlib
-import io
-from collections.abc import Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from numba.core.caching import IndexDataCacheFile
+import numba
+from numba import cloudpickle
+from numba.core.compiler import CompileResult
+from numba.core.serialize import dumps
 
+from tipoff import sources
 from tipoff.files import DamageError, require_whole, sealed
 
+# Numba names its settings while it loads, where no type checker sees them.
+_settings: Any = numba.config
 
-class KernelFiles(IndexDataCacheFile):
-    """The machine code of one kernel. A ``key`` has the types, the processor and the function."""
 
-    def __init__(self, cache_path: str, filename_base: str, source_stamp: str):
-        super().__init__(cache_path, filename_base, source_stamp)
-        self._base = filename_base
+def kernel_digest(module: str) -> str:
+    """Hexadecimal digest (16 digits) of the code that the kernels of a ``module`` (dotted name)
+    depend on, of the Numba version and its optimisation level."""
+    settings = f"{numba.__version__} {_settings.OPT!r} {sources.digest(module)}"
+    return hashlib.sha256(settings.encode()).hexdigest()[:16]
 
-    def save(self, key: tuple, data: Any) -> None:
-        """Keep ``data``, as Numba makes it, under ``key``."""
-        self._save_data(self._name(key), (self._origin(key), data))
 
-    def load(self, key: tuple) -> Any:
-        """What is kept under ``key``, or None."""
-        try:
-            origin, data = self._load_data(self._name(key))
-        except OSError:
-            return None
-        return data if origin == self._origin(key) else None
+class KernelCache:
+    """The compiled code of one ``function`` of a module of the project. Has what a dispatcher of
+    Numba asks of its cache."""
 
-    def flush(self) -> None:
-        """Remove what is kept of this kernel."""
-        for path in Path(self._cache_path).glob(f"{self._base}.*.nbc"):
-            path.unlink(missing_ok=True)
+    def __init__(self, function: Callable):
+        module = function.__module__
+        self._folder = _folder() / f"{module}-{kernel_digest(module)}"
+        self._name = f"{module.rpartition('.')[2]}.{function.__qualname__}"
 
-    def _origin(self, key: tuple) -> tuple:
-        return self._version, self._source_stamp, key
+    @property
+    def cache_path(self) -> str:
+        """Folder of the files."""
+        return str(self._folder)
 
-    def _name(self, key: tuple) -> str:
-        digest = hashlib.sha256(repr(self._origin(key)).encode()).hexdigest()
-        return f"{self._base}.{digest[:16]}.nbc"
+    def stored(self, types: tuple, codegen: Any) -> Any:
+        """What Numba needs to rebuild the code for arguments of ``types``, or None."""
+        path, key = self._place(types, codegen)
+        with contextlib.suppress(OSError, DamageError):
+            require_whole(path)
+            # Numba's own format is a pickle
+            found, code = cloudpickle.loads(path.read_bytes())
+            return code if found == key else None  # types may differ although their names do not
+        return None
 
-    def _load_data(self, name: str) -> Any:
-        try:
-            require_whole(self._data_path(name))
-        except DamageError as fault:
-            raise OSError(str(fault)) from fault  # which Numba takes for a file that is missing
-        return super()._load_data(name)
+    def load_overload(self, types: tuple, context: Any) -> Any:
+        """The code for ``types``, ready to run in this process, or None."""
+        context.refresh()  # Numba defines functions of its own when they are first needed
+        code = self.stored(types, context.codegen())
+        return None if code is None else CompileResult._rebuild(context, *code)
 
-    @contextlib.contextmanager
-    def _open_for_write(self, filepath: str) -> Iterator[io.BytesIO]:
-        content = io.BytesIO()
-        yield content
-        with contextlib.suppress(OSError), sealed(Path(filepath)) as temporary:
-            temporary.write_bytes(content.getvalue())
+    def save_overload(self, types: tuple, compiled: Any) -> None:
+        """Keep ``compiled`` code, unless it has an address of this process or the disk is full."""
+        if compiled.library.has_dynamic_globals:
+            return
+        path, key = self._place(types, compiled.codegen)
+        with contextlib.suppress(OSError), sealed(path) as temporary:
+            temporary.write_bytes(dumps((key, compiled._reduce())))
+
+    def _place(self, types: tuple, codegen: Any) -> tuple[Path, tuple]:
+        """File and key: types of the arguments, kind of processor."""
+        key = (tuple(types), codegen.magic_tuple())
+        digest = hashlib.sha256(repr(key).encode()).hexdigest()
+        return self._folder / f"{self._name}-{digest[:16]}.nbc", key
+
+
+def _folder() -> Path:
+    """Folder of all kernels. Raises OSError where it cannot be made."""
+    folder = sources.cache_folder() / "kernels"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        why = f"{error.strerror}, so compiled kernels cannot be kept; set NUMBA_CACHE_DIR"
+        raise OSError(error.errno, why, str(folder)) from error
+    return folder
