@@ -1,14 +1,16 @@
-"""Files of compiled kernels when two processes compile at the same time."""
+"""Files of compiled kernels: each process finds the code of its own types, none of another kernel."""
 
 import threading
 from dataclasses import dataclass
+from unittest import mock
 
 import pytest
+from numba.core.caching import IndexDataCacheFile
 
-from tipoff.kernels.cached import KernelFiles
+from tipoff import files
+from tipoff.kernels.cached import KernelCache
 
-NUMBA_FILES = KernelFiles.__base__  # Numba's own class, for controls
-OURS, THEIRS = "types of ours", "types of theirs"
+OURS, THEIRS = ("types of ours",), ("types of theirs",)
 
 
 class Met(str):
@@ -24,13 +26,44 @@ class Met(str):
         return str, (str(self),)
 
 
-def files(kind, folder, name="kernel.py311", stamp="stamp"):
-    return kind(cache_path=str(folder), filename_base=name, source_stamp=stamp)
+def one():
+    """A kernel."""
 
 
-def interleaved(kind, folder):
-    """Files of one kernel in which two processes keep code. Both look for a free name before either
-    has taken one, and theirs is written as a whole before the code of ours is."""
+def other():
+    """A second one of the same module."""
+
+
+class Processor:
+    """What the name of a file takes from the generator of machine code."""
+
+    def magic_tuple(self):
+        return "x86_64", "a processor", "its features"
+
+
+class Kept:
+    """Code of a kernel in our files."""
+
+    def __init__(self, function=one):
+        self.cache = KernelCache(function)
+
+    def save(self, types, code, dynamic=False):
+        library = mock.Mock(has_dynamic_globals=dynamic)
+        compiled = mock.Mock(library=library, codegen=Processor(), **{"_reduce.return_value": code})
+        self.cache.save_overload(types, compiled)
+
+    def load(self, types):
+        return self.cache.stored(types, Processor())
+
+
+@pytest.fixture(autouse=True)
+def _own_folder(monkeypatch, tmp_path):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+
+
+def interleaved(opened):
+    """What ``opened`` holds after two processes kept code. Both look for a free name before either has
+    taken one, and theirs is written as a whole before the code of ours is."""
     theirs_begun, ours_begun, theirs_ended = (threading.Event() for _ in range(3))
 
     def first():
@@ -42,39 +75,34 @@ def interleaved(kind, folder):
         assert theirs_ended.wait(10.0)
 
     def keep_theirs():
-        files(kind, folder).save(Met(THEIRS, first), "theirs")
+        opened().save((Met(*THEIRS, first),), "theirs")
         theirs_ended.set()
 
-    other = threading.Thread(target=keep_theirs)
-    other.start()
+    thread = threading.Thread(target=keep_theirs)
+    thread.start()
     assert theirs_begun.wait(10.0)
-    files(kind, folder).save(OURS, Met("ours", second))
-    other.join()
-    return files(kind, folder)
+    opened().save(OURS, Met("ours", second))
+    thread.join()
+    return opened()
 
 
-def test_both_find_their_own_code(tmp_path):
-    kept = interleaved(KernelFiles, tmp_path)
+def test_both_find_their_own_code():
+    kept = interleaved(Kept)
     assert (kept.load(OURS), kept.load(THEIRS)) == ("ours", "theirs")
 
 
 def test_with_an_index_one_finds_the_code_of_the_other(tmp_path):
     """Control: Numba's own files."""
-    assert interleaved(NUMBA_FILES, tmp_path).load(THEIRS) == "ours"
+
+    def opened():
+        return IndexDataCacheFile(str(tmp_path), "kernel.py311", "stamp")
+
+    assert interleaved(opened).load(THEIRS) == "ours"
 
 
-@pytest.mark.parametrize("name, stamp", [("kernel.py311", "new code"), ("other.py311", "stamp")])
-def test_code_of_another_kernel_is_not_found(tmp_path, name, stamp):
-    files(KernelFiles, tmp_path).save(OURS, "ours")
-    assert files(KernelFiles, tmp_path, name, stamp).load(OURS) is None
-
-
-def test_flush_removes_the_code_of_one_kernel(tmp_path):
-    one, other = (files(KernelFiles, tmp_path, name) for name in ("one.py311", "other.py311"))
-    one.save(OURS, "ours")
-    other.save(OURS, "theirs")
-    one.flush()
-    assert one.load(OURS) is None and other.load(OURS) == "theirs"
+def test_code_of_another_kernel_is_not_found():
+    Kept(one).save(OURS, "ours")
+    assert Kept(one).load(OURS) == "ours" and Kept(other).load(OURS) is None
 
 
 @dataclass(frozen=True)
@@ -87,7 +115,17 @@ class Alike:
         return "alike"
 
 
-def test_types_of_one_name_give_no_wrong_code(tmp_path):
-    kept = files(KernelFiles, tmp_path)
-    kept.save(Alike(1), "ours")
-    assert kept.load(Alike(2)) is None and kept.load(Alike(1)) == "ours"
+def test_types_of_one_name_give_no_wrong_code():
+    Kept().save((Alike(1),), "ours")
+    assert Kept().load((Alike(2),)) is None and Kept().load((Alike(1),)) == "ours"
+
+
+def test_an_address_of_this_process_is_not_kept():
+    Kept().save(OURS, "ours", dynamic=True)
+    assert Kept().load(OURS) is None
+
+
+def test_a_kernel_is_used_although_the_disk_is_full(monkeypatch):
+    monkeypatch.setattr(files.os, "fsync", mock.Mock(side_effect=OSError(28, "full")))
+    Kept().save(OURS, "ours")
+    assert Kept().load(OURS) is None

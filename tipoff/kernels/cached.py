@@ -1,51 +1,95 @@
-"""Files in which Numba keeps compiled kernels: one for each combination of types, with a digest of
-its content.
+"""Compiled kernels on disk: a file for each kernel and combination of types.
 
-Numba numbers these files and keeps the numbers in an index. Two processes that compile at the same
-time may take the same number; then one loads the machine code of the other, made for other types.
-Numba also loads damaged files, which ends the program with a traceback or a segmentation fault.
-Here the name of a file follows from the types, and there is no index. A damaged file counts as
-missing: the kernel is compiled again and the file replaced. A file that cannot be written, as on a
-full disk, is left out.
+This takes the place of ``numba.njit(cache=True)``, which keeps wrong code (Numba 0.68):
+
+- Its cache sees an edit of the file of a kernel, but not of the files that the kernel calls into.
+  Here a folder is named by the digest of the code that a module depends on (``sources``).
+- It numbers the files of a kernel in an index that processes overwrite. Processes compiled one
+  function at the same time, each for other types: 3 of 80 later calls ran the code of other types,
+  11 compiled again. Here the name of a file follows from the types.
+- It runs a file in which a byte is damaged. Here such a file counts as missing.
+- A full disk ends the program. Here the kernel is not kept.
 """
 
 import contextlib
 import hashlib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from numba.core.caching import IndexDataCacheFile
+import numba
+from numba import cloudpickle
+from numba.core.compiler import CompileResult
+from numba.core.serialize import dumps
 
+from tipoff import sources
 from tipoff.cache import Cache, binary
 
+# Numba names its settings while it loads, where no type checker sees them.
+_settings: Any = numba.config
+# Numba's own format is a pickle.
+_FILES: Cache[tuple] = binary(dumps, lambda path: cloudpickle.loads(path.read_bytes()))
 
-class KernelFiles(IndexDataCacheFile):
-    """The machine code of one kernel. A ``key`` has the types, the processor and the function."""
 
-    def __init__(self, cache_path: str, filename_base: str, source_stamp: str):
-        super().__init__(cache_path, filename_base, source_stamp)
-        self._base = filename_base
-        self._files: Cache[tuple] = binary(self._dump, lambda path: self._load_data(path.name))
+def kernel_digest(module: str) -> str:
+    """Hexadecimal digest (16 digits) of the code that the kernels of a ``module`` (dotted name)
+    depend on, of the Numba version and its optimisation level."""
+    settings = f"{numba.__version__} {_settings.OPT!r} {sources.digest(module)}"
+    return hashlib.sha256(settings.encode()).hexdigest()[:16]
 
-    def save(self, key: tuple, data: Any) -> None:
-        """Keep ``data``, as Numba makes it, under ``key``."""
+
+class KernelCache:
+    """The compiled code of one ``function`` of a module of the project. Has what a dispatcher of
+    Numba asks of its cache."""
+
+    def __init__(self, function: Callable):
+        module = function.__module__
+        self._folder = _folder() / f"{module}-{kernel_digest(module)}"
+        self._name = f"{module.rpartition('.')[2]}.{function.__qualname__}"
+
+    @property
+    def cache_path(self) -> str:
+        """Folder of the files."""
+        return str(self._folder)
+
+    def stored(self, types: tuple, codegen: Any) -> Any:
+        """What Numba needs to rebuild the code for arguments of ``types``, or None."""
+        key = _key(types, codegen)
+        found = _FILES.get(*self._place(key), "the kernel is compiled again")
+        # types may differ although their names do not
+        return found[1] if found is not None and found[0] == key else None
+
+    def load_overload(self, types: tuple, context: Any) -> Any:
+        """The code for ``types``, ready to run in this process, or None."""
+        context.refresh()  # Numba defines functions of its own when they are first needed
+        code = self.stored(types, context.codegen())
+        return None if code is None else CompileResult._rebuild(context, *code)
+
+    def save_overload(self, types: tuple, compiled: Any) -> None:
+        """Keep ``compiled`` code, unless it has an address of this process or the disk is full."""
+        if compiled.library.has_dynamic_globals:
+            return
+        key = _key(types, compiled.codegen)
         with contextlib.suppress(OSError):
-            self._files.put(*self._place(key), (self._origin(key), data))
-
-    def load(self, key: tuple) -> Any:
-        """What is kept under ``key``, or None."""
-        found = self._files.get(*self._place(key), "the kernel is compiled again")
-        # types of one text may differ
-        return found[1] if found is not None and found[0] == self._origin(key) else None
-
-    def flush(self) -> None:
-        """Remove what is kept of this kernel."""
-        for path in Path(self._cache_path).glob(f"{self._base}.*.nbc"):
-            path.unlink(missing_ok=True)
-
-    def _origin(self, key: tuple) -> tuple:
-        return self._version, self._source_stamp, key
+            _FILES.put(*self._place(key), (key, compiled._reduce()))
 
     def _place(self, key: tuple) -> tuple[Path, str]:
-        digest = hashlib.sha256(repr(self._origin(key)).encode()).hexdigest()
-        return Path(self._cache_path) / f"{self._base}.{digest[:16]}.nbc", digest
+        """The file, and the digest that it has."""
+        digest = hashlib.sha256(repr(key).encode()).hexdigest()
+        return self._folder / f"{self._name}-{digest[:16]}.nbc", digest
+
+
+def _key(types: tuple, codegen: Any) -> tuple:
+    """Types of the arguments, kind of processor."""
+    return tuple(types), codegen.magic_tuple()
+
+
+def _folder() -> Path:
+    """Folder of all kernels. Raises OSError where it cannot be made."""
+    folder = sources.cache_folder() / "kernels"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        why = f"{error.strerror}, so compiled kernels cannot be kept; set NUMBA_CACHE_DIR"
+        raise OSError(error.errno, why, str(folder)) from error
+    return folder

@@ -11,10 +11,15 @@ from typing import TypeVar
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.core.datamodel import models
-from numba.core.imputils import impl_ret_borrowed, lower_getattr_generic
-from numba.core.pythonapi import NativeValue, unbox
-from numba.core.typing.typeof import typeof_impl
+from numba.core.imputils import impl_ret_borrowed
+from numba.extending import (
+    NativeValue,
+    lower_getattr_generic,
+    models,
+    register_model,
+    typeof_impl,
+    unbox,
+)
 
 _Record = TypeVar("_Record", bound=tuple)
 
@@ -39,7 +44,7 @@ def by_reference(python: type[_Record]) -> type[_Record]:
     return python
 
 
-@models.register_default(Reference)
+@register_model(Reference)
 class _ReferenceModel(models.PrimitiveModel):
     """Pointer to a structure of the members; those that are records themselves lie within it."""
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from tipoff import cache, sources
 from tipoff.files import content_hash
-from tipoff.kernels.jit import kernel_digest
+from tipoff.kernels.cached import kernel_digest
 from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.models import COMPLIANT
 from tipoff.scenes.effects.registry import EFFECTS

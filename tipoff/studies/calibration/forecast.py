@@ -18,10 +18,9 @@ import threading
 from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import numba
-
+from tipoff import sources
 from tipoff.files import read_json, require_whole
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.scenes.rail import SectionTable
@@ -31,8 +30,6 @@ from tipoff.workspace.study import Study
 from tipoff.workspace.words import counted
 
 PATIENCE = 1.0  # s
-# Numba names its settings while it loads, where no type checker sees them.
-_numba_settings: Any = numba.config
 # per element and step, the 2 mm mesh of the reference scene on one thread of an AMD EPYC
 _TYPICAL_NS = 11.0
 _TYPICAL_RUNS = {SPRINGS: 3e-3, COMPLIANT: 6e-3}  # s, the surrogate there
@@ -239,7 +236,7 @@ def _search(
 
 def _is_cold() -> bool:
     """Whether no kernel is compiled yet."""
-    return not any(Path(_numba_settings.CACHE_DIR).rglob("*.nbc"))
+    return not any((sources.cache_folder() / "kernels").rglob("*.nbc"))
 
 
 def _surrogate(folder: Path, model: str) -> float:
