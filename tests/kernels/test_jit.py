@@ -50,6 +50,7 @@ for line in sys.stdin:
 """
 # Numba's own cache: all kernels in one place, distinguished by their own code alone.
 STAMP = "    return hashlib.sha256(settings.encode()).hexdigest()[:16]"
+PRIVATE = '                function.linkage = "private"'
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +63,7 @@ def stored(tmp_path_factory):
         package / "kernels",
         ignore=shutil.ignore_patterns("__pycache__"),
     )
-    for name in ("__init__", "files", "sources"):
+    for name in ("__init__", "cache", "files", "sources"):
         shutil.copy(ROOT / "tipoff" / f"{name}.py", package)
     (package / "highfi").mkdir()
     (package / "highfi" / "__init__.py").write_text("")
@@ -259,3 +260,22 @@ def test_a_part_that_python_calls_is_not_that_of_an_entry(project):
     them in the place of the same part called from Python."""
     (project / "tipoff" / "highfi" / "long.py").write_text(LONG)
     assert ask(project, ASK_BOTH)[0] == pytest.approx(1.0, rel=1e-12)
+
+
+def test_with_symbols_the_part_of_the_entry_is_called(project):
+    """Control: its arguments are at other places."""
+    source = project / "tipoff" / "kernels" / "jit.py"
+    text = source.read_text()
+    assert PRIVATE in text
+    source.write_text(text.replace(PRIVATE, PRIVATE.replace("private", "internal")))
+    (project / "tipoff" / "highfi" / "long.py").write_text(LONG)
+    done = subprocess.run(
+        [sys.executable, "-c", ASK_BOTH],
+        cwd=project,
+        env=os.environ | {"NUMBA_CACHE_DIR": str(project / "cache")},
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    found = done.stdout.split()
+    assert done.returncode < 0 or float(found[0]) != pytest.approx(1.0, rel=1e-3)

@@ -81,14 +81,38 @@ class _PartLibrary(JITCodeLibrary):
         return SimpleNamespace(set_env=lambda name, environment: None)
 
 
+class _EntryLibrary(JITCodeLibrary):
+    """Machine code of a kernel that Python calls, with all kernels that it calls. These are private to
+    it, so that LLVM may inline them and change their arguments: 4.7 ms instead of 5.9 ms for a run of
+    the surrogate. A private function has no symbol: the loader resolves symbols by name across all
+    machine code of a process, and would call it in the place of one with other arguments."""
+
+    def _optimize_final_module(self) -> None:
+        for function in self._final_module.functions:
+            if function.linkage == Linkage.linkonce_odr:
+                function.linkage = "private"
+        # Numba would optimise twice, the first time to remove reference counts, and at level 3
+        passes, options = self._codegen._module_pass_manager(opt=2)
+        passes.run(self._final_module, options)
+
+
 class _PartCompiler(Compiler):
     """Numba's compiler, which lowers to the library that is set here."""
+
+    library: type[JITCodeLibrary] = _PartLibrary
 
     def define_pipelines(self) -> list:
         """Numba's passes."""
         state = self.state
-        state.library = _PartLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library = self.library(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
         return super().define_pipelines()
+
+
+class _EntryCompiler(_PartCompiler):
+    """The same for what Python calls."""
+
+    library = _EntryLibrary
 
 
 class _Part(CPUDispatcher):
@@ -146,7 +170,7 @@ else:
     # For kernels that neither make nor return arrays: without reference counts, which cost more
     # than the arithmetic where records of arrays are handed from function to function, and half the
     # time to compile. ``entry`` is for those that Python calls, ``kernel`` for all others.
-    entry = functools.partial(_njit, **_ARRAYS)
+    entry = functools.partial(_njit, pipeline_class=_EntryCompiler, **_ARRAYS)
     kernel = _Part
     # The same for what the loops of finite elements call, which LLVM would not always inline: 5 %
     # of their time.

@@ -2,8 +2,8 @@
 
 Numba passes a named tuple to a function as its parts, seven words for each array. A record of fifty
 arrays becomes hundreds of arguments of each function that takes it. A record that is passed by
-reference is one pointer to a structure, as in C: a function reads only what it uses, and kernels
-compile in half the time.
+reference is one pointer to a structure, as in C: a function reads only what it uses, and the kernels
+of the surrogate compile in 100 s instead of more than 200 s.
 """
 
 from typing import TypeVar
