@@ -13,8 +13,8 @@ from tipoff.mechanics.ledger import BODY_FORCE
 from tipoff.scenes.effects.friction import coefficient_over_speed
 from tipoff.scenes.scene import Scene
 
-# A kernel that only this effect calls. Mass offset, initial state and temperature change numbers
-# alone and have no code of their own.
+# For each effect, a kernel that only this effect calls. Mass offset, initial state and temperature
+# have no kernel: they only change numbers.
 LAWS = {
     "contact": cells.press,
     "friction": coefficient_over_speed,

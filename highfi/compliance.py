@@ -3,13 +3,13 @@
     C_iajb = 1/(A_i A_j) integral over faces i and j of phi_a n_i . K^-1 . n_j phi_b
     F_ij = G_i^-1 C_ij G_j^-1,   G_i = 1/A_i integral phi_a phi_b dA
 
-C is the displacement of the wall under pad face i, averaged with pattern a, caused by the pressure
-pattern b under face j: with the pattern 1 the mean displacement under a unit force. F is the
-flexibility of ``mechanics.rail_compliance``: displacement and pressure are both approximated by the
-polynomials phi. K is that of the whole rail, held at its mounts, so a face also displaces the walls
-of the other faces on its rail. Inertia is left out. Both are symmetric (Maxwell and Betti). The
-thermal displacement of the same walls (``statics.thermal``) is computed for one of each field of
-which [thermal] is a sum.
+C is the mean displacement of the wall under pad face i, weighted with pattern a, under a unit force
+with the pressure pattern b on face j. F is the flexibility of ``mechanics.rail_compliance``:
+displacement and pressure are both approximated by the polynomials phi. K is the stiffness of the
+whole rail, held at its mounts, so a face also displaces the walls of the other faces on its rail.
+Inertia is left out. Both matrices are symmetric (Maxwell and Betti). [thermal] is a sum of fields
+of temperature; the thermal displacement of the same walls (``statics.thermal``) is computed for a
+unit of each field.
 
 The modes psi_m of the same rail (``statics.vibration``) are averaged under the faces with the same
 patterns, so that a full set of them gives C::
@@ -45,22 +45,22 @@ from tipoff.scenes.rail import MaterialTable, SectionTable
 from tipoff.scenes.scene import Scene
 
 BATCH = 64  # loads solved for at once; bounds the memory
-_MOST_THREADS = 8  # bounds it too
-_DIGITS = 9  # of a place in m: faces whose places agree in them share one solution
-_SPACING = 4e-3  # m between stations; what mounts and ends change takes a leg or so
-# of the largest eigenvalue of G: patterns that hardly differ on what wall there is
+_MOST_THREADS = 8  # also bounds the memory
+_DIGITS = 9  # decimals of a place in m; faces at equal places share one solution
+_SPACING = 4e-3  # m between stations; mounts and ends act over about the length of a leg
+# of the largest eigenvalue of G; below it, patterns hardly differ on the wall that a face covers
 _SINGULAR = 1e-6
 
 
-# Called with the fraction of the loads solved for. It is no argument, as every function below would
-# have one more.
+# Called with the solved fraction of the loads. As an argument, it would pass through every function
+# below.
 _PROGRESS: ContextVar[Callable[[float], None] | None] = ContextVar("progress", default=None)
 
 
 @contextmanager
 def progress_to(report: Callable[[float], None]) -> Iterator[None]:
-    """Context in which this thread's calls ``report`` the fraction of the loads solved for, 0 to
-    1 for each rail that differs from the others."""
+    """Context in which this thread's calls ``report`` the solved fraction of the loads, from 0 to 1
+    for each distinct rail."""
     before = _PROGRESS.set(report)
     try:
         yield
@@ -69,13 +69,13 @@ def progress_to(report: Callable[[float], None]) -> Iterator[None]:
 
 
 def reported() -> Callable[[float], None]:
-    """What ``progress_to`` was given in this thread; it does nothing without."""
+    """The function given to ``progress_to`` in this thread, or one that does nothing."""
     return _PROGRESS.get() or (lambda _: None)
 
 
 class Compliance(NamedTuple):
     """Compliance at s stations between f pad faces with p patterns each, and n modes of r rails.
-    Near an end of the rail a face stays at the last place where all of it is on the rail."""
+    Near an end of the rail a face stays at the last place where it is completely on the rail."""
 
     travel: np.ndarray  # (s,) m of the payload along X since ignition
     matrix: np.ndarray  # (s,f,p,f,p) m/N, zero between faces on different rails
@@ -86,9 +86,9 @@ class Compliance(NamedTuple):
     )  # (f,2) m, half size along xi and eta, negative where eta runs against the axis
     frequency: np.ndarray  # (r,n) rad/s
     shape: np.ndarray  # (s,f,p,n) 1/kg^0.5, V
-    # (s,f,p,t) m, mean displacement away from the payload by one of each of the t thermal fields
+    # (s,f,p,t) m, mean displacement away from the payload by a unit of each of the t thermal fields
     warm: np.ndarray
-    joints: JointTerms | None  # of rails on joints, where modes are asked for
+    joints: JointTerms | None  # of rails on joints, if modes were requested
 
 
 def condense(
@@ -96,7 +96,7 @@ def condense(
 ) -> RailCompliance:
     """Flexibility and lowest ``modes`` of the rails of ``scene`` in elements of about
     ``element_size`` (m), at stations about ``spacing`` (m) apart from ignition until the last pad
-    begins to leave. It holds for any factor on the stiffness of the mounts.
+    begins to leave. The result is valid for any factor on the stiffness of the mounts.
 
     Raises SceneError or MeshError.
     """
@@ -130,8 +130,8 @@ def _stations(scene: Scene, spacing: float) -> np.ndarray:
 
 
 def _drawn(scene: Scene, element_size: float) -> np.ndarray | None:
-    """Offset (n,f,3) m of walls from a file as drawn, None where they are straight. Raises SceneError
-    or MeshError."""
+    """Offset (n,f,3) m of the walls of a file from straight walls, None if they are straight.
+    Raises SceneError or MeshError."""
     if isinstance(scene.rail, SectionTable):
         return None
     own = inputs.of(scene)
@@ -141,10 +141,10 @@ def _drawn(scene: Scene, element_size: float) -> np.ndarray | None:
 
 
 def walls(scene: Scene, element_size: float, spacing: float = _SPACING) -> RailCompliance | None:
-    """Rigid walls of ``scene`` with their offset as drawn, if they are not straight, without
-    temperatures, at stations about ``spacing`` (m) apart; None for the built-in section. Statics are
-    not solved. The size of elements (m) counts only for a solid with curved walls. Raises SceneError
-    or MeshError."""
+    """Rigid walls of ``scene`` with their offset as drawn, without temperatures, at stations about
+    ``spacing`` (m) apart; None for the built-in section and for straight walls. Statics are not
+    solved. The element size (m) matters only for a solid with curved walls. Raises SceneError or
+    MeshError."""
     if isinstance(scene.rail, SectionTable):
         return None
     drawn = _drawn(scene, element_size)
@@ -179,8 +179,8 @@ def along(
     """Compliance of the rails of ``scene`` in elements of about ``element_size`` (m), the payload
     aligned and moved by each ``travel`` (m) from its place at ignition.
 
-    Faces are those of ``mechanics.model.Faces``. Raises SceneError or MeshError, ValueError for a
-    number of patterns or modes there is not.
+    Faces are those of ``mechanics.model.Faces``. Raises SceneError, MeshError, and ValueError for
+    an unavailable number of patterns or modes.
     """
     own = inputs.of(scene)
     mesh = prepare(scene, Numerics(element_size=element_size))
@@ -197,11 +197,11 @@ def of_mesh(
     modes: int = 0,
     joint: MountStiffness | None = None,
 ) -> Compliance:
-    """The same for a mesh whose points are in the axes of ``faces.centre`` and ``faces.wall``,
+    """As ``along``, for a mesh whose points are in the axes of ``faces.centre`` and ``faces.wall``,
     between the X (m) of ``reach``, on rigid mounts or on a ``joint``.
 
-    Raises MeshError where a rail under a face has no mount, ValueError for a number of patterns or
-    modes there is not.
+    Raises MeshError for a rail under a face without a mount, ValueError for an unavailable number
+    of patterns or modes.
     """
     if not 1 <= patterns <= PATTERNS:
         raise ValueError(f"patterns: given {patterns!r}, expected 1 to {PATTERNS}")
@@ -221,7 +221,7 @@ def of_mesh(
         places = [patches.under(faces, half, signs, reach, stations) for signs in images]
         if not patches.found:
             continue
-        # One more that answers nothing is what a face without a wall, number -1, points at.
+        # An additional last place without response, for faces without a wall (number -1).
         answer, heated, frequency, swung, terms = patches.solved(
             material, joint, 0.5 * (reach[0] + reach[1]), modes
         )
@@ -259,8 +259,8 @@ def of_mesh(
 
 
 class Patches:
-    """All different places of one rail that some face of it, or of a mirror image of it,
-    presses."""
+    """All different places on one rail that are under a face; the rail also stands for its mirror
+    images."""
 
     def __init__(self, rail: RailMesh, patterns: int):
         self._rail, self._patterns = rail, patterns
@@ -279,8 +279,8 @@ class Patches:
         reach: tuple[float, float],
         travel: np.ndarray,
     ) -> np.ndarray:
-        """Number (s,f) of the place under each face, -1 where it has none; the rail stands where
-        its image by ``signs`` is."""
+        """Number (s,f) of the place under each face, -1 without one; ``signs`` (3,) map the rail to
+        its image."""
         axis, across = faces.axis, 3 - faces.axis
         seen = faces._replace(
             centre=faces.centre * signs,
@@ -313,10 +313,10 @@ class Patches:
     def solved(
         self, material: MaterialTable, joint: MountStiffness | None, middle: float, modes: int
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, joint_terms.Terms | None]:
-        """Displacement (m,p,m,p) in m of all places under the loads of all, normals of the faces
-        positive, and (m,p,t) under one of each field of temperature around X = ``middle`` (m);
-        frequencies (n,) rad/s of the lowest modes and their displacement (m,p,n); the terms of a
-        ``joint`` where there are modes."""
+        """Displacement (m,p,m,p) in m of all places under the loads of all places, normals of the
+        faces positive, and (m,p,t) under a unit of each field of temperature around X = ``middle``
+        (m); frequencies (n,) rad/s of the lowest modes and their displacement (m,p,n); the terms of
+        a ``joint`` if there are modes."""
         operator = assembly.of_material(self._rail, material, joint=joint)
         clamped, loads = Clamped(operator), self.loads()
         load, held = thermal.of_each_field(self._rail, operator, material, middle)
@@ -358,8 +358,8 @@ class Patches:
 
 
 def _under_each_other(clamped: Clamped, loads: csc_array) -> np.ndarray:
-    """Displacement (c,c) that the ``loads`` (d,c) see under each other, L' K^-1 L. Threads solve for
-    batches side by side, each with bits that do not depend on the others."""
+    """Displacement (c,c) of each of the ``loads`` (d,c) under each other one, L' K^-1 L. Threads
+    solve batches in parallel; the bits of a batch do not depend on the others."""
     answer, report = [], reported()
     starts = range(0, loads.shape[1], BATCH)
 

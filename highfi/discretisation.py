@@ -1,19 +1,19 @@
-"""Discretisation uncertainty of the rail compliance, from two meshes: the one it is made of, and the
-same with two elements along every edge of each.
+"""Discretisation uncertainty of the rail compliance, from two meshes: the mesh of the compliance,
+and the same with every edge divided into two.
 
-At the border of a mount that clamps a part of a face the stress is singular, with the power -1/2 of
-the distance, so the compliance C(h) converges with the first power of the element size h::
+At the border of a mount that clamps a part of a face, the stress is singular with the power -1/2 of
+the distance. So the compliance C(h) converges with the first power of the element size h::
 
     C(h) = C(0) - a h,    C(0) - C(h) = 2 (C(h/2) - C(h)),    U = 1.25 |C(0) - C(h)| / C(h)
 
-with 1.25 for what the first power leaves out. Hexahedra keep the plane facets of a curved wall, so
-that its curvature is no part of U.
+where 1.25 covers higher powers. Hexahedra keep the plane facets of a curved wall, so U does not
+include its curvature.
 
-A coarser mesh is no second one here: walls one element thick are so on coarser meshes too, and the
-change from those misses half of the error and more. The finer mesh is solved for few loads, by
-conjugate gradients whose preconditioner is the solution on the mesh itself and the diagonal of the
-finer stiffness. The compliance f'x + x'(f - K x) is then below the exact one by the squared energy
-of the error alone.
+A coarser mesh cannot be the second one: walls one element thick keep one element, and the change
+shows less than half of the error. The finer mesh is solved for few loads, by conjugate gradients.
+The preconditioner is the solution on the mesh itself plus the diagonal of the finer stiffness. The
+compliance f'x + x'(f - K x) is then below the exact one only by the squared energy norm of the
+error.
 
 Sources: Roache, J. Fluids Eng. 116 (1994) 405, the factor of a known order; Strang and Fix, An
 Analysis of the Finite Element Method, 1973, chapter 8, the rate at singular points; Saad, Iterative
@@ -44,26 +44,25 @@ from tipoff.scenes.scene import Scene
 
 SAFETY_FACTOR = 1.25
 _PLACES = 4  # along the way of the pads
-_MODES = 3  # so that the lowest keeps its shape among close ones
-MOST_ENTRIES = 1.5e8  # most of all matrices of elements: bounds memory and time
+_MODES = 3  # close modes may change places; the lowest is then still among them
+MOST_ENTRIES = 1.5e8  # in the matrices of all elements: bounds memory and time
 _CHUNK = 10_000  # elements assembled at once, for the same reason
-_ACCURACY = 1e-4  # of the compliance, in the measure of the preconditioner
+_ACCURACY = 1e-4  # of the compliance, in the norm of the preconditioner
 _MOST_ITERATIONS = 500
 _SMOOTHING = 0.5  # share of the diagonal in the preconditioner
 
 
 class Uncertainty(NamedTuple):
-    """Relative uncertainty of the ``compliance`` of each face, of its mean along the way of the pads,
-    and of the lowest ``frequency`` of any rail; both None where ``why`` says so."""
+    """Relative uncertainties; None for the reason ``why``."""
 
-    compliance: np.ndarray | None  # (f,)
-    frequency: float | None
+    compliance: np.ndarray | None  # (f,) of each face, its mean along the way of the pads
+    frequency: float | None  # lowest of all rails
     why: str = ""
 
 
 def stated(scene: Scene, element_size: float, found: RailCompliance) -> RailCompliance:
-    """``found``, which ``compliance.condense`` made for ``scene`` in elements of ``element_size`` (m), with
-    the size (m) of its elements and their uncertainty. Raises SceneError or MeshError."""
+    """``found`` with the size (m) of its elements and their uncertainty. ``compliance.condense``
+    made it for ``scene`` and ``element_size`` (m). Raises SceneError or MeshError."""
     mesh = prepare(nominal(scene), Numerics(element_size=element_size))
     size = split.shortest(mesh) if isinstance(scene.rail, MeshTable) else element_size
     known = of(scene, element_size)
@@ -95,14 +94,16 @@ def of_mesh(
     travel: np.ndarray,
     joint: MountStiffness | None = None,
 ) -> Uncertainty:
-    """The same of ``compliance.of_mesh``. Raises MeshError as it does."""
+    """Uncertainty of ``compliance.of_mesh``. Raises MeshError as it does."""
     half = scene_model.half_sizes(faces)
     coarse, fine = (np.zeros((travel.size, faces.axis.size)) for _ in range(2))
     lowest: list[tuple[float, float]] = []
     for rail, images in pieces.distinct(mesh):
         elements = 8 * len(rail.cells)
         if elements * (3 * rail.cells.shape[1]) ** 2 > MOST_ENTRIES:
-            return Uncertainty(None, None, f"half of them are {elements:,} on a rail, too many")
+            return Uncertainty(
+                None, None, f"elements of half the size: {elements:,} on a rail, too many"
+            )
         finer, weights = split.refined(rail)
         both = Patches(rail, 1), Patches(finer, 1)
         numbers = [
@@ -113,7 +114,9 @@ def of_mesh(
             continue
         made = _pair(rail, finer, weights, (both[0].loads(), both[1].loads()), material, joint)
         if made is None:
-            return Uncertainty(None, None, "elements of half the size are not solved for")
+            return Uncertainty(
+                None, None, "no convergence of the solution with elements of half the size"
+            )
         for sums, values, places in zip((coarse, fine), made.compliance, numbers):
             padded = np.append(values, 0.0)  # number -1: no wall
             for number in places:
@@ -131,7 +134,7 @@ def of_mesh(
 
 
 class _Pair(NamedTuple):
-    """Values on a mesh and on the finer one."""
+    """Values on a mesh, and on the finer one."""
 
     compliance: tuple[np.ndarray, np.ndarray]  # (l,) m/N of each load under itself
     frequency: tuple[float, float]  # rad/s, the lowest
@@ -145,7 +148,7 @@ def _pair(
     material: MaterialTable,
     joint: MountStiffness | None,
 ) -> _Pair | None:
-    """Both solutions; None where the iteration on the finer mesh does not end."""
+    """Both solutions; None if the iteration on the finer mesh does not converge."""
     operator = assembly.of_material(rail, material, joint=joint)
     held = Clamped(operator)
     own_load = loads[0][held.free].toarray()
@@ -179,7 +182,7 @@ def _pair(
 
 
 def _assembled(operator: assembly.Operator) -> csr_array:
-    """``assembly.sparse`` without all matrices of elements at a time."""
+    """``assembly.sparse``, in chunks that bound the memory."""
     size = 3 * len(operator.mass)
     found = csr_array((size, size)) if operator.joints is None else operator.joints
     for start in range(0, len(operator.cells), _CHUNK):
@@ -195,8 +198,8 @@ def _assembled(operator: assembly.Operator) -> csr_array:
 def _solved(
     stiffness: csr_array, loads: np.ndarray, nearly: Callable[[np.ndarray], np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    """Displacement (d,l) under ``loads`` (d,l) and the residual (d,l) that is left, by conjugate
-    gradients for all of them, None if they do not end; ``nearly`` is the preconditioner."""
+    """Displacement (d,l) under ``loads`` (d,l) and its residual (d,l), by conjugate gradients for
+    all loads; None if they do not converge. ``nearly`` is the preconditioner."""
     moved, rest = np.zeros_like(loads), loads.copy()
     towards = np.zeros_like(loads)
     before = np.ones(loads.shape[1])

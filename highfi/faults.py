@@ -1,5 +1,5 @@
-"""Reasons to stop a run: lost energy, a pad that strikes an edge, a speed or friction outside
-the range of the method."""
+"""Faults that stop a run: lost energy, a pad that strikes an edge, a speed or friction outside the
+range of the method."""
 
 import numpy as np
 
@@ -10,11 +10,12 @@ from tipoff.highfi.state.records import TOTAL
 from tipoff.kernels import rotation
 from tipoff.mechanics import ledger, outcome
 
-_STOP_RATIO = 0.1  # of the transverse scale: a run that loses so much energy is not a result
+_STOP_RATIO = 0.1  # of the transverse scale; with a larger loss of energy the run has no result
 
 
 def fault(loop, row: np.ndarray) -> str:
-    """Why a ``run.Loop`` must stop at the sample ``row``, or nothing; raises its energy scale."""
+    """Reason why a ``run.Loop`` must stop at the sample ``row``, or ""; updates its energy
+    scale."""
     now = f"at {loop.steps * loop.stepping.dt_s:.6g} s"
     if not (np.isfinite(row).all() and np.isfinite(loop.state.work.view(float)).all()):
         return f"a value became infinite {now}"
@@ -25,7 +26,7 @@ def fault(loop, row: np.ndarray) -> str:
     if loop.active.struck["depth"].any():
         return _strike(loop)
     loss, work = abs(ledger.residual(transverse)[-1]), abs(loop.state.work["thrust"][TOTAL])
-    # Rounding of the large axial work is no fault while nothing has moved sideways yet.
+    # Without transverse motion, rounding of the large axial work is no fault.
     if loss > _STOP_RATIO * loop.scale + 1e-11 * work:
         return (
             f"transverse energy is off by {loss:.3g} J, its scale being {loop.scale:.3g} J, {now}"
@@ -45,7 +46,7 @@ def fault(loop, row: np.ndarray) -> str:
 
 
 def _strike(loop) -> str:
-    """The face that struck an edge of a wall first, where and when."""
+    """First face that struck an edge of a wall, with place and time."""
     struck = loop.active.struck
     face = int(max(np.flatnonzero(struck["depth"]), key=lambda each: struck["age"][each]))
     depth, x, age = struck[face]
@@ -61,10 +62,10 @@ def _strike(loop) -> str:
 
 
 def _approach_speed(loop) -> float:
-    """Bound (m/s) of the speed across the rail at which any pad and any point of a wall can approach
-    each other now."""
+    """Upper bound (m/s) of the present speed across the rail at which a pad and a point of a wall
+    approach each other."""
     state, payload = loop.state, loop.system.model.payload
-    # the Frobenius norm, which is not below the spectral one and far faster
+    # The Frobenius norm is an upper bound of the spectral norm and much faster.
     spin = np.linalg.norm(payload.inverse_inertia) * np.linalg.norm(state.payload.spin)
     reach = np.sqrt((loop.system.faces.centre**2).sum(axis=1).max())
     turn = rotation.single(state.platform.quaternion)
@@ -76,8 +77,8 @@ def _approach_speed(loop) -> float:
 
 
 def _approach_of_rigid_part(loop, turn: np.ndarray) -> float:
-    """Bound (m/s) of the speed across the rail between the payload's mass centre and walls at rest
-    in the frame, whose rotation is ``turn``."""
+    """Upper bound (m/s) of the speed across the rail between the payload's mass centre and walls at
+    rest in the frame; ``turn``: rotation of the frame."""
     state, frame = loop.state, loop.now.frame
     if frame is None:
         return float(np.linalg.norm((state.payload.velocity @ turn)[1:]))

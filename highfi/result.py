@@ -66,7 +66,7 @@ def _stress(loop) -> dict:
 
 
 def _broken(checks: dict[str, float]) -> str:
-    """The accuracy limits that the run exceeded, and what helps, or nothing. A run is never
-    repeated with smaller steps: its cost is the user's decision."""
+    """The accuracy limits that the run exceeded, with a remedy, or "". The run is not repeated with
+    smaller steps: its cost is the user's decision."""
     words = broken(checks, FINITE_ELEMENTS)
     return f"{words}; lower safety or element_size" if words else ""

@@ -46,8 +46,8 @@ def prepare(scene: Scene, numerics: Numerics | None = None) -> RailMesh:
     """Mesh of a scene, made once per process. gmsh, which meshes solids, must run in the main
     thread: call this there before runs in other threads.
 
-    Raises SceneError, also where memory does not suffice, MeshError, or GmshUnavailable where a
-    solid cannot be meshed here.
+    Raises SceneError (also for lack of memory), MeshError, or GmshUnavailable if a solid cannot be
+    meshed here.
     """
     require_two_step(scene)
     numerics = numerics or Numerics()
@@ -74,16 +74,16 @@ def run(
     resume: bool = False,
     observer: Callable[["Loop"], None] | None = None,
 ) -> Trajectory:
-    """Solve ``scene`` with flexible rails until the settled window is complete, a jam, or the
-    scene's time limit.
+    """Solve ``scene`` with flexible rails until the settled window is complete, the payload jams,
+    or the scene's time limit is reached.
 
-    ``progress`` is called with the fraction of the expected time done. ``threads`` share the run (None:
-    as many as there are processors, ``OMP_NUM_THREADS`` at most, and elements enough for them); the
-    result does not depend on their number. The run is written to the file ``checkpoint`` every
-    ``checkpoint_every`` seconds (wall clock), and the file stays. With ``resume`` the run continues
-    from that file if there is one, to the same bits, and its cost is that of all parts.
-    ``observer`` is called with the loop at every sample, the first one at ignition; it may read
-    everything and must change nothing.
+    ``progress`` is called with the completed fraction of the expected time. ``threads`` share the
+    run (None: as many as there are processors, ``OMP_NUM_THREADS`` at most, and elements enough for
+    them); the result does not depend on their number. The run is written to the file ``checkpoint``
+    every ``checkpoint_every`` seconds (wall clock), and the file stays. With ``resume`` the run
+    continues from that file if it exists, to the same bits; its cost includes all parts.
+    ``observer`` is called with the loop at every sample, the first one at ignition; it must not
+    change anything.
 
     Raises SceneError, MeshError, StepError or CheckpointError before the first step. A later
     failure is the status of the result.
@@ -126,12 +126,14 @@ def run(
 
 
 def _threads_for(system: System) -> int:
-    """Threads that a mesh can keep busy: on a smaller mesh they would mostly wait for each other."""
+    """Threads that a mesh can keep busy; on a small mesh, more threads would wait for each
+    other."""
     return max(1, min(processors(), len(system.operator.cells) // _ELEMENTS_PER_THREAD))
 
 
 class Loop:
-    """State of a run in progress and its samples. Without ``rails`` everything is stepped."""
+    """State of a run in progress, and its samples. Without ``rails`` all rails are always
+    stepped."""
 
     def __init__(
         self,
@@ -197,17 +199,17 @@ class Loop:
 
     @property
     def now(self) -> System:
-        """The system with the rails that rest now as parts of the rigid part."""
+        """The system in which the rails at rest belong to the rigid part."""
         return self.system if self.watch is None else self.watch.view(self.rests)
 
     @property
     def step(self) -> float:
-        """Length (s) of a long step, of a substep, or of a step where neither is taken."""
+        """Length (s) of a step: long step, substep or ordinary step."""
         return self.stride * self.stepping.dt_s / self.substeps
 
     def set_stride(self, stride: int, parts: int | None = None) -> None:
-        """Go on with steps ``stride`` times as long, or divided into ``parts`` (None: as many as
-        now); velocities are set back by half of one."""
+        """Continue with steps ``stride`` times as long, or divided into ``parts`` (None: as now);
+        velocities are moved back by half a step."""
         before, self.stride = self.step, stride
         self.substeps = 1 if stride > 1 else parts or self.substeps
         if before != self.step:
@@ -217,19 +219,19 @@ class Loop:
     def arguments(
         self,
     ) -> tuple[records.Constants, records.State, records.Active, np.ndarray, Team]:
-        """Records that the time loop takes, in their order."""
+        """Arguments of the time loop, in order."""
         return self.constants(), self.state, self.active, self.book, self.team_now
 
     @property
     def team_now(self) -> Team:
-        """One thread alone where no rail is stepped, else all of them."""
+        """One thread if no rail is stepped, else all."""
         if self.watch is not None and self.rests.all():
             return self.watch.alone
         return self.team
 
     def begin(self) -> None:
-        """First forces, velocities set back to -1/2 so that they pass through the given ones at t =
-        0, and the first sample.
+        """First forces, velocities of t = -dt/2 that pass through the given ones at t = 0, and the
+        first sample.
 
         Compiles the kernels.
         """
@@ -242,7 +244,7 @@ class Loop:
         self._check(keep=True)
 
     def integrate(self, progress, kept: Checkpoint | None = None, observer=None) -> None:
-        """Advance check by check until something ends the run."""
+        """Advance from check to check until the run ends."""
         began, cpu = clock.perf_counter() - self.wall, clock.thread_time() - self.cpu
         if observer:
             observer(self)
@@ -259,7 +261,7 @@ class Loop:
                 kept.keep(self)
 
     def _goes_on(self) -> bool:
-        """Whether a step is left to take, be it only for the last sample."""
+        """Whether a step remains, be it only for the last sample."""
         if self.message or self.steps >= self.most:
             return False
         interval = self.scene.output.interval
@@ -268,14 +270,13 @@ class Loop:
         )
 
     def advance_one_sample(self) -> None:
-        """Step to the next sample and take it; less where something goes wrong before."""
+        """Advance to the next sample and take it; stop before if something goes wrong."""
         taken = len(self.rows)
         while len(self.rows) == taken and not self.message:
             self._advance_to_check()
 
     def _advance_to_check(self) -> None:
-        """Step to the next sample, or part of the way where that is long, and check the balances
-        there."""
+        """Advance to the next sample, or part of the way if it is far, and check the balances."""
         per_sample, left = self.stepping.steps_per_sample, self.most - self.steps
         there = per_sample - self.steps % per_sample
         count = min(there, STEPS_PER_CHECK, left if left > 0 else there)
@@ -289,8 +290,8 @@ class Loop:
         self._check(keep=self.steps % per_sample == 0)
 
     def advance_steps(self, count: int) -> None:
-        """``count`` steps, by all threads of the team; fewer where a pad comes near a rail that
-        rests, or friction needs shorter ones."""
+        """Take ``count`` steps with all threads of the team; fewer if a pad comes near a rail at
+        rest or friction needs shorter steps."""
         count //= self.stride
 
         def part(thread):
@@ -310,7 +311,7 @@ class Loop:
         self.block_steps += whole * int(self.state.stepped.in_use[0])
 
     def _check(self, keep: bool) -> None:
-        """Check whether the run may go on, and ``keep`` a sample."""
+        """Check whether the run may continue; store a sample if ``keep``."""
         state, now = self.state, self.now
         before = observe.moving(now, state)
         self.kick(self.step)
@@ -327,11 +328,11 @@ class Loop:
 
     @cached_property
     def lowest_frequency(self) -> float:
-        """That of the rails, held at their mounts (rad/s)."""
+        """Lowest frequency (rad/s) of the rails held at their mounts."""
         return spin.lowest_frequency(self.scene, self.system.mesh)
 
     def _out_of_range(self, row: np.ndarray) -> str:
-        """Why the rails are no longer linear at the sample ``row``, or nothing."""
+        """Reason why the rails are no longer linear at the sample ``row``, or ""."""
         words = ""
         if len(self.rows) % -(-linear_range.EVERY // self.stepping.steps_per_sample) == 0:
             words = linear_range.fault(self.system, self.state.displacement, self.small)
@@ -343,7 +344,7 @@ class Loop:
         return f"{words}, at {self.steps * self.stepping.dt_s:.6g} s" if words else ""
 
     def _monitor_stress(self) -> None:
-        """Stresses at the sample just taken."""
+        """Evaluate stresses at the last sample."""
         if self.monitor.patch is not None:
             self.gauges.append(monitor.gauge(self.monitor, self.deformed()))
         # Rails at rest have the stress of the first sample.
@@ -354,13 +355,13 @@ class Loop:
             )
 
     def deformed(self) -> np.ndarray:
-        """Displacement (n,3) m of the nodal arrays from the rail as it was mounted: by load, and by
-        temperature where it is warm."""
+        """Displacement (n,3) m of the nodal arrays from the rail as mounted, by load and by
+        temperature."""
         warm = self.system.warm
         return self.state.displacement if warm is None else self.state.displacement + warm
 
     def resting(self) -> dict[str, float]:
-        """What resting rails saved, what it left out, and what friction cost."""
+        """Savings and neglected vibration of rails at rest, and the cost of friction."""
         whole = max(self.steps, 1) * self.state.stepped.block.size
         return {
             "steps_taken": self.taken,
@@ -374,7 +375,8 @@ class Loop:
         self._perform(EVALUATE)
 
     def kick(self, span: float) -> None:
-        """Advance the velocities of nodes and bodies alone, over ``span`` (s), by the present forces."""
+        """Advance only the velocities of nodes and bodies, over ``span`` (s), by the present
+        forces."""
         self._perform(KICK, span=span)
 
     def _perform(self, kind: int, thread: int = 0, steps: int = 0, span: float = 0.0) -> float:

@@ -15,8 +15,8 @@ from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.effects.friction import coefficient_over_speed
 from tipoff.scenes.scene import Scene
 
-# A kernel that only this effect calls. Mass offset, initial state and damping of rails change
-# numbers alone; compliant contact has the temperature in its own code.
+# For each effect, a kernel that only it calls. Mass offset, initial state and damping of rails have
+# no kernel: they only change numbers. Compliant contact has the temperature in its own code.
 LAWS = {
     "contact": springs.load,
     "compliance": solution.solve,

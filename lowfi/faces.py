@@ -1,14 +1,15 @@
-"""The table of pad faces of the kernels of the surrogate: one row per face."""
+"""Table of pad faces for the kernels of the surrogate: one row per face."""
 
 import numpy as np
 
 from tipoff.mechanics.model import Model
 
-# Columns: centre in payload body axes (m); outward normal's y and z and the wall's distance along it
-# (m), in platform axes; half the length (m); its own number; and for the ends of the wall
-# (``lowfi.contact.wall_ends``): how far (m) the middle of the face may be beyond an end of the rail,
-# its place across the rail when centred (m, platform axes), how far from there it may be (m), the
-# thickness of the wall (m), and how deep (m) its edge may pass that of the wall.
+# Columns: centre in payload body axes (m); y and z of the outward normal, and the distance of the
+# wall along it (m), in platform axes; half the length (m); its number. For the ends of the wall
+# (``lowfi.contact.wall_ends``): largest distance (m) of the middle of the face beyond an end of the
+# rail, its centred place across the rail (m, platform axes) and the largest distance (m) from
+# there, the thickness of the wall (m), and the depth (m) at which its edge may still pass that of
+# the wall.
 (
     CENTRE,
     NORMAL_Y,
@@ -23,12 +24,13 @@ from tipoff.mechanics.model import Model
     ROUND,
     FACE_SIZE,
 ) = (0, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13)
-ROUNDED = 1e-6  # m: edges of pads and walls are no sharper, and no gap is more accurate
-LAST_STRIP = 0.01  # of half a face: what is still over a compliant wall when the face leaves it
+ROUNDED = 1e-6  # m, least radius of the edges of pads and walls, and least accuracy of a gap
+LAST_STRIP = 0.01  # of half a face: the part still over a compliant wall when the face leaves it
 
 
 def table(model: Model, compliance) -> np.ndarray:
-    """The table (f, FACE_SIZE) of ``model``, on compliant contact with its record ``compliance``."""
+    """The table (f, FACE_SIZE) of ``model``; ``compliance``: record of compliant contact, or
+    None."""
     faces = model.faces
     found = np.zeros((faces.axis.size, FACE_SIZE))
     found[:, CENTRE : CENTRE + 3] = faces.centre

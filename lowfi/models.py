@@ -1,4 +1,4 @@
-"""The two models of the surrogate, ``compliant`` and ``springs``: the options that each takes."""
+"""Options of the two models of the surrogate, ``compliant`` and ``springs``."""
 
 from tipoff.lowfi.contact import thermal_offset
 from tipoff.lowfi.numerics import Numerics
@@ -16,8 +16,8 @@ def require(
     calibration: Calibration | None,
     numerics: Numerics | None,
 ) -> None:
-    """Raises SceneError, every fault listed, where ``model`` is unknown, lacks what it needs, or has
-    options of the other one. Without contact both models are the same and need nothing."""
+    """Raise SceneError with every fault if ``model`` is unknown, lacks an input, or has options of
+    the other one. Without contact both models are the same and need no options."""
     if model not in SURROGATES:
         raise SceneError(
             [Fault(scene.name, "model", repr(model), f"one of {', '.join(SURROGATES)}")]

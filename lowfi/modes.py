@@ -1,16 +1,16 @@
-"""The number of modes of each rail that vibrate in a run with ``modes="auto"``.
+"""Number of vibrating modes of each rail in a run with ``modes="auto"``.
 
-The first run has none. From its forces follows what each neglected mode would do to the settled rates
+The first run has none. Its forces give the effect of each neglected mode on the settled rates
 (``lowfi.contact.compliant.neglected``). While the sum over the neglected modes is above
 ``THRESHOLD``, the scene is run again with the fewest lowest modes of each rail that bring it below.
-The change of the rates from run to run shows by how much later contacts enlarge such a sum, and the
-next number is chosen with this factor. The third run has all modes and is the last. The last run is
-the result, and ``cost`` has the sum of all.
+The change of the rates from run to run shows how much later contacts enlarge such a sum; the next
+number is chosen with this factor. The third run has all modes and is the last. The last run is the
+result, and ``cost`` has the sum of all.
 
-The forces of a coarse integration excite modes that the contact does not, and its error shows as a
-change of the rates. So at a tolerance above the default, where the first run would choose modes, it is
-repeated at the default, and the repeated run takes its place in the choice. If that needs no modes,
-the first run is the result.
+The forces of a coarse integration excite modes that the contact does not, and its error appears as
+a change of the rates. So if the first run, at a tolerance above the default, would choose modes, it
+is repeated at the default; the choice then uses the repeated run. If that needs no modes, the first
+run is the result.
 """
 
 import math
@@ -27,15 +27,14 @@ _MOST_RUNS = 3
 
 @dataclass(frozen=True)
 class Choice:
-    """``modes`` of each rail that vibrate, and ``why``, one line of text; ``runs`` that were made for
-    it beside the result."""
+    """A choice of modes."""
 
-    modes: int
-    why: str
-    runs: tuple[Run, ...] = ()
+    modes: int  # vibrating modes of each rail
+    why: str  # one line of text
+    runs: tuple[Run, ...] = ()  # made for the choice, without the result
 
     def cost(self) -> dict[str, int]:
-        """``modes``; for how many runs beside the result, and their steps."""
+        """``modes``, the number of runs without the result, and their steps."""
         steps = sum(int(run.loop.counts.steps) + run.discarded for run in self.runs)
         beside = {"auto_runs": len(self.runs), "auto_steps": steps} if self.runs else {}
         return {"modes": self.modes} | beside
@@ -44,9 +43,9 @@ class Choice:
 def choose(
     run: Callable[[int], Run], accurate: Callable[[], Run] | None = None
 ) -> tuple[Run, Choice]:
-    """The run with the modes that matter, and the choice. ``run`` makes one with so many modes that
-    has watched the others; ``accurate``, for runs of a looser tolerance than the default, makes the
-    one without modes at the default."""
+    """The run with the necessary modes, and the choice. ``run`` makes a run with so many modes that
+    watches the others. ``accurate``, for a tolerance above the default, makes the run without modes
+    at the default."""
     first = run(0)
     if first.message:
         return first, Choice(0, "none: the run without modes failed")
@@ -58,7 +57,7 @@ def choose(
     while needed(effects[-1] * enlarged) > made[-1].modes and len(made) < _MOST_RUNS:
         last = len(made) == _MOST_RUNS - 1
         every.append(tried := run(effects[0].size if last else needed(effects[-1] * enlarged)))
-        if tried.message:  # the answer is that of the last run that went through
+        if tried.message:  # the last completed run gives the result
             failed = f"a run with {tried.modes} failed: {tried.message}"
             break
         made.append(tried)
@@ -70,14 +69,14 @@ def choose(
 
 
 def needed(effect: np.ndarray) -> int:
-    """The fewest lowest modes without which the others have no more ``effect`` (n,) rad/s in sum than
-    ``THRESHOLD``."""
+    """The fewest lowest modes for which the sum of the ``effect`` (n,) rad/s of the others is at
+    most ``THRESHOLD``."""
     rest = np.append(np.cumsum(effect[::-1])[::-1], 0.0)
     return int(np.argmax(rest <= THRESHOLD))
 
 
 def _enlarged(last: list[Run], effect: np.ndarray) -> float:
-    """Change of the settled rates from one run to the next, over the sum that stood for it."""
+    """Change of the settled rates from one run to the next, over the sum that predicted it."""
     before, after = (found.judged()[1].rate for found in last)
     if before is None or after is None:
         return 1.0

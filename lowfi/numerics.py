@@ -9,7 +9,7 @@ from tipoff.mechanics.rail_compliance import MODES
 from tipoff.scenes.units import is_number, single
 
 AUTO = "auto"
-# A step of 0.1 % relative error is no longer a solution; below 1e-13 rounding decides.
+# A relative error of 0.1 % per step gives no solution; below 1e-13 there is only rounding.
 _COARSEST, _FINEST = 1e-2, 1e-13
 
 
@@ -17,20 +17,17 @@ _COARSEST, _FINEST = 1e-2, 1e-13
 class Numerics:
     """Error control of one run.
 
-    ``relative_tolerance``: local error of a step, relative to the speeds of the body;
-    ``speed_floor`` (m/s): speeds below it count as this much, so it is the absolute tolerance
-    divided by the relative one; ``maximum_steps``: a run that needs more is given up; ``modes``:
-    how many of the lowest modes of each rail vibrate on compliant contact, 0 for a rail without
-    inertia, or ``"auto"`` for those that matter to the run (``lowfi.modes``).
-
-    A run whose energy ledgers do not close as promised is run again at a tenth of the tolerance.
-    The promises are those of the default; at a looser, faster tolerance they are looser in
-    proportion (``promises_of``).
+    A run whose energy ledgers do not close as promised is repeated at a tenth of the tolerance. The
+    promises hold at the default tolerance; at a looser, faster one they are looser in proportion
+    (``promises_of``). Raises ValueError for values out of range.
     """
 
-    relative_tolerance: float = 2e-7
+    relative_tolerance: float = 2e-7  # local error of a step, relative to the speeds of the body
+    # m/s; lower speeds count as this value: the absolute tolerance over the relative one
     speed_floor: float = 1e-3
-    maximum_steps: int = 500_000
+    maximum_steps: int = 500_000  # a run that needs more fails
+    # lowest modes of each rail that vibrate on compliant contact; 0: rails without inertia; "auto":
+    # as many as matter to the run (``lowfi.modes``)
     modes: int | str = AUTO
 
     def __post_init__(self):
@@ -63,15 +60,15 @@ class Numerics:
 
     @property
     def count(self) -> int:
-        """The number of ``modes``; none as long as they are not chosen."""
+        """The number of ``modes``; 0 if they are not chosen yet."""
         return self.modes if isinstance(self.modes, int) else 0
 
     def tightened(self) -> "Numerics":
-        """The same with a tenth of the tolerance, or the finest there is."""
+        """The same with a tenth of the tolerance, or the finest tolerance."""
         return replace(self, relative_tolerance=max(0.1 * self.relative_tolerance, _FINEST))
 
     def accurate(self) -> "Numerics":
-        """The same at the default tolerance, or at its own where that is tighter."""
+        """The same at the default tolerance, or at its own if that is tighter."""
         tolerance = min(self.relative_tolerance, Numerics().relative_tolerance)
         return replace(self, relative_tolerance=tolerance)
 
@@ -81,5 +78,5 @@ class Numerics:
 
 
 def promises_of(numerics: Numerics) -> Promises:
-    """What a run with these ``numerics`` promises."""
+    """Promises of a run with these ``numerics``."""
     return RIGID.loosened(numerics.relative_tolerance / Numerics().relative_tolerance)

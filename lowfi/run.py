@@ -25,19 +25,19 @@ def run(
     progress: Callable[[float], None] | None = None,
     vibrates: Callable[[int], None] | None = None,
 ) -> Trajectory:
-    """Solve ``scene`` with rigid bodies until the settled window is complete, a jam, or the scene's
-    duration.
+    """Solve ``scene`` with rigid bodies until the settled window is complete, the payload jams, or
+    the scene's duration is over.
 
     The ``model`` is ``compliant``: pads press on the rail ``compliance`` (``tipoff.compliance``)
-    through the interface stiffness of the reference; or ``springs``: the scene's contact law at
-    each pad face, and a rigid ``compliance`` where the rails are warm or from a file
-    (``calibration.rail_compliance.walls``): no file is read here, so without it they are refused. A
-    ``calibration`` replaces constants that were fitted on the same model. ``progress`` is called
-    with the fraction of the duration done, and ``vibrates`` with each number of modes that
-    ``modes="auto"`` has chosen, before the scene is run with them: their kernels may have to be
-    compiled. A run whose ledgers do not close as promised is run again at tighter tolerances, as
-    message and cost report; one that keeps breaking a promise is diverged. Raises SceneError, every
-    fault listed, before the first step; a later failure is the status of the result."""
+    through the interface stiffness of the reference. Or it is ``springs``: the scene's contact law
+    at each pad face. Rails that are warm or from a file then need a rigid ``compliance``
+    (``calibration.rail_compliance.walls``), because no file is read here. A ``calibration``
+    replaces constants that were fitted on the same model. ``progress`` is called with the completed
+    fraction of the duration. ``vibrates`` is called with each number of modes that ``modes="auto"``
+    has chosen, before the scene is run with them: their kernels may need compilation. A run whose
+    ledgers do not close as promised is repeated at tighter tolerances; message and cost state it. A
+    run that still breaks a promise is diverged. Raises SceneError with every fault before the first
+    step; a later failure is the status of the result."""
     require(scene, model, compliance, calibration, numerics)
     return solved(scene, calibration, numerics, progress, compliance, vibrates)
 
@@ -50,7 +50,7 @@ def solved(
     compliance: RailCompliance | None = None,
     vibrates: Callable[[int], None] | None = None,
 ) -> Trajectory:
-    """``run`` without its check of the options: the model follows from ``compliance``."""
+    """``run`` without its check of the options; ``compliance`` determines the model."""
     began, cpu = clock.perf_counter(), clock.thread_time()
     scene = calibration.apply(scene) if calibration else scene
     numerics, spent = (

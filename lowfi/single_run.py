@@ -19,8 +19,8 @@ from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
 
-_ROWS = 65_536  # samples for which there is room at first
-_STRIDE = 5e-3  # s, from one report of progress to the next
+_ROWS = 65_536  # samples allocated at first
+_STRIDE = 5e-3  # s between reports of progress
 _REASONS = {
     integrate.UNDERFLOW: "no step is short enough: the state is no longer finite or its equations too "
     "stiff",
@@ -28,14 +28,14 @@ _REASONS = {
     integrate.OUT_OF_STEPS: "the step budget is spent (numerics.maximum_steps)",
     integrate.LOST_ENERGY: "a tenth of the energy is lost or came from nothing",
 }
-_RERUNS = 4  # at a tenth of the tolerance each, while that halves the errors of the ledgers
+_RERUNS = 4  # each at a tenth of the tolerance, while that halves the errors of the ledgers
 
 
 class Run:
-    """State of a run in progress and its samples, the last with number ``end``; one that is
-    ``whole`` goes on to the end of the scene also when exit and jam are settled. It keeps the
-    promises of ``numerics``, with the steps of ``finer`` ones if given. One that ``watches`` finds
-    what the modes that it neglects would do."""
+    """State of a run in progress and its samples; the last has the number ``end``. A ``whole`` run
+    continues to the end of the scene even if exit and jam are settled. It keeps the promises of
+    ``numerics``, with the steps of ``finer`` ones if given. A run that ``watches`` finds the effect
+    of the modes that it neglects."""
 
     reruns, discarded = 0, 0  # runs of the scene before this one, and their steps
 
@@ -78,8 +78,8 @@ class Run:
         self.advance(0)
 
     def integrate(self, progress) -> None:
-        """Advance to the end of the run, some samples at a time where ``progress`` is reported:
-        each call of the kernel costs some microseconds for its records."""
+        """Advance to the end of the run. If ``progress`` is reported, it takes some samples at a
+        time, because each call of the kernel takes some microseconds for its records."""
         stride = max(1, round(_STRIDE / self.interval)) if progress else self.end + 1
         while self.taken <= self.end and not self.message:
             if self.taken == len(self.rows):
@@ -89,13 +89,13 @@ class Run:
                 progress(min(1.0, self.taken / (min(self.end, self.expected) + 1)))
 
     def _grow(self) -> None:
-        """Room for twice as many samples: few runs last as long as they may."""
+        """Double the allocated samples: few runs last as long as they may."""
         more = min(len(self.rows), self.end + 1 - len(self.rows))
         self.rows = np.concatenate([self.rows, np.zeros((more, *self.rows.shape[1:]))])
         self.forces = np.concatenate([self.forces, np.zeros((more, *self.forces.shape[1:]))])
 
     def advance(self, number: int) -> None:
-        """Take samples up to ``number``, fewer where exit or jam end the run."""
+        """Take samples up to ``number``; fewer if exit or jam end the run."""
         status = integrate.integrate(
             self.system,
             self.plan,
@@ -114,37 +114,35 @@ class Run:
             self.end = self.taken - 1
 
     def _strike(self) -> str:
-        """Which face struck an edge of a wall, where and when."""
+        """Message of a face that struck an edge of a wall, with place and time."""
         face = int(self.loop.counts.striking_face)
         surveyed, time = self.loop.after[face], float(self.loop.clock.now)
         return wall_ends.strike(self.model, face, self.system.faces[face], surveyed, time)
 
     def usage(self) -> float:
-        """Largest share that a ledger uses of half of what is promised of it at the ends of
-        steps."""
+        """Largest error of a ledger at the ends of steps over half of its promise."""
         return float(audit.usage(self.loop.audit, self.tolerance.total, self.tolerance.transverse))
 
     def neglected(self) -> np.ndarray:
-        """What each mode (n,) of all rails would do to the settled rates (rad/s) if it were not
-        neglected, of a run that watches."""
+        """Effect (n,) of each mode of all rails on the settled rates (rad/s) if it were not
+        neglected; for a run that watches."""
         assert self.system.neglected is not None
         return self.system.neglected.effect.copy()
 
     def lost_energy(self) -> bool:
-        """Whether the run stopped because a tenth of its energy was lost."""
+        """Whether the run stopped because it lost a tenth of its energy."""
         return bool(self.loop.audit.failed)
 
     def judged(self) -> tuple[str, outcome.Outcome]:
-        """Status and outcome of the run so far, in the frame it is solved in."""
+        """Status and outcome of the run so far, in the frame of the solution."""
         return ("diverged", outcome.Outcome()) if self.message else ending.found(self.loop.book)
 
     def motion(self) -> outcome.Motion:
-        """Motion of the samples taken so far, in the frame it is solved in
-        (``mechanics.comoving``)."""
+        """Motion of the samples so far, in the frame of the solution (``mechanics.comoving``)."""
         return balance.motion(self.rows[: self.taken], self.interval)
 
     def trajectory(self) -> Trajectory:
-        """The result of the samples taken so far."""
+        """The result of the samples so far."""
         moved, rows, forces = self.motion(), self.rows[: self.taken], self.forces[: self.taken]
         total, across = balance.ledgers(rows)
         checks = balance.checks(rows, moved, forces, self.model, self.loop, self.promised)
@@ -168,7 +166,7 @@ class Run:
         )
 
     def _again(self) -> str:
-        """Report of smaller steps than requested, or nothing."""
+        """Text about smaller steps than requested, or ""."""
         if not self.reruns:
             return ""
         times = "once" if self.reruns == 1 else f"{self.reruns} times"
@@ -178,9 +176,8 @@ class Run:
         )
 
     def _cost(self) -> dict[str, float]:
-        """Counts; dt_limit_s is the smallest proven limit in contact, limit_used
-        the largest step over its limit. Where the scene was run again, how often, and the steps of
-        the runs before."""
+        """Counts; dt_limit_s is the smallest proven limit in contact, limit_used the largest step
+        over its limit. If the scene was run again: the number of earlier runs and their steps."""
         clock_, counts = self.loop.clock, self.loop.counts
         steps, limit = int(counts.steps), float(clock_.limit)
         cost = {
@@ -196,7 +193,7 @@ class Run:
 
 
 def integrated(run_: Run, progress: Callable[[float], None] | None, spent: dict[str, float]) -> Run:
-    """``run_`` integrated, again with smaller steps where needed; its times (s) are added to
+    """``run_`` integrated, and repeated with smaller steps if necessary; adds its times (s) to
     ``spent``."""
     compiled, cpu = len(integrate.integrate.overloads), clock.thread_time()
     setting_up = clock.perf_counter()
@@ -212,8 +209,8 @@ def integrated(run_: Run, progress: Callable[[float], None] | None, spent: dict[
 
 
 def improved(first: Run, progress: Callable[[float], None] | None = None) -> Run:
-    """``first``, which has been integrated, or the same scene run again with smaller steps where its
-    ledgers need them."""
+    """``first``, which is integrated, or the same scene with smaller steps if its ledgers need
+    them."""
     best, numerics = first, first.numerics
     for reruns in range(1, _RERUNS + 1):
         if (

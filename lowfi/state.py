@@ -6,14 +6,14 @@ momentum A about the scene origin::
     h = I w,      A = r x m v + R h      (h and w in body axes)
 
 Explicit Runge-Kutta methods conserve linear invariants to rounding. The sums of m v and of A over
-both bodies, less the impulse and its moment from outside, are such invariants when every internal
+both bodies, minus the impulse and its moment from outside, are such invariants if every internal
 force acts as a pair at one common point; a wrong pair still shows. The rate follows from h. From A
 it would be w = I^-1 R' (A - r x m v): an error of R would turn a large spin into one about the axis
-of least inertia, where it is a large rate. ``reconcile`` makes h and R agree with A after each step.
+of least inertia, where it is a large rate. ``reconcile`` makes h and R agree with A after each
+step.
 
-The work entries come next. They are quadratures: the same method integrates them, so both ledgers
-close to its accuracy. The modes of the rails come last, where there are any
-(``lowfi.contact.compliant.modes``).
+The work entries come next. They are quadratures of the same method, so both ledgers close to its
+accuracy. The modes of the rails, if there are any, come last (``lowfi.contact.compliant.modes``).
 """
 
 from typing import NamedTuple
@@ -31,8 +31,8 @@ PLACE, VELOCITY, QUATERNION, SPIN, BODY_SIZE = 0, 3, 6, 10, 13
 PAYLOAD, PLATFORM, MOMENT, IMPULSE, TURN, WORK = 0, 13, 26, 32, 35, 38
 # The first slots of each body and of its A.
 BODIES = ((PAYLOAD, MOMENT), (PLATFORM, MOMENT + 3))
-DYNAMIC_SIZE = 26  # what the equations of motion depend on, besides modes
-MOVING_SIZE = 32  # the same with A of both bodies
+DYNAMIC_SIZE = 26  # slots on which the equations of motion depend, besides modes
+MOVING_SIZE = 32  # the same plus A of both bodies
 # Slots of work and loss (J), total and axial part.
 (
     THRUST,
@@ -47,13 +47,13 @@ MOVING_SIZE = 32  # the same with A of both bodies
     STRUCTURAL,
 ) = range(WORK, WORK + 10)
 WORK_SIZE = 10
-_REGULAR = 1e-13  # of the trace, by which the matrix of ``reconcile`` is kept from being singular
-# WORK + WORK_SIZE, filled up to whole cache lines: rows of stages are read as vectors of eight
+_REGULAR = 1e-13  # of the trace; keeps the matrix of ``reconcile`` regular
+# WORK + WORK_SIZE, padded to whole cache lines: rows of stages are read as vectors of eight
 STATE_SIZE = 48
 
 
 class Motion(NamedTuple):
-    """Motion of a body at one instant, in scene axes but for ``body_rate``."""
+    """Motion of a body at one instant, in scene axes except for ``body_rate``."""
 
     place: tuple  # m, mass centre
     velocity: tuple  # m/s, of the mass centre
@@ -64,16 +64,16 @@ class Motion(NamedTuple):
 
 @kernel
 def copy(source, target, size):
-    """Copy the first ``size`` numbers. A loop, because a slice brings Numba's broadcasting and its
-    error texts into each kernel."""
+    """Copy the first ``size`` numbers. A loop, because a slice would compile Numba's broadcasting
+    and its error texts into each kernel."""
     for j in range(size):
         target[j] = source[j]
 
 
 @kernel
 def modal_size(compliance):
-    """How many numbers the modes of ``compliance`` add to the state: all amplitudes q (kg^0.5 m),
-    rail by rail, then all their rates."""
+    """Number of values that the modes of ``compliance`` add to the state: all amplitudes q (kg^0.5
+    m), rail by rail, then all their rates."""
     size = 0
     if compliance is not None:
         size = _modal_size(compliance.modes)
@@ -98,7 +98,7 @@ def copy_all(source, target, modal):
 
 @kernel
 def triple(values, first):
-    """Three numbers from slot ``first`` on."""
+    """Three numbers from slot ``first``."""
     return (values[first], values[first + 1], values[first + 2])
 
 
@@ -131,9 +131,9 @@ def motion(record, state, body):
 
 @kernel
 def _rate(record, h):
-    """Body rate (rad/s) of spin ``h``, refined once. The inverse of a thin body that lies across
-    its axes holds large numbers, whose rounding is a coupling of axes; what is left after the
-    refinement is an error about the thin axis alone, which does not accelerate the body."""
+    """Body rate (rad/s) of spin ``h``, refined once. The inverse inertia of a thin body that lies
+    across its axes has large numbers; their rounding couples the axes. After the refinement only an
+    error about the thin axis remains, which does not accelerate the body."""
     w = rotation.multiply(record.inverse_inertia, h)
     back = rotation.multiply(record.inertia, w)
     more = rotation.multiply(
@@ -153,7 +153,7 @@ def frame(platform, state):
 
 @kernel
 def velocity_at(body, point):
-    """Velocity (m/s) of the point of a body that is now at ``point``."""
+    """Velocity (m/s) of the point of a body that is at ``point``."""
     arm = (point[0] - body.place[0], point[1] - body.place[1], point[2] - body.place[2])
     swing = rotation.cross(body.rate, arm)
     return (body.velocity[0] + swing[0], body.velocity[1] + swing[1], body.velocity[2] + swing[2])
@@ -185,9 +185,9 @@ def reconcile(record, dt, state, body):
     """Make attitude and spin of a body, whose slots begin at ``body``, agree with its A, to first
     order, at the end of a step of ``dt`` (s).
 
-    The difference e = R' (A - r x m v) - h is an error of the step. Of the turns p of the body (rad,
-    body axes) and the changes d of its spin that remove it, d = e + h x p, those that change rates
-    least are taken. The minimum of |p|^2 / dt^2 + |I^-1 d|^2 is at::
+    The difference e = R' (A - r x m v) - h is an error of the step. Turns p of the body (rad, body
+    axes) and changes d of its spin with d = e + h x p remove it. The pair that changes rates least
+    is used. The minimum of |p|^2 / dt^2 + |I^-1 d|^2 is at::
 
         p = dt^2 h x k,      (I^2 + dt^2 (|h|^2 - h h')) k = e
     """
@@ -216,8 +216,8 @@ def reconcile(record, dt, state, body):
 
 @kernel
 def _squares(inertia, g, k):
-    """(I^2 + |g|^2 - g g') k, and a little of the trace, so that the sum is regular to rounding
-    for the thinnest body."""
+    """(I^2 + |g|^2 - g g') k, plus a small part of the trace, so that the sum is regular to
+    rounding for the thinnest body."""
     square = rotation.multiply(inertia, rotation.multiply(inertia, k))
     trace = 2.0 * rotation.dot(g, g)
     for i in range(3):

@@ -34,15 +34,15 @@ class Contact(NamedTuple):
     impact: Impact | None
     hunt_crossley: HuntCrossley | None
     linear: Linear | None
-    thermal_offset: ThermalOffset | None  # of the walls, None where they are not warm
+    thermal_offset: ThermalOffset | None  # of the walls, None if they are not warm
 
 
 @by_reference
 class System(NamedTuple):
-    """All records of one run; None where an effect is absent."""
+    """All records of one run; None for an absent effect."""
 
     payload: Body
-    platform: Body | None  # None where the rails are fixed
+    platform: Body | None  # None for fixed rails
     faces: np.ndarray  # (f, faces.FACE_SIZE)
     rail_start: float  # m, X of the rear end
     rail_end: float  # m, X of the open end
@@ -52,13 +52,13 @@ class System(NamedTuple):
     contact: Contact | None  # contact springs
     compliance: Compliance | None  # compliant contact, instead of contact springs
     has_contact: bool  # of either kind
-    # True with a compliance, else None: a small argument by which functions are pruned
+    # True with a compliance, else None: a small argument that removes code at compile time
     is_compliant: bool | None
     friction: Friction | None  # two-step law
     sticking: Sticking | None  # stick-slip law
     body_force: BodyForce | None
-    ledger: bool | None  # True where work, losses and impulses are integrated
-    neglected: Neglected | None  # modes of the rails that are watched, None at rigid walls
+    ledger: bool | None  # True if work, losses and impulses are integrated
+    neglected: Neglected | None  # watched modes of the rails, None at rigid walls
 
 
 def build(
@@ -68,9 +68,9 @@ def build(
     thermal_offset: ThermalOffset | None = None,
     neglected: Neglected | None = None,
 ) -> System:
-    """Records of ``model``: contact springs at rigid walls, with a ``thermal_offset`` or without,
+    """Records of ``model``: contact springs at rigid walls, with or without a ``thermal_offset``,
     or compliant contact with a ``compliance``. Without a ``ledger`` no work, loss or impulse is
-    integrated. Of ``neglected`` modes the effect is found."""
+    integrated. The effect of ``neglected`` modes is computed."""
     contact, friction = None, model.friction
     if model.contact is not None and compliance is None:
         contact = Contact(*model.contact, thermal_offset)

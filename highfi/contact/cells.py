@@ -15,8 +15,8 @@ from tipoff.scenes.effects.friction import coefficient_over_speed
 
 
 class Touch(NamedTuple):
-    """What contact of one group of faces reads and writes: the whole records would be costly to
-    compile."""
+    """Data that contact of one group of faces reads and writes. The whole records would take longer
+    to compile."""
 
     inverse_mass: np.ndarray  # (n,) 1/kg
     displacement: np.ndarray  # (n,3) m
@@ -149,8 +149,8 @@ def spot_under(touch, face, place, last):
 
 @inlined
 def nearest_wall(touch, face):
-    """Bound (m) of the wall under a face along the outward normal: no point of the wall is lower;
-    infinity where there is no wall."""
+    """Lower bound (m) of the wall under a face along the outward normal; infinity without a
+    wall."""
     search, surface = touch.surface.search, touch.surface
     wide = 3 - face.axis
     half_x = abs(face.along[0]) + abs(face.across[0])
@@ -171,7 +171,7 @@ def nearest_wall(touch, face):
                 lower, upper = wall.extremes(surface.quadratic, height, face.sign)
                 least, most = min(least, lower), max(most, upper)
     if by_border and least < most:
-        # Cells over the border see the wall continued by half a cell; twice that far is safe.
+        # Cells over the border see the wall continued by half a cell; twice that distance is safe.
         reach = face.size[0] * scale[0] + face.size[1] * scale[1]
         least -= reach * (most - least)
     return least
@@ -184,7 +184,7 @@ def _bin(place, low, per_length, count):
 
 @inlined
 def press(touch, friction, face, place, spot):
-    """Forces between a cell at ``place`` (m) and the wall at ``spot``, which it is inside."""
+    """Forces between a cell at ``place`` (m) and the wall that it penetrates at ``spot``."""
     surface, centre = touch.surface, touch.pose.centre
     nodes = wall.nodes_of(surface, spot.facet)
     weight = wall.functions(surface.quadratic, spot.r, spot.s)
@@ -210,7 +210,7 @@ def press(touch, friction, face, place, spot):
 
 @inlined
 def _in_frame(axis, x, normal, across):
-    """A vector by its components along X, the normal of a wall and across."""
+    """Frame components of a vector, from those along X, along the normal of a wall and across."""
     found = (x, across, normal)
     if axis == 1:
         found = (x, normal, across)
@@ -221,9 +221,9 @@ def _in_frame(axis, x, normal, across):
 def _friction_on_payload(friction, touch, node, g, arm, push):
     """Friction force (N) on the payload; zero and not compiled when ``friction`` is None.
 
-    Also sums its moment and gives each node the opposite, and the damping (N s/m) it brings. ``g``:
-    gradient of the penetration; ``push`` (N): normal force over its length; ``node``: numbers and
-    weights of the nodes.
+    Also sums its moment, and gives each node the opposite force and its damping (N s/m). ``g``:
+    gradient of the penetration; ``push`` (N): normal force over the length of ``g``; ``node``:
+    numbers and weights of the nodes.
     """
     drag = (0.0, 0.0, 0.0)
     if friction is not None:
@@ -253,8 +253,8 @@ def _friction_on_payload(friction, touch, node, g, arm, push):
 
 @inlined
 def _sliding_velocity(touch, nodes, weight, arm):
-    """Velocity (m/s) of the payload's material at ``arm`` (m) from its mass centre relative to that
-    of the wall."""
+    """Velocity (m/s) of the payload's material at ``arm`` (m) from its mass centre, relative to the
+    wall."""
     pose, velocity = touch.pose, touch.velocity
     spin = rotation.cross(pose.rate, arm)
     x, y, z = pose.velocity[0] + spin[0], pose.velocity[1] + spin[1], pose.velocity[2] + spin[2]
@@ -268,8 +268,8 @@ def _sliding_velocity(touch, nodes, weight, arm):
 
 @inlined
 def _add_to_payload(touch, face, place, arm, normal, drag):
-    """Forces (N) on the payload at ``place`` (m); their opposite acts on rails and frame at the same
-    place."""
+    """Add forces (N) to the payload at ``place`` (m); the opposite forces act on rails and frame at
+    the same place."""
     load = touch.load
     total = (normal[0] + drag[0], normal[1] + drag[1], normal[2] + drag[2])
     moment, about_origin = rotation.cross(arm, total), rotation.cross(place, total)
@@ -293,8 +293,8 @@ def _note_nodes(touch, nodes):
 
 @kernel
 def probe(touch, face):
-    """Of the cells of a face over the wall: largest penetration (m) inside the wall, and largest of
-    all."""
+    """Largest penetration (m) of the cells of a face over the wall: of those inside the wall, and
+    of all."""
     cells, inside, behind = touch.surface.cells, 0.0, 0.0
     spot = no_spot()
     for row in range(cells[face.number, 0]):

@@ -13,25 +13,24 @@ the nodes' u on the rail::
     on node a        +k A c p s N_a n
 
 So contact stores energy exactly, also where a tilted face slides along its wall or over its end.
-The force on the payload is along the normal of the deformed wall. Its small parts along the wall
-act on the frame, and so does the moment by the distance of the cell from the wall, as with the
-elastic force of the rails (``dynamics.step``). Momentum is exact as well. Friction acts across that
-normal, at the sliding velocity of the half step, with opposite forces on both sides.
+The force on the payload is along the normal of the deformed wall. The frame takes its small
+components along the wall and the moment due to the distance of the cell from the wall, as it does
+for the elastic force of the rails (``dynamics.step``). So momentum is exact as well. Friction acts
+across that normal, at the sliding velocity of the half step, with opposite forces on both sides.
 
-A face whose nearest cell is a gap away is skipped until something that approaches at
-``FASTEST_APPROACH`` could have closed it. That speed is checked at every sample. Where a rail rests
-(``dynamics.resting``) the face is ``near`` once it cannot be skipped for a step, and the rail is
-stepped from then on: before a cell can press it, and for a face that slides onto its wall after the
-first step over it.
+A face is skipped until it could reach the wall: its smallest gap divided by ``FASTEST_APPROACH``
+gives the time. The actual speed is checked at every sample. Over a rail at rest
+(``dynamics.resting``) a face is ``near`` once it cannot be skipped for a whole step. The rail is
+stepped from then on, before a cell can press it or after a face has slid onto it.
 
-A wall is a plate: a point behind its surface by its thickness or more is behind the wall, without
-contact force. A face that was over no wall, or behind it, may come over it with a penetration of
-``ROUNDED`` at most. A face that comes deeper strikes an edge or the back of the wall
-(``lowfi.contact.wall_ends`` has the same rule for rigid walls). No contact is modelled there: the
-face has no contact force, and the run ends.
+A wall is a plate. A point whose penetration exceeds the thickness is behind the wall and has no
+contact force. A face that comes over its wall may have a penetration of ``ROUNDED`` at most. A face
+that comes deeper strikes an edge or the back of the wall (``lowfi.contact.wall_ends`` has the same
+rule for rigid walls). Contact is not modelled there: the face has no contact force, and the run
+ends.
 
-Faces that can share a node make a group, as those along one rail do. Groups have nothing in common,
-so threads take them one by one; their loads are added in the order of the groups.
+Faces that can share a node form a group, for example all faces along one rail. Groups share
+nothing, so each thread takes whole groups; the loads are added in the order of the groups.
 """
 
 import numpy as np
@@ -56,11 +55,10 @@ from tipoff.kernels.jit import inlined, kernel
 
 # m/s across the rail: a face this far from every facet is skipped until it could arrive
 FASTEST_APPROACH = 10.0
-ROUNDED = 1e-6  # m: no edge of a pad or a wall is sharper
-# m: over this length on either side of its border a face comes over its wall, which deforms by less
+ROUNDED = 1e-6  # m; edges of pads and walls have at least this radius
+# m on either side of a border: the zone in which a face comes over its wall, which deforms by less
 _ENTRY = 1e-4
-# m: a face farther from its wall waits as if it were this far, because it may slide over another part
-# of the wall meanwhile
+# m: a larger gap counts as this one, because the face may slide over another part of the wall
 _FARTHEST = 1e-3
 # m/s along the wall: a face this far from the border is skipped until it could arrive
 FASTEST_SLIDE = 1000.0
@@ -68,8 +66,8 @@ FASTEST_SLIDE = 1000.0
 
 @inlined
 def contact_forces(interface_stiffness, constants, state, active, pose, team):
-    """Fill ``state.contact``, ``state.loads``, ``state.face_force`` and ``active``; every thread of
-    ``team`` takes a part of it."""
+    """Fill ``state.contact``, ``state.loads``, ``state.face_force`` and ``active``; called by every
+    thread of ``team``."""
     if interface_stiffness is not None:
         group = take(team)
         while group < constants.surface.groups.first_face.size - 1:
@@ -128,7 +126,7 @@ def _forget(touch):
 
 @inlined
 def _forces_of_face(touch, friction, face):
-    """Forces of one face, if it can touch by now."""
+    """Forces of one face, unless it is skipped."""
     active = touch.active
     touch.face_force[face, 0], touch.face_force[face, 1], touch.face_force[face, 2] = 0.0, 0.0, 0.0
     if active.struck[face].depth > 0.0:
@@ -143,7 +141,7 @@ def _forces_of_face(touch, friction, face):
             active.wait[face] = int(-overlap / (FASTEST_SLIDE * touch.dt))
         elif active.struck[face].depth == 0.0:
             gap = _forces_of_cells(touch, friction, here)
-            # The loop returns after whole steps alone, so a near face must be seen a step ahead.
+            # The loop returns after whole steps only, so a near face must be found one step before.
             active.wait[face] = max(0, int(gap / (FASTEST_APPROACH * touch.dt)) - touch.substeps)
             if active.wait[face] == 0 and active.rests[touch.group]:
                 active.near[touch.group] = True
@@ -151,8 +149,8 @@ def _forces_of_face(touch, friction, face):
 
 @inlined
 def _forces_of_cells(touch, friction, face):
-    """Forces of all cells of a face; no cell is nearer to its wall than the gap (m) returned, which
-    is at most ``_FARTHEST``."""
+    """Forces of all cells of a face; returns a lower bound (m) of their gaps to the wall, at most
+    ``_FARTHEST``."""
     cells, thickness = touch.surface.cells, touch.surface.thickness
     wall, deepest, spot = nearest_wall(touch, face), -np.inf, no_spot()
     presses = not touch.active.rests[touch.group]
@@ -170,8 +168,8 @@ def _forces_of_cells(touch, friction, face):
 
 @inlined
 def _overlap(touch, face):
-    """By how much (m) a face reaches over the border of its wall, along or across the rail,
-    whichever is less."""
+    """Length (m) by which a face reaches over the border of its wall: the smaller one of those
+    along and across the rail."""
     faces, border = touch.faces, touch.surface.border[face.number]
     length, width = faces.half_length[face.number], faces.half_width[face.number]
     x, y = face.middle[0], face.middle[1] if face.axis == 2 else face.middle[2]
@@ -181,8 +179,7 @@ def _overlap(touch, face):
 
 @inlined
 def _check_wall(touch, face, overlap):
-    """Bring ``active.side`` up to date, and ``active.struck`` where a face comes into its wall from
-    the side."""
+    """Update ``active.side``, and ``active.struck`` if a face strikes its wall from the side."""
     active, number = touch.active, face.number
     if overlap < -_ENTRY:
         active.side[number] = AWAY
@@ -237,8 +234,8 @@ def _collect_node(rail, state, node):
 
 @inlined
 def friction_power(friction, constants, state, active, pose, acceleration, ahead):
-    """Power (W) of the present friction at the velocities of ``pose`` and those of the nodes once
-    kicked over ``ahead`` (s), with the ``acceleration`` (m/s2) of the body force."""
+    """Power (W) of the present friction at the velocities of ``pose`` and at those of the nodes
+    after a kick of ``ahead`` (s), with the ``acceleration`` (m/s2) of the body force."""
     power, load, groups = 0.0, state.load[0], constants.surface.groups
     if friction is not None:
         for i in range(3):

@@ -7,7 +7,7 @@ import numpy as np
 
 from tipoff.highfi.state.records import Search
 
-_SLACK = 1e-9  # of a bin: what overlaps it by less is not over it
+_SLACK = 1e-9  # of a bin; a smaller overlap is ignored
 _MOST_BINS = 8  # per facet
 
 
@@ -18,7 +18,7 @@ class Plane(NamedTuple):
     corners: np.ndarray  # (m,3 or 4,2) m, X and place across of their corners
     on_border: np.ndarray  # (m,) whether an edge of the facet may be part of the border
     ends: np.ndarray  # (e,2,2) m, ends of the pieces of the border of the whole wall
-    # m, largest distance from the border at which a cell with its middle beyond it is over the wall
+    # m, largest distance beyond the border of the middle of a cell that still overlaps the wall
     overlap: float
 
 
@@ -32,7 +32,7 @@ def facet_maps(corners: np.ndarray) -> np.ndarray:
             0.25 * np.einsum("c,mci->mi", signs, corners)
             for signs in ([-1.0, 1.0, 1.0, -1.0], [-1.0, -1.0, 1.0, 1.0], [1.0, -1.0, 1.0, -1.0])
         )
-        # what rounding leaves of a parallelogram
+        # rounding errors of a parallelogram
         twist[np.abs(twist).max(axis=1) < 1e-12 * np.ptp(corners, axis=1).max(axis=1)] = 0.0
     else:
         origin, twist = corners[:, 0], np.zeros((len(corners), 2))
@@ -43,8 +43,7 @@ def facet_maps(corners: np.ndarray) -> np.ndarray:
 
 
 def border(corners: np.ndarray) -> np.ndarray:
-    """Edges (e,2) of facets with ``corners`` (m,3 or 4), as node numbers, that only one facet
-    has."""
+    """Edges (e,2), as node numbers, that only one of the facets with ``corners`` (m,3 or 4) has."""
     edges = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
     found, count = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
     return found[count == 1]
@@ -71,7 +70,7 @@ def build(wall: np.ndarray, planes: Sequence[Plane]) -> Search:
 
 
 def by_border(search: Search, facets: int) -> np.ndarray:
-    """``Surface.by_border`` of so many facets: those over bins with pieces of the border."""
+    """``Surface.by_border`` (facets,): facets over bins that contain pieces of the border."""
     found = np.zeros(facets, dtype=np.bool_)
     has_edges = np.diff(search.first_edge) > 0
     found[search.facet[np.repeat(has_edges, np.diff(search.first_facet))]] = True
@@ -79,14 +78,14 @@ def by_border(search: Search, facets: int) -> np.ndarray:
 
 
 class _Bins(NamedTuple):
-    """Bins of one wall."""
+    """Bins of one wall; ``Search`` has the meaning of the fields."""
 
-    low: np.ndarray
-    per_length: np.ndarray
-    bins: np.ndarray
-    facets_in_bin: np.ndarray
+    low: np.ndarray  # (2,) m
+    per_length: np.ndarray  # (2,) 1/m
+    bins: np.ndarray  # (2,)
+    facets_in_bin: np.ndarray  # number of entries of each bin in ``facet``
     facet: np.ndarray
-    edges_in_bin: np.ndarray
+    edges_in_bin: np.ndarray  # number of entries of each bin in ``edge``
     edge: np.ndarray
 
 
@@ -104,7 +103,7 @@ def _bins(plane: Plane) -> _Bins:
     first, last = low.min(axis=0), high.max(axis=0)
     most = np.sqrt(_MOST_BINS * len(low) / ((last - first) / size).prod())
     size = size / min(1.0, most)
-    # Bins begin where the wall does, so that those of an even mesh are its facets.
+    # Bins begin at the corner of the wall, so the bins of an even mesh are its facets.
     first = first - size * np.ceil(plane.overlap / size)
     count = np.ceil((last + plane.overlap - first) / size - _SLACK).astype(np.int64)
     reach = np.where(plane.on_border[:, None], plane.overlap, 0.0)
@@ -128,7 +127,7 @@ def _bins(plane: Plane) -> _Bins:
 
 
 def _pairs(low: np.ndarray, high: np.ndarray, count: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Numbers of the boxes and of the bins they overlap; boxes (m,2) are in bins."""
+    """Numbers of the boxes, and of the bins that they overlap; the unit of boxes (m,2) is a bin."""
     start = np.floor(low + _SLACK).astype(np.int64).clip(0, count - 1)
     stop = np.ceil(high - _SLACK).astype(np.int64).clip(start + 1, count)
     along, across = (stop - start).T

@@ -12,7 +12,7 @@ from tipoff.highfi.state.records import Groups, Surface
 _FACING = -0.9  # cosine between pad normal and facet normal below which the two can touch
 _CELLS_PER_FACET = 2  # along each edge of a facet, at least
 _GAUSS = 4  # points along each edge of a facet, for integrals of |N_a N_b|
-_MARGIN = 2e-3  # m, how far sideways and in depth a facet may lie from the face's own place
+_MARGIN = 2e-3  # m, largest distance of a facet from the face, sideways and in depth
 
 
 def build(
@@ -27,7 +27,7 @@ def build(
 
     ``points`` (n,3) m are in frame axes, ``faces`` the model's pad faces, ``cells`` the number along
     each edge of a face (None: see ``_cells``), ``clamped`` (k,) numbers of nodes, ``thickness`` (m)
-    that of the walls.
+    of the walls.
     """
     facets = np.concatenate(
         [group for name, group in sorted(surfaces.items()) if name.startswith("contact")]
@@ -63,8 +63,8 @@ def build(
 
 
 def _maps(corners: np.ndarray, found: list[np.ndarray]) -> np.ndarray:
-    """``Surface.map`` of facets with ``corners`` (m,k,2) m; zeros for those that no face comes over,
-    which may be seen from their edge."""
+    """``Surface.map`` of facets with ``corners`` (m,k,2) m. Rows of facets that no face can touch
+    are zero: they may be seen from their edge."""
     maps, reached = np.zeros((len(corners), 8)), np.unique(np.concatenate(found))
     maps[reached] = search.facet_maps(corners[reached])
     return maps
@@ -90,8 +90,8 @@ def _planes(
     found: list[np.ndarray],
     counts: np.ndarray,
 ) -> tuple[np.ndarray, list[search.Plane]]:
-    """Number (f,) of the wall of each face, -1 without, and the walls. Faces that can come over the
-    same facets share one."""
+    """Number (f,) of the wall of each face, -1 without one, and the walls. Faces that can touch the
+    same facets share a wall."""
     sizes = 2.0 * np.column_stack([faces.half_length, faces.half_width]) / counts
     wall = np.full(len(found), -1)
     numbers: dict[bytes, int] = {}
@@ -124,12 +124,12 @@ def _planes(
 def _share(
     points: np.ndarray, facets: np.ndarray, faces, found: list[np.ndarray], counts: np.ndarray
 ) -> np.ndarray:
-    """Largest sum over the cells on a node a of A |N_a| sum over b of |N_b| (n,) m2, wherever a
-    face lies.
+    """Upper bound (n,) m2, for any place of a face, of the sum over its cells on node a of
+    A |N_a| sum over b of |N_b|.
 
-    It is the integral over the facets of the node, and what the sum over points in rows a distance d
-    apart may exceed it by: for a function that rises over a length h and falls again, half of (d/h)^2
-    in each direction.
+    It is the integral over the facets of the node, and a bound of the difference between sum and
+    integral: for points in rows a distance d apart, and a function that rises over a length h and
+    falls again, half of (d/h)^2 in each direction.
     """
     shape, area = geometry.gauss(points[facets], _GAUSS)
     spread = np.abs(shape) * np.abs(shape).sum(axis=1, keepdims=True)
@@ -147,8 +147,8 @@ def _share(
 
 
 def _border(corners: np.ndarray, found: list[np.ndarray]) -> np.ndarray:
-    """Smallest and largest X and place across the rail (f,4) of the facets ``found`` for each face,
-    with ``corners`` (m,k,2) m; from infinity to minus infinity without facets."""
+    """Least X, greatest X, and the same across the rail, (f,4) m, of the facets ``found`` for each
+    face, with ``corners`` (m,k,2) m; infinity and minus infinity without facets."""
     border = np.tile([np.inf, -np.inf], (len(found), 2))
     for row, group in zip(border, found):
         if group.size:
@@ -158,7 +158,7 @@ def _border(corners: np.ndarray, found: list[np.ndarray]) -> np.ndarray:
 
 
 def group_faces(nodes: list[np.ndarray], clamped: np.ndarray) -> Groups:
-    """Groups of faces, from the ``nodes`` that each face can touch."""
+    """Groups of the faces, from the ``nodes`` within reach of each face."""
     face = np.repeat(np.arange(len(nodes)), [part.size for part in nodes])
     node = np.concatenate(nodes)
     size = len(nodes) + node.max(initial=0) + 1
@@ -179,19 +179,19 @@ def group_faces(nodes: list[np.ndarray], clamped: np.ndarray) -> Groups:
 
 
 def _starts(parts: list[np.ndarray]) -> np.ndarray:
-    """First index of each part, and the end of the last, once they are put together."""
+    """First index of each part in the joined array, and the end of the last part."""
     return np.cumsum([0, *(part.size for part in parts)])
 
 
 def magnification(surface: Surface) -> float:
-    """How much faster than its fastest node a point of a facet can move: 1 where no nodal function
-    is negative, else 5/3."""
+    """Upper bound of the speed of a point of a facet over that of its fastest node: 1 where no
+    nodal function is negative, else 5/3."""
     return 1.0 if surface.quadratic is None else 5.0 / 3.0
 
 
 def in_reach(nodes: np.ndarray, faces, face: int) -> np.ndarray:
-    """Numbers of the facets (nodes (m,k,3) m, axes of ``faces.wall``) that face ``face`` and lie
-    beside the track of its pad."""
+    """Numbers of the facets (nodes (m,k,3) m, axes of ``faces.wall``) that are opposite to face
+    ``face`` and beside the track of its pad."""
     across = 3 - faces.axis[face]
     place, half = faces.centre[face, across], faces.half_width[face] + _MARGIN
     beside = (nodes[:, :, across].max(axis=1) > place - half) & (
@@ -201,7 +201,7 @@ def in_reach(nodes: np.ndarray, faces, face: int) -> np.ndarray:
 
 
 def _facing(nodes: np.ndarray, faces, face: int) -> np.ndarray:
-    """Whether each facet belongs to the wall that ``face`` faces."""
+    """Whether each facet is part of the wall of ``face``."""
     axis = faces.axis[face]
     facing = faces.sign[face] * geometry.normals(nodes)[:, axis] < _FACING
     return facing & (np.abs(nodes[:, :, axis].mean(axis=1) - faces.wall[face]) < _MARGIN)

@@ -5,10 +5,10 @@ The wall is seen along its nominal normal, the axis ``a`` of the frame. At a pla
 
     w = sum over nodes of N_a (x_a + u_a),      dw/dX, dw/dY
 
-with the coordinates x_a + u_a along the normal and the nodal functions N_a of the facet that lies
-there before any load. Displacement in the plane would change which material is at the place, by
-some 1e-5 m; that is of second order in a linear rail and left out. So w is linear in u, and a force
-on the wall has exactly the shares N_a.
+with the coordinates x_a + u_a along the normal, and the nodal functions N_a of the facet that lies
+there without load. Displacement in the plane, about 1e-5 m, also changes the material point at the
+place; this effect is of second order in a linear rail and left out. So w is linear in u, and a
+force on the wall is distributed exactly by the N_a.
 
 A facet maps (X, Y) to its own coordinates (r, s) with q = A [(X, Y) - o] and (r, s) = q - b r s: o, A
 and b are a row of ``Surface.map``. They run from -1 to 1 over four corners, where b is zero for a
@@ -20,9 +20,9 @@ import numpy as np
 
 from tipoff.kernels.jit import inlined
 
-INSIDE = 1e-9  # in (r, s): no further outside a facet is inside
-_GAP = 1e-6  # in (r, s): as wide a gap between facets, far from the border, is rounding
-_TWISTED = 8  # steps of the iteration for b, each of which gains the digits by which b is below one
+INSIDE = 1e-9  # in (r, s): a place with a smaller excess is inside the facet
+_GAP = 1e-6  # in (r, s): far from the border, a smaller gap between facets is rounding
+_TWISTED = 8  # iterations for b; each reduces the error by a factor of about b
 
 
 @inlined
@@ -38,8 +38,8 @@ def bin_under(search, wall, x, y):
 
 @inlined
 def facet_under(surface, cell_bin, x, y):
-    """Facet at a place (m) over a bin, its (r, s) there, and how far in (r, s) the place is outside
-    it. Where there is none it is the nearest one of the bin, and -1 where the bin has none."""
+    """Facet at a place (m) over a bin, (r, s) there, and the excess in (r, s) outside the facet.
+    Without a facet there, it is the nearest one of the bin; -1 if the bin has none."""
     search = surface.search
     found, best, first, second = -1, np.inf, 0.0, 0.0
     for k in range(search.first_facet[cell_bin], search.first_facet[cell_bin + 1]):
@@ -54,7 +54,7 @@ def facet_under(surface, cell_bin, x, y):
 
 @inlined
 def local(surface, facet, x, y):
-    """(r, s) of a place (m) on a facet, and how far in (r, s) it is outside."""
+    """(r, s) of a place (m) on a facet, and the excess in (r, s) outside it."""
     r, s = _mapped(surface.quadratic, surface.map[facet], x, y)
     return r, s, _outside(surface.quadratic, r, s)
 
@@ -99,9 +99,9 @@ def functions(quadratic, r, s):
 
 @inlined
 def nodes_of(surface, facet):
-    """Numbers of the nodes of a facet, the last two meaningless where it has only four.
+    """Numbers of the six nodes of a facet; the last two have no meaning if it has four.
 
-    Unsigned, because an index that might be negative would need a test.
+    Unsigned, because a signed index needs a test for negative values.
     """
     facets = surface.facets
     fifth, sixth = np.uint64(0), np.uint64(0)
@@ -119,7 +119,8 @@ def nodes_of(surface, facet):
 
 @inlined
 def heights(surface, displacement, axis, nodes):
-    """Coordinates (m) of the nodes of a facet along ``axis``, zeros where it has only four."""
+    """Coordinates (m) of the six nodes of a facet along ``axis``; zeros after the fourth if it has
+    four."""
     places = surface.places
     fifth, sixth = 0.0, 0.0
     if surface.quadratic is not None:
@@ -137,7 +138,7 @@ def heights(surface, displacement, axis, nodes):
 
 @inlined
 def extremes(quadratic, height, sign):
-    """Bounds of ``sign`` times the height over a facet, by its nodes or, for six of them, by the
+    """Bounds of ``sign`` times the height over a facet: from its four nodes, or from the six
     control points of the quadratic (Farin, Curves and Surfaces for CAGD, chapter 17)."""
     a, b, c, d = sign * height[0], sign * height[1], sign * height[2], sign * height[3]
     low, high = min(min(a, b), min(c, d)), max(max(a, b), max(c, d))
@@ -151,7 +152,7 @@ def extremes(quadratic, height, sign):
 
 @inlined
 def blend(weight, value):
-    """Sum of the values of six nodes times their weights."""
+    """Weighted sum of the values of six nodes."""
     return (
         weight[0] * value[0]
         + weight[1] * value[1]
@@ -197,12 +198,12 @@ def _derivatives(quadratic, r, s, h):
 
 @inlined
 def cover(search, cell_bin, x, y, size, outside):
-    """Share of a cell of ``size`` (m along X, m across) with its middle at a place (m) that is over
-    the wall, and the slopes of the share (1/m). ``outside``: of the place, see ``facet_under``.
+    """Share over the wall of a cell of ``size`` (m along X, m across) with its middle at a place
+    (m), and the slopes of the share (1/m). ``outside``: of the place, see ``facet_under``.
 
-    With lengths in cells, the share is one half and the distance from the border. So it is
-    continuous, and exact where a straight border runs along an edge of the cell; at a corner of the
-    wall it is off by up to a fifth.
+    The share is one half plus the distance from the border in cells. So it is continuous, and exact
+    for a straight border parallel to an edge of the cell. At a corner of the wall its error is up
+    to one fifth.
     """
     least, by_x, by_y = np.inf, 0.0, 0.0
     for k in range(search.first_edge[cell_bin], search.first_edge[cell_bin + 1]):

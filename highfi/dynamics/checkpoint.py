@@ -1,9 +1,10 @@
 """Checkpoints: the state of a run as a file, from which an interrupted run continues to the same
 bits.
 
-A checkpoint holds everything of a Loop that evolves, that is all but ``CONSTANT``. The file is a
-NumPy archive (.npz) of plain arrays, no code, with the line of its digest (``tipoff.files``):
-``header``, JSON that identifies the run, and one array per evolving value, by its dotted name.
+A checkpoint holds everything of a Loop that evolves: all attributes except ``CONSTANT``. The file
+is a NumPy archive (.npz) of plain arrays, without code, with a line for its digest
+(``tipoff.files``). It has ``header``, JSON that identifies the run, and one array per evolving
+value, by its dotted name.
 
 It is written between two steps, replaced atomically, and read only by a run of the same scene,
 numerics, program and constant arrays. The processor is not compared: on another kind the run
@@ -23,7 +24,7 @@ import numpy as np
 from tipoff import sources
 from tipoff.files import DamageError, require_whole, write_sealed
 
-# What a Loop is built from.
+# Arguments from which a Loop is built.
 CONSTANT = (
     "scene",
     "system",
@@ -47,7 +48,7 @@ _OTHER = {
 
 
 class CheckpointError(RuntimeError):
-    """A file that cannot be resumed; ``reason`` continues a sentence that begins with its path."""
+    """A file that cannot be resumed; ``reason`` completes the sentence that its path begins."""
 
     def __init__(self, path: Path, reason: str):
         self.path, self.reason = path, reason
@@ -76,13 +77,13 @@ class Checkpoint:
         }
 
     def keep(self, loop) -> None:
-        """Write ``loop`` as it is now, if it is time."""
+        """Write the present ``loop`` if ``every`` seconds have passed."""
         if time.monotonic() >= self.due:
             self.write(loop)
             self.due = time.monotonic() + self.every
 
     def write(self, loop) -> None:
-        """Write ``loop`` as it is now, atomically. Raises OSError, for instance on a full disk."""
+        """Write the present ``loop`` atomically. Raises OSError, for instance on a full disk."""
         archive = io.BytesIO()
         np.savez(
             archive,
@@ -93,8 +94,8 @@ class Checkpoint:
         write_sealed(self.path, archive.getbuffer())
 
     def read(self) -> dict[str, np.ndarray] | None:
-        """Saved arrays by name, or None without a file. Raises CheckpointError for one that is
-        damaged or of another run."""
+        """Saved arrays by name, or None without a file. Raises CheckpointError for a damaged file
+        and for one of another run."""
         try:
             require_whole(self.path)
         except FileNotFoundError:
@@ -118,8 +119,8 @@ class Checkpoint:
         return saved
 
     def resume(self, loop, saved: dict[str, np.ndarray]) -> None:
-        """Put what ``read`` returned into ``loop``, as ``restore`` does. Raises CheckpointError for
-        values that are not those of the loop."""
+        """Restore the result of ``read`` into ``loop``. Raises CheckpointError for values that do
+        not fit the loop."""
         try:
             restore(loop, saved)
         except ValueError as fault:
@@ -128,8 +129,7 @@ class Checkpoint:
 
 def restore(loop, saved: dict[str, np.ndarray]) -> None:
     """Put ``saved`` into a loop that has begun; arrays are filled in place, because kernels need them
-    aligned. Raises ValueError, before anything is filled, for values that are not those of the
-    loop."""
+    aligned. Raises ValueError, before it changes anything, for values that do not fit the loop."""
     parts = evolving(loop)
     for name, value in parts.items():
         if isinstance(value, list):
@@ -150,7 +150,7 @@ def restore(loop, saved: dict[str, np.ndarray]) -> None:
 def _require(
     name: str, saved: dict[str, np.ndarray], shape: tuple, dtype: np.dtype | None = None
 ) -> None:
-    """Raises ValueError where a value is missing or has another shape or type; a list has any length
+    """Raise ValueError for a missing value, or another shape or type; a list may have any length
     and type."""
     if name not in saved:
         raise ValueError(f"lacks the value {name}")
@@ -161,13 +161,13 @@ def _require(
 
 
 def evolving(loop) -> dict[str, Any]:
-    """What changes during a run: records, lists of samples, numbers and text, by name."""
+    """Values that change during a run: records, lists of samples, numbers and text, by name."""
     return {name: value for name, value in vars(loop).items() if name not in CONSTANT}
 
 
 def arrays(parts: dict[Any, Any]) -> Iterator[tuple[str, np.ndarray]]:
-    """Everything in ``parts`` as arrays by dotted name, not copied; records are opened to any
-    depth, what is absent is left out."""
+    """All values in ``parts`` as arrays by dotted name, not copied. Records are opened to any
+    depth; None is left out."""
     for name, part in parts.items():
         if hasattr(part, "_asdict"):
             yield from arrays({f"{name}.{field}": value for field, value in part._asdict().items()})

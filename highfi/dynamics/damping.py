@@ -5,13 +5,14 @@ resistance of the nodes grows by
 
     f(n) = (beta / dt) [e(n) - e(n-1)] + (alpha / dt) m d(n)
 
-so the velocity lags by half a step, the scheme stays explicit (``step_limit`` has its step), and the
-elastic force of the last step is stored instead of a second product with K. A rail that moves with
-its frame has d = 0 and no damping. K has the joints under the mounts in it, so they are damped like
-the rail, and the ratio of a mode follows from its frequency as in the surrogate. The opposite of f
-acts on the frame where the node is: that of the part with K is already in how ``step`` sums elastic
-forces, that of the part with m and of the joints is summed here. The energy taken is the work of f
-in halves around each kick, f(n) [d(n) + d(n+1)] / 2; it does not use strain and kinetic energy.
+so the velocity lags by half a step, the scheme stays explicit (``step_limit`` has its step), and
+the elastic force of the last step is stored instead of a second product with K. A rail that moves
+with its frame has d = 0 and no damping. K includes the joints under the mounts, so they are damped
+like the rail, and the ratio of a mode depends on its frequency as in the surrogate. The opposite of
+f acts on the frame at the place of the node: ``step`` already counts it for the part with K when it
+sums elastic forces; the parts with m and of joints are summed here. The dissipated energy is the
+work of f in halves around each kick, f(n) [d(n) + d(n+1)] / 2; it does not use strain and kinetic
+energy.
 
 Cost: on the reference scene at 4 mm a step takes 1.6 times as long (1.5 to 1.7; three more
 nodal arrays to read and write), and steps get shorter, because the part with K grows with

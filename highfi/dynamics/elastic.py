@@ -1,9 +1,9 @@
 """Elastic force of the rails and the motion of their nodes, shared among threads.
 
-On an extruded mesh each thread takes its own chunks of columns. A chunk moves, and the force of a
-chunk follows once all chunks it depends on have moved, while they are still in the cache. Chunks
-that depend on another thread's wait for the barrier. Any other mesh is cut into slabs along X:
-elements of two even slabs share no node, nor do those of two odd ones.
+On an extruded mesh each thread takes its own chunks of columns. After a chunk and all chunks that
+it depends on have moved, its force follows while they are still in the cache. Chunks that depend on
+a chunk of another thread wait for the barrier. Any other mesh is cut into slabs along X: elements
+of two even slabs share no node, nor do those of two odd ones.
 """
 
 from tipoff.highfi.dynamics.damping import add_damping
@@ -17,9 +17,9 @@ from tipoff.kernels.jit import entry, kernel
 
 @entry
 def elastic_force(rail, displacement, force, turn, mounting, team):
-    """Set ``force`` (n,3) to K u (N) with that of the joints, ``turn`` (b,3) to each block's part
-    of the sum of u x K u (N m), and ``mounting`` (b,6) to the sums of the joints, None without;
-    one thread's work."""
+    """Set ``force`` (n,3) to K u (N), joints included, ``turn`` (b,3) to each block's part of the
+    sum of u x K u (N m), and ``mounting`` (b,6) to the sums of the joints (None without joints);
+    the work of one thread."""
     for chunk in range(turn.shape[0]):
         _force_of_chunk(rail.columns, displacement, force, chunk, turn, team.lanes[0])
     _force_of_elements(rail.elements, rail, displacement, force, turn, team.lanes[0])
@@ -82,10 +82,11 @@ def hold_blocks(rail, state, first, step):
 
 @kernel
 def move_and_load(rail, frame, state, team, thread, dt):
-    """Kick and drift all nodes, then set the elastic part of the new forces; every thread of
-    ``team`` takes a part of it.
+    """Kick and drift all nodes, then set the elastic part of the new forces; called by every thread
+    of ``team``.
 
-    On return all places are up to date; forces are so after ``finish_load`` and one more barrier.
+    On return all places are up to date. The forces are complete after ``finish_load`` and one more
+    barrier.
     """
     _sweep_columns(rail.columns, rail, frame, state, team, thread, dt)
     _move_blocks(rail.elements, rail, frame, state, team, thread, dt)
@@ -94,14 +95,14 @@ def move_and_load(rail, frame, state, team, thread, dt):
 
 @kernel
 def finish_load(rail, state, team, thread, dt):
-    """What could not be computed before all nodes had moved."""
+    """Compute the forces that need the motion of all nodes."""
     _load_borders(rail.columns, rail, state, team, thread, dt)
     _load_slabs(rail.elements, rail, state, team, thread, dt)
 
 
 @kernel
 def _share(stepped, team, thread):
-    """First and last place of a thread among the chunks that are stepped."""
+    """First and last place of a thread's part of the stepped chunks."""
     count = stepped.in_use[0]
     return count * thread // team.size, count * (thread + 1) // team.size
 
@@ -156,7 +157,7 @@ def _sweep_columns(columns, rail, frame, state, team, thread, dt):
         for k in range(first, last):
             chunk = order[k]
             move_nodes(rail, frame, state, dt, rail.blocks[chunk], rail.blocks[chunk + 1])
-            # A chunk depends on chunks of its own rail alone, which are stepped as well.
+            # A chunk depends only on chunks of its own rail, which are stepped as well.
             while following < last and columns.highest[order[following]] <= chunk:
                 if columns.lowest[order[following]] >= order[first]:
                     _load_chunk(columns, rail, state, order[following], team.lanes[thread], dt)

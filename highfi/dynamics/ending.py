@@ -1,8 +1,9 @@
 """Exit, settled window and jam of the reference, updated at every step of the time loop.
 
-A step takes places from n to n + 1 with the velocities at n + 1/2. So the distance past the rail end
-is linear in a step, speeds and rates are linear from one half step to the next, and the integral over
-a step is its length times the velocity in its middle. All of this is of order two, like the scheme.
+A step takes places from n to n + 1 with the velocities at n + 1/2. So the distance past the rail
+end is linear within a step, speeds and rates are linear from one half step to the next, and the
+integral over a step is its length times the velocity at mid-step. The order is two, as that of the
+scheme.
 """
 
 import numpy as np
@@ -33,8 +34,7 @@ from tipoff.mechanics.outcome import Outcome
 
 
 def build(system: System) -> tuple[Exit, np.ndarray]:
-    """What a run needs to follow its payload off the rail: the place of the exit, and the book
-    (``mechanics.ending``) at the beginning."""
+    """The place of the exit, and the book (``mechanics.ending``) at the beginning of a run."""
     edges = system.faces.centre.copy()
     edges[:, 0] -= system.faces.half_length
     book = np.zeros(books.BOOK_SIZE)
@@ -44,8 +44,8 @@ def build(system: System) -> tuple[Exit, np.ndarray]:
 
 
 def found(system: System, book: np.ndarray) -> tuple[str, Outcome]:
-    """Status and outcome of a run with this book. The book has places of the frame's origin, an
-    outcome those of the platform's mass centre."""
+    """Status and outcome of a run with this book. Places in the book are those of the frame's
+    origin, in the outcome those of the platform's mass centre."""
     moved, whole = (
         samples.motion(book[None, AT_EXIT : AT_EXIT + ROW_SIZE], 0.0, system.body_offset),
         book.copy(),
@@ -69,8 +69,7 @@ def begin(constants, state, book):
 
 @inlined
 def follow(constants, state, book, began):
-    """Bring the ``book`` up to date with the step from ``began`` (s) on: places are those of its
-    end."""
+    """Update the ``book`` for the step that began at ``began`` (s); places are at its end."""
     if book[DONE] < np.inf:
         return
     dt, marks = constants.dt, constants.milestones
@@ -99,7 +98,7 @@ def _keep(book):
 
 @inlined
 def _fill(frame, constants, state, book, share):
-    """Places now, and velocities and rates of half a step ago, for which attitudes are taken
+    """Places now, and velocities and rates of half a step ago. For the rates, attitudes are taken
     ``share`` of a step back."""
     _fill_body(state.payload, constants.payload.inverse_inertia, book[NOW:], book[BEFORE:], share)
     base = NOW + BODY
@@ -137,7 +136,7 @@ def _fill_body(body, inverse_inertia, row, before, share):
 
 @kernel
 def _count_from_origin(centre, row):
-    """Turn place and velocity of the mass centre of the rigid part into those of the frame's
+    """Convert place and velocity of the mass centre of the rigid part to those of the frame's
     origin."""
     turn, rate = rotation.matrix(_four(row)), triple(row[SPIN:])
     arm, speed = (
@@ -176,8 +175,8 @@ def _past(exit_, book):
 
 @kernel
 def _leave(book, share, at, marks):
-    """The exit, when this share of the step is done: places lie between both ends, velocities on
-    the line through this half step and the one before."""
+    """Fill in the exit at this ``share`` of the step: places are interpolated between both ends,
+    velocities on the line through this half step and the one before."""
     for body in (0, BODY):
         for i in range(body, body + BODY):
             before, now = book[BEFORE + i], book[NOW + i]
@@ -192,7 +191,7 @@ def _leave(book, share, at, marks):
 
 @kernel
 def _check_speed(book, marks, began, dt):
-    """The axial speed half way through the step."""
+    """Check the axial speed at mid-step."""
     at, start = began + 0.5 * dt, books.watched_from(marks)
     if at >= start:
         excess, crossing = abs(books.axial_speed(book[NOW:])) - marks.jam_speed, max(start, began)

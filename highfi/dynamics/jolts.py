@@ -1,13 +1,14 @@
-"""The vibration that is left out of rails at rest on an accelerated platform.
+"""Vibration of rails at rest on an accelerated platform, which the rails at rest leave out.
 
 For each term c of the acceleration (``statics.inertial``) a mode with a frequency w is followed,
 
     s'' = w^2 (c - s)
 
-with the mean of c from one look to the next, in closed form; w is the lowest frequency by Rayleigh's
-quotient of the rail's deflections, since modes of higher frequency follow c more closely. The static
-deflection has s = c, so the deflection times the amplitude of s - c is what resting leaves out in one
-mode. Several modes leave out up to ``MODES`` times as much (tests/highfi/dynamics/test_resting.py).
+with the mean of c between two evaluations, in closed form. w is the lowest frequency by Rayleigh's
+quotient of the rail's deflections, because modes of higher frequency follow c more closely. The
+static deflection has s = c, so a rail at rest leaves out the deflection times the amplitude of s -
+c in one mode. Several modes leave out at most ``MODES`` times as much
+(tests/highfi/dynamics/test_resting.py).
 """
 
 from typing import NamedTuple
@@ -24,12 +25,12 @@ MODES = 4.0
 
 
 class Jolts(NamedTuple):
-    """What evolves."""
+    """Evolving values."""
 
     modes: np.ndarray  # (2,s,TERMS) s and s'/w of each solid in ``Rails.size``
-    rates: np.ndarray  # (11,) ``rates`` of the platform when last looked at, and that time (s)
+    rates: np.ndarray  # (11,) ``rates`` of the platform at the last evaluation, and its time (s)
     left_out: np.ndarray  # (1,) m, at present
-    most: np.ndarray  # (1,) m, the most that a rail left out when it was stepped again
+    most: np.ndarray  # (1,) m, largest value at which a rail was stepped again
 
 
 def rates(system: System, state: State) -> np.ndarray:
@@ -44,19 +45,19 @@ def rates(system: System, state: State) -> np.ndarray:
 
 def terms(system: System, before: np.ndarray, after: np.ndarray, span: float) -> np.ndarray:
     """Mean acceleration (TERMS,) of the rails' mounts between two ``rates``, ``span`` (s) apart,
-    less that of the body force."""
+    minus that of the body force."""
     base = rotation.single(after[:4])
     linear = (after[4:7] - before[4:7]) / span
     if system.model.body_force is not None:
         linear = linear - np.array(system.model.body_force)
     spin = _matrix(after[7:10])
     gradient = _matrix((after[7:10] - before[7:10]) / span) + spin @ spin
-    # Shapes count places from the scene origin.
+    # Places in shapes begin at the scene origin.
     return np.concatenate([base.T @ linear - gradient @ system.origin, gradient.ravel()])
 
 
 def _matrix(rate: np.ndarray) -> np.ndarray:
-    """W with W X = rate x X."""
+    """Matrix W with W X = rate x X."""
     x, y, z = rate.tolist()
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
@@ -74,7 +75,7 @@ def begin(rails: Rails | None) -> Jolts:
 
 def follow(rails: Rails, modes: np.ndarray, amounts: np.ndarray, span: float) -> float:
     """Advance ``modes`` by ``span`` (s) at the ``amounts`` (TERMS,); returns the largest deflection
-    (m) that a rail leaves out."""
+    (m) that is left out of a rail."""
     angle = rails.frequency * span
     cosine, sine = np.cos(angle), np.sin(angle)
     away, speed = modes[0] - amounts, modes[1].copy()

@@ -1,18 +1,18 @@
 """Check that displacements are small: the largest displacement gradient of the rails.
 
-Linear elasticity has an error of the order of the square of the rotation, and of the order of the
-strain. Both are parts of the displacement gradient G = du/dx, whose norm is the angle where an
-element turns and the strain where it stretches. A run ends where it exceeds ``MOST``, at which a
-rotation has an error of 1 %, and beyond which no metal is elastic. Bending between two mounts makes
-tension too, which is of the order of (deflection / thickness)^2 and is not seen by this limit.
+Linear elasticity has an error of the order of the strain and of the square of the rotation. Both
+are parts of the displacement gradient G = du/dx; its norm is the angle of a pure rotation and the
+strain of a pure extension. A run ends where the norm exceeds ``MOST``: there a rotation has an
+error of 1 %, and no metal is elastic beyond. Bending between two mounts also causes tension, of the
+order of (deflection / thickness)^2, which this limit does not see.
 
 G of an element is the linear map closest to the displacements u of its nodes at x,
 
     G = (sum (u - <u>) (x - <x>)') (sum (x - <x>) (x - <x>)')^-1
 
-which is exact where the displacement is linear. In a brick it is at most 2 sqrt(3) max|u - u_0| /
-thickness with u_0 that of any point, so only elements whose nodes part by more than ``small`` are
-looked at.
+This is exact for a linear displacement. In a brick the norm of G is at most 2 sqrt(3) max|u - u_0|
+/ thickness, with u_0 of any point. So only elements whose nodes differ by more than ``small`` are
+evaluated.
 """
 
 import numpy as np
@@ -21,12 +21,12 @@ from tipoff.highfi.dynamics.system import System
 from tipoff.highfi.mesh.cells import thickness
 
 MOST = 0.1
-EVERY = 2500  # steps at least, from one look at the rails to the next
+EVERY = 2500  # least number of steps from one check of the rails to the next
 _BATCH = 65536  # elements treated at once; bounds the memory
 
 
 def small(system: System) -> float:
-    """Displacement (m) between nodes of an element up to which no gradient can exceed ``MOST``."""
+    """Largest difference (m) of displacement in an element that cannot exceed the limit."""
     across = thickness(system.mesh.points, system.mesh.cells).min()
     return float(MOST * across / (2.0 * np.sqrt(3.0)))
 
@@ -45,7 +45,7 @@ def largest(
     system: System, displacement: np.ndarray, above: float = 0.0
 ) -> tuple[float, np.ndarray]:
     """Largest gradient of ``displacement`` (n,3) m of the nodal arrays, and the centre (3,) m of its
-    element in scene axes; elements whose nodes part by at most ``above`` (m) are left out."""
+    element in scene axes; elements whose nodes differ by at most ``above`` (m) are left out."""
     mesh, moved = system.mesh, displacement[system.number]
     worst, place = 0.0, np.zeros(3)
     for start in range(0, len(mesh.cells), _BATCH):
@@ -62,7 +62,7 @@ def largest(
 
 
 def fault(system: System, displacement: np.ndarray, harmless: float) -> str:
-    """Why the rails are no longer linear, or nothing; ``harmless`` is that of ``small``."""
+    """Reason why the rails are no longer linear, or ""; ``harmless`` (m): result of ``small``."""
     size = np.sqrt((displacement**2).sum(axis=1).max())
     if size <= harmless:
         return ""

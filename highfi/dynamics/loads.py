@@ -1,8 +1,9 @@
 """Loads other than contact: thrust and body force, and the work of all loads.
 
 Work is counted in halves around each kick, ``dt/2 f(n) v(n-1/2)`` before and ``dt/2 f(n) v(n+1/2)``
-after: with the kinetic energy ``v(n-1/2) M v(n+1/2) / 2`` the balance of central differences is
-then an identity for every force, and the ledgers show only what is not conservative or not smooth.
+after. With the kinetic energy ``v(n-1/2) M v(n+1/2) / 2`` the balance of central differences is
+then an identity for every force. So the ledgers show only forces that are not conservative or not
+smooth.
 """
 
 from tipoff.highfi.contact.pads import friction_power
@@ -67,8 +68,8 @@ def axial_velocity_of_platform(state, frame, base):
 
 @inlined
 def add_work(constants, state, active, pose, thrust, ahead):
-    """Add half a step of work, total and axial, at the velocities of ``pose`` and those of the
-    nodes once kicked over ``ahead`` (s)."""
+    """Add half a step of work, total and axial, at the velocities of ``pose`` and at those of the
+    nodes after a kick of ``ahead`` (s)."""
     half, load, v = 0.5 * constants.dt, state.load[0], state.payload.velocity
     total, axial = state.work[TOTAL], state.work[AXIAL]
     force, moment, _point = thrust
@@ -139,8 +140,8 @@ def add_external_impulse(frame, constants, state, pose, thrust, reaction, dt):
     """Impulse and moment of impulse (about the scene origin) of everything outside the counted
     system.
 
-    Thrust counts unless the free platform takes its reaction; the ground's ``reaction``, force and
-    moment, counts when the platform is fixed.
+    Thrust counts unless the free platform takes its reaction. The ``reaction`` of the ground, force
+    and moment, counts if the platform is fixed.
     """
     force, _, point = thrust
     if frame is None:
@@ -167,7 +168,7 @@ def _add_body_force(body_force, constants, state, pose, dt):
 
 @kernel
 def _centre_of_rails(frame, drive, state, pose):
-    """Mass centre of the nodes that are stepped, in inertial axes (m)."""
+    """Mass centre of the stepped nodes, in inertial axes (m)."""
     turned = rotation.rotate(pose.frame, triple(state.rail_moment))
     p, m = origin_of_frame(frame, state.platform, pose.frame), drive.moving_mass
     return (p[0] + turned[0] / m, p[1] + turned[1] / m, p[2] + turned[2] / m)

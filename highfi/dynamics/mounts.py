@@ -3,9 +3,9 @@ of the mount strips.
 
     r += S u
 
-S is that of ``statics.mounts``. Unlike K u, S u has a resultant and a moment about the undeformed
-places. Their opposites act on the frame, so they are summed here node by node; ``step`` has the
-rest of the balance.
+``statics.mounts`` defines S. Unlike K u, S u has a resultant and a moment about the undeformed
+places. Their opposites act on the frame. They are summed here node by node; ``step`` has the rest
+of the balance.
 """
 
 import numpy as np
@@ -18,8 +18,8 @@ from tipoff.kernels.jit import kernel
 
 
 def build(matrix: csr_array | None, number: np.ndarray, blocks: np.ndarray) -> Mounts | None:
-    """Kernel record of the stiffness ``matrix`` (3n,3n) N/m between mesh nodes, whose ``number``
-    (n,) in the nodal arrays lies in ``blocks`` (b+1,); None without joints."""
+    """Kernel record of the stiffness ``matrix`` (3n,3n) N/m between mesh nodes with the ``number``
+    (n,) in the nodal arrays, and the first node (b+1,) of the ``blocks``; None without joints."""
     if matrix is None:
         return None
     by_node = matrix.tobsr(blocksize=(3, 3))
@@ -68,7 +68,7 @@ def _force(mounts, displacement, k):
 
 @kernel
 def collect_mounts(mounting, state):
-    """What the joints do to the frame into ``state.reaction``."""
+    """Add the forces of the joints on the frame to ``state.reaction``."""
     if mounting is not None:
         for block in range(mounting.shape[0]):
             for i in range(6):
@@ -87,7 +87,7 @@ def damp_mounts(mounting, history, block, stiff):
 
 @kernel
 def begin_mounts(mounting, history):
-    """Rails at rest in their frame: the present forces are those of the step before, too."""
+    """Set the forces of the step before to the present ones: rails at rest in their frame."""
     if mounting is not None:
         for block in range(mounting.shape[0]):
             for i in range(6):

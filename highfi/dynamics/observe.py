@@ -4,8 +4,8 @@
     v(n) = (v(n-1/2) + v(n+1/2)) / 2,     kinetic energy = v(n-1/2) M v(n+1/2) / 2
 
 The second form makes kinetic plus strain energy an exact invariant of central differences for a
-linear system. Plain NumPy: a sample is taken once in a hundred steps, so a kernel would only cost
-compilation.
+linear system. Plain NumPy: a kernel would not repay its compilation, as a sample is taken once in a
+hundred steps.
 """
 
 import math
@@ -28,7 +28,7 @@ SAMPLE_SIZE = 45
 
 
 class Moving(NamedTuple):
-    """Copy of everything that a kick changes."""
+    """Copy of all values that a kick changes."""
 
     velocity: np.ndarray  # (3,) m/s, of the payload
     spin: np.ndarray  # (3,) kg m2/s, of the payload
@@ -40,12 +40,12 @@ class Moving(NamedTuple):
 
 
 def moving(system, state: records.State) -> Moving:
-    """Copy of what a kick changes; of nodes, ``system.nodes``."""
+    """Copy of the values that a kick changes; of the nodes only ``system.nodes``."""
     return Moving(*(part.copy(order="K") for part in _changed(system, state)))
 
 
 def restore(system, state: records.State, saved: Moving) -> None:
-    """Put back what ``moving`` copied."""
+    """Restore the values that ``moving`` copied."""
     for part, value in zip(_changed(system, state), saved):
         part[:] = value
 
@@ -103,8 +103,8 @@ def strain(system, state: records.State, team) -> float:
     elastic_force(
         system.rail, state.displacement, force, np.empty_like(state.turning), mounting, team
     )
-    # Not a BLAS product: its threads would wait for each other where several runs share the
-    # processor.
+    # Not a BLAS product: with several runs on one machine, its threads would wait for each
+    # other.
     return 0.5 * float((state.displacement * force).sum())
 
 
@@ -179,7 +179,6 @@ def _sizes_of_body(place, momentum, spin) -> tuple[float, float, float]:
 
 
 def _cross(a, b) -> np.ndarray:
-    """Vector product of two triples; numpy's own spends far longer on finding out which axis is
-    meant."""
+    """Vector product of two triples; numpy's function takes far longer, to identify the axis."""
     (x, y, z), (p, q, r) = a.tolist(), b.tolist()
     return np.array([y * r - z * q, z * p - x * r, x * q - y * p])

@@ -1,10 +1,10 @@
 """Between two steps: put rails to rest, or step them again.
 
-Linear and angular momentum and mass centre of the whole are the same before and after: the rigid part of a free
-platform takes what is left of them, the ground takes it where the platform is fixed. The energy that
-is lost is entered as released. At the exit it is that of the rails' vibration. A rail that is stepped
-again has the static deflection under the platform's present acceleration, whose energy was not
-taken from the platform: this is a release below zero, of about 1e-7 J.
+Linear and angular momentum and mass centre of the whole system do not change. The rigid part of a
+free platform takes the differences; with a fixed platform the ground takes them. The lost energy is
+entered as released; at the exit it is the energy of the rails' vibration. A rail that is stepped
+again gets the static deflection under the platform's present acceleration. Its energy is not taken
+from the platform, so the released energy is negative, about -1e-7 J.
 """
 
 from typing import NamedTuple
@@ -31,8 +31,8 @@ class _Motion(NamedTuple):
 def regroup(rails: Rails, loop, rests: np.ndarray, terms: np.ndarray) -> None:
     """Let the rails ``rests`` (rails,) rest and step all others.
 
-    ``loop`` is a ``run.Loop`` with velocities of half a step ago. The rails that rested until now
-    get the static deflection under ``terms`` (``statics.inertial``). Contact must not act on rails that
+    ``loop`` is a ``run.Loop`` with velocities of half a step ago. Rails that are woken get the
+    static deflection under ``terms`` (``statics.inertial``). Contact must not act on rails that
     change.
     """
     state, active, system, old = loop.state, loop.active, loop.system, loop.now
@@ -68,8 +68,8 @@ def _origin(system: System, state: State) -> np.ndarray:
 
 
 def _unloaded(system: System, state: State) -> np.ndarray:
-    """Where the frame's origin would be (3,) m without the displacement of the nodes that are
-    stepped, if the mass centre of the whole stayed where it is."""
+    """Place (3,) m of the frame's origin if the stepped nodes had no displacement and the mass
+    centre of the whole system stayed in place."""
     if system.frame is None:
         return np.zeros(3)
     shift = system.moving_mass @ state.displacement / system.frame.total_mass
@@ -94,7 +94,7 @@ def _motion(system: System, state: State, team) -> _Motion:
 
 
 def _reactions(state: State, blocks: np.ndarray) -> np.ndarray:
-    """What ``blocks`` add to ``State.reaction`` (6,)."""
+    """Contribution (6,) of ``blocks`` to ``State.reaction``."""
     found = state.clamping[blocks].sum(axis=0)
     found[3:] -= state.turning[blocks].sum(axis=0)
     if state.mounting is not None:
@@ -109,7 +109,7 @@ def _parts(system: System, blocks: np.ndarray) -> list[slice]:
 
 
 def _still(system: System, state: State, blocks: np.ndarray) -> None:
-    """Set ``blocks`` to rest in their frame, without force."""
+    """Set ``blocks`` to rest in their frame, without forces."""
     for part in _parts(system, blocks):
         for array in (state.displacement, state.velocity, state.resistance):
             array[part] = 0.0
@@ -128,7 +128,7 @@ def _still(system: System, state: State, blocks: np.ndarray) -> None:
 def _wake(
     system: System, rails: Rails, rail: int, now: System, state: State, terms: np.ndarray
 ) -> None:
-    """Give the nodes of a rail the velocity of the platform, and their static deflection."""
+    """Give the nodes of a rail the velocity of the platform and their static deflection."""
     if now.frame is None:
         return
     base = rotation.single(state.platform.quaternion)
@@ -142,8 +142,7 @@ def _wake(
 
 
 def _load(system: System, state: State, blocks: np.ndarray, team) -> None:
-    """Elastic forces of ``blocks``, which rest or have just been woken, and what follows from
-    them."""
+    """Elastic forces of ``blocks``, which rest or were just woken, and the sums over them."""
     if not state.displacement.any():
         return
     force, turn = zeros(state.displacement.shape, order="F"), np.empty_like(state.turning)
@@ -164,7 +163,7 @@ def _load(system: System, state: State, blocks: np.ndarray, team) -> None:
 
 
 def _keep(state: State, block: int, part: slice) -> None:
-    """Forces and places of the step before are the present ones."""
+    """Set the forces and places of the step before to the present ones."""
     if state.history is not None:
         state.history.displacement[part] = state.displacement[part]
         state.history.elastic[part] = state.resistance[part]
@@ -173,7 +172,8 @@ def _keep(state: State, block: int, part: slice) -> None:
 
 
 def _balance(now: System, state: State, before: _Motion, centre: np.ndarray, team) -> None:
-    """Give the rigid part, or the ground, the momentum that the nodes have lost; enter the energy."""
+    """Give the rigid part, or the ground, the momentum that the nodes lost, and enter the
+    energy."""
     base, frame = rotation.single(state.platform.quaternion), now.frame
     if frame is not None:
         shift = now.moving_mass @ state.displacement / frame.total_mass

@@ -1,13 +1,13 @@
 """Rails at rest: no pad has touched them yet, or the payload has left them. They are not stepped.
 
-A rail that rests is a part of the rigid part of its platform. On a fixed platform that is exact until
-a pad touches it. On a free platform the rail follows the platform's acceleration as in statics
-(``statics.inertial``); that deflection is a few nanometres, is left out while the rail rests, and is
-put in when the rail is stepped again. What is then left out is vibration; ``dynamics.jolts`` measures
-it, and a rail rests no longer once that exceeds ``MOST_LEFT_OUT``.
+A rail at rest belongs to the rigid part of its platform. On a fixed platform this is exact until a
+pad touches it. On a free platform the rail follows the platform's acceleration as in statics
+(``statics.inertial``). This deflection is a few nanometres. It is left out while the rail rests and
+added when the rail is stepped again. So only vibration is left out; ``dynamics.jolts`` measures it,
+and the rail is stepped again when it exceeds ``MOST_LEFT_OUT``.
 
-This module has the constants: what can rest, and the records of a platform part of whose rails rest.
-``dynamics.regroup`` lets rails rest and wakes them, ``dynamics.waking`` decides when.
+This module has the constants: the rails that can rest, and the records of a platform with rails at
+rest. ``dynamics.regroup`` lets rails rest and wakes them, ``dynamics.waking`` decides when.
 """
 
 from typing import NamedTuple
@@ -23,22 +23,23 @@ from tipoff.scenes.effects import thrust
 from tipoff.scenes.effects.thrust_law import sample
 from tipoff.scenes.scene import Scene
 
-MOST_LEFT_OUT = 1e-9  # m, of the walls
-# nodes of a solid: the factor of a larger one would take more memory than the run
+MOST_LEFT_OUT = 1e-9  # m, vibration of the walls
+# nodes of a solid; the factor of a larger one would take more memory than the run
 MOST_NODES = 20_000
 _MOST_STRIDE = 10  # steps in one long step
-# of the narrowest pulse: the trapezoidal sum then has an error of 3e-7 of it where the pulse is cut
+# of the narrowest pulse: the trapezoidal sum then has a relative error of 3e-7 where the pulse is
+# cut
 _SHARE_OF_PULSE = 1.0 / 500.0
 _JUMP = 1e-9  # of the largest thrust
 
 
 class Rails(NamedTuple):
-    """Rails that can rest, one by one where the mesh is sorted by rails, else all together."""
+    """Rails that can rest: one by one if the mesh is sorted by rails, else all together."""
 
     blocks: list[np.ndarray]  # numbers of the blocks of each
     groups: np.ndarray  # (rails, g) whether pads of a group can touch a rail
-    deflections: list[list[Deflection]]  # of the solids of each; empty on a fixed platform
-    size: np.ndarray  # (s,TERMS) m, of the s solids that are no mirror images, see ``Deflection``
+    deflections: list[list[Deflection]]  # of the solids of each rail; empty on a fixed platform
+    size: np.ndarray  # (s,TERMS) m, of the s solids without mirror images, see ``Deflection``
     frequency: np.ndarray  # (s,1) rad/s, the lowest of each
     at_ignition: bool  # whether rails may rest before the first touch
     stride: int  # steps in one long step, which is taken while all rails rest
@@ -47,8 +48,8 @@ class Rails(NamedTuple):
 
 
 def build(scene: Scene, system: System, stepping: Stepping) -> Rails | None:
-    """What can rest, or None where that is unknown: on a free platform with a rail that nothing
-    holds, or a large one."""
+    """Rails that can rest. None if this is unknown: on a free platform, with a rail that nothing
+    holds or with a large one."""
     solids, blocks = pieces.nodes(system.mesh), system.rail.blocks
     found = []
     if system.frame is not None:
@@ -72,11 +73,11 @@ def build(scene: Scene, system: System, stepping: Stepping) -> Rails | None:
         blocks=parts,
         groups=_groups(system, parts),
         deflections=grouped,
-        # A constant body force loads the rails of a fixed platform from ignition on.
+        # A constant body force acts on the rails of a fixed platform from ignition on.
         at_ignition=system.frame is not None or system.model.body_force is None,
         size=size,
         frequency=np.where(np.isfinite(lowest), lowest, 0.0),
-        # Samples may lie at any multiple of the raster, so long steps must not pass it.
+        # Samples may be at any multiple of the raster, so long steps must not pass it.
         stride=_stride(system.model.thrust, stepping.dt_s, raster),
         interval=raster * max(1, STEPS_PER_CHECK // raster),
         jumps=_jumps(system.model.thrust, scene.time_limit),
@@ -117,7 +118,7 @@ def _jumps(law: thrust.Thrust, duration: float) -> np.ndarray:
 
 
 def view(system: System, rails: Rails, rests: np.ndarray) -> System:
-    """``system`` as it is while the rails ``rests`` (rails,) rest."""
+    """``system`` while the rails ``rests`` (rails,) rest."""
     stepped = np.zeros(len(system.moving_mass), dtype=np.bool_)
     for part, at_rest in zip(rails.blocks, rests):
         for block in part:
@@ -134,7 +135,7 @@ def view(system: System, rails: Rails, rests: np.ndarray) -> System:
 
 
 def _with(system: System, carried: np.ndarray) -> records.Frame:
-    """The rigid part with nodes of the masses ``carried`` (n,) kg (parallel axes)."""
+    """The rigid part with additional masses ``carried`` (n,) kg at the nodes (parallel axes)."""
     alone, points = system.frame, system.rail.points
     assert alone is not None
     if not carried.any():

@@ -14,8 +14,8 @@ from tipoff.mechanics.promises import FINITE_ELEMENTS
 
 
 def motion(samples: np.ndarray, interval: float, body_offset: np.ndarray) -> Motion:
-    """Motion of samples (n, SAMPLE_SIZE); ``body_offset`` (3,) m from the frame's origin to the
-    platform's mass centre."""
+    """Motion of samples (n, SAMPLE_SIZE); ``body_offset`` (3,) m points from the frame's origin to
+    the platform's mass centre."""
 
     def part(first, size=3):
         return samples[:, first : first + size].copy()
@@ -39,8 +39,8 @@ def motion(samples: np.ndarray, interval: float, body_offset: np.ndarray) -> Mot
 def ledgers(samples: np.ndarray, work: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Total and transverse ledger (n, len(ENTRIES)) J of samples and accumulated work (n,2) WORK.
 
-    Structural damping acts between parts of one body, platform with rails: it has no resultant, and
-    so no axial part.
+    Structural damping acts within one body, the platform with its rails. So it has no resultant and
+    no axial part.
     """
     book = work.view(float).reshape(len(samples), 2, len(ledger.ENTRIES))
     total, across = book[:, records.TOTAL].copy(), book[:, records.TOTAL] - book[:, records.AXIAL]

@@ -4,12 +4,12 @@ Central differences are stable for
 
     dt <= (2 / w) (sqrt(1 + z^2) - z)
 
-with w the highest frequency of M^-1 K in rad/s and z its damping ratio when the damping force lags
-by half a step (Belytschko, Liu, Moran, Nonlinear Finite Elements, 2000, section 6.2). Two bounds of
-w are offered. `element_bound` is a theorem: no frequency of the assembled system exceeds the
-highest one of its elements (Irons; Hughes, The Finite Element Method, 1987, section 7.3.2),
-whatever is fixed; joints under the mounts add at most their own largest eigenvalue to w^2.
-`operator_bound` is sharper and takes contact springs into account.
+with w the highest frequency of M^-1 K in rad/s and z its damping ratio, if the damping force lags
+by half a step (Belytschko, Liu, Moran, Nonlinear Finite Elements, 2000, section 6.2). There are two
+bounds of w. `element_bound` is a theorem: no frequency of the assembled system exceeds the highest
+one of its elements, whatever is fixed (Irons; Hughes, The Finite Element Method, 1987, section
+7.3.2); joints under the mounts add at most their own largest eigenvalue to w^2. `operator_bound` is
+sharper and includes contact springs.
 """
 
 import math
@@ -24,7 +24,7 @@ from tipoff.highfi.statics.operator import internal_force
 from tipoff.scenes.faults import InputError
 
 _BATCH = 2048  # classes of elements treated at once; bounds the memory of an unstructured mesh
-_DIVIDES = 1e-9  # relative error allowed to a requested step that should divide the sample interval
+_DIVIDES = 1e-9  # allowed relative error of a requested step as a divisor of the sample interval
 
 
 class StepError(InputError):
@@ -32,20 +32,19 @@ class StepError(InputError):
 
 
 class FrequencyBound(NamedTuple):
-    """Highest frequency in rad/s: `upper` is the one to use, `ritz` a lower bound, `iterations` the
-    operator calls spent."""
+    """Bounds of the highest frequency of the free nodes."""
 
-    upper: float
-    ritz: float
-    iterations: int
+    upper: float  # rad/s, the bound to use
+    ritz: float  # rad/s, a lower bound
+    iterations: int  # operator calls
 
 
 def element_bound(operator: Operator) -> float:
     """Upper bound (rad/s) of every frequency of the mesh: the highest of K_e x = w^2 M_e x over the
     element classes, and the share of joints.
 
-    M_e holds the mass the element itself brings to its nodes. Assembling elements and fixing nodes
-    can only lower the highest frequency; contact springs, which raise it, are not in it.
+    M_e has the mass that the element contributes to its nodes. Assembly and fixed nodes can only
+    lower the highest frequency. Contact springs raise it and are not included.
     """
     scale, highest = 1.0 / np.sqrt(np.repeat(operator.node_mass, 3, axis=1)), 0.0
     for start in range(0, len(scale), _BATCH):
@@ -68,12 +67,11 @@ def operator_bound(
     M^-1/2 (K + S) M^-1/2, K with the joints under the mounts.
 
     added_stiffness (n,3) N/m is the diagonal S of contact springs, none if absent. With Ritz value
-    t and residual r, an eigenvalue lies in [t - r, t + r]. That it is the highest one is not a
-    theorem but a matter of the start vector, which is random and therefore not orthogonal to the
-    highest mode; the run of Ritz values towards the end of the spectrum is the fastest of all. What
-    is safe whatever happens is the cap: the result never exceeds the element bound with the springs
-    added, w^2 <= w_element^2 + max(S / m), and is that cap where `iterations` do not bring r below
-    tolerance * t.
+    t and residual r, an eigenvalue lies in [t - r, t + r]. There is no proof that it is the highest
+    one. But the start vector is random, so it is not orthogonal to the highest mode, and Ritz
+    values converge fastest at the ends of the spectrum. The result never exceeds the element bound
+    with springs, w^2 <= w_element^2 + max(S / m); it is this bound if `iterations` do not bring r
+    below tolerance * t.
     """
     inverse_root_mass = np.where(operator.free, 1.0 / np.sqrt(operator.mass), 0.0)[:, None]
     springs = (
@@ -104,8 +102,8 @@ def operator_bound(
 def _lanczos(apply, free, scale, tolerance, iterations):
     """Largest Ritz value of a symmetric operator, its residual norm and the number of applications.
 
-    No re-orthogonalisation: lost orthogonality repeats converged values, which leaves the largest
-    one and its residual intact (Paige 1971). The residual of a Ritz pair is the last off-diagonal
+    No re-orthogonalisation: lost orthogonality repeats converged values, but the largest one and
+    its residual stay correct (Paige 1971). The residual of a Ritz pair is the last off-diagonal
     entry times the last component of its vector.
     """
     vector = np.random.default_rng(0).standard_normal((len(free), 3)) * free
@@ -135,7 +133,7 @@ def _lanczos(apply, free, scale, tolerance, iterations):
 def critical_step(frequency: float, damping_ratio: float = 0.0) -> float:
     """Largest stable step (s) for a frequency in rad/s whose damping force lags by half a step, see
     the module docstring."""
-    # 1 / (sqrt(1+z2) + z) is the same as sqrt(1+z2) - z without the cancellation at large z.
+    # 1 / (sqrt(1+z2) + z) equals sqrt(1+z2) - z, without cancellation at large z.
     return 2.0 / frequency / (math.hypot(1.0, damping_ratio) + damping_ratio)
 
 
@@ -144,9 +142,8 @@ def choose_step(
 ) -> float:
     """Largest step (s) that is at most safety * limit and divides the sample interval.
 
-    A `requested` step is not changed but checked: StepError where it exceeds the limit or does not
-    divide the interval. Raises ValueError unless limit > 0, sample_interval > 0 and 0 < safety <=
-    1.
+    A `requested` step is checked and not changed. Raises StepError if it exceeds the limit or does
+    not divide the interval, ValueError unless limit > 0, sample_interval > 0 and 0 < safety <= 1.
     """
     if not (limit > 0.0 and sample_interval > 0.0 and 0.0 < safety <= 1.0):
         raise ValueError(

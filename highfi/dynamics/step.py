@@ -1,21 +1,21 @@
 """Time integration: explicit central differences (leapfrog) for rail nodes, payload and platform
 together.
 
-At time n places and forces are known and velocities are those of n - 1/2. One step is: kick ``v += dt
-f/m``, drift (``pose``), forces::
+At time n, places and forces are of n and velocities of n - 1/2. One step is: kick ``v += dt f/m``,
+drift (``pose``), forces::
 
     rail node   w += dt f / m                    f = -K u - damping + contact
     payload     v += dt F / m,  h += dt M
     platform    P += dt (F_c - sum f),  spin += dt (T_c - sum (X + u) x f)      sums over the moving nodes
 
-The platform's share is the elastic force at the clamps in its variational form: the force and
-moment that the strain energy u'Ku/2 exerts on the frame when the nodes stay where they are in
-space. With it linear *and* angular momentum are exact; the sum of clamp forces alone would lose sum
-u x f. F_c and T_c are contact on all rail nodes, clamped or not. As K u has no resultant and no
-moment about the undeformed places, both sums need the dense nodal arrays for u x K u only. The same
-holds for the part of structural damping (``damping``) that is proportional to K; the part
-proportional to mass is summed node by node. So are the forces of joints under the mounts and their
-damping (``mounts``), which have a resultant; all nodes of the rail then move.
+The platform takes the elastic force at the clamps in its variational form: the force and moment of
+the strain energy u'Ku/2 on the frame while the nodes keep their places in space. So linear *and*
+angular momentum are exact; the sum of clamp forces alone would lose sum u x f. F_c and T_c are
+contact on all rail nodes, clamped or not. As K u has no resultant and no moment about the
+undeformed places, both sums need the dense nodal arrays only for u x K u. The same holds for the
+part of structural damping (``damping``) that is proportional to K. Three parts are summed node by
+node: the part proportional to mass, the forces of joints under the mounts, and their damping
+(``mounts``). They have a resultant. On joints all nodes of the rail move.
 
 All threads of the team move and load nodes and search contact; before that the first one moves the
 bodies.
@@ -50,7 +50,7 @@ EVALUATE, KICK, OPEN, ADVANCE = range(4)
 
 
 class Task(NamedTuple):
-    """What ``perform`` does."""
+    """Task of ``perform``."""
 
     kind: int  # EVALUATE, KICK, OPEN or ADVANCE
     first_step: int  # number of the step to begin with, whose places are the present ones
@@ -66,10 +66,10 @@ def perform(constants, state, active, book, team, thread, task):
 
     EVALUATE: all forces at the present places of rails at rest in their frame. KICK: advance all
     velocities, but no place, by the present forces. OPEN: begin the ``book`` (``mechanics.ending``)
-    at ignition, with the velocities of half a step before. ADVANCE: take steps; all threads of the
-    team must be called, and return early, after whole steps of ``Constants.substeps``, where a pad
-    comes near a rail that rests or friction damps a node faster than ``Task.most_damping``. Returns
-    the steps taken, and the largest friction damping / mass (1/s) of a node before any of them.
+    at ignition, with the velocities of half a step before. ADVANCE: take steps; call it in all
+    threads of the team. It returns early, after whole steps of ``Constants.substeps``, if a pad
+    comes near a rail at rest or friction damps a node faster than ``Task.most_damping``. Returns
+    the number of steps, and the largest friction damping / mass (1/s) of a node before any of them.
     """
     if task.kind == ADVANCE:
         return _advance(constants, state, active, book, team, thread, task)
@@ -107,7 +107,7 @@ def _kick(constants, state, task):
 
 @inlined
 def collect(interface_stiffness, constants, state, active):
-    """Sum up: ``state.reaction``, and contact into the resistance."""
+    """Sum ``state.reaction``, and add contact to the resistance."""
     state.reaction[:] = 0.0
     for part in range(state.turning.shape[0]):
         for i in range(3):
@@ -126,7 +126,7 @@ def _sum(a, b):
 
 @inlined
 def _kick_bodies(constants, state, pose, thrust, dt):
-    """Advance all velocities but those of the nodes over ``dt`` by the present forces; counts the
+    """Advance all velocities except those of the nodes over ``dt`` by the present forces; adds the
     external impulse."""
     load, total, moment = state.load[0], triple(state.reaction), triple(state.reaction[3:])
     n, f = load.normal_force, load.friction_force
@@ -209,8 +209,8 @@ def _drift_frame(frame, drive, state, pose, dt):
 
 @inlined
 def _advance(constants, state, active, book, team, thread, task):
-    """``book`` follows the payload off the rail. On entry and on return forces are those of the
-    present places and work is counted up to the present time."""
+    """``book`` follows the payload off the rail. On entry and on return, forces are at the present
+    places and work is complete up to the present time."""
     rail, frame, dt = constants.rail, constants.frame, constants.dt
     unit, damping, taken = dt / task.stride, 0.0, 0
     while taken < task.steps and not (
@@ -243,8 +243,8 @@ def _advance(constants, state, active, book, team, thread, task):
 
 @kernel
 def _ends_early(state, active, most_damping):
-    """Whether a pad is near a rail that rests, or friction damps a node too fast. Threads agree on
-    it: both change between the two barriers of a step alone."""
+    """Whether a pad is near a rail at rest, or friction damps a node too fast. All threads get the
+    same answer: both values change only between the two barriers of a step."""
     for group in range(active.near.size):
         if active.near[group] or state.loads[group].damping_rate > most_damping:
             return True

@@ -15,9 +15,9 @@ at most the largest sum of magnitudes in a row of M^-1 G k G' (Gershgorin):
 On bilinear facets no N is negative and their sum is one, so area_a is the node's own share of the
 area; on quadratic triangles the corners' N may be negative and the last sum reaches 5/3.
 
-Damping C whose velocity lags by half a step is damping at the velocity of the instant, [u(n+1) -
-u(n-1)] / 2dt, in a system with the mass M - dt C/2. Such a system keeps or loses v'(M - dt C/2)v +
-u(n)'K u(n+1), and this is positive, so nothing grows, while
+Damping C whose velocity lags by half a step equals damping at the mid-step velocity, [u(n+1) -
+u(n-1)] / 2dt, in a system with the mass M - dt C/2. Such a system conserves or loses v'(M - dt
+C/2)v + u(n)'K u(n+1). Nothing grows while this is positive, that is for
 
     dt^2/4 lambda(M^-1 K) + dt/2 lambda(M^-1 C) <= 1
 
@@ -25,12 +25,12 @@ With C = alpha M + beta K of the rail, and friction c at the nodes, a step is st
 
     dt^2/4 (lambda_rail + lambda_contact) + dt/2 (alpha + beta lambda_rail) + dt/2 max(c/m) <= 1
 
-where c of a node is bounded by the same sum with each cell's damping in place of its area. Every
-term grows with lambda_rail, so its upper bound alone decides, however the damping ratio runs below
-it. The first two make the limit of a run: that of w^2 = lambda_rail + lambda_contact with the ratio
-(alpha + beta lambda_rail) / 2w. The third divides steps during the run (``dynamics.substeps``).
-Rail frequencies are those of a rail whose mounts do not move: a free platform may raise them by the
-share m_rail / m_platform, which the safety factor covers.
+where c of a node has the bound of area_a / m_a with each cell's damping in place of its area. Every
+term grows with lambda_rail, so its upper bound is sufficient, for any dependence of the damping
+ratio on frequency below it. The first two terms give the limit of a run: the limit for w^2 =
+lambda_rail + lambda_contact with the ratio (alpha + beta lambda_rail) / 2w. The third divides steps
+during the run (``dynamics.substeps``). Rail frequencies are for mounts that do not move. A free
+platform may raise them by the share m_rail / m_platform, which the safety factor covers.
 """
 
 import numpy as np
@@ -41,7 +41,7 @@ from tipoff.scenes.effects.structural_damping import Damping
 
 
 def contact_frequency_squared(system: System) -> float:
-    """Upper bound (1/s2) of what contact adds to the largest squared frequency."""
+    """Upper bound (1/s2) of the contribution of contact to the largest squared frequency."""
     if system.model.interface_stiffness is None:
         return 0.0
     rail, payload, faces = system.rail, system.model.payload, system.faces
@@ -54,8 +54,8 @@ def contact_frequency_squared(system: System) -> float:
 
 
 def damping_ratio(damping: Damping | None, rail: float, contact: float) -> float:
-    """Ratio z of the limit ``critical_step(w, z)`` of rails whose highest frequency is ``rail``
-    (rad/s), contact adding ``contact`` (1/s2) to its square, so that w^2 = rail^2 + contact; zero
+    """Ratio z for the limit ``critical_step(w, z)`` of rails with the highest frequency ``rail``
+    (rad/s) and a ``contact`` contribution (1/s2) to its square, w^2 = rail^2 + contact; zero
     without damping."""
     if damping is None:
         return 0.0
@@ -63,12 +63,12 @@ def damping_ratio(damping: Damping | None, rail: float, contact: float) -> float
 
 
 def step_limit(damping: Damping | None, rail: float, contact: float) -> float:
-    """Largest stable step (s), friction apart; see ``damping_ratio``."""
+    """Largest stable step (s) without friction; see ``damping_ratio``."""
     return critical_step(float(np.sqrt(rail**2 + contact)), damping_ratio(damping, rail, contact))
 
 
 def used(step: float, limit: float, ratio: float) -> float:
-    """What ``step`` (s) takes of the condition above, friction apart, where ``limit`` (s), with
-    damping ``ratio``, takes 1."""
+    """Share of the condition above that ``step`` (s) uses, without friction; ``limit`` (s), with
+    damping ``ratio``, uses 1."""
     half_turn = step / limit * (np.hypot(1.0, ratio) - ratio)  # dt w / 2
     return float(half_turn**2 + 2.0 * ratio * half_turn)

@@ -1,7 +1,7 @@
-"""Step of a run: the largest one below the limit that divides the sampling interval. It is the same
-for all sampling intervals that are multiples of ``RASTER``.
+"""Step of a run: the largest one below the limit that divides the sampling interval. Sampling
+intervals that are multiples of ``RASTER`` give the same step.
 
-The limit comes from the assembled rail, whose highest frequency is well below the highest one of its
+The limit comes from the assembled rail. Its highest frequency is well below the highest one of its
 elements.
 """
 
@@ -18,8 +18,8 @@ from tipoff.highfi.dynamics.system import System
 from tipoff.highfi.numerics import Numerics
 from tipoff.scenes.scene import Scene
 
-RASTER = 5e-5  # s, the interval of a scene that names none
-STEPS_PER_CHECK = 250  # at most, from one check of the balances to the next
+RASTER = 5e-5  # s, default sampling interval of a scene
+STEPS_PER_CHECK = 250  # at most, between two checks of the balances
 _ROUNDING = 1e-9
 
 
@@ -45,7 +45,7 @@ class Stepping:
 
 
 def raster_steps(stepping: Stepping, interval: float) -> int:
-    """Steps in the time that the step divides, ``RASTER`` or the sampling ``interval`` (s)."""
+    """Steps in the time that the step divides: ``RASTER`` or the sampling ``interval`` (s)."""
     count = round(RASTER / stepping.dt_s)
     divides = abs(count * stepping.dt_s - RASTER) <= _ROUNDING * RASTER
     return count if divides and interval >= RASTER else stepping.steps_per_sample
@@ -77,8 +77,8 @@ def choose(system: System, scene: Scene, numerics: Numerics) -> Stepping:
 
 
 def _divided(interval: float, largest: float) -> float:
-    """The time (s) that a step of at most ``largest`` (s) divides: ``RASTER`` where that divides
-    the interval, so that how coarsely a run is sampled changes no bit of it."""
+    """The time (s) that a step of at most ``largest`` (s) divides: ``RASTER`` if it divides the
+    interval. So the sampling interval changes no bit of the result."""
     count = round(interval / RASTER)
     return (
         RASTER

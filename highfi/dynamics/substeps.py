@@ -1,13 +1,13 @@
-"""Substeps: parts of a step, for as long as friction damps nodes faster than a whole step can follow.
+"""Substeps: parts of a step, used while friction damps nodes too fast for a whole step.
 
-Friction near rest is a damper of mu' N at each contact, and the nodes of a fine mesh are light, so a
-payload that rests on its rails damps them faster than any contact that slides (``step_limit`` has
-the condition). All nodes and bodies then take substeps. The elastic force is the same in them, so a
-run pays what the substeps take; its ``cost`` has their number.
+Friction near rest is a damper mu' N at each contact, and the nodes of a fine mesh are light. So a
+payload at rest on its rails damps them faster than any sliding contact (``step_limit`` has the
+condition). All nodes and bodies then take substeps. The elastic force stays the same in them, so a
+run becomes more expensive; its ``cost`` has their number.
 
-A whole step ends where it would have ended, so samples and their times stay. The kernel returns after
-the step in which the damping exceeds the limit. Substeps get fewer at multiples of
-``step_size.RASTER`` only: how coarsely a run is sampled changes no bit of it.
+A whole step still ends at the same time, so the times of samples stay. The kernel returns after the
+step in which the damping exceeds the limit. The number of substeps is reduced only at multiples of
+``step_size.RASTER``, so the sampling interval changes no bit of the result.
 """
 
 from typing import NamedTuple
@@ -19,17 +19,17 @@ from tipoff.highfi.dynamics.step_limit import used
 from tipoff.highfi.dynamics.step_size import STEPS_PER_CHECK, raster_steps
 
 MOST = 1000  # substeps of a step
-# Damping by which substeps are chosen, over that of the present step: contact that still grows does
-# not change them again and again.
+# Ratio of the damping that chooses the substeps to the present one, so that growing contact does
+# not change them repeatedly.
 _SPARE = 1.25
 
 
 class Friction(NamedTuple):
-    """What friction asks of the steps of a run; every entry is an array, so that it can be saved."""
+    """Friction damping and substeps of a run. Every entry is an array, so that it can be saved."""
 
     fastest: np.ndarray  # (1,) 1/s, largest damping / mass of a node since the last decision
     most: np.ndarray  # (1,) largest number of substeps of a step
-    divided: np.ndarray  # (1,) steps that were divided
+    divided: np.ndarray  # (1,) number of divided steps
 
 
 def begin() -> Friction:
@@ -40,12 +40,12 @@ def begin() -> Friction:
 
 
 def most_damping(loop) -> float:
-    """Friction damping / mass (1/s) of a node that the present step of a ``run.Loop`` can follow."""
+    """Limit of friction damping / mass (1/s) of a node for the present step of a ``run.Loop``."""
     return max(0.0, 2.0 * (1.0 - _used(loop, loop.substeps)) / loop.step)
 
 
 def needed(loop, damping: float) -> int:
-    """Substeps that can follow ``damping`` (1/s); one more than ``MOST`` where those cannot."""
+    """Number of substeps for ``damping`` (1/s); ``MOST`` + 1 if ``MOST`` are not sufficient."""
     step, count = loop.stepping.dt_s, 1
     while count <= MOST and not _used(loop, count) + 0.5 * damping * step / count <= 1.0:
         count += 1
@@ -53,7 +53,7 @@ def needed(loop, damping: float) -> int:
 
 
 def _used(loop, count: int) -> float:
-    """Share of the stability condition that ``count`` substeps use, friction apart."""
+    """Share of the stability condition that ``count`` substeps use, without friction."""
     stepping = loop.stepping
     return used(stepping.dt_s / count, stepping.dt_limit_s, stepping.damping_ratio)
 
@@ -69,7 +69,7 @@ def too_many(loop) -> bool:
 
 
 def adapt(loop) -> int:
-    """Divide the steps to come as friction requires; returns the number of steps until the next
+    """Divide the next steps as friction requires; returns the number of steps until the next
     decision."""
     now, interval = present_damping(loop), _interval(loop)
     if now > most_damping(loop):
@@ -85,15 +85,15 @@ def adapt(loop) -> int:
 
 
 def _divide(loop, count: int) -> None:
-    """Go on with ``count`` substeps. The energy that the scheme conserves depends on its step, so
-    the ledger gets the difference."""
+    """Continue with ``count`` substeps. The energy that the scheme conserves depends on its step,
+    so the ledger gets the difference."""
     before = _kinetic_energy(loop)
     loop.set_stride(1, count)
     loop.state.work["released"] += before - _kinetic_energy(loop)
 
 
 def _kinetic_energy(loop) -> np.ndarray:
-    """Kinetic energy (J) by the scheme, all of it and the axial part (``TOTAL`` and ``AXIAL``)."""
+    """Kinetic energy (J) of the scheme: total and axial part (``TOTAL`` and ``AXIAL``)."""
     before = observe.moving(loop.now, loop.state)
     loop.kick(loop.step)
     after = observe.moving(loop.now, loop.state)
@@ -107,15 +107,14 @@ def _interval(loop) -> int:
 
 
 def note(loop, damping: float, steps: int) -> None:
-    """Take note of ``steps`` just taken, with their largest ``damping`` (1/s)."""
+    """Record the last ``steps`` with their largest ``damping`` (1/s)."""
     loop.friction.fastest[0] = max(loop.friction.fastest[0], damping)
     if loop.substeps > 1:
         loop.friction.divided[0] += steps
 
 
 def cost(loop) -> dict[str, int]:
-    """What friction cost: the largest number of substeps of a step, and how many steps were
-    divided."""
+    """Largest number of substeps of a step, and number of divided steps."""
     return {
         "friction_substeps": int(loop.friction.most[0]),
         "friction_divided_steps": int(loop.friction.divided[0]),

@@ -25,16 +25,16 @@ _SAME = 1e-9  # m: two places closer than this are the same
 
 
 class System(NamedTuple):
-    """Constant records of one run, whatever its step."""
+    """Constant records of a run; they do not depend on its step."""
 
     model: scene_model.Model
     mesh: RailMesh
     operator: assembly.Operator
-    number: np.ndarray  # (n,) of each mesh node in the nodal arrays
+    number: np.ndarray  # (n,) place of each mesh node in the nodal arrays
     rail: records.Rail
-    moving_mass: np.ndarray  # kg, of the nodal arrays, zero where clamped or at rest
-    nodes: slice  # part of the nodal arrays outside which all nodes are at rest
-    walls: np.ndarray  # numbers of the nodes of the walls that move against the frame
+    moving_mass: np.ndarray  # (n,) kg, of the nodal arrays, zero if clamped or at rest
+    nodes: slice  # part of the nodal arrays that contains all stepped nodes
+    walls: np.ndarray  # numbers of the wall nodes that move in the frame
     surface: records.Surface
     faces: scene_model.Faces
     frame: records.Frame | None  # None: fixed platform
@@ -45,8 +45,8 @@ class System(NamedTuple):
 
 
 def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
-    """Constant records of a run on ``mesh``. Raises SceneError for a platform that cannot hold its
-    rails, MeshError for warm rails that nothing holds."""
+    """Constant records of a run on ``mesh``. Raises SceneError if the platform is too light for its
+    rails, MeshError for warm rails without mounts."""
     model = scene_model.build(scene)
     material = scene.rail.material
     operator = assembly.of_material(mesh, material, joint=scene.rail.joint())
@@ -55,7 +55,8 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     if model.platform is not None:
         frame, origin = _rigid_part(scene, model.platform, mesh.points, moving)
         offset = np.array(model.platform.mass_centre) - origin
-    # The model counts walls from the platform's mass centre, the loop from the frame's origin.
+    # In the model, walls are relative to the platform's mass centre; in the loop, to the frame's
+    # origin.
     faces = model.faces._replace(wall=model.faces.wall + offset[model.faces.axis])
     damping = scene.rail.damping.record() if scene.rail.damping else None
     rail, number = _rail(mesh.points - origin, operator, damping)
@@ -111,7 +112,7 @@ def _warmed(
 def _rail(
     points: np.ndarray, operator: assembly.Operator, damping: Damping | None
 ) -> tuple[records.Rail, np.ndarray]:
-    """Nodal arrays in the loop's own numbering, and the number (n,) of each mesh node in it."""
+    """Nodal arrays in the numbering of the loop, and the number (n,) of each mesh node in it."""
     found = extruded.find(points, operator)
     columns, number = found if found else (None, along_x(points))
     size = -(-(number.max() + 1) // extruded.LANES) * extruded.LANES
@@ -143,7 +144,7 @@ def _rail(
 
 
 def along_x(points: np.ndarray) -> np.ndarray:
-    """Number (n,) of each node of a mesh of any shape: neighbours along X come together, so that
+    """Number (n,) of each node of a mesh of any shape: neighbours along X are adjacent, so that
     they share cache lines."""
     number = np.empty(len(points), dtype=np.int64)
     x, y, z = np.round(points / _SAME).T
@@ -154,12 +155,12 @@ def along_x(points: np.ndarray) -> np.ndarray:
 def general_elements(
     points: np.ndarray, operator: assembly.Operator, number: np.ndarray
 ) -> records.Elements:
-    """Elements in slabs along X, by the ``number`` (n,) of each node in the nodal arrays and in the
-    order of their first one.
+    """Elements in slabs along X, sorted by their first node; ``number`` (n,) of each node in the
+    nodal arrays.
 
-    A slab is at least as thick as the longest element, and an element belongs to the one that holds
-    the middle of its extent (the mean of its nodes may lie elsewhere): so elements of slabs with
-    one between share no node.
+    A slab is at least as thick as the longest element. An element belongs to the slab that contains
+    the middle of its extent (not the mean of its nodes, which may lie elsewhere). So elements of
+    slabs with one slab between them share no node.
     """
     x = points[operator.cells][:, :, 0]
     middle, longest = 0.5 * (x.min(axis=1) + x.max(axis=1)), np.ptp(x, axis=1).max()

@@ -1,12 +1,13 @@
 """Rules for rails at rest: when a rail rests, when it is stepped again, and when all bodies take
 long steps.
 
-A rail that rests is stepped again before a pad can touch it, within two steps at
-``pads.FASTEST_APPROACH``; on a free platform also where more vibration than ``MOST_LEFT_OUT`` is left
-out, and before the thrust jumps. Rails rest again once the payload has left them. While all rails
-rest and all pads are far from them, a step is ``Rails.stride`` steps long: nothing is stiff.
+A rail at rest is stepped again before a pad can touch it, within two steps at
+``pads.FASTEST_APPROACH``. On a free platform it is also stepped again when more vibration than
+``MOST_LEFT_OUT`` is left out, and before the thrust jumps. Rails rest again after the payload has
+left them. While all rails rest and all pads are far from them, nothing is stiff, and a step is
+``Rails.stride`` steps long.
 
-Decisions are taken where the sampling interval does not matter: at multiples of
+Decisions must not depend on the sampling interval: they are taken at multiples of
 ``step_size.RASTER``, and at the step at which a pad comes near.
 """
 
@@ -21,11 +22,11 @@ from tipoff.highfi.state.threads import team_of
 from tipoff.highfi.statics.inertial import TERMS
 from tipoff.mechanics.ending import EXIT, PAST
 
-_FAR = 4  # long steps in which no pad may come near, to begin with them
+_FAR = 4  # long steps before any pad can come near; fewer, and no long step begins
 
 
 class Watch:
-    """Follows the rails of one ``run.Loop``; what evolves is in the loop."""
+    """Follows the rails of one ``run.Loop``; evolving values are in the loop."""
 
     def __init__(self, system: System, rails: Rails):
         self.system, self.rails, self.alone = system, rails, team_of(1)
@@ -39,7 +40,8 @@ class Watch:
         return self._views[key]
 
     def begin(self, loop) -> None:
-        """Let rails rest at ignition that no pad is near and no jolt of the platform sets off."""
+        """Let rails rest at ignition, if no pad is near and no jolt of the platform excites
+        them."""
         rails, active = self.rails, loop.active
         if not rails.at_ignition or self._jumps(loop):
             return
@@ -58,8 +60,7 @@ class Watch:
         self._lengthen(loop)
 
     def adapt(self, loop) -> int:
-        """Decide how to go on from the present step; returns the number of steps until the next
-        decision."""
+        """Decide for the present step; returns the number of steps until the next decision."""
         near = loop.active.near
         if near.any():
             if loop.stride > 1:
@@ -87,7 +88,7 @@ class Watch:
         return rests & ~np.asarray(self.rails.groups[:, near].any(axis=1))
 
     def _leaves_out(self, loop) -> float:
-        """What resting leaves out now (m)."""
+        """Vibration (m) that rails at rest leave out now."""
         found = loop.jolts
         before = found.rates.copy()
         span = self._note_rates(loop) - before[-1]
@@ -97,7 +98,7 @@ class Watch:
         return float(found.left_out[0])
 
     def _note_rates(self, loop) -> float:
-        """Keep the motion of the platform half a step ago; returns that time (s)."""
+        """Store the motion of the platform of half a step ago; returns its time (s)."""
         rates = loop.jolts.rates
         rates[:-1] = jolts.rates(loop.now, loop.state)
         rates[-1] = loop.steps * loop.stepping.dt_s - 0.5 * loop.step
@@ -110,7 +111,7 @@ class Watch:
         return bool(((jumps >= now * step) & (jumps <= (now + self.rails.interval) * step)).any())
 
     def _lengthen(self, loop) -> None:
-        """Take long steps where that is possible."""
+        """Take long steps if possible."""
         if not loop.rests.all() or loop.stride == self.rails.stride or self._jumps(loop):
             return
         if loop.substeps > 1:
@@ -124,7 +125,7 @@ class Watch:
         loop.set_stride(self.rails.stride)
 
     def _look(self, loop) -> None:
-        """Look at all pads anew. All rails must be at rest."""
+        """Check all pads again. All rails must be at rest."""
         loop.active.near[:], loop.active.wait[:] = False, 0
         loop.evaluate()
 

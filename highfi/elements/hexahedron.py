@@ -6,8 +6,8 @@ the unit cube, whose amplitudes a belong to the element alone and are eliminated
     [K   L^T] [u]   [f]
     [L   H  ] [a] = [0]     ->     f = (K - L^T H^-1 L) u
 
-Without them, bending turns into parasitic shear: one-layer beams come out 4 % too stiff in
-frequency on good meshes, and without limit on flat ones. The bubbles' gradients are mapped with the
+Without them, bending causes parasitic shear: the frequency of one-layer beams is 4 % too high on
+good meshes, and the error has no limit on flat ones. The bubbles' gradients are mapped with the
 Jacobian J0 of the centre and scaled by det J0 / det J, so that they integrate to zero over any
 shape: a constant stress does no work on them, and the patch test holds.
 
@@ -31,21 +31,17 @@ _SKFEM_TO_VTK = np.array(
 )
 _CENTRE = np.full((3, 1), 0.5)
 _GAUSS_ORDER = 3  # 2 x 2 x 2 points
-# Rows of the strain and the two displacement derivatives (component, direction) whose sum each
-# shear strain is.
+# Rows of the strain, and for each shear strain the two displacement derivatives (component,
+# direction) that it sums.
 _SHEAR = ((3, 0, 1), (4, 1, 2), (5, 2, 0))
 
 
 class Kinematics(NamedTuple):
-    """Strain matrices at the quadrature points of c elements.
+    """Strain matrices at the quadrature points of c elements."""
 
-    nodal (c,q,6,24) 1/m per corner displacement, bubble (c,q,6,9) 1/m per bubble amplitude, volume
-    (c,q) m3 of each point.
-    """
-
-    nodal: np.ndarray
-    bubble: np.ndarray
-    volume: np.ndarray
+    nodal: np.ndarray  # (c,q,6,24) 1/m, by corner displacement
+    bubble: np.ndarray  # (c,q,6,9) 1/m, by bubble amplitude
+    volume: np.ndarray  # (c,q) m3 of each point
 
 
 def elasticity(youngs_modulus: float, poisson_ratio: float) -> np.ndarray:
@@ -68,8 +64,8 @@ def elasticity(youngs_modulus: float, poisson_ratio: float) -> np.ndarray:
 
 
 def basis(corners: np.ndarray, **quadrature) -> Basis:
-    """scikit-fem basis of c elements with corners (c,8,3) m in VTK order, no two of them sharing a
-    node."""
+    """scikit-fem basis of c elements with corners (c,8,3) m in VTK order, without shared
+    nodes."""
     nodes = np.arange(8 * len(corners)).reshape(-1, 8)
     mesh = MeshHex(corners.reshape(-1, 3).T.copy(), nodes[:, _SKFEM_TO_VTK].T.copy())
     return Basis(mesh, ElementHex1(), **(quadrature or {"intorder": _GAUSS_ORDER}))

@@ -6,8 +6,8 @@ Hooke's law.
 Where edges are straight B is linear and J constant, so four points integrate exactly. Curved
 elements take fourteen: J B then has degree three, and the patch test requires its exact integral.
 Both rules have positive weights, so no energy is negative. Row sums of the consistent mass are
-negative at the corners (-1/20 of the element's mass each), with which no explicit step is stable;
-the diagonal scaled to the right total is positive for every element whose Jacobian is.
+negative at the corners (-1/20 of the element's mass each), so no explicit step would be stable. The
+diagonal scaled to the right total is positive for every element with a positive Jacobian.
 
 Nodes follow the VTK order: four corners, then the middles of the edges 01 12 02 03 13 23.
 
@@ -25,16 +25,15 @@ from skfem.quadrature import get_quadrature
 from tipoff.highfi.elements.hexahedron import integral, strain_matrix
 
 EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]])
-_STRAIGHT = 1e-6  # of the edge: a middle that lies nearer to that of the chord bends nothing
+_STRAIGHT = 1e-6  # of the edge; a middle node nearer to the chord's middle is straight
 _EXACT, _CURVED = 2, 5  # polynomial degree that the two rules integrate: 4 and 14 points
 
 
 class Kinematics(NamedTuple):
-    """At the quadrature points of c elements: nodal (c,q,6,30) 1/m, strain per displacement; volume
-    (c,q) m3 of each point."""
+    """Strain matrices at the quadrature points of c elements."""
 
-    nodal: np.ndarray
-    volume: np.ndarray
+    nodal: np.ndarray  # (c,q,6,30) 1/m, by node displacement
+    volume: np.ndarray  # (c,q) m3 of each point
 
 
 def shape_functions(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -1,11 +1,10 @@
 """Mirror symmetry of a section: neighbours of a column that share their stiffness.
 
-Let neighbours at (+dy, dz) and (-dy, dz) have the same numbers but for the sign of those that
+Let neighbours at (+dy, dz) and (-dy, dz) have the same numbers except for the sign of those that
 couple y with another direction, as on any even piece of a section. Then ``a u(+) +- a u(-) = a
-(u(+) +- u(-))``: one product for the two, and one addition, which costs almost nothing beside a
-product on processors with parallel units. Four neighbours mirrored in y and z need one product for
-the four. A neighbour on a mirror plane has no odd numbers. A column inside a regular section needs
-36 products instead of 9 x 14.
+(u(+) +- u(-))``: one product for both, and one addition, which is almost free on processors with
+parallel units. Four neighbours mirrored in y and z need one product. A neighbour on a mirror plane
+has no odd numbers. A column inside a regular section needs 36 products instead of 9 x 14.
 
 The numbers of one neighbour are D xx yy yz zy zz, L the same and O xy xz yx zx, as in ``mesh``.
 """
@@ -15,11 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-_SAME = 1e-12  # of the largest number: a difference of rounding
-_GRID = 1e-7  # m, to which offsets are rounded before they are compared
+_SAME = 1e-12  # of the largest number; a smaller difference is rounding
+_GRID = 1e-7  # m, offsets are rounded to it before a comparison
 
-# (row, column) of each number; it changes sign under the mirror of a direction that just one of
-# them is.
+# (row, column) of each number; it changes sign under the mirror of a direction that is exactly one
+# of them.
 PLACES = (
     *((i, j) for _ in "DL" for i, j in ((0, 0), (1, 1), (1, 2), (2, 1), (2, 2))),
     (0, 1),
@@ -35,11 +34,11 @@ def odd(number: int, axis: int) -> bool:
 
 
 class Kind(NamedTuple):
-    """A kind of group of neighbours that are mirror images of one another."""
+    """A kind of group of neighbours that are mirror images of each other."""
 
-    # axes of the mirrors; members are in the order +, -; for both axes ++, -+, +-, --
+    # axes of the mirrors; order of the members: +, -; for both axes ++, -+, +-, --
     folded: tuple[int, ...]
-    numbers: tuple[int, ...]  # those that are not zero
+    numbers: tuple[int, ...]  # the numbers that are not zero
 
     @property
     def members(self) -> int:
@@ -54,7 +53,7 @@ def _kind(folded: tuple[int, ...], even: tuple[int, ...]) -> Kind:
     )
 
 
-# Of groups with the same members the one with fewer numbers comes first.
+# Of kinds with the same members, the one with fewer numbers comes first.
 KINDS = (
     _kind((1, 2), ()),
     _kind((1,), (2,)),
@@ -68,15 +67,15 @@ KINDS = (
 )
 
 
-# How many groups of each kind the commonest columns have: inside a section, on a side along y, on a
-# side along z.
+# Number of groups of each kind in the most frequent columns: inside a section, on a side along y,
+# on a side along z.
 PATTERNS = ((1, 1, 0, 1, 0, 1, 0, 0, 0), (0, 0, 2, 0, 0, 0, 2, 0, 0), (0, 0, 0, 0, 2, 0, 0, 2, 0))
 
 
 class Groups(NamedTuple):
-    """Groups of s columns one after the other, in the order of KINDS within each column."""
+    """Groups of s columns, column by column, in the order of KINDS within each column."""
 
-    pattern: np.ndarray  # (s,) index in PATTERNS, or its length for any other pattern
+    pattern: np.ndarray  # (s,) index in PATTERNS; the length of PATTERNS for any other pattern
     counts: np.ndarray  # (s, kinds) groups of each kind
     members: np.ndarray  # first nodes of the neighbours
     numbers: np.ndarray  # N/m
@@ -89,7 +88,7 @@ def fold(
 ) -> Groups:
     """Groups of the neighbours (q,) of each column, those of column i from ``first[i]`` on.
 
-    ``offsets`` (q,2) m: place of the neighbour in the section less that of the column; ``numbers``
+    ``offsets`` (q,2) m: place of the neighbour in the section minus that of the column; ``numbers``
     (q,14) N/m.
     """
     limit, places = (
@@ -124,7 +123,7 @@ def fold(
 
 
 def _groups(at: dict, numbers: np.ndarray, limit: float) -> list[list]:
-    """For each kind the groups (members, numbers) of one column, ``at`` being its neighbours by
+    """For each kind the groups (members, numbers) of one column; ``at``: its neighbours by
     offset."""
     left = dict(at)
     found: list[list] = [[] for _ in KINDS]

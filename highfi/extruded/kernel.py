@@ -3,10 +3,10 @@ then a filter along the layers.
 
     d = sum D u,  l = sum L u,  o = sum O u,      f(k) = d(k) + (l - o)(k-1) + (l + o)(k+1)
 
-The nine sums of 16 layers stay in vector registers during the loop over the neighbours, and so does
-what the filter needs of the 16 layers before. Neighbours that are mirror images are folded into one
-(see ``folding``). Numba does not keep the sums in registers in a loop in Python, so this loop is
-written as LLVM code. A processor with narrower vectors splits them.
+The nine sums of 16 layers stay in vector registers during the loop over the neighbours; so do the
+values of the 16 layers before that the filter needs. Neighbours that are mirror images are folded
+into one (see ``folding``). Numba does not keep the sums in registers in a Python loop, so this loop
+is written as LLVM code. A processor with narrower vectors splits them.
 """
 
 from typing import NamedTuple
@@ -32,7 +32,7 @@ _TARGETS = tuple(
 
 
 class _Arrays(NamedTuple):
-    """Flat arrays that one column reads and writes; pointers to them in the code written here."""
+    """Flat arrays that one column reads and writes; pointers to them in the LLVM code."""
 
     values: np.ndarray  # (3 * plane,) m, displacement
     members: np.ndarray  # see ``folding.Groups``
@@ -44,7 +44,7 @@ class _Arrays(NamedTuple):
 
 
 class _Place(NamedTuple):
-    """Where one column lies in the arrays."""
+    """Place of one column in the arrays."""
 
     pattern: int  # index in PATTERNS
     kind: int  # its first entry in ``counts``
@@ -57,7 +57,7 @@ class _Place(NamedTuple):
 
 class _Sweep:
     """Writes the code that sets the force of one column. Fields of ``arrays`` are LLVM pointers,
-    those of ``place`` LLVM integers."""
+    fields of ``place`` LLVM integers."""
 
     def __init__(self, builder, arrays: _Arrays, place: _Place):
         self.builder, self.code, self.arrays, self.place = builder, Vectors(builder), arrays, place
@@ -111,8 +111,8 @@ class _Sweep:
             number = self.builder.add(number, code.times(count, len(group.numbers)))
 
     def _add_group(self, group, layer, member, number, index):
-        """Add the products of the group with that ``index`` among those whose members and numbers
-        start there."""
+        """Add the products of the group with this ``index``; its members and numbers start at
+        ``member`` and ``number``."""
         code, builder = self.code, self.builder
         at = builder.add(member, code.times(index, group.members))
         starts = [
@@ -140,11 +140,10 @@ class _Sweep:
                     builder.store(code.multiply_add(factor, value, builder.load(total)), total)
 
     def _fold(self, group, parts):
-        """Sums and differences of the members' values, by whether they are odd in each folded
-        axis."""
+        """Sums and differences of the members' values, by their parity in each folded axis."""
         folded = {(): parts}
         for _ in group.folded:
-            # Members of + and - take turns: those of the first axis are next to each other.
+            # Members of + and - alternate: those of the first axis are adjacent.
             folded = {
                 (*key, sign): [combine(a, b) for a, b in zip(values[0::2], values[1::2])]
                 for key, values in folded.items()
@@ -153,17 +152,17 @@ class _Sweep:
         return {key: value for key, (value,) in folded.items()}
 
     def _finish(self, layer):
-        """Forces of 16 layers but the last eight, which wait for the layer above them, and of the
-        eight that waited before."""
+        """Store the forces of the 16 layers that are complete: eight that waited and the first
+        eight of these 16. The last eight wait for the layer above them."""
         first = self.builder.icmp_signed("==", layer, ir.Constant(INTEGER, 0))
         before, here = zip(*(self._filter(layer, component) for component in range(3)))
-        # Before the first layer nothing waits: what is stored there is overwritten at once, and
-        # must not count as a moment.
+        # Before the first layer, the stored values have no meaning. They are overwritten at once
+        # and must not enter the moment.
         self._store(before, self.builder.select(first, layer, self.code.plus(layer, -WIDTH)), first)
         self._store(here, layer)
 
     def _filter(self, layer, component):
-        """One component of the eight forces that waited and of the next eight."""
+        """One component of the eight waiting forces and of the next eight."""
         code, add = self.code, self.builder.fadd
         weights = [
             code.read(self.arrays.weights, code.plus(layer, WIDTH * half))
@@ -189,7 +188,7 @@ class _Sweep:
         return before, here
 
     def _store(self, force, layer, void=None):
-        """Store eight forces and add their u x f, but not where ``void``."""
+        """Store eight forces and add their u x f, unless ``void``."""
         code, at = self.code, self.builder.add(self.place.base, layer)
         rows = [
             self.builder.add(at, code.times(self.place.plane, component)) for component in range(3)
@@ -212,9 +211,9 @@ class _Sweep:
 
 @intrinsic
 def _column(typing, arrays, place):
-    """Force of one column, without the odd block of its end layers; its sum of u x f is added to
-    the rows of ``arrays.lanes``. No bounds are checked. The commonest patterns of groups have code
-    of their own, without loops over the groups."""
+    """Force of one column, without the odd block of its end layers; adds its sum of u x f to the
+    rows of ``arrays.lanes``. Bounds are not checked. The most frequent patterns of groups have
+    their own code without loops over the groups."""
     signature = types.void(arrays, place)
 
     def generate(context, builder, signature, arguments):
@@ -246,9 +245,9 @@ def _column(typing, arrays, place):
 
 @kernel
 def column_force(columns, displacement, force, first, last, lanes, turn):
-    """Set the part of ``force`` (N) at section points ``first`` to ``last`` to that of K u, both
-    (3, s * stride) in rows, and ``turn`` (3,) to their sum of u x K u (N m). ``lanes``:
-    workspace of (3, WIDTH) numbers on a cache line."""
+    """Set ``force`` (N) at section points ``first`` to ``last`` to K u; both are (3, s * stride) in
+    rows. Set ``turn`` (3,) to the sum of u x K u (N m). ``lanes``: workspace of (3, WIDTH) numbers
+    on a cache line."""
     groups, plane = columns.groups, displacement.shape[1]
     kinds, counts = groups.counts.shape[1], groups.counts.reshape(groups.counts.size)
     values, forces, flat = (
@@ -286,8 +285,8 @@ def column_force(columns, displacement, force, first, last, lanes, turn):
 
 @kernel
 def _add_ends(columns, point, displacement, force, turn):
-    """The end layers have, with opposite signs, the odd block E as well; what the filter left
-    beyond them is no force."""
+    """Add the odd block E of the end layers, with opposite signs; values that the filter left
+    beyond them are no forces."""
     base, layers = point * columns.stride, columns.layers
     x, y, z, far_x, far_y, far_z = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for q in range(columns.first[point], columns.first[point + 1]):

@@ -1,16 +1,16 @@
-"""Stiffness of an extruded mesh by columns: every section point carries one column of nodes at
-equal distances along X.
+"""Stiffness of an extruded mesh by columns: every section point has one column of nodes at equal
+distances along X.
 
-In a section of s points with n layers the stiffness couples a layer to itself and its two
-neighbours only. Its 3x3 blocks between two section points are the same in every layer, and the
-mirror symmetry of a layer leaves 14 numbers of them::
+In a section of s points with n layers the stiffness couples a layer only to itself and its two
+neighbours. Its 3x3 blocks between two section points are the same in every layer. The mirror
+symmetry of a layer leaves 14 numbers::
 
     f(k) = D u(k) + L [u(k-1) + u(k+1)] + O [u(k+1) - u(k-1)]      D, L even and O odd under the mirror x -> -x
     f(0) = (D/2 + E) u(0) + (L + O) u(1),    f(n-1) = (D/2 - E) u(n-1) + (L - O) u(n-2)
 
-The element matrix enters through these numbers alone, so a better element costs nothing. Neighbours
-that are mirror images share them, see ``folding``. Nodes are numbered point by point with the
-layers contiguous, each column padded to whole vectors; the padding has no mass and no force.
+The element matrix enters only through these numbers, so a better element costs nothing. Neighbours
+that are mirror images share them, see ``folding``. Nodes are numbered point by point, with
+contiguous layers. Each column is padded to whole vectors; the padding has no mass and no force.
 """
 
 import itertools
@@ -26,7 +26,7 @@ from tipoff.kernels.memory import zeros
 from tipoff.kernels.reference import by_reference
 
 LANES = 16  # layers treated at once: two vectors of eight doubles
-CHUNK = 1024  # nodes: enough to be worth a function call, few enough for the second-level cache
+CHUNK = 1024  # nodes: large against a function call, small against the second-level cache
 _SAME = 1e-9  # m: two places closer than this are the same
 _ODD = 1e-9  # relative size of the blocks that the mirror symmetry forbids
 
@@ -48,7 +48,7 @@ class Columns(NamedTuple):
 
 
 def find(points: np.ndarray, operator: Operator) -> tuple[Columns, np.ndarray] | None:
-    """Columns of a mesh (points (n,3) m) and the new number (n,) of each node, or None where it is
+    """Columns of a mesh (points (n,3) m) and the new number (n,) of each node; None if the mesh is
     not an even extrusion."""
     if operator.cells.shape[1] != 8:
         return None
@@ -91,8 +91,8 @@ def find(points: np.ndarray, operator: Operator) -> tuple[Columns, np.ndarray] |
 
 
 def _weights(layers: int, stride: int) -> np.ndarray:
-    """Part (stride + LANES,) of D that each layer has: the end layers have elements on one side
-    only. Zeros beyond."""
+    """Part (stride + LANES,) of D in each layer: one half in the end layers, which have elements on
+    one side only. Zeros beyond."""
     weights = zeros((stride + LANES,))
     weights[:layers] = 1.0
     weights[[0, layers - 1]] = 0.5
@@ -120,8 +120,8 @@ def _chunks(own: np.ndarray, other: np.ndarray, stride: int) -> np.ndarray:
 
 
 def _near_together(sections: int, pairs: list[tuple[int, int]]) -> np.ndarray:
-    """New number (s,) of each section point: neighbours close to each other, so that they
-    share cache lines (Cuthill and McKee)."""
+    """New number (s,) of each section point: neighbours are close to each other, so that they share
+    cache lines (Cuthill and McKee)."""
     rows, columns = np.array(pairs).T
     graph = csr_array((np.ones(len(pairs)), (rows, columns)), shape=(sections, sections))
     rank = np.empty(sections, dtype=np.int64)

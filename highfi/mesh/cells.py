@@ -2,8 +2,8 @@
 
 A hexahedron is checked at its corners, where J = e1 . (e2 x e3) with e the three edges that leave a
 corner. In a tetrahedron det J is a cubic polynomial, which lies between the smallest and the
-largest of its 20 Bernstein coefficients: where all of them are positive it is positive everywhere,
-also between curved edges. Both orders of nodes are those of VTK, in which meshio hands them over.
+largest of its 20 Bernstein coefficients. If all of them are positive, it is positive everywhere,
+also between curved edges. Both orders of nodes are those of VTK and meshio.
 """
 
 from itertools import product
@@ -68,8 +68,8 @@ KINDS = {8: HEXAHEDRON, 10: TETRAHEDRON}
 _NEIGHBOURS = np.array(
     [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]]
 )
-# Powers of the barycentric coordinates in the 20 Bernstein polynomials of degree three, and the
-# places that interpolate them.
+# Powers of the barycentric coordinates in the 20 Bernstein polynomials of degree three, and places
+# for their interpolation.
 _POWERS = np.array([powers for powers in product(range(4), repeat=4) if sum(powers) == 3])
 _LATTICE = _POWERS / 3.0
 
@@ -80,8 +80,8 @@ def kind(cells: np.ndarray) -> Kind:
 
 
 def jacobians(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Jacobians (e,j) in m3 that bound that of each element, and the same scaled: 1 for a brick and
-    for a regular tetrahedron."""
+    """Coefficients (e,j) in m3 that bound the Jacobian of each element, and the same scaled: 1 for
+    a brick and for a regular tetrahedron."""
     return (
         corner_jacobians(points, cells)
         if kind(cells) is HEXAHEDRON
@@ -100,13 +100,13 @@ def corner_jacobians(points: np.ndarray, hexes: np.ndarray) -> tuple[np.ndarray,
 
 
 def edge_lengths(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """Lengths (e,b) in m of the edges of each element, of their chords where they are curved."""
+    """Lengths (e,b) in m of the edges of each element; of the chords of curved edges."""
     start, end = kind(cells).edges.T
     return np.linalg.norm(points[cells[:, end]] - points[cells[:, start]], axis=-1)
 
 
 def thickness(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """Shortest way (e,) in m across each element, which sets its step: an edge of a hexahedron, an
+    """Least thickness (e,) in m of each element, which limits its step: an edge of a hexahedron, an
     altitude of a tetrahedron."""
     if kind(cells) is HEXAHEDRON:
         return edge_lengths(points, cells).min(axis=1)
@@ -122,8 +122,8 @@ def thickness(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
 
 def _control_jacobians(nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Bernstein coefficients (e,20) of det J, and the same by the largest product of three edges
-    that meet, over sqrt(2)."""
+    """Bernstein coefficients (e,20) of det J, and the same over the largest product of three edges
+    at a corner, times sqrt(2)."""
     _, gradients = tetrahedron.shape_functions(_LATTICE[:, 1:].T)
     found = np.linalg.det(tetrahedron.jacobians(nodes, gradients))
     weights = [factorial(3) / np.prod([factorial(power) for power in powers]) for powers in _POWERS]

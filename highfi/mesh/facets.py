@@ -14,15 +14,15 @@ from skfem.quadrature import get_quadrature
 # Polynomial degree of the symmetric rules on a triangle with positive weights and points inside
 # (Dunavant, Int. J. Numer. Methods Eng. 21 (1985) 1129-1148), by their number of points.
 _DEGREE = {3: 2, 6: 4, 12: 6, 16: 8, 19: 9, 25: 10, 33: 12, 42: 14, 61: 17, 73: 19}
-INSIDE = 1e-6  # how far outside its facet, in local coordinates, a point may seem to lie
+INSIDE = 1e-6  # in local coordinates: a point with a smaller excess is inside its facet
 _NEWTON = 20
 _ARRIVED = 1e-14  # in local coordinates, a step that changes nothing
-_FAR = 3.0  # local coordinates beyond which the way back to the facet is not searched
+_FAR = 3.0  # local coordinates; beyond, the iteration stops
 
 
 def control(nodes_per_facet: int) -> np.ndarray | None:
-    """Matrix (6,6) that makes control points of the nodes of a triangle; None for four nodes, which
-    are control points."""
+    """Matrix (6,6) from the nodes of a triangle to its control points; None for four nodes, which
+    are the control points."""
     if nodes_per_facet == 4:
         return None
     matrix = np.eye(6)
@@ -32,14 +32,13 @@ def control(nodes_per_facet: int) -> np.ndarray | None:
 
 
 def hull(nodes: np.ndarray) -> np.ndarray:
-    """Control points (m,k,i) of facets with nodes (m,k,i), in space or in a plane they are seen
-    in."""
+    """Control points (m,k,i) of facets with nodes (m,k,i), in space or in a plane."""
     matrix = control(nodes.shape[1])
     return nodes if matrix is None else np.einsum("ab,mbi->mai", matrix, nodes)
 
 
 def normals(nodes: np.ndarray) -> np.ndarray:
-    """Unit normals (m,3) of facets with nodes (m,k,3), by their corners, out of the solid."""
+    """Unit normals (m,3) out of the solid, from the corners of facets with nodes (m,k,3)."""
     if nodes.shape[1] == 4:
         across = np.cross(nodes[:, 2] - nodes[:, 0], nodes[:, 3] - nodes[:, 1])
     else:
@@ -48,8 +47,8 @@ def normals(nodes: np.ndarray) -> np.ndarray:
 
 
 def weights(nodes: np.ndarray, target: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Values (p,k) of the nodal functions at each ``target`` (p,2) in the facet that a plane shows
-    with nodes (p,k,2), by Newton's rule, and whether it lies inside (p,)."""
+    """Values (p,k) of the nodal functions at each ``target`` (p,2), for a facet with nodes (p,k,2)
+    in a plane, by Newton's method, and whether the target is inside (p,)."""
     square = nodes.shape[1] == 4
     functions, middle = (_square_functions, 0.0) if square else (_triangle_functions, 1.0 / 3.0)
     place = np.full(target.shape, middle)
@@ -68,7 +67,7 @@ def weights(nodes: np.ndarray, target: np.ndarray) -> tuple[np.ndarray, np.ndarr
         if square
         else -np.minimum(place.min(axis=1), 1.0 - place.sum(axis=1))
     )
-    # Outside a curved facet there may be no way to the target.
+    # A target outside a curved facet may have no local coordinates.
     missed = np.abs(np.einsum("pa,pai->pi", values, nodes) - target).max(axis=1) / np.ptp(
         nodes, axis=1
     ).max(axis=1)
@@ -84,8 +83,8 @@ def gauss(nodes: np.ndarray, quadrature: int) -> tuple[np.ndarray, np.ndarray]:
     """Shape functions (q,k) and areas (m,q) in m2 at the Gauss points of facets with nodes (m,k,3)
     m.
 
-    A bilinear facet has ``quadrature`` points along each edge, a triangle with edges of the same
-    length at least as many per area, and no fewer than three. All areas are positive; shape
+    A bilinear facet has ``quadrature`` points along each edge. A triangle with edges of the same
+    length has at least as many per area, and at least three. All areas are positive; shape
     functions at the corners of a triangle may be negative.
     """
     shape, _, area = oriented(nodes, quadrature)
@@ -110,7 +109,7 @@ def _bilinear(quadrature: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _quadratic(quadrature: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The same (q,6), (2,q,6) and (q,) on the unit triangle."""
+    """As ``_bilinear``, (q,6), (2,q,6) and (q,) on the unit triangle."""
     # A triangle has half the area of a square with edges of the same length.
     degree = next(degree for points, degree in _DEGREE.items() if 2 * points >= quadrature**2)
     places, weight = get_quadrature(ElementTriP2, degree)
@@ -128,6 +127,6 @@ def _square_functions(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _triangle_functions(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The same (q,6) and (2,q,6) at places (2,q) of the unit triangle."""
+    """Functions (q,6) and their derivatives (2,q,6) at places (2,q) of the unit triangle."""
     values, gradients = zip(*(ElementTriP2().lbasis(places, node) for node in range(6)))
     return np.array(values).T, np.moveaxis(np.array(gradients), (1, 2, 0), (0, 1, 2))

@@ -1,11 +1,10 @@
-"""Refinement of ten-node tetrahedra: each is cut into eight, and each triangle on them into four.
+"""Refinement of ten-node tetrahedra: each is cut into eight, and each facet into four.
 
 New nodes lie at the quadratic map of quarters of the barycentric coordinates, so curved walls keep
-the shape of the file. A node is identified by its integer weights on those of its element (in units
-of 1/8, i (i - 2) for a corner and 2 i j for a middle with coordinates i/4, j/4), which are the same
-in every element that shares it. The octahedron left in the middle is cut along its
-shortest diagonal, which keeps elements from becoming flatter with every cut (Bey, Computing 55
-(1995) 355-378).
+their shape. A node is identified by its integer weights on the nodes of its element, in units of
+1/8: i (i - 2) for a corner and 2 i j for a middle, with coordinates i/4, j/4. They are the same in
+every element that shares the node. The octahedron in the middle is cut along its shortest diagonal;
+so elements do not become flatter with every cut (Bey, Computing 55 (1995) 355-378).
 """
 
 from dataclasses import replace
@@ -26,16 +25,16 @@ _TRIANGLES = [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)]
 
 
 def halved(mesh: RailMesh) -> RailMesh:
-    """``mesh`` with two elements along every edge of each; warnings stay: they give the
-    elements of the file."""
+    """``mesh`` with every edge cut in two; its warnings stay, with the element numbers of the
+    file."""
     return halved_with_weights(mesh)[0]
 
 
 def halved_with_weights(mesh: RailMesh) -> tuple[RailMesh, csr_array]:
-    """The same, and the matrix (n,m) that interpolates values at the m nodes of ``mesh`` to the n
-    nodes of the result."""
-    # One random number per node makes a sum of weights a name of the point, whichever element it is
-    # seen from; it may wrap around.
+    """As ``halved``, and the matrix (n,m) that interpolates values at the m nodes of ``mesh`` to
+    the n nodes of the result."""
+    # With one random number per node, a weighted sum identifies a point from any element; it may
+    # wrap around.
     names = np.random.default_rng(0).integers(1, 2**63, len(mesh.points), dtype=np.uint64)
     lattice = _quarters(4)
     weights = _weights(lattice)
@@ -48,7 +47,7 @@ def halved_with_weights(mesh: RailMesh) -> tuple[RailMesh, csr_array]:
     parts = np.array(
         [_parts(lattice, [*_AT_CORNERS, *_around(*cut)]) for cut in zip(_DIAGONALS, _RINGS)]
     )
-    # Rounded, so that of diagonals equally long the same one is taken throughout.
+    # Rounded, so that equally long diagonals give the same choice everywhere.
     shortest = np.round(lengths / lengths.min(axis=1, keepdims=True), 6).argmin(axis=1)
     cells = number.reshape(len(nodes), -1)[np.arange(len(nodes))[:, None, None], parts[shortest]]
     flat = _quarters(3)
@@ -62,9 +61,9 @@ def halved_with_weights(mesh: RailMesh) -> tuple[RailMesh, csr_array]:
 
 
 def interpolation(mesh: RailMesh, first: np.ndarray, weights: np.ndarray) -> csr_array:
-    """Matrix (n,m) from values at the m nodes of ``mesh`` to n places: ``first`` (n,) is the number of
-    an element times p plus that of one of its p places, whose ``weights`` (p,k) are those of its k
-    nodes."""
+    """Matrix (n,m) from values at the m nodes of ``mesh`` to n places: ``first`` (n,) is p times
+    the number of an element, plus the number of one of its p places. The places have the
+    ``weights`` (p,k) on its k nodes."""
     element, place = np.divmod(first, len(weights))
     columns, values = mesh.cells[element], weights[place]
     rows = np.repeat(np.arange(first.size), columns.shape[1])
@@ -84,8 +83,8 @@ def _weights(lattice: np.ndarray) -> np.ndarray:
 
 
 def _parts(lattice: np.ndarray, parts) -> np.ndarray:
-    """Places in the lattice (s,k) of all nodes of smaller elements, given by numbers of nodes of
-    the large one at their corners."""
+    """Places in the lattice (s,k) of all nodes of the smaller elements; ``parts`` gives their
+    corners as node numbers of the large one."""
     count = lattice.shape[1]
     large = np.concatenate(
         [4 * np.eye(count, dtype=int), [2 * np.isin(range(count), edge) for edge in _EDGES[count]]]
@@ -97,7 +96,7 @@ def _parts(lattice: np.ndarray, parts) -> np.ndarray:
 
 
 def _around(diagonal, ring) -> list[tuple[int, ...]]:
-    """The four tetrahedra around a diagonal, their corners in an order of positive volume."""
+    """The four tetrahedra around a diagonal, with corners in an order of positive volume."""
     large = np.concatenate([np.eye(4), [0.5 * np.isin(range(4), edge) for edge in _EDGES[4]]])[
         :, 1:
     ]

@@ -1,5 +1,5 @@
-"""A limit of the memory for reading a file. Without it a few bytes in the file, such as the
-number of a node, could request all memory of the machine."""
+"""A memory limit for reading a file. Without it, a few bytes in the file, such as the number of a
+node, could request all memory of the machine."""
 
 import resource
 from collections.abc import Iterator
@@ -11,8 +11,8 @@ _PAGES = Path("/proc/self/statm")  # its first number is the address space in pa
 
 @contextmanager
 def limited(extra: int) -> Iterator[None]:
-    """Within the block this process gets at most ``extra`` more bytes of address space, and a
-    MemoryError beyond. Without effect on systems that do not say how much it has."""
+    """Context in which this process gets at most ``extra`` more bytes of address space, then a
+    MemoryError. No effect on systems that do not report the present size."""
     soft, hard = resource.getrlimit(resource.RLIMIT_AS)
     try:
         limit = int(_PAGES.read_text().split()[0]) * resource.getpagesize() + extra

@@ -10,8 +10,8 @@ from tipoff.highfi.mesh.rail_mesh import RailMesh
 
 
 def pieces(mesh: RailMesh) -> list[RailMesh]:
-    """Each solid as a mesh of its own, in the order of their first nodes; surfaces that a solid
-    lacks are empty."""
+    """Each solid as a mesh of its own, in the order of their first nodes; missing surfaces are
+    empty."""
     return [_part(mesh, own) for own in nodes(mesh)]
 
 
@@ -27,8 +27,8 @@ def nodes(mesh: RailMesh) -> list[np.ndarray]:
 
 
 def distinct(mesh: RailMesh) -> list[tuple[RailMesh, list[np.ndarray]]]:
-    """Solids no two of which are mirror images by their numbering, and the signs (3,) that make
-    each one's images of it, its own first."""
+    """Solids of which no two are mirror images with the same numbering, each with the signs (3,) of
+    its images, its own first."""
     found: list[tuple[RailMesh, list[np.ndarray]]] = []
     for piece in pieces(mesh):
         for first, images in found:
@@ -51,8 +51,8 @@ def _part(mesh: RailMesh, own: np.ndarray) -> RailMesh:
 
 
 def mirror(first: RailMesh, other: RailMesh) -> np.ndarray | None:
-    """Signs of y and z that turn the points of ``first`` into those of ``other``, bit for bit and
-    numbered alike; None without."""
+    """Signs of y and z that map the points of ``first`` to those of ``other``, bit for bit and in
+    the same order; None if there are none."""
     groups = [
         (first.cells, other.cells),
         *((first.surfaces[name], other.surfaces[name]) for name in first.surfaces),

@@ -6,9 +6,9 @@ follow the VTK order. The Jacobian must be positive at the corners of a hexahedr
 
     J = e1 . (e2 x e3) > 0    with e the three edges that leave a corner,
 
-which is stricter than checking it where it is integrated, and everywhere in a tetrahedron
-(`highfi.mesh.cells`). Arrays count from 0; messages count the elements of the file from 1, as mesh
-editors do.
+This is stricter than a check at the integration points. In a tetrahedron the Jacobian must be
+positive everywhere (`highfi.mesh.cells`). Arrays count from 0; messages count the elements of the
+file from 1, as mesh editors do.
 """
 
 from dataclasses import dataclass, field, replace
@@ -31,9 +31,9 @@ from tipoff.highfi.mesh.files.tables import Unreadable, is_surface
 from tipoff.scenes.faults import InputError
 
 _LISTED = 20  # element numbers printed in one message
-_THIN = 0.25  # of the median: thinner elements set the time step of the whole mesh
-# scaled Jacobian, 1 for a brick and 0.71 for corners of 45 degrees, where bending of thin layers is
-# lost
+_THIN = 0.25  # of the median; thinner elements set the time step of the whole mesh
+# scaled Jacobian: 1 for a brick, 0.71 for corners of 45 degrees, at which thin layers do not bend
+# correctly
 _SKEW = 0.85
 
 
@@ -43,27 +43,22 @@ class MeshError(InputError):
 
 @dataclass(frozen=True)
 class RailMesh:
-    """Elements of one kind and named boundary surfaces.
+    """Elements of one kind and named boundary surfaces."""
 
-    points (n,3) m; cells (e,k) point numbers, k = 8 or 10, VTK order, positive Jacobian; surfaces:
-    name -> (m,f) point numbers of facets, four corners or three and three middles, corners
-    counter-clockwise seen from outside the solid; warnings: what costs time or accuracy without
-    being wrong; drawn: areas (m2) of the surfaces on the solid that was meshed, None for a mesh
-    made elsewhere.
-    """
-
-    points: np.ndarray
-    cells: np.ndarray
+    points: np.ndarray  # (n,3) m
+    cells: np.ndarray  # (e,k) point numbers, k = 8 or 10, VTK order, positive Jacobian
+    # name -> (m,f) point numbers of facets: four corners, or three and three middles; corners
+    # counter-clockwise seen from outside the solid
     surfaces: dict[str, np.ndarray]
-    warnings: tuple[str, ...] = field(default=())
-    drawn: dict[str, float] | None = None
+    warnings: tuple[str, ...] = field(default=())  # properties that cost time or accuracy
+    drawn: dict[str, float] | None = None  # m2, areas on the solid, None for a mesh made elsewhere
 
 
 def read(source) -> RailMesh:
     """Check and convert a meshio mesh, or the path of a file in a format of ``files.opened``.
 
-    Points no element uses are dropped. Raises MeshError for a file that is not read, and with one
-    line per fault: no elements of a supported kind, two kinds or others beside them, missing
+    Unused points are dropped. Raises MeshError for a file that cannot be read. Else the error has
+    one line per fault: no elements of a supported kind, two kinds or others beside them, missing
     surfaces, facets that are not on the boundary of the solid or appear twice, elements that are
     inverted or appear twice.
     """
@@ -96,8 +91,8 @@ def read(source) -> RailMesh:
 def along_x(mesh: RailMesh) -> RailMesh:
     """The same mesh with nodes and elements numbered from one end to the other.
 
-    Neighbours are then near each other in memory, whatever tool numbered the file: an internal
-    force costs 45 ns per element on 155,000 elements, 75 ns where the file numbers at random.
+    Neighbours are then close in memory: with 155,000 elements an internal force takes 45 ns per
+    element, and 75 ns with a random numbering of the file.
     """
     order = _from_end_to_end(mesh.points)
     renumber = np.empty_like(order)
@@ -139,7 +134,7 @@ def _opened(path: Path) -> meshio.Mesh:
 
 
 def _kinds(mesh: meshio.Mesh) -> list[Kind]:
-    """Kinds of element in a file; hexahedra where there is none."""
+    """Kinds of element in a file; hexahedra if there are no elements."""
     types = {block.type for block in mesh.cells}
     return [each for each in KINDS.values() if each.cell in types] or [HEXAHEDRON]
 
@@ -150,8 +145,8 @@ def _elements(mesh: meshio.Mesh, wanted: Kind) -> np.ndarray:
 
 
 def _named_facets(mesh: meshio.Mesh, wanted: Kind) -> dict[str, np.ndarray]:
-    """Facets of each contact or mount group, from cell sets, or from physical tags where a mesh made
-    in memory has them."""
+    """Facets of each contact or mount group: from cell sets, or from physical tags of a mesh made
+    in memory."""
     blocks = [
         (index, block.data) for index, block in enumerate(mesh.cells) if block.type == wanted.facet
     ]
@@ -163,7 +158,7 @@ def _named_facets(mesh: meshio.Mesh, wanted: Kind) -> dict[str, np.ndarray]:
                 if dimension == 2:
                     groups.setdefault(name, []).append(facets[physical[index] == tag])
         for name, members in mesh.cell_sets.items():
-            # Where both are there they give the same group.
+            # If both exist, they give the same group.
             if is_surface(name) and name not in mesh.field_data and members[index] is not None:
                 groups.setdefault(name, []).append(
                     facets[np.asarray(members[index], dtype=np.int64)]
@@ -210,7 +205,7 @@ def _content_faults(
 
 
 def _inverted(points: np.ndarray, cells: np.ndarray) -> list[str]:
-    # The products of coordinates that are too large are no numbers.
+    # The products of too large coordinates overflow.
     with np.errstate(over="ignore", invalid="ignore"):
         jacobian, scaled = jacobians(points, cells)
     if np.isfinite(points).all() and not (np.isfinite(jacobian) & np.isfinite(scaled)).all():
@@ -229,8 +224,7 @@ def _repeated(cells: np.ndarray) -> list[str]:
 def _matched(
     surfaces: dict[str, np.ndarray], boundary: np.ndarray
 ) -> tuple[dict[str, np.ndarray], list[str]]:
-    """Each facet replaced by the element's face it lies on, which carries the outward
-    orientation."""
+    """Each facet replaced by the face of its element, which has the outward orientation."""
     face_of = {tuple(key): face for key, face in zip(np.sort(boundary, axis=1).tolist(), boundary)}
     matched, faults = {}, []
     for name, facets in surfaces.items():
@@ -266,8 +260,8 @@ def _warnings(points: np.ndarray, cells: np.ndarray) -> tuple[str, ...]:
 
 
 def _skewed(points: np.ndarray, cells: np.ndarray) -> tuple[str, ...]:
-    """What bends too stiffly: hexahedra far from bricks. Tetrahedra of any shape bend as their
-    quadratic edges let them."""
+    """Warning of hexahedra far from bricks, which bend too stiffly. Tetrahedra of any shape bend
+    correctly: their edges are quadratic."""
     if kind(cells) is not HEXAHEDRON:
         return ()
     _, scaled = jacobians(points, cells)
@@ -282,6 +276,6 @@ def _skewed(points: np.ndarray, cells: np.ndarray) -> tuple[str, ...]:
 
 
 def _from_end_to_end(points: np.ndarray) -> np.ndarray:
-    # Rounded, because rounding errors of a mesh generator would shuffle the nodes of one section.
+    # Rounded, because rounding errors of a mesh generator would shuffle the nodes of a section.
     x, y, z = np.round(points, 9).T
     return np.lexsort((z, y, x))

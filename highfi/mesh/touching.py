@@ -1,6 +1,6 @@
-"""Facets of the boundary that lie on each other without sharing their nodes, as where two parts of
-a rail are meshed apart. Nothing joins them: each gives way alone, and they can pass through each
-other.
+"""Facets of the boundary that lie on each other without shared nodes, for example if two parts of a
+rail are meshed separately. Nothing joins them: each part deflects alone, and the parts can pass
+through each other.
 
 Two facets touch where their planes coincide, their normals are opposite, and the middle of one lies
 within the other.
@@ -12,13 +12,13 @@ from scipy.spatial import cKDTree
 from tipoff.highfi.mesh import facets
 from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
 
-_SAME = 1e-6  # m: below what a rail is made to
+_SAME = 1e-6  # m, below the manufacturing tolerance of a rail
 _OPPOSITE = -0.999  # cosine between normals
 _NEAREST = 16  # facets whose middles are compared with one
 
 
 def warning(mesh: RailMesh) -> tuple[str, ...]:
-    """One sentence with the area and the place of facets that touch; none without."""
+    """One sentence with area and place of the facets that touch; none without such facets."""
     found = touching(mesh)
     if not len(found):
         return ()
@@ -42,7 +42,8 @@ def touching(mesh: RailMesh) -> np.ndarray:
     near = min(_NEAREST, len(every))
     _, other = tree.query(middles, near, distance_upper_bound=reach.max(initial=0.0) + _SAME)
     one, column = np.nonzero(other < len(every))
-    # Each pair both ways: the nearest sixteen of a small facet may miss a large one.
+    # Each pair in both directions: the sixteen nearest facets of a small one may not include a
+    # large one.
     one, two = np.concatenate([one, other[one, column]]), np.concatenate([other[one, column], one])
     away = middles[one] - middles[two]
     close = (

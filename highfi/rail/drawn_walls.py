@@ -1,13 +1,14 @@
-"""The walls of a rail file as drawn: their offset from the straight walls of the scene, along the
-track of each pad face.
+"""Walls of a rail file as drawn: their offset from the straight walls of the scene, along the track
+of each pad face.
 
-With h the coordinate of the wall along its axis, n = +-1 the sign of the face's normal and ``wall``
-the place of the straight wall, the offset away from the payload at a place X of the rail is
+With h the coordinate of the wall along its axis, n = +-1 the sign of the face's normal, and
+``wall`` the place of the straight wall, the offset away from the payload at a place X of the rail
+is
 
     W(X, eta) = n h - n wall  =  w_0(X) + w_1(X) eta + w_2(X) eta^2
 
-by least squares over the width of the face, eta from -1 to 1 (``mechanics.drawn_walls``). Along the
-rail nothing is fitted: draft, bow, steps and joints are followed at places ``SPACING`` apart.
+by least squares over the width of the face, eta from -1 to 1 (``mechanics.drawn_walls``). There is
+no fit along the rail: draft, bow, steps and joints are sampled at places ``SPACING`` apart.
 """
 
 from typing import NamedTuple
@@ -21,10 +22,10 @@ from tipoff.highfi.statics.pressure import every, located
 from tipoff.mechanics.drawn_walls import ACROSS, grid
 from tipoff.mechanics.model import Faces
 
-SAME = 1e-6  # m: below what a rail is made to, above the rounding of any mesh format
-_SAMPLES = 6  # places across the width of a face, the middles of so many strips
-_TOGETHER = 64  # places along the rail that are located at once; bounds the memory
-_END = 1e-8  # m: nodes so near the end of a piece of wall are on it
+SAME = 1e-6  # m, below the manufacturing tolerance of a rail, above the rounding of mesh formats
+_SAMPLES = 6  # places across the width of a face, in the middle of equal strips
+_TOGETHER = 64  # places along the rail located at once; bounds the memory
+_END = 1e-8  # m, tolerance of nodes at the end of a piece of wall
 _SINGULAR = (
     1e-6  # of the largest eigenvalue: powers of eta that hardly differ on what wall there is
 )
@@ -70,9 +71,9 @@ def away(near: np.ndarray, faces: Faces, face: int) -> np.ndarray:
 def track(
     near: np.ndarray, faces: Faces, face: int, half: float, reach: tuple[float, float]
 ) -> Track:
-    """The wall of facets with nodes ``near`` (m,k,3) m under the track of a face whose half width is
-    ``half`` (m), negative where eta runs against the axis. Where it has no facet, the wall goes on
-    between its neighbours."""
+    """The wall under the track of a face, from facets with nodes ``near`` (m,k,3) m. ``half`` (m)
+    is half the width of the face, negative if eta is opposite to the axis. In places without
+    facets, the wall is interpolated between its neighbours."""
     x, eta = grid(*reach), (np.arange(_SAMPLES) + 0.5) * 2.0 / _SAMPLES - 1.0
     across = 3 - faces.axis[face]
     plane, height = near[:, :, [0, across]], away(near, faces, face)
@@ -107,9 +108,9 @@ def _fitted(x: np.ndarray, found: np.ndarray, eta: np.ndarray) -> Track:
 
 
 def step(near: np.ndarray, faces: Faces, face: int) -> tuple[float, float]:
-    """Height (m) of the highest step in the wall of facets with nodes ``near`` (m,k,3) m under the
-    track of a face, and its X (m): where facets meet at two heights, or where a piece without wall
-    ends otherwise than the slopes beside it continue."""
+    """Height (m) and X (m) of the highest step in the wall under the track of a face; ``near``
+    (m,k,3) m: nodes of the facets. A step is where facets meet at two heights, or where a piece
+    without wall ends at another height than the adjacent slopes continue to."""
     return max(_meeting(near, faces, face), _over_gaps(near, faces, face))
 
 
@@ -148,7 +149,8 @@ def _over_gaps(near: np.ndarray, faces: Faces, face: int) -> tuple[float, float]
 
 
 def gaps(near: np.ndarray) -> list[tuple[float, float]]:
-    """Pieces (m) along X without any of the facets with nodes ``near`` (m,k,3) m, between others."""
+    """Pieces (m) along X that have none of the facets with nodes ``near`` (m,k,3) m but lie between
+    them."""
     low, high = near[:, :, 0].min(axis=1), near[:, :, 0].max(axis=1)
     order = np.argsort(low)
     reached, starts = np.maximum.accumulate(high[order])[:-1], low[order][1:]
@@ -159,8 +161,8 @@ def offsets(
     mesh: RailMesh, faces: Faces, half: np.ndarray, reach: tuple[float, float]
 ) -> np.ndarray | None:
     """Offset (n,f,ACROSS) m of the walls under f faces at the places ``grid`` of ``reach`` (m), in
-    the axes of ``faces.wall``; ``half`` (f,) m is as in ``track``. A wall that lies within ``SAME``
-    of the straight one has none; None where all do."""
+    the axes of ``faces.wall``; ``half`` (f,) m as in ``track``. Zero for a wall within ``SAME`` of
+    the straight one; None if all walls are."""
     nodes = corners(mesh)
     found = np.zeros((grid(*reach).size, faces.axis.size, ACROSS))
     for face in range(faces.axis.size):

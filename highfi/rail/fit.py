@@ -1,11 +1,11 @@
-"""Checks that the walls of a rail file are those of its scene, and that each solid is held.
+"""Checks that the walls of a rail file agree with its scene, and that each solid is mounted.
 
-The reference takes the walls of a file as they are drawn, and so do the surrogates: draft, bow, ramps
-and joints are an offset of the wall along the rail (``highfi.rail.drawn_walls``). So the walls of a
-file must end where the scene says, lie under the whole track of every pad face, and have the clearance
-of the scene somewhere along it, to a micrometre. Every facet under the track is checked: none may be
-steeper than ``STEEPEST`` or wave across the face, and none may meet another one at a step. A step is
-an edge, which pads strike or fall off, and a potential of penetrations jumps there.
+The reference and the surrogates use the walls of a file as drawn: draft, bow, ramps and joints are
+an offset of the wall along the rail (``highfi.rail.drawn_walls``). So the walls of a file must have
+the ends of the scene, lie under the whole track of every pad face, and have the clearance of the
+scene somewhere along it, within a micrometre. Every facet under the track is checked. None may be
+steeper than ``STEEPEST`` or wave across the face, and facets may not meet at a step. A step is an
+edge, which pads strike or fall off, and the contact potential jumps there.
 """
 
 import numpy as np
@@ -20,18 +20,18 @@ from tipoff.scenes.rail import GeometryTable, MeshTable, SectionTable
 from tipoff.scenes.scene import Scene
 
 # Degrees. Both solvers measure penetration along an axis of the scene, not along the normal of the
-# wall, which makes pads stiffer by the square of half the slope: 0.2 % here.
+# wall. This makes pads stiffer by the square of half the slope: 0.2 % here.
 STEEPEST = 5.0
-_WAVE = 0.02  # of the clearance: a wall may deviate so far from a parabola across a face
-_GAP = 0.1  # of the length of a face: a longer piece of its track without wall is refused
-_LIKE = 1e-3  # relative: a length that is the rail's in another unit, or along another axis
-_AREA = 0.05  # relative: more than facets of a curved face lose, less than a box cuts off
+_WAVE = 0.02  # of the clearance: largest deviation of a wall from a parabola across a face
+_GAP = 0.1  # of the length of a face: longest piece of its track without wall
+_LIKE = 1e-3  # relative, for a length equal to the rail's in another unit or along another axis
+_AREA = 0.05  # relative: plane facets lose less of a curved face, a wrong box cuts off more
 _UNITS = {"millimetres": 1e3, "centimetres": 1e2, "inches": 1.0 / 0.0254}  # of them in a metre
 
 
 def check_frame(scene: Scene, rail: MeshTable | GeometryTable, mesh: RailMesh) -> None:
-    """Raise SceneError where the walls of a file have the length of the scene's in another unit or
-    along another axis."""
+    """Raise SceneError if the walls of a file have the scene's length in another unit or along
+    another axis."""
     lengths = np.ptp(drawn_walls.corners(mesh).reshape(-1, 3), axis=0)
     longest = int(lengths.argmax())
     unit, along_x = _unit(rail, lengths)
@@ -48,8 +48,8 @@ def check_frame(scene: Scene, rail: MeshTable | GeometryTable, mesh: RailMesh) -
 
 
 def unit_of(rail: MeshTable | GeometryTable, extent: np.ndarray) -> str:
-    """What a file whose solid has this ``extent`` (2,3) m seems to have for metres and for X, as the
-    end of a message; nothing where both are right."""
+    """Guess of a wrong unit or axis of a file whose solid has this ``extent`` (2,3) m, as the end
+    of a message; empty if both are right."""
     unit, along_x = _unit(rail, np.ptp(extent, axis=0))
     words = [f"the file seems to be in {unit}, not in metres"] if unit else []
     if not along_x:
@@ -58,8 +58,8 @@ def unit_of(rail: MeshTable | GeometryTable, extent: np.ndarray) -> str:
 
 
 def _unit(rail: MeshTable | GeometryTable, lengths: np.ndarray) -> tuple[str, bool]:
-    """The unit in which the longest of three ``lengths`` is that of the rail, nothing for metres or
-    for none, and whether it lies along X where it is that of the rail at all."""
+    """The unit in which the longest of three ``lengths`` is that of the rail (empty for metres or
+    none), and whether the length that equals the rail's is along X."""
     longest = int(lengths.argmax())
     ratio = lengths[longest] / (rail.end - rail.start)
     units = [name for name, count in _UNITS.items() if abs(ratio / count - 1.0) < _LIKE]
@@ -68,8 +68,8 @@ def _unit(rail: MeshTable | GeometryTable, lengths: np.ndarray) -> tuple[str, bo
 
 
 def check_areas(rail: GeometryTable, mesh: RailMesh) -> None:
-    """Raise MeshError with every surface of a meshed solid whose area is not that of the solid's
-    faces in its boxes."""
+    """Raise MeshError with every surface of a meshed solid whose area differs from that of the
+    solid's faces in its boxes."""
     faults = []
     for name, drawn in (mesh.drawn or {}).items():
         found = facets.area(mesh.points, mesh.surfaces[name])
@@ -87,7 +87,7 @@ def check_areas(rail: GeometryTable, mesh: RailMesh) -> None:
 
 
 def check_held(rail: MeshTable | GeometryTable, mesh: RailMesh) -> None:
-    """Raise MeshError with the solids of a file that no facet of ``mount`` holds."""
+    """Raise MeshError with the solids of a file that have no facet of ``mount``."""
     held = np.zeros(len(mesh.points), dtype=bool)
     held[mesh.surfaces["mount"]] = True
     loose = [mesh.points[own] for own in pieces.nodes(mesh) if not held[own].any()]
@@ -108,7 +108,7 @@ def _reach(points: np.ndarray) -> str:
 
 
 def check_fit(scene: Scene, mesh: RailMesh) -> None:
-    """Raise SceneError with every difference between the walls of a mesh or CAD file and those of the
+    """Raise SceneError with every difference between the walls of a mesh or CAD file and the
     scene."""
     if isinstance(scene.rail, SectionTable) or scene.contact is None:
         return
@@ -138,11 +138,11 @@ def _end_faults(rail: MeshTable | GeometryTable, corners: np.ndarray) -> list[tu
 def _wall_faults(
     scene: Scene, rail: MeshTable | GeometryTable, clearance: float, corners: np.ndarray
 ) -> list[tuple[str, str, str]]:
-    """Pad faces without a wall, and walls that the offset of a wall does not describe or that have
-    another clearance than the scene's."""
+    """Pad faces without a wall, walls that an offset cannot describe, and walls with another
+    clearance than the scene."""
     faces = model.in_scene_axes(scene, model.built(scene).nominal)
     drawn, file = rail.gap(clearance), rail.path().name
-    # wrong ends are faults of their own
+    # wrong ends are separate faults
     ends = max(rail.start, corners[..., 0].min()), min(rail.end, corners[..., 0].max())
     faults: list[tuple[str, str, str]] = []
     spans: list[tuple[float, ...]] = []
@@ -177,7 +177,7 @@ def _wall_faults(
 def _hole_faults(
     near: np.ndarray, faces: model.Faces, face: int, name: str, ends: tuple[float, float]
 ) -> list[tuple[str, str, str]]:
-    """Pieces of the track of a face along which it has no wall at all."""
+    """Pieces of the track of a face without any wall."""
     low, high = near[:, :, 0].min(axis=1), near[:, :, 0].max(axis=1)
     order = np.argsort(low)
     reached = np.maximum.accumulate(np.r_[ends[0], high[order]])
@@ -202,8 +202,8 @@ def _shape_faults(
     name: str,
     most: float,
 ) -> list[tuple[str, str, str]]:
-    """The highest step and the steepest place of a wall, and where it deviates by more than ``most``
-    (m) from a parabola across a face."""
+    """The highest step and the steepest place of a wall, and the places that deviate from a
+    parabola across a face by more than ``most`` (m)."""
     faults, key = [], f"pads.{faces.pad[face]}"
     height, x = drawn_walls.step(near, faces, face)
     if height > SAME:
@@ -244,8 +244,8 @@ def _shape_faults(
 def _clearance_faults(
     rail: MeshTable | GeometryTable, drawn: float, spans: list
 ) -> list[tuple[str, str, str]]:
-    """Walls that have the clearance of the scene nowhere; ``spans`` (f,3) m, least, largest and mean
-    clearance of each. The mean is that along the track, whatever the elements."""
+    """Walls that have the clearance of the scene nowhere; ``spans`` (f,3) m: least, largest and
+    mean clearance of each. The mean is along the track, independent of the elements."""
     if not any(low > drawn + SAME or high < drawn - SAME for low, high, _ in spans):
         return []
     means = [round(each[2], 9) for each in spans]

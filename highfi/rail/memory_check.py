@@ -1,5 +1,5 @@
-"""Memory check: refuses a mesh that does not fit into the memory of this process. If its size
-can be predicted, the check comes before the mesh is made (``memory_fault`` for files)."""
+"""Memory check: refuses a mesh that does not fit into the memory of this process, before the mesh
+is made if its size is known in advance (``memory_fault`` for files)."""
 
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.rail import memory_estimate
@@ -10,13 +10,13 @@ from tipoff.meshes import l_rail
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
 
-_COARSER = 1.05  # from one size tried to the next
+_COARSER = 1.05  # ratio of two sizes tried in turn
 _COARSEST = 0.1  # m
 
 
 def check_before(scene: Scene, element_size: float) -> None:
-    """Raise SceneError where the built-in section of ``scene`` with elements of ``element_size``
-    (m) will not fit into memory."""
+    """Raise SceneError if the built-in section of ``scene`` with elements of ``element_size`` (m)
+    does not fit into memory."""
     left = memory_estimate.available()
     if left is None or not isinstance(scene.rail, SectionTable):
         return
@@ -41,8 +41,8 @@ def check_before(scene: Scene, element_size: float) -> None:
 
 
 def check_mesh(scene: Scene, element_size: float, mesh: RailMesh) -> None:
-    """Raise SceneError where the run will not fit into the memory that the ``mesh`` of ``scene``,
-    given by a file, has left."""
+    """Raise SceneError if the run does not fit into the memory that is left after reading the
+    ``mesh`` of ``scene`` from a file."""
     left = memory_estimate.available()
     if left is None or isinstance(scene.rail, SectionTable):
         return

@@ -5,41 +5,40 @@
 Measured as the largest resident set of mesh, set-up and run of the reference rails: 154,880
 elements take 0.35 GB beyond the 0.2 GB of the interpreter with its libraries, 1.24 million 2.7 GB,
 4.05 million 8.7 GB. The mesh generator takes most of it and frees it before the first step. In a
-mesh without equal elements every element also has a matrix of its own, stored three times during the
-assembly. Joints under the mounts take 180 bytes per element at 4 mm and 95 at 2 mm, for which the
-constants leave room.
+mesh without equal elements, every element also has its own matrix, stored three times during the
+assembly. Joints under the mounts take 180 bytes per element at 4 mm and 95 at 2 mm; the constants
+include them.
 """
 
 from pathlib import Path
 
-FIXED = 6e7  # compiled kernels and what else does not grow with the mesh
+FIXED = 6e7  # compiled kernels and other memory that does not grow with the mesh
 PER_ELEMENT = 2300
-_PER_MESHED = 1200  # once the mesh is there, per element of eight nodes
+_PER_MESHED = 1200  # per element of eight nodes, after the mesh is made
 _COPIES = 3  # of the matrices of all elements, during the assembly
-_UNLIMITED = 2**60  # a control group without a limit gives a number above this
+_UNLIMITED = 2**60  # the limit of an unlimited control group is above this number
 
 
 def of_section(elements: int) -> float:
-    """Bytes that rails of so many hexahedra take from before they are meshed until the end of a
-    run."""
+    """Bytes for rails of so many hexahedra, from before they are meshed until the end of a run."""
     return FIXED + PER_ELEMENT * elements
 
 
 def of_mesh(elements: int, nodes: int, shapes: int) -> float:
-    """Bytes that a mesh already read takes until the end of a run: ``elements`` of ``nodes`` nodes
-    each in ``shapes`` classes."""
+    """Bytes for a mesh that is already read until the end of a run: ``elements`` with ``nodes``
+    nodes each in ``shapes`` classes."""
     return FIXED + _PER_MESHED * elements * nodes / 8 + _COPIES * 8 * (3 * nodes) ** 2 * shapes
 
 
 def available(system: Path = Path("/")) -> int | None:
-    """Bytes this process can still get, the smaller of what the machine and its control group
-    leave; None where both are unknown."""
+    """Bytes available to this process: the smaller of what the machine and its control group have
+    left; None if both are unknown."""
     found = [_of_machine(system), *_of_groups(system)]
     return min((value for value in found if value is not None), default=None)
 
 
 def in_words(amount: float) -> str:
-    """Bytes in GB."""
+    """Text of a number of bytes, in GB."""
     return f"{amount / 1e9:.2g} GB" if amount < 1e10 else f"{amount / 1e9:,.0f} GB"
 
 
@@ -52,7 +51,7 @@ def _of_machine(system: Path) -> int | None:
 
 
 def _of_groups(system: Path) -> list[int | None]:
-    """What is left of the limit of this process's control group and of those around it, in versions
+    """Bytes left of the limits of this process's control group and of those around it, in versions
     1 and 2."""
     root, left = system / "sys/fs/cgroup", []
     for line in _text(system / "proc/self/cgroup").splitlines():
@@ -65,7 +64,7 @@ def _of_groups(system: Path) -> list[int | None]:
 
 
 def _left(group: Path) -> int | None:
-    """Limit less use, of which what files have cached can be had back."""
+    """Limit minus use; cached files count as free."""
     for limit, used, cached in (
         ("memory.max", "memory.current", "inactive_file"),
         ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),

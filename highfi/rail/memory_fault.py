@@ -1,5 +1,5 @@
-"""Refusal of a rail from a file whose elements would not fit into memory, before it is split or
-filled. A wrong unit, in the file or of the element size, can give billions of elements."""
+"""Refuses a rail from a file if its elements would not fit into memory, before it is split or
+meshed. A wrong unit, in the file or of the element size, can give billions of elements."""
 
 from tipoff.highfi.mesh import split
 from tipoff.highfi.mesh.rail_mesh import RailMesh
@@ -14,7 +14,7 @@ _TETRAHEDRA, _HEXAHEDRA = 1.06, 1.0
 
 
 def require_split(scene: Scene, element_size: float, mesh: RailMesh) -> None:
-    """Raise SceneError where the ``mesh`` of a file, split to ``element_size`` (m), does not fit into
+    """Raise SceneError if the ``mesh`` of a file, split to ``element_size`` (m), does not fit into
     memory."""
     elements, nodes = mesh.cells.shape
     parts = split.parts(mesh, element_size) ** 3
@@ -26,8 +26,8 @@ def require_split(scene: Scene, element_size: float, mesh: RailMesh) -> None:
 def require_filled(
     scene: Scene, element_size: float, nodes: int, memory: float | None, volume: float
 ) -> None:
-    """Raise SceneError where a solid of ``volume`` (m3), filled with elements of so many ``nodes``
-    and ``element_size`` (m), does not fit into ``memory`` (bytes), be they all alike."""
+    """Raise SceneError if a solid of ``volume`` (m3), meshed with equal elements of so many
+    ``nodes`` and ``element_size`` (m), does not fit into ``memory`` (bytes)."""
     per_cube = _HEXAHEDRA if nodes == 8 else _TETRAHEDRA
     elements = int(per_cube * volume / element_size**3)
     shapes = 1 if nodes == 8 else elements
@@ -47,7 +47,7 @@ def _require(
 def too_large(
     scene: Scene, element_size: float, elements: int, needed: float, left: float, expected: str
 ) -> SceneError:
-    """The fault of an element size (m) whose mesh needs more than is left (bytes)."""
+    """The fault of an element size (m) whose mesh needs more memory (bytes) than is left."""
     given = (
         f"{1e3 * element_size:.4g} mm: {elements:,} elements take about "
         f"{memory_estimate.in_words(needed)} of memory, and "

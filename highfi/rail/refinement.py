@@ -1,7 +1,7 @@
-"""The element sizes that a mesh file gives, and whether a finer mesh fits into memory.
+"""Element sizes of a mesh file, and whether a finer mesh fits into memory.
 
-A file is split where its elements are larger than asked, and never coarsened: for two element sizes
-it may give the same mesh. Other rails are meshed in the size asked.
+A file is split if its elements are larger than requested, and never coarsened. So it may give the
+same mesh for two element sizes. Other rails are meshed in the requested size.
 """
 
 from collections.abc import Sequence
@@ -12,12 +12,12 @@ from tipoff.highfi.rail import memory_estimate, step_cost
 from tipoff.scenes.rail import MeshTable
 from tipoff.scenes.scene import Scene
 
-LONGEST = 1800.0  # s of one core, of a run that only checks another one
+LONGEST = 1800.0  # s on one core, for a run that only checks another one
 
 
 def sizes(scene: Scene, asked: Sequence[float]) -> list[float]:
-    """Size (m) of the elements in the mesh of ``scene`` for each element size ``asked`` (m): equal
-    for equal meshes. Raises MeshError for a file that cannot be used."""
+    """Size (m) of the elements in the mesh of ``scene`` for each requested element size ``asked``
+    (m): equal for equal meshes. Raises MeshError for a file that cannot be used."""
     if not isinstance(scene.rail, MeshTable):
         return list(asked)
     mesh = read(scene.rail.path())
@@ -26,8 +26,8 @@ def sizes(scene: Scene, asked: Sequence[float]) -> list[float]:
 
 
 def too_fine(scene: Scene, size: float) -> str:
-    """Why a run in elements of ``size`` (m), split from the file of ``scene``, does not fit into
-    memory or would take too long, or nothing."""
+    """Reason why a run in elements of ``size`` (m), split from the file of ``scene``, does not fit
+    into memory or takes too long, or ""."""
     mesh = read(scene.rail.path()) if isinstance(scene.rail, MeshTable) else None
     if mesh is None:
         return ""

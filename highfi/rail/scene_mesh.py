@@ -15,10 +15,10 @@ from tipoff.scenes.scene import Scene
 
 
 def geometry(scene: Scene) -> l_rail.LRailGeometry | str:
-    """What the mesh of a scene depends on: dimensions of the L section, or the digest of the table
-    and of its file.
+    """Key of the mesh of a scene: dimensions of the L section, or the digest of the table and of
+    its file.
 
-    Raises SceneError where pads do not fit the built-in section or nothing holds it.
+    Raises SceneError if pads do not fit the built-in section or nothing holds it.
     """
     if isinstance(scene.rail, SectionTable):
         return _l_section(scene, scene.rail)
@@ -55,7 +55,7 @@ def make_mesh(scene: Scene, element_size: float) -> RailMesh:
 
 
 def _l_section(scene: Scene, rail: SectionTable) -> l_rail.LRailGeometry:
-    """Inner corners one clearance off the pads. Raises SceneError where pads do not fit it or
+    """Inner corners one clearance off the pads. Raises SceneError if pads do not fit the section or
     nothing holds it."""
     places = {(abs(pad.position[1]), abs(pad.position[2])) for pad in scene.pads}
     faults = []

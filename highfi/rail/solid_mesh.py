@@ -18,8 +18,8 @@ def meshed(
     scene: Scene, element_size: float, memory: int | None
 ) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray], dict[str, float]]:
     """Points (n,3) m, elements (e,8) or (e,10), facets (m,4) or (m,6) of each surface, and the area
-    (m2) of the solid's own faces in its boxes. ``memory`` is what the mesh may take (bytes), None
-    where it is unknown.
+    (m2) of the solid's own faces in its boxes. ``memory``: limit for the mesh (bytes), None if it
+    is unknown.
 
     Raises SceneError, MeshError or GmshUnavailable.
     """

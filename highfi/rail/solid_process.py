@@ -1,8 +1,8 @@
 """Solids from CAD files, meshed in a separate process: a damaged line in a file can stop the
 process that reads it, keep it busy without end, or use all its memory.
 
-The process gets a scene and an element size as JSON on its standard input. It leaves the mesh, or
-its refusal, in a folder.
+The process gets a scene and an element size as JSON on its standard input. It writes the mesh, or
+its refusal, to a folder.
 """
 
 import json
@@ -30,7 +30,7 @@ from tipoff.scenes.rail import GeometryTable
 from tipoff.scenes.scene import Scene
 
 CPU_SECONDS = 900  # s; millions of elements take a few minutes
-_SAID_AFTER = 5.0  # s; loading its libraries takes a second or two
+_SAID_AFTER = 5.0  # s; loading the libraries takes a second or two
 _REPLY, _ARRAYS = "reply.json", "mesh.npz"
 
 
@@ -40,8 +40,8 @@ def mesh_of(
     """Elements and surfaces of the solid of ``scene``, and the areas (m2) of the solid's own faces in
     the boxes of each surface, as ``solid_mesh.meshed`` makes them.
 
-    Raises SceneError, MeshError, also where the process ends before its time or takes more than
-    ``CPU_SECONDS``, and GmshUnavailable.
+    Raises SceneError, GmshUnavailable, or MeshError; the last also if the process dies or takes
+    more than ``CPU_SECONDS``.
     """
     with tempfile.TemporaryDirectory(prefix="tipoff-") as name:
         folder = Path(name)
@@ -77,7 +77,7 @@ def mesh_of(
 
 
 def _run(order: str, file: Path) -> tuple[int, str]:
-    """Exit code and errors of the process. It is said where it takes long."""
+    """Exit code and errors of the process. A message is printed if it takes long."""
     process = subprocess.Popen(
         [sys.executable, "-c", f"from {__name__} import main; main()"],
         stdin=subprocess.PIPE,
@@ -107,7 +107,7 @@ def _refusal(reply: dict[str, Any]) -> Exception:
 
 
 def main() -> None:
-    """Mesh what the order on standard input asks for."""
+    """Mesh the solid of the request on standard input."""
     order = json.load(sys.stdin)
     if order["memory"] is not None:
         _, hard = resource.getrlimit(resource.RLIMIT_DATA)

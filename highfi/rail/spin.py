@@ -1,14 +1,14 @@
 """The largest rotation rate of a platform for which its rails are linear in its frame.
 
-Rails are linear elastic in the frame of the platform. Centrifugal load on the deformed rail is taken
-into account. The stiffening by the tension that it causes is not. For a beam that turns at W with a
-lowest frequency w at rest
+Rails are linear elastic in the frame of the platform. Centrifugal load on the deformed rail is
+included. The stiffening by the tension that it causes is left out. For a beam that turns at W with
+a lowest frequency w at rest
 
     w(W)^2 = w^2 + k W^2,   k = 1.193 for a cantilever clamped on the axis, across the plane of turning
 
-(Southwell and Gough 1921; Leissa, Applied Mechanics Reviews 34 (1981) 629), so what is left out is of
-the relative size (W / w)^2 of the stiffness, and larger where the clamp is far from the axis. A scene
-is refused where this ratio exceeds ``MOST``.
+(Southwell and Gough 1921; Leissa, Applied Mechanics Reviews 34 (1981) 629). So the relative error
+of the stiffness is about (W / w)^2, and larger if the clamp is far from the axis. A scene is
+refused if this ratio exceeds ``MOST``.
 """
 
 import numpy as np
@@ -27,15 +27,15 @@ from tipoff.scenes.rail import MaterialTable, MeshTable, SectionTable
 from tipoff.scenes.scene import Scene
 
 MOST = 0.01  # (W / w)^2
-_CANTILEVER = 3.516 / np.sqrt(12.0)  # of w = _CANTILEVER sqrt(E / rho) thickness / length^2
-_COARSE = 4e-3  # m, elements of a built-in rail whose lowest frequency is found
-_FEW = 20_000  # nodes of a mesh that is taken as it is
+_CANTILEVER = 3.516 / np.sqrt(12.0)  # in w = _CANTILEVER sqrt(E / rho) thickness / length^2
+_COARSE = 4e-3  # m, smallest elements of a built-in rail to find its lowest frequency
+_FEW = 20_000  # nodes; a larger mesh is not used to find the lowest frequency
 _FREQUENCIES: dict[tuple, float] = {}  # rad/s, by geometry and material
 
 
 def expected_rate(scene: Scene) -> float:
-    """Largest rate (rad/s) of the platform that its initial rate and the reaction to the thrust can
-    give it; contact is not in it."""
+    """Upper bound (rad/s) of the rate of the platform from its initial rate and the reaction to the
+    thrust; contact is not included."""
     model = scene_model.build(scene)
     if model.platform is None:
         return 0.0
@@ -52,9 +52,9 @@ def expected_rate(scene: Scene) -> float:
 
 
 def rate_never_checked(scene: Scene, mesh: RailMesh) -> float:
-    """Rate (rad/s) of the platform that is within the limit for any rail of this length. It belongs
-    to a strip as thin as one element and held at one end: no rail on rigid mounts is softer. Zero
-    on joints, whose stiffness has no lower bound."""
+    """Rate (rad/s) of the platform that is within the limit for any rail of this length on rigid
+    mounts. It is the limit of the softest rail: a strip one element thick, held at one end. Zero on
+    joints, whose stiffness has no lower bound."""
     if scene.rail.joint() is not None:
         return 0.0
     material = scene.rail.material
@@ -66,8 +66,9 @@ def rate_never_checked(scene: Scene, mesh: RailMesh) -> float:
 
 
 def lowest_frequency(scene: Scene, mesh: RailMesh) -> float:
-    """Lowest frequency (rad/s) of the rails held at their mounts, on ``mesh``; where that is
-    large, of a built-in section in elements of at least 4 mm, and of a mesh file in its own."""
+    """Lowest frequency (rad/s) of the rails held at their mounts, on ``mesh``. If the mesh is
+    large, it comes from a built-in section in elements of at least 4 mm, or from the elements of
+    the mesh file."""
     if len(mesh.points) <= _FEW:
         return lowest_of(mesh, scene.rail.material, scene.rail.joint())
     key = (geometry(scene), scene.rail.model_dump_json())
@@ -83,7 +84,7 @@ def lowest_frequency(scene: Scene, mesh: RailMesh) -> float:
 def lowest_of(
     mesh: RailMesh, material: MaterialTable, joint: MountStiffness | None = None
 ) -> float:
-    """Lowest frequency (rad/s) of all solids of ``mesh`` that mounts hold, rigid ones or on a
+    """Lowest frequency (rad/s) of all mounted solids of ``mesh``, on rigid mounts or on a
     ``joint``; infinite without one."""
     found = [np.inf]
     for solid, _ in pieces.distinct(mesh):
@@ -99,8 +100,7 @@ def lowest_of(
 
 
 def check(scene: Scene, mesh: RailMesh) -> None:
-    """Raise SceneError where the platform of ``scene`` turns so fast that its rails on ``mesh`` are
-    not linear."""
+    """Raise SceneError if the platform of ``scene`` turns too fast for linear rails on ``mesh``."""
     if scene.platform is None or (rate := expected_rate(scene)) <= rate_never_checked(scene, mesh):
         return
     if words := too_fast(rate, lowest_frequency(scene, mesh)):
@@ -108,8 +108,8 @@ def check(scene: Scene, mesh: RailMesh) -> None:
 
 
 def too_fast(rate: float, frequency: float) -> tuple[str, str] | None:
-    """What is given and what is expected where a platform with rails of this lowest ``frequency``
-    (rad/s) turns at ``rate`` (rad/s) beyond the limit."""
+    """Given and expected values if a platform with rails of this lowest ``frequency`` (rad/s) turns
+    at a ``rate`` (rad/s) beyond the limit."""
     share = (rate / frequency) ** 2
     if share <= MOST:
         return None

@@ -2,9 +2,9 @@
 time of a run.
 
 No frequency of a mesh exceeds the highest one of its elements (``stable_step.element_bound``), and
-thin or folded elements have the highest. So only the worst ones by two measures are assembled: the
-thickness, and the smallest Jacobian over the two longest edges, which sees folds of curved elements
-too.
+thin or folded elements have the highest. So only the worst elements are assembled, by two measures:
+the thickness, and the smallest Jacobian over the two longest edges, which also finds folds of
+curved elements.
 """
 
 from dataclasses import replace
@@ -20,20 +20,20 @@ from tipoff.meshes.bricks import CUBE
 from tipoff.scenes.rail import MaterialTable
 from tipoff.scenes.scene import Scene
 
-MOST = 6.0  # times the steps of hexahedra of the same size, beyond which a mesh is warned about
+MOST = 6.0  # times the steps of hexahedra of the same size; above it there is a warning
 _WORST = 500  # elements assembled for each measure
-# ns of one core for one step of one element, by its number of nodes: where many elements share a
-# matrix, and where each has its own
+# ns of one core for one step of one element, by its number of nodes: if many elements share a
+# matrix, and if each has its own
 _SHARED, _OWN = {8: 45.0, 10: 150.0}, {8: 250.0, 10: 900.0}
 _FEW = 0.1  # matrices per element
-_LONG = 1200.0  # s on one core, beyond which a run is announced with its time
+_LONG = 1200.0  # s on one core; a longer run is announced with its time
 
 
 def ratio(
     material: MaterialTable, element_size: float, points: np.ndarray, cells: np.ndarray
 ) -> float:
-    """How many times the steps of cubes of ``element_size`` (m) a mesh needs, infinite where an
-    element is inverted."""
+    """Number of steps of a mesh over that of cubes of ``element_size`` (m); infinite if an element
+    is inverted."""
     jacobian, _ = jacobians(points, cells)
     if not (jacobian > 0.0).all():
         return np.inf
@@ -43,13 +43,13 @@ def ratio(
 
 
 def largest_step(mesh: RailMesh, material: MaterialTable) -> float:
-    """Step (s) at which every element of a mesh is stable, whatever is held."""
+    """Step (s) at which every element of a mesh is stable, for any fixed nodes."""
     part = assembly.of_material(mesh, material, fixed=())
     return stable_step.critical_step(stable_step.element_bound(part))
 
 
 def with_sliver_steps(mesh: RailMesh, material: MaterialTable) -> RailMesh:
-    """``mesh``; where it has slivers, with a warning that gives the step (s) they require."""
+    """``mesh``; if it has slivers, with a warning that gives the step (s) they require."""
     thin = slivers(mesh.points, mesh.cells)
     if not len(thin):
         return mesh
@@ -65,7 +65,7 @@ def with_sliver_steps(mesh: RailMesh, material: MaterialTable) -> RailMesh:
 
 
 def with_run_time(mesh: RailMesh, scene: Scene, size: float) -> RailMesh:
-    """``mesh``; where it needs more than ``MOST`` times the steps of cubes of ``size`` (m), with a
+    """``mesh``; if it needs more than ``MOST`` times the steps of cubes of ``size`` (m), with a
     warning that gives the expected time of a run."""
     times = ratio(scene.rail.material, size, mesh.points, mesh.cells)
     if times <= MOST:
@@ -81,8 +81,8 @@ def with_run_time(mesh: RailMesh, scene: Scene, size: float) -> RailMesh:
 
 
 def run_time(mesh: RailMesh, scene: Scene) -> tuple[float, float]:
-    """Estimate of the step (s) on a mesh and of the time (s) that one core takes until the
-    expected end of ``scene``."""
+    """Estimate of the step (s) on a mesh, and of the time (s) of one core until the expected end of
+    ``scene``."""
     jacobian, _ = jacobians(mesh.points, mesh.cells)
     worst = mesh.cells[_worst(mesh.points, mesh.cells, jacobian.min(axis=1))]
     limit = largest_step(RailMesh(mesh.points, worst, {}), scene.rail.material)
@@ -91,8 +91,8 @@ def run_time(mesh: RailMesh, scene: Scene) -> tuple[float, float]:
 
 
 def long_run(mesh: RailMesh, scene: Scene, step: float) -> str:
-    """Words on a run with this ``step`` (s) that would take more than twenty minutes of one core, as under
-    an interface stiffness in a wrong unit; else nothing."""
+    """Warning of a run with this ``step`` (s) that would take more than twenty minutes of one core,
+    for example due to an interface stiffness in a wrong unit; else ""."""
     if (seconds := _seconds(mesh, scene, step)) <= _LONG:
         return ""
     return (
@@ -110,7 +110,7 @@ def _seconds(mesh: RailMesh, scene: Scene, step: float) -> float:
 
 
 def spacing(mesh: RailMesh) -> float:
-    """Median distance (m) of nodes along the shortest edges of hexahedra, along all edges of
+    """Median distance (m) of nodes: along the shortest edges of hexahedra, along all edges of
     tetrahedra."""
     edges = edge_lengths(mesh.points, mesh.cells)
     if mesh.cells.shape[1] == 8:
@@ -125,7 +125,7 @@ def _worst(points: np.ndarray, cells: np.ndarray, jacobian: np.ndarray) -> np.nd
 
 
 def in_words(seconds: float) -> str:
-    """A time (s) in its unit."""
+    """Text of a time (s) with its unit."""
     for unit, length in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0)):
         if seconds >= 2.0 * length:
             return f"{seconds / length:.2g} {unit}"

@@ -1,7 +1,7 @@
 """Loops over the rail nodes: kick, drift, sums. They have no branches, so that they run at memory
 speed.
 
-A node without inverse mass is clamped or padding: it has no resistance and stays where it is in the
+A node with zero inverse mass is clamped or padding: it has no resistance and keeps its place in the
 frame.
 """
 
@@ -15,8 +15,8 @@ from tipoff.kernels.jit import entry, kernel
 
 @entry
 def kick_nodes(inverse_mass, velocity, resistance, acceleration, dt):
-    """w += dt (acceleration - r / m) for all nodes; ``acceleration`` (m/s2) of the body force in
-    frame axes."""
+    """w += dt (acceleration - r / m) for all nodes; ``acceleration`` (m/s2): body force, frame
+    axes."""
     for i in range(3):
         _kick_component(inverse_mass, velocity.T[i], resistance.T[i], acceleration[i], dt)
 
@@ -40,9 +40,9 @@ def _kicked(velocity, resistance, inverse_mass, acceleration, dt):
 
 @kernel
 def move_nodes(rail, frame, state, dt, first, last):
-    """Kick and drift nodes ``first`` to ``last`` in a frame that moves as ``state.motion`` says;
-    see ``pose``."""
-    # Unsigned, because an index that might be negative would keep the loops from being vectorised.
+    """Kick and drift nodes ``first`` to ``last`` in a frame with the motion ``state.motion``; see
+    ``pose``."""
+    # Unsigned, because signed indices would prevent vectorisation of the loops.
     first, last = np.uint64(first), np.uint64(last)
     if frame is None:
         for i in range(3):
@@ -67,7 +67,7 @@ def _move_in_frame(rail, state, centre, dt, first, last):
     u, v, w = state.displacement.T[0], state.displacement.T[1], state.displacement.T[2]
     p, q, r = state.velocity.T[0], state.velocity.T[1], state.velocity.T[2]
     a, b, c = state.resistance.T[0], state.resistance.T[1], state.resistance.T[2]
-    # Read once: the compiler cannot know that the loop leaves them alone.
+    # Read once: the compiler cannot know that the loop does not change them.
     ox, oy, oz = centre
     fx, fy, fz = triple(motion.velocity)
     gx, gy, gz = triple(motion.acceleration)
@@ -93,11 +93,11 @@ def _move_in_frame(rail, state, centre, dt, first, last):
 
 @kernel
 def sum_turning(displacement, resistance, first, last, lanes, total):
-    """Set ``total`` (3,) to the sum of u x r over nodes ``first`` to ``last``, whole vectors of
-    them (N m).
+    """Set ``total`` (3,) to the sum of u x r (N m) over nodes ``first`` to ``last``, in whole
+    vectors.
 
-    ``lanes`` (3 or more, LANES) is workspace for sums lane by lane, in an order that does not
-    depend on the number of threads.
+    ``lanes`` (3 or more, LANES) is workspace for sums lane by lane; their order does not depend on
+    the number of threads.
     """
     first, last = np.uint64(first), np.uint64(last)
     u, v, w = displacement.T[0], displacement.T[1], displacement.T[2]
@@ -117,8 +117,8 @@ def sum_turning(displacement, resistance, first, last, lanes, total):
 
 @kernel
 def hold(rail, resistance, first, last, total):
-    """Set ``total`` (6,) to force (N) and moment about the frame's origin (N m) of clamped nodes
-    ``first`` to ``last``, then their resistance to zero."""
+    """Set ``total`` (6,) to the force (N) and the moment (N m) about the frame's origin of clamped
+    nodes ``first`` to ``last``, then their resistance to zero."""
     total[:] = 0.0
     for k in range(first, last):
         node = rail.clamped[k]
@@ -132,8 +132,8 @@ def hold(rail, resistance, first, last, total):
 
 @kernel
 def follow_frame(rail, state, frame, nodes, first, last):
-    """Give clamped ``nodes`` from number ``first`` to ``last`` the frame's own inertial velocity,
-    which friction needs."""
+    """Set the velocity of clamped ``nodes`` from number ``first`` to ``last`` to the frame's
+    inertial velocity, which friction needs."""
     if frame is not None:
         velocity, rate = triple(state.motion.velocity), triple(state.motion.rate)
         for k in range(first, last):

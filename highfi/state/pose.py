@@ -1,14 +1,14 @@
 """Pose of the payload in frame axes, and the drift of bodies and frame over one step.
 
-With R the frame's rotation, w = R' x_dot a node's inertial velocity in frame axes, v that of the mass
-centre of the rigid part, from which X is counted here, and Q = R(n+1)' R(n), the exact free drift
-x(n+1) = x(n) + dt x_dot reads in frame axes::
+With R the frame's rotation, w = R' x_dot a node's inertial velocity in frame axes, v the velocity
+of the mass centre of the rigid part, from which X is measured here, and Q = R(n+1)' R(n), the exact
+free drift x(n+1) = x(n) + dt x_dot is in frame axes::
 
     X + u(n+1) = Q [X + u(n) + dt (w - R' v)],       w(n+1) = Q w(n)
 
-Every inertial term (linear, Euler, Coriolis, centrifugal) is in these two lines, none is dropped:
-expanding Q = 1 - dt [omega x] gives the usual four. Linear and angular momentum of the whole system
-are kept to round-off, because a drift changes neither.
+Every inertial term (linear, Euler, Coriolis, centrifugal) is contained in these two lines; the
+expansion Q = 1 - dt [omega x] gives the usual four. Linear and angular momentum of the whole system
+are kept to round-off, because a drift does not change them.
 """
 
 from typing import NamedTuple
@@ -61,7 +61,7 @@ def _identity():
 
 @kernel
 def frame_matrix(platform_state, frame):
-    """Rotation of the frame; the identity, without any work, when the platform is fixed."""
+    """Rotation of the frame; the identity, without computation, if the platform is fixed."""
     turn = _identity()
     if frame is not None:
         turn = body_matrix(platform_state)
@@ -70,7 +70,7 @@ def frame_matrix(platform_state, frame):
 
 @kernel
 def _from_origin(separation, frame):
-    """A place from the mass centre of the rigid part, in frame axes, counted from the frame's
+    """Convert a place in frame axes from the mass centre of the rigid part to the frame's
     origin."""
     place = separation
     if frame is not None:
@@ -137,11 +137,11 @@ def drift_body(body, inverse_inertia, dt):
 
 @kernel
 def small_turn(rate, dt):
-    """Q - 1 (nine numbers) for the frame turning at ``rate`` (rad/s, frame axes) over ``dt``,
+    """Q - 1 (nine numbers) for a frame that turns at ``rate`` (rad/s, frame axes) over ``dt``,
     without cancellation."""
     x, y, z = -dt * rate[0], -dt * rate[1], -dt * rate[2]
     square = x * x + y * y + z * z
-    # sin(a)/a and (1 - cos a)/a^2; a step turns the frame by 1e-8 rad, where two terms are exact.
+    # sin(a)/a and (1 - cos a)/a^2; a step turns the frame by 1e-8 rad, so two terms are exact.
     angle = np.sqrt(square)
     a = 1.0 - square / 6.0 if angle < 1e-3 else np.sin(angle) / angle
     b = 0.5 - square / 24.0 if angle < 1e-3 else (1.0 - np.cos(angle)) / square

@@ -2,9 +2,9 @@
 
 All places and nodal vectors are in the axes of the platform-fixed frame. Its origin is the mass
 centre of the platform without the moving rail nodes; for a fixed platform it is the scene origin.
-The *rigid part* of the platform includes the rails that rest (``dynamics.resting``), so its mass
-centre differs from the origin where rails rest. Nodal arrays are (n,3) with contiguous columns: one
-component of all nodes after the other, as vector instructions want them.
+The *rigid part* of the platform includes the rails at rest (``dynamics.resting``), so its mass
+centre then differs from the origin. Nodal arrays are (n,3) with contiguous columns: all x, then all
+y, then all z, as vector instructions need them.
 
 Sizes: n nodes, e elements, b blocks of nodes, m facets of k nodes, f pad faces, g groups of faces.
 """
@@ -125,13 +125,13 @@ class Drive(NamedTuple):
     """How thrust acts on payload and platform."""
 
     arm: float  # m, from the nominal mass centre back to the point of thrust
-    reacts_on_platform: bool
+    reacts_on_platform: bool  # whether the platform takes the reaction
     moving_mass: float  # kg, of the nodes that are stepped
 
 
 @by_reference
 class Exit(NamedTuple):
-    """What the payload must pass."""
+    """Geometry of the exit."""
 
     edges: np.ndarray  # (f,3) m, trailing edges of the pads in body axes
     rail_end: float  # m, X of the rail end from the frame's origin
@@ -139,7 +139,7 @@ class Exit(NamedTuple):
 
 @by_reference
 class Constants(NamedTuple):
-    """All that is constant in a run; an effect that the scene lacks is None."""
+    """Constant records of a run; None for an effect that the scene does not have."""
 
     rail: Rail
     surface: Surface
@@ -155,9 +155,7 @@ class Constants(NamedTuple):
     exit: Exit
     milestones: Milestones
     dt: float  # s
-    substeps: (
-        int  # into which friction splits a step (``dynamics.substeps``); ``dt`` is one of them
-    )
+    substeps: int  # parts of a step divided by friction (``dynamics.substeps``); ``dt`` is one part
 
 
 @by_reference
@@ -172,7 +170,7 @@ class Body(NamedTuple):
 
 @by_reference
 class Motion(NamedTuple):
-    """What nodes need of the frame in the next drift, in frame axes."""
+    """Motion of the frame that nodes need in the next drift, in frame axes."""
 
     velocity: np.ndarray  # (3,) m/s, of the mass centre of the rigid part
     turn: np.ndarray  # (9,) rotation of the frame over the step, less the identity
@@ -182,15 +180,15 @@ class Motion(NamedTuple):
 
 @by_reference
 class History(NamedTuple):
-    """What structural damping keeps from one step to the next."""
+    """Values that structural damping stores from one step to the next."""
 
     elastic: np.ndarray  # (n,3) N, K u
     displacement: np.ndarray  # (n,3) m
-    force: np.ndarray  # (n,3) N, what damping adds to the resistance
-    # (b,6) N and N m, force and moment about the frame's origin of what has a resultant: the part
-    # proportional to mass, and that of joints
+    force: np.ndarray  # (n,3) N, contribution of damping to the resistance
+    # (b,6) N and N m, resultant and moment about the frame's origin of the parts that have one:
+    # proportional to mass, and of joints
     drag: np.ndarray
-    loss: np.ndarray  # (b,) J, energy taken over the step
+    loss: np.ndarray  # (b,) J, energy dissipated over the step
     mounting: np.ndarray | None  # (b,6) N and N m, ``State.mounting`` one step ago
 
 
@@ -207,12 +205,12 @@ class State(NamedTuple):
     """Bodies, nodes and sums over them."""
 
     payload: Body
-    platform: Body  # its rigid part: place and velocity of its mass centre
+    platform: Body  # its rigid part: place and velocity of the mass centre
     stepped: Stepped
     displacement: np.ndarray  # (n,3) m
     velocity: np.ndarray  # (n,3) m/s at the half step, *inertial*, resolved in frame axes
     resistance: np.ndarray  # (n,3) N, K u and damping minus contact, zero where clamped
-    contact: np.ndarray  # (n,3) N, on its way into the resistance, else zero
+    contact: np.ndarray  # (n,3) N, until it is added to the resistance, then zero
     turning: np.ndarray  # (b,3) N m, sum of u x resistance before contact
     clamping: np.ndarray  # (b,6) N and N m, resistance of the clamped nodes and its moment
     mounting: np.ndarray | None  # (b,6) N and N m, force of the joints and its moment
@@ -230,22 +228,22 @@ class State(NamedTuple):
 
 @by_reference
 class Active(NamedTuple):
-    """Where contact is now."""
+    """Present contact."""
 
     node_count: np.ndarray  # (g,) entries of ``node`` in use, of each group
     node: np.ndarray  # numbers of the nodes that carry load
     seen: np.ndarray  # (n,) whether a node is among them
-    drag: np.ndarray  # (n,3) N, their share of the friction on the payload, frame axes
+    drag: np.ndarray  # (n,3) N, their part of the friction on the payload, frame axes
     node_damping: np.ndarray  # (n,) N s/m, damping of the nodes by friction
     wait: np.ndarray  # (f,) steps for which a face cannot touch
     side: np.ndarray  # (f,) whether a face was over its wall when last checked: OVER, AWAY, UNKNOWN
     rests: np.ndarray  # (g,) whether a rail of the group rests
-    # (g,) whether a face of a group that rests may touch within two steps; the loop then returns
+    # (g,) whether a face of a group at rest may touch within two steps; the loop then returns
     near: np.ndarray
     struck: np.ndarray  # (f,) STRUCK
 
 
-# Values of Active.side: in front of its wall, away from it or behind it, not checked yet.
+# Values of Active.side: in front of its wall; beside or behind it; not checked yet.
 OVER, AWAY, UNKNOWN = 0, 1, 2
 
 # Contact on the payload in frame axes.
@@ -261,8 +259,8 @@ LOAD = np.dtype(
     ]
 )
 
-# Work (J) by the entries of the energy ledger; state entries stay zero. Rows of State.work: all of
-# it, and the part that is axial motion.
+# Work (J) by the entries of the energy ledger; state entries stay zero. Rows of State.work: total,
+# and axial part.
 WORK = np.dtype([("body_force" if name == BODY_FORCE else name, float) for name in ENTRIES])
 TOTAL, AXIAL = 0, 1
 

@@ -1,9 +1,9 @@
 """Threads that share one run: barrier and work queue.
 
-All threads take the same steps. A step lasts tens of microseconds, so a thread that waits at a barrier
-spins first. After about 0.2 ms it sleeps on a condition variable, and the last thread to arrive wakes
-it. ``sched_yield`` does not replace the sleep: beside another busy program, Linux then keeps the thread
-from its processor for a whole time slice at each barrier.
+All threads take the same steps. A step lasts tens of microseconds, so a thread that waits at a
+barrier spins first. After about 0.2 ms it sleeps on a condition variable, and the last thread to
+arrive wakes it. ``sched_yield`` cannot replace the sleep: beside another busy program, Linux would
+delay the thread by a whole time slice at each barrier.
 """
 
 import ctypes
@@ -23,9 +23,9 @@ from tipoff.kernels.reference import by_reference
 
 _ROUND, _ARRIVED, _NEXT, _ASLEEP, _MUTEX, _CONDITION = 0, 8, 16, 24, 32, 40  # cache lines
 _SPINS = 100_000  # reads of the round before a waiting thread sleeps: about 0.2 ms
-_FEWER_SPINS = 4_000  # the same where threads outnumber processors
+_FEWER_SPINS = 4_000  # the same if there are more threads than processors
 _WORD = ir.IntType(64)
-_POSIX = os.name == "posix"  # elsewhere it only spins
+_POSIX = os.name == "posix"  # on other systems, threads only spin
 
 
 @by_reference
@@ -97,8 +97,8 @@ def _write(typing, counters, index, value):
 
 
 def _of_threads(name: str, *places: int):
-    """A call of ``pthread_name`` with pointers to these ``places`` of the counters; nothing where
-    there are no POSIX threads."""
+    """A call of ``pthread_name`` with pointers to these ``places`` of the counters; no operation on
+    systems without POSIX threads."""
 
     @intrinsic
     def call(typing, counters):
@@ -128,8 +128,9 @@ _wake_all = _of_threads("cond_broadcast", _CONDITION)
 def barrier(team):
     """Wait until all threads of the team are here.
 
-    No wake-up is lost. A thread counts itself as asleep and then reads the round once more; the last
-    thread ends the round and then reads that count. One of the two sees what the other wrote.
+    No wake-up is lost. A thread counts itself as asleep and then reads the round once more. The
+    last thread ends the round and then reads this count. So at least one of the two sees the
+    other's value.
     """
     if team.size > 1:
         counters = team.counters
@@ -155,12 +156,12 @@ def barrier(team):
 
 @kernel
 def reset_queue(team):
-    """Number the pieces of work from zero again; one thread calls this, and a barrier comes before
-    any thread takes a piece."""
+    """Restart the numbers of the pieces of work from zero. One thread calls this; a barrier must
+    follow before any thread takes a piece."""
     _write(team.counters, _NEXT, 0)
 
 
 @kernel
 def take(team):
-    """Number of the next piece of work that no thread has taken yet."""
+    """Number of the next free piece of work."""
     return _add(team.counters, _NEXT, 1)

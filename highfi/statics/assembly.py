@@ -2,10 +2,9 @@
 
     f(u) = sum over elements of scatter(K_class gather(u)),    m = sum over elements of scatter(m_class)
 
-Elements that are translations of each other have the same matrix, so one matrix is stored per class
-of them. A structured mesh has a handful of classes, which stay in the fastest cache while the
-kernel streams over the elements. Joints under the mounts have a sparse matrix of their own
-(``statics.mounts``).
+Elements that are translations of each other have the same matrix, so one matrix is stored per
+class. A structured mesh has only a few classes, which stay in the fastest cache while the kernel
+reads the elements. Joints under the mounts have their own sparse matrix (``statics.mounts``).
 """
 
 from types import ModuleType
@@ -22,7 +21,7 @@ from tipoff.kernels.memory import aligned
 from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from tipoff.scenes.rail import MaterialTable
 
-_SAME_SHAPE = 1e-9  # of the thinnest element: node coordinates that differ by less make one class
+_SAME_SHAPE = 1e-9  # of the thinnest element; smaller differences of coordinates are ignored
 _FORMULATION = {8: hexahedron, 10: tetrahedron}  # by the nodes of an element
 _BATCH = 2048  # classes integrated at once; bounds the memory of an unstructured mesh
 
@@ -30,7 +29,7 @@ _BATCH = 2048  # classes integrated at once; bounds the memory of an unstructure
 class Operator(NamedTuple):
     """Linear elastic operator of e elements with k nodes each in c shape classes over n nodes."""
 
-    # Indices are unsigned, so that none needs a test for a negative one.
+    # Indices are unsigned, so that they need no test for negative values.
     cells: np.ndarray  # (e,k) node numbers
     shape_class: np.ndarray  # (e,)
     stiffness: np.ndarray  # (c,3k,3k) N/m, degrees of freedom node * 3 + component
@@ -48,10 +47,10 @@ def build(
     fixed: tuple[str, ...] = ("mount",),
     joint: MountStiffness | None = None,
 ) -> Operator:
-    """Operator of a homogeneous isotropic solid: density kg/m3, Young's modulus Pa, nodes of the
-    `fixed` surfaces held, those of ``mount`` by the springs of a `joint` if there is one.
+    """Operator of a homogeneous isotropic solid: density kg/m3, Young's modulus Pa. Nodes of the
+    `fixed` surfaces are held, those of ``mount`` by the springs of a `joint` if there is one.
 
-    Raises ValueError for constants no stable material has.
+    Raises ValueError for constants of no stable material.
     """
     if not (density > 0.0 and np.isfinite(density)):
         raise ValueError(f"density must be positive and finite, got {density!r} kg/m3")
@@ -99,7 +98,7 @@ def of_material(
 
 
 def expansion(mesh: RailMesh, youngs_modulus: float, poisson_ratio: float) -> np.ndarray:
-    """Loads (c,3k,k) in N on an element of each class of a free strain that is one at each of its
+    """Loads (c,3k,k) in N on an element of each class, from a free strain of one at each of its
     nodes in turn."""
     law = hexahedron.elasticity(youngs_modulus, poisson_ratio)
     batches, formulation = _batches(mesh, shape_classes(mesh)[1])
@@ -107,7 +106,7 @@ def expansion(mesh: RailMesh, youngs_modulus: float, poisson_ratio: float) -> np
 
 
 def _batches(mesh: RailMesh, representatives: np.ndarray) -> tuple[list[np.ndarray], ModuleType]:
-    """Nodes (c,k,3) m of the first element of each class, some at a time, and the module of their
+    """Batches of the nodes (c,k,3) m of the first element of each class, and the module with their
     formulas."""
     nodes = mesh.points[mesh.cells[representatives]]
     return [nodes[start : start + _BATCH] for start in range(0, len(nodes), _BATCH)], _FORMULATION[
@@ -128,7 +127,7 @@ def shape_classes(mesh: RailMesh) -> tuple[np.ndarray, np.ndarray]:
 
 
 def sparse(operator: Operator) -> csr_array:
-    """Assembled stiffness (3n,3n) in N/m with that of the joints, degrees of freedom node * 3 +
+    """Assembled stiffness (3n,3n) in N/m including the joints, degrees of freedom node * 3 +
     component, for static and modal solutions."""
     size = 3 * len(operator.mass)
     width = operator.stiffness.shape[1]

@@ -1,13 +1,14 @@
 """Static deflection of a rail whose mounts are accelerated.
 
-Every point of the platform at X (m) has the acceleration a(X) = b + G X, with b in m/s2 and G, from
-angular acceleration and centrifugal terms, in 1/s2. Where it changes slowly against the periods of
-the rail, the rail follows it as in statics::
+Every point X (m) of the platform has the acceleration a(X) = b + G X, with b in m/s2 and G, from
+angular acceleration and centrifugal terms, in 1/s2. If it changes slowly in a period of the rail,
+the rail follows as in statics::
 
     K u = -M a(X)
 
-So u is linear in the twelve numbers of b and G: one factor of K and twelve loads give all of it.
-A mirror image of a rail, by the signs S, has u'(SX) = S u(X) with b' = S b and G' = S G S.
+So u is linear in the twelve numbers of b and G: one factorisation of K and twelve loads are
+sufficient. The mirror image of a rail, with the signs S, has u'(SX) = S u(X) with b' = S b and
+G' = S G S.
 """
 
 from typing import NamedTuple
@@ -28,7 +29,7 @@ class Deflection(NamedTuple):
     """Static deflection of one solid with n nodes."""
 
     own: np.ndarray  # (n,) its nodes in the mesh
-    shapes: np.ndarray  # (TERMS, n, 3) m of each term at the amount 1, of the solid it mirrors
+    shapes: np.ndarray  # (TERMS, n, 3) m for a unit of each term, of the solid that it mirrors
     signs: np.ndarray  # (3,) S
     size: np.ndarray  # (TERMS,) m, largest deflection of each term
     # (TERMS,) rad/s, frequency by Rayleigh's quotient of each shape; zero without deflection
@@ -39,15 +40,15 @@ class Deflection(NamedTuple):
         return np.tensordot(self.mirrored() * terms, self.shapes, axes=1) * self.signs
 
     def mirrored(self) -> np.ndarray:
-        """Signs (TERMS,) that turn terms of this solid into those of the solid it mirrors."""
+        """Signs (TERMS,) that convert terms of this solid to those of the solid that it mirrors."""
         return np.concatenate([self.signs, np.outer(self.signs, self.signs).ravel()])
 
 
 def deflections(
     mesh: RailMesh, material: MaterialTable, joint: MountStiffness | None, most: int
 ) -> list[Deflection] | None:
-    """Static deflection of each solid of ``mesh`` on rigid mounts or on a ``joint``; None where one
-    is not mounted, or has more than ``most`` nodes."""
+    """Static deflection of each solid of ``mesh`` on rigid mounts or on a ``joint``; None if a
+    solid has no mount or more than ``most`` nodes."""
     found: list[tuple[RailMesh, Deflection]] = []
     for own, solid in zip(pieces.nodes(mesh), pieces.pieces(mesh)):
         if not solid.surfaces["mount"].size or own.size > most:

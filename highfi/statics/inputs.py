@@ -1,5 +1,5 @@
-"""All that the compliance of the rails under the pads reads from a scene, as one record. The statics
-receives nothing else, and its result is stored under the digest of the record."""
+"""All inputs of the compliance of the rails under the pads, as one record. The statics uses nothing
+else of a scene, and its result is stored under the digest of the record."""
 
 from typing import NamedTuple
 
@@ -14,35 +14,33 @@ from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from tipoff.scenes.rail import MaterialTable
 from tipoff.scenes.scene import Scene
 
-_DIGITS = 12  # of a place in m: the frame of the platform changes the last bit of a wall's place
-# of a table of a rail from a file, what its mesh does not depend on
+_DIGITS = 12  # decimals of a place in m: the last bit of a wall depends on the platform's frame
+# keys of the table of a rail from a file that do not change its mesh
 _NOT_SHAPE = {"damping", "mount_stiffness", "material"}
 
 
 class Inputs(NamedTuple):
-    """``shape`` (JSON): what the mesh of the rails depends on beside the size of its elements;
-    ``material`` without what statics and modes do not read; ``joint`` of the mounts, None where they
-    are rigid; ``faces`` in scene axes; ``reach``, X (m) of both ends of the walls."""
+    """Inputs of statics and modes."""
 
-    shape: dict
-    material: MaterialTable
-    joint: MountStiffness | None
-    faces: Faces
-    reach: tuple[float, float]
+    shape: dict  # JSON, defines the mesh of the rails, except for the element size
+    material: MaterialTable  # without the keys that statics and modes do not use
+    joint: MountStiffness | None  # of the mounts, None if they are rigid
+    faces: Faces  # in scene axes
+    reach: tuple[float, float]  # m, X of both ends of the walls
 
     def digest(self) -> str:
-        """Hexadecimal digest of all of it."""
+        """Hexadecimal digest of the record."""
         faces = {name: array.tolist() for name, array in self.faces._asdict().items()}
         material = self.material.model_dump(mode="json")
         return content_hash(self.shape, material, self.joint, faces, self.reach)
 
 
 def of(scene: Scene) -> Inputs:
-    """The record of ``scene``. Raises SceneError where pads do not fit the built-in section or
-    nothing holds it."""
+    """The record of ``scene``. Raises SceneError if pads do not fit the built-in section or nothing
+    holds it."""
     nominal = scene_model.built(scene).nominal
     wall = np.round(scene_model.in_scene_axes(scene, nominal).wall, _DIGITS)
-    # the thermal offset is that of a unit of each field
+    # the thermal offset is for a unit of each field
     material = scene.rail.material.model_copy(update={"yield_strength": None, "expansion": None})
     return Inputs(
         _shape(scene),
@@ -56,5 +54,5 @@ def of(scene: Scene) -> Inputs:
 def _shape(scene: Scene) -> dict:
     if isinstance(section := geometry(scene), LRailGeometry):
         return section._asdict()
-    # the content of the file counts, not its path
+    # the content of the file identifies it, not its path
     return scene.rail.model_dump(mode="json", exclude=_NOT_SHAPE) | scene.rail.contents()

@@ -31,8 +31,8 @@ class Terms(NamedTuple):
 def solved(
     operator: Operator, held: Clamped, loads: csc_array, heat: np.ndarray, modes: np.ndarray
 ) -> Terms:
-    """Terms of a rail that its joints alone hold, under nodal ``loads`` (3n,l) and those of ``heat``
-    (3n,t) N, with its ``modes`` (3n,c)."""
+    """Terms of a rail that only its joints hold, under nodal ``loads`` (3n,l) and thermal loads
+    ``heat`` (3n,t) N, with its ``modes`` (3n,c)."""
     assert operator.joints is not None
     joints = operator.joints
     own = np.flatnonzero(np.diff(joints.indptr))
@@ -61,7 +61,7 @@ def solved(
 
 
 def _direct(held: Clamped, loads: csc_array) -> np.ndarray:
-    """Displacement (l,) by each load under itself."""
+    """Displacement (l,) of each load under itself."""
     found = []
     for start in range(0, loads.shape[1], _BATCH):
         part = loads[:, start : start + _BATCH].toarray()
@@ -70,8 +70,8 @@ def _direct(held: Clamped, loads: csc_array) -> np.ndarray:
 
 
 def _large(moved: np.ndarray, direct: np.ndarray) -> np.ndarray:
-    """Numbers of the terms to keep: those left out hold at most ``TERMS`` of the displacement by
-    any load. A weight h is at most 1 / LEAST - 1."""
+    """Numbers of the terms to keep: the others hold at most ``TERMS`` of the displacement of any
+    load. A weight h is at most 1 / LEAST - 1."""
     relative = moved**2 / direct[:, None]
     order = np.argsort(relative.max(axis=0))
     dropped = np.cumsum(relative[:, order], axis=1).max(axis=0) * (1.0 / LEAST - 1.0) < TERMS
@@ -79,8 +79,8 @@ def _large(moved: np.ndarray, direct: np.ndarray) -> np.ndarray:
 
 
 def _basis(operator: Operator, modes: np.ndarray) -> np.ndarray:
-    """Shapes (3n,m) of unit modal mass, orthogonal to each other, that hold the ``modes`` (3n,c)
-    and those at the least and the most factor."""
+    """Shapes (3n,m) of unit modal mass, orthogonal to each other. Their space contains the
+    ``modes`` (3n,c) and the modes at the least and the largest factor."""
     mass, joints = np.repeat(operator.mass, 3), operator.joints
     assert joints is not None
     found = [modes]
@@ -92,16 +92,15 @@ def _basis(operator: Operator, modes: np.ndarray) -> np.ndarray:
 
 
 class Part(NamedTuple):
-    """One rail with faces: the ``number`` (s,f) of the place under each face, -1 without, the
-    ``signs`` (3,) that make its image, and its ``terms``."""
+    """One rail with faces."""
 
-    number: np.ndarray
-    signs: np.ndarray
+    number: np.ndarray  # (s,f) place under each face, -1 without one
+    signs: np.ndarray  # (3,) of its image
     terms: Terms
 
 
 def together(parts: list[Part], patterns: int) -> JointTerms:
-    """Terms of rails in their order, under faces with so many ``patterns``."""
+    """Terms of rails in their order; faces have so many ``patterns``."""
     most = max(part.terms.share.size for part in parts)
 
     def padded(values: np.ndarray, axis: int) -> np.ndarray:
@@ -111,7 +110,7 @@ def together(parts: list[Part], patterns: int) -> JointTerms:
 
     def under(part: Part, values: np.ndarray) -> np.ndarray:
         places = values.reshape(-1, patterns, values.shape[1])
-        # one more that does not move is what a face without a wall, number -1, points at
+        # an additional last place without displacement, for faces without a wall (number -1)
         return np.pad(places, [(0, 1), (0, 0), (0, 0)])[part.number]
 
     return JointTerms(

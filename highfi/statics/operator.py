@@ -1,9 +1,9 @@
 """Internal force of the elastic solid, f = K u, element by element without an assembled matrix.
 
 A matrix of one class of hexahedra (4.6 kB) stays in the first-level cache; an assembled sparse
-matrix would stream 1.9 kB per node from memory. Each node is moved relative to the first one: a
-rigid translation then gives exactly no force, and an eighth of the products is saved. Each kind
-of element has its own loop, so that the compiler knows its length.
+matrix would read 1.9 kB per node from memory. Displacements are relative to the first node of the
+element: so a rigid translation gives exactly no force, and one eighth of the products is saved.
+Each kind of element has its own loop, so that the compiler knows its length.
 """
 
 import numpy as np
@@ -38,8 +38,8 @@ def add_internal_force(
     """Add the share of elements ``first`` to ``last`` to ``force_out``; ``element_force`` is
     workspace for one, 24 or 30 numbers.
 
-    Deterministic: elements are added in their order, and sums keep the order written, whatever the
-    vector width.
+    Deterministic: elements are added in their order, and sums keep the written order for any vector
+    width.
     """
     if cells.shape[1] == 8:
         _add_hexahedra(
@@ -65,9 +65,9 @@ def _add_hexahedra(
         x5, y5, z5 = _relative(displacement, nodes[5], nodes[0])
         x6, y6, z6 = _relative(displacement, nodes[6], nodes[0])
         x7, y7, z7 = _relative(displacement, nodes[7], nodes[0])
-        # One loop over the 24 contiguous outputs, which vectorises; the brackets are seven
-        # independent chains of additions, without which the processor waits for each sum (52
-        # instead of 45 ns per element).
+        # One loop over the 24 contiguous outputs, which vectorises. The brackets are seven
+        # independent chains of additions; without them the processor waits for each sum (52 instead
+        # of 45 ns per element).
         for i in range(24):
             element_force[i] = (
                 (k[3, i] * x1 + k[4, i] * y1 + k[5, i] * z1)

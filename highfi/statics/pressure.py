@@ -3,9 +3,9 @@
     f_na = 1/A integral N_n phi_a dA,    phi = 1, xi, eta, xi^2, xi eta, eta^2
 
 over the part of the pad face (area A) that has a wall under it; N are the nodal functions of the
-wall's facets. The face is divided into cells half as long as a facet with 2 x 2 Gauss points each,
-whatever the facets' own borders: nodal functions sum to one and reproduce the place, so force and
-moment are exact, and only how neighbouring nodes share them is rounded.
+wall's facets. The face is divided into cells half as long as a facet, with 2 x 2 Gauss points each,
+independent of the facets' borders. Nodal functions sum to one and reproduce the place, so force and
+moment are exact; only their distribution to neighbouring nodes is approximate.
 """
 
 from typing import NamedTuple
@@ -16,7 +16,7 @@ from tipoff.highfi.mesh import facets as geometry
 from tipoff.mechanics.rail_compliance import POWERS
 
 _CELLS_PER_FACET = 2  # along each edge
-_SAME = 1e-9  # m: what is narrower holds no pressure
+_SAME = 1e-9  # m, narrower parts have no pressure
 
 
 class Pressed(NamedTuple):
@@ -38,9 +38,9 @@ def pressed(
 ) -> Pressed | None:
     """The first so many ``patterns`` on a face with its ``middle`` (2,) m and ``half`` its size
     (2,) m along X and the axis ``across``, over a wall of ``facets`` (m,k) between points (n,3) m;
-    None where there is no wall.
+    None without a wall.
 
-    xi and eta run from -1 to 1 over the face, against the axis where ``half`` is negative.
+    xi and eta run from -1 to 1 over the face, opposite to the axis if ``half`` is negative.
     """
     plane = points[facets][:, :, [0, across]]
     control = geometry.hull(plane)
@@ -72,9 +72,9 @@ def _gauss(low: np.ndarray, high: np.ndarray, size: np.ndarray) -> tuple[np.ndar
 def located(
     plane: np.ndarray, control: np.ndarray, place: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Numbers of the places (q,2) m that lie in a facet, of that facet, and the values of its nodal
-    functions there; ``plane`` and ``control`` (m,k,2) m are nodes and control points of the
-    facets. A place on the border of two facets belongs to the first."""
+    """Numbers of the places (q,2) m inside a facet, the facet of each, and the values of its nodal
+    functions there; ``plane`` and ``control`` (m,k,2) m are nodes and control points of the facets.
+    A place on the border of two facets belongs to the first."""
     point, facet, values = every(plane, control, place)
     found, first = np.unique(point, return_index=True)
     return found, facet[first], values[first]
@@ -83,7 +83,7 @@ def located(
 def every(
     plane: np.ndarray, control: np.ndarray, place: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The same with a place on the border of facets in each of them."""
+    """As ``located``, but a place on a border belongs to each facet there."""
     slack = geometry.INSIDE * np.ptp(control, axis=1)
     low, high = control.min(axis=1) - slack, control.max(axis=1) + slack
     near = np.flatnonzero(((low < place.max(axis=0)) & (place.min(axis=0) < high)).all(axis=1))

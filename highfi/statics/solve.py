@@ -18,15 +18,15 @@ def _libraries() -> ThreadpoolController:
 
 
 def one_thread():
-    """Context in which BLAS has one thread. The dense blocks of a sparse factor are small: more
-    threads wait for each other, for several times the processor time of the work. No bit of a
-    result depends on it."""
+    """Context in which BLAS uses one thread. The dense blocks of a sparse factor are small: more
+    threads would wait for each other and take several times the processor time. Results do not
+    depend on it."""
     return _libraries().limit(limits=1, user_api="blas")
 
 
 class Clamped:
-    """The ``stiffness`` of ``operator`` with its fixed nodes held, among the degrees of freedom
-    that are ``free``. Raises MeshError where nothing holds it."""
+    """The ``stiffness`` of ``operator`` for its ``free`` degrees of freedom, the fixed nodes held.
+    Raises MeshError if nothing holds it."""
 
     def __init__(self, operator: assembly.Operator):
         self._joints = operator.joints
@@ -37,7 +37,7 @@ class Clamped:
         self.free = np.repeat(operator.free, 3)
         self._free_rows: csr_array = assembly.sparse(operator)[self.free]
         self.stiffness = csc_array(self._free_rows[:, self.free])
-        # A positive definite matrix needs no pivoting, and an ordering for symmetric ones keeps its
+        # A positive definite matrix needs no pivoting; an ordering for symmetric matrices keeps its
         # factors sparse.
         with one_thread():
             self._factor = splu(
@@ -54,8 +54,8 @@ class Clamped:
             return self._factor.solve(loads)
 
     def displaced(self, loads: np.ndarray, held: np.ndarray) -> np.ndarray:
-        """Displacement (3n,c) m under ``loads`` (3n,c) N, the fixed degrees of freedom, or what
-        joints hold on to, displaced by ``held`` (3n,c) m."""
+        """Displacement (3n,c) m under ``loads`` (3n,c) N and prescribed displacements ``held``
+        (3n,c) m of the fixed degrees of freedom, or of the platform side of joints."""
         if self._joints is not None:
             loads = loads + self._joints @ held
         found = np.where(self.free[:, None], 0.0, held)

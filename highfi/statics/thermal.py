@@ -2,14 +2,15 @@
 
     K u = f,    f = integral B' D m e dV,    m = (1, 1, 1, 0, 0, 0),    u = s (X - X_m) at the mounts
 
-or, where mounts are joints of stiffness S, (K + S) u = f + S s (X - X_m),
+or, if mounts are joints of stiffness S, (K + S) u = f + S s (X - X_m),
 
 with the free strain e and the strain s of the platform of ``scenes.effects.thermal``, and the
-elements of the dynamics, whose bubbles e loads too. The rails are linear: their motion after ignition
-is the same from u as from the undeformed rails without [thermal], so the time loop does not use u.
-Contact does, with walls at X + u, and so do stresses, which are D (strain - m e). Their von Mises part
-does not depend on m e. The share of the bubbles by e is left out of them: at most the stress of the
-temperature difference within an element, which falls with its size. Nodes keep their mass at X.
+elements of the dynamics, where e also loads the bubbles. The rails are linear. Their motion after
+ignition, counted from u, is the same as that of undeformed rails without [thermal]. So the time
+loop does not use u. Contact does, with walls at X + u, and so do stresses, which are D (strain - m
+e). Their von Mises part does not depend on m e. They leave out the part of the bubbles due to e: at
+most the stress of the temperature difference within an element, which decreases with its size.
+Nodes keep their mass at X.
 
 Source: Timoshenko and Goodier, Theory of Elasticity, 3rd ed. 1970, chapter 13.
 """
@@ -32,7 +33,7 @@ def displacement(
     joint: MountStiffness | None = None,
 ) -> np.ndarray:
     """Displacement (n,3) m of rails with points in scene axes on rigid mounts, or on a ``joint``.
-    Raises MeshError where one has no mount."""
+    Raises MeshError for a rail without a mount."""
     found = np.empty_like(mesh.points)
     for nodes, rail in zip(pieces.nodes(mesh), pieces.pieces(mesh)):
         operator = assembly.of_material(rail, material, joint=joint)
@@ -49,7 +50,7 @@ def of_fields(
     clamped: Clamped,
     middle: float,
 ) -> np.ndarray:
-    """Displacement (n,3,FIELDS) m of one rail under one of each of the fields around X = ``middle``
+    """Displacement (n,3,FIELDS) m of one rail under a unit of each field around X = ``middle``
     (m)."""
     load, held = of_each_field(mesh, operator, material, middle)
     return clamped.displaced(load, held).reshape(-1, 3, FIELDS)
@@ -58,8 +59,8 @@ def of_fields(
 def of_each_field(
     mesh: RailMesh, operator: assembly.Operator, material: MaterialTable, middle: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Loads (3n,FIELDS) N by one of each of the fields, and the displacement (3n,FIELDS) m of what
-    holds the rail."""
+    """Loads (3n,FIELDS) N of a unit of each field, and the displacement (3n,FIELDS) m of the
+    support of the rail."""
     strain = fields(mesh.points, middle)
     load, held = np.zeros((len(strain), 3, FIELDS)), np.zeros((len(strain), 3, FIELDS))
     # the last three are X - X_m

@@ -18,22 +18,23 @@ def modes(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies (n,) rad/s, ascending, and shapes (d,n) 1/kg^0.5 of the lowest ``count`` modes
     over d free degrees of freedom, of ``stiffness`` (d,d) N/m and ``mass`` (d,) kg; ``solve``
-    answers the displacement (m) under a load (N).
+    returns the displacement (m) under a load (N).
 
-    Raises ValueError where there are not so many.
+    Raises ValueError if there are fewer modes.
     """
     freedoms = mass.size
     if not 0 <= count <= freedoms:
         raise ValueError(f"modes: given {count!r}, expected 0 to {freedoms}")
     if count == 0:
         return np.zeros(0), np.zeros((freedoms, 0))
-    if 2 * count > freedoms:  # more than the iteration can separate
+    if 2 * count > freedoms:  # too many for the iteration
         root = np.sqrt(mass)
         squares, shapes = eigh(
             stiffness.toarray() / root / root[:, None], subset_by_index=(0, count - 1)
         )
         return np.sqrt(squares), shapes / root[:, None]
-    # The same bits each time; nothing symmetric, or half the modes stay unseen.
+    # A fixed start vector gives the same bits each time. It is not symmetric: that would hide half
+    # of the modes.
     start = np.random.default_rng(1).standard_normal(freedoms)
     with one_thread():
         squares, shapes = eigsh(

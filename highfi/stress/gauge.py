@@ -1,13 +1,12 @@
 """Strain gauges, one on each contact wall: the mean stress over a square patch of 4 mm, which
 converges as the mesh is refined.
 
-The stress at a sharp corner or at the border of a clamp does not converge. So the patches lie on the
-track of the pads, in the middle of the last free span. Candidates are the places farther from any
-clamp and from the ends than their neighbours, and at least half as far as the farthest one; the
-candidate nearest to the open end is taken, where the last pads press. Patches depend on the scene and
-on where the mesh is clamped, never on its elements: 4 x 4 points at the middles of squares of 1 mm,
-each evaluated in the element behind the wall (``elements.hexahedral_recovery``,
-``elements.tetrahedral_recovery``).
+The stress at a sharp corner or at the border of a clamp does not converge. So the patches lie on
+the track of the pads, in the middle of the last free span. Candidates are local maxima of the
+distance from clamps and ends that are at least half of the largest distance. The candidate nearest
+to the open end is taken, where the pads press last. Patches depend on the scene and on the clamps
+of the mesh, never on its elements: 4 x 4 points in the middle of squares of 1 mm, each evaluated in
+the element behind the wall (``elements.hexahedral_recovery``, ``elements.tetrahedral_recovery``).
 """
 
 from typing import NamedTuple
@@ -21,14 +20,14 @@ from tipoff.highfi.mesh.rail_mesh import RailMesh
 
 SIDE = 4e-3  # m
 _POINTS = 4  # along each side
-_GRID = 1e-3  # m between the stations tried
+_GRID = 1e-3  # m between candidate stations
 _RECOVERY = {8: hexahedral_recovery, 10: tetrahedral_recovery}  # by the nodes of an element
 
 
 class Patch(NamedTuple):
-    """Patches of w walls."""
+    """Patches of gauges on w walls."""
 
-    centre: np.ndarray  # (w,3) m, in the axes of the points they were found with
+    centre: np.ndarray  # (w,3) m, in the axes of the points of ``find``
     node: np.ndarray  # (w,k) numbers in the nodal arrays
     # (w,6,3k) Pa/m, from the displacement of those nodes to the mean stress, padded with zeros
     matrix: np.ndarray
@@ -37,8 +36,8 @@ class Patch(NamedTuple):
 def find(
     mesh: RailMesh, faces, points: np.ndarray, law: np.ndarray, number: np.ndarray
 ) -> Patch | None:
-    """Patches of a mesh whose points (n,3) m are in the axes of ``faces.wall``; None where no pad
-    has a wall, or no station has space for a patch on each.
+    """Patches of a mesh whose points (n,3) m are in the axes of ``faces.wall``; None if no pad has
+    a wall, or no station has space for a patch on each wall.
 
     ``law`` (6,6) Pa; ``number`` (n,) of each node in the nodal arrays.
     """
@@ -63,8 +62,7 @@ def stress(patch: Patch, displacement: np.ndarray) -> np.ndarray:
 
 
 def _walls(corners: np.ndarray, faces) -> list[tuple[np.ndarray, int, float]]:
-    """(facets, normal axis, middle of the track across it) of each wall that some pad runs
-    along."""
+    """(facets, normal axis, middle of the track across it) of each wall along which a pad runs."""
     found = {}
     for face in range(faces.axis.size):
         axis, across = int(faces.axis[face]), faces.centre[face, 3 - faces.axis[face]]
@@ -76,14 +74,14 @@ def _walls(corners: np.ndarray, faces) -> list[tuple[np.ndarray, int, float]]:
 
 
 def _stations(points: np.ndarray, mesh: RailMesh, facets: np.ndarray) -> np.ndarray:
-    """Places along X that could be the middle of the patches, best first."""
+    """Candidate places along X for the middle of the patches, best first."""
     start, end = points[facets][:, :, 0].min(), points[facets][:, :, 0].max()
     tried = np.arange(start + 0.5 * SIDE, end - 0.5 * SIDE + 1e-9, _GRID)
     held = points[mesh.surfaces["mount"]][:, :, 0]
     clamp = np.maximum(held.min(axis=1) - tried[:, None], tried[:, None] - held.max(axis=1)).min(
         axis=1, initial=np.inf
     )
-    # In tenths of a micrometre, so that places which tie do so on every mesh.
+    # In tenths of a micrometre, so that equal distances are equal on every mesh.
     free = np.round(1e7 * np.minimum(np.minimum(clamp, tried - start), end - tried).clip(min=0.0))
     around = np.concatenate([[-1.0], free, [-1.0]])
     middle = (free >= around[:-2]) & (free >= around[2:]) & (2.0 * free >= free.max())
@@ -93,8 +91,8 @@ def _stations(points: np.ndarray, mesh: RailMesh, facets: np.ndarray) -> np.ndar
 def _spots(
     points: np.ndarray, facets: np.ndarray, axis: int, middle: tuple[float, float]
 ) -> list[tuple[np.ndarray, np.ndarray]] | None:
-    """For each point of the patch around ``middle`` (x, across) its facet (k,) and the weights (k,)
-    of its nodes there."""
+    """Facet (k,) of each point of the patch around ``middle`` (x, across), and the weights (k,) of
+    its nodes there."""
     offsets = (np.arange(_POINTS) + 0.5) * SIDE / _POINTS - 0.5 * SIDE
     plane = points[facets][:, :, [0, 3 - axis]]
     hull, slack = geometry.hull(plane), geometry.INSIDE * SIDE
@@ -114,7 +112,7 @@ def _spots(
 def _assembled(
     mesh: RailMesh, points: np.ndarray, spots: list, law: np.ndarray, number: np.ndarray
 ) -> Patch:
-    """The mean over the points of each wall as one matrix."""
+    """Matrix of the mean over the points of each wall."""
     facets = np.array([facet for wall in spots for facet, _ in wall])
     weights = np.array([weight for wall in spots for _, weight in wall])
     cells, formulas = _behind(mesh.cells, facets), _RECOVERY[mesh.cells.shape[1]]
@@ -134,15 +132,15 @@ def _assembled(
 
 
 def _behind(cells: np.ndarray, facets: np.ndarray) -> np.ndarray:
-    """Nodes (p,k) of the element that each facet (p,f) bounds."""
+    """Nodes (p,k) of the element behind each facet (p,f)."""
     size = facets.shape[1]
     near = cells[np.isin(cells, facets).sum(axis=1) >= size]
     return near[[np.flatnonzero(np.isin(near, facet).sum(axis=1) == size)[0] for facet in facets]]
 
 
 def _summed(cells: np.ndarray, matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes (k,) of the elements (p,f) around the points of one wall, and the sum (6,k,3) of what
-    each of them brings."""
+    """Nodes (k,) of the elements (p,f) around the points of one wall, and the sum (6,k,3) of the
+    contributions of the elements."""
     nodes, place = np.unique(cells, return_inverse=True)
     total = np.zeros((len(nodes), 6, 3))
     np.add.at(

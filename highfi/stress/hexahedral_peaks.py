@@ -1,8 +1,8 @@
 """Displacement gradients at the corners of hexahedra, and their peaks (``stress.peak``), in one pass.
 
-A corner's gradient is that of ``elements.hexahedral_recovery``, bubbles included: differences along
-the edges times the slopes of the element's class at that corner, and the amplitudes of the bubbles,
-which are products of matrices of its class with the displacement.
+The gradient at a corner is that of ``elements.hexahedral_recovery``, bubbles included: differences
+along the edges times the slopes of the element's class at the corner, plus the bubbles, whose
+amplitudes are matrices of the class times the displacement.
 """
 
 from typing import NamedTuple
@@ -15,7 +15,7 @@ from tipoff.kernels.jit import entry, inlined, kernel
 from tipoff.kernels.memory import aligned
 
 CORNERS = 8
-STEPS = 8.0  # that a scan of an element costs: 180 against 25 ns, one thread each
+STEPS = 8.0  # cost of a scan of an element in steps: 180 against 25 ns, one thread each
 _BATCH = 2048  # classes at once; bounds the memory of an unstructured mesh
 _LANES = 16  # the nine amplitudes, padded to whole vectors
 # Places in the workspace of one element; one flat array, so that the compiler sees that they do not
@@ -24,7 +24,7 @@ AT, ALONG, BUBBLES, GRADIENT, SQUARES, SIZE = 0, 24, 96, 112, 184, 208
 
 
 class Recovery(NamedTuple):
-    """Elements in c shape classes, and what makes gradients of their displacement."""
+    """Elements in c shape classes, and the matrices for gradients of their displacement."""
 
     cells: np.ndarray  # (e,8) numbers in the nodal arrays
     shape_class: np.ndarray  # (e,)
@@ -73,7 +73,7 @@ def _of_classes(corners: np.ndarray, law: np.ndarray) -> tuple[np.ndarray, np.nd
 
 @entry
 def find(displacement, recovery, peak, space, first, last):
-    """Raise ``peak`` to what elements ``first`` to ``last`` have under displacement (n,3) m;
+    """Raise ``peak`` to the values of elements ``first`` to ``last`` under displacement (n,3) m;
     ``space`` (SIZE,) is workspace."""
     u = displacement.T
     for e in range(first, last):
@@ -106,7 +106,7 @@ def _gradients(u, recovery, space, e):
 
 @inlined
 def _gather(u, nodes, space, i):
-    """AT + 8 i: displacement along i of the corners, from that of the first one; ALONG + 24 i: its
+    """AT + 8 i: displacement along i of the corners, relative to the first one; ALONG + 24 i: its
     differences along the edges of each local axis, at each corner."""
     first = u[nodes[0]]
     b, c, d, e = u[nodes[1]] - first, u[nodes[2]] - first, u[nodes[3]] - first, u[nodes[4]] - first
@@ -119,7 +119,7 @@ def _gather(u, nodes, space, i):
 
 @inlined
 def _row(space, n, values):
-    """Eight ``values`` from place ``n`` on."""
+    """Write eight ``values`` from place ``n``."""
     for k in range(8):
         space[n + k] = values[k]
 

@@ -1,10 +1,10 @@
 """Stress of the rails during a run: the peaks over all elements, and the gauges on the walls, both at
 samples. Both contain thermal stress (``statics.thermal``).
 
-A scan of all elements costs as much as up to eight steps (``stress.peaks``), so it is done at so few
-samples that it stays below a twentieth of the run. The peaks are compared with their limits at the
-end. The result has a warning where they are above the yield strength, or above the range of small
-strain and small rotation: there they are not those of a real rail.
+A scan of all elements costs as much as up to eight steps (``stress.peaks``). The interval between
+scans limits their cost to a twentieth of the run. The result has a warning if the peaks exceed the
+yield strength or the range of small strain and small rotation: then they are not valid for a real
+rail.
 """
 
 import math
@@ -23,12 +23,12 @@ from tipoff.highfi.stress.peak import ROTATION, STRAIN, STRESS, Peak
 from tipoff.scenes.effects.thermal import Thermal, fields
 from tipoff.scenes.rail import MaterialTable
 
-_SHARE = 0.05  # of the run that scans may cost
-# its square, left out, is then half a per cent of it; most metals have yielded before
+_SHARE = 0.05  # largest share of scans in the run
+# strain: its neglected square is then 0.5 % of it; most metals yield before
 LARGEST_STRAIN = 0.01
-# rad: taken for a strain of half its square, 2e-4, which in aluminium is 14 MPa
+# rad: a rotation that seems a strain of half its square, 2e-4, which in aluminium is 14 MPa
 LARGEST_ROTATION = 0.02
-_OFF_AXIS = 1e-3  # m: a rail whose middle is nearer to a plane of symmetry has no side of it
+_OFF_AXIS = 1e-3  # m: a rail whose middle is nearer to a plane of symmetry is on no side of it
 
 
 class Monitor(NamedTuple):
@@ -36,8 +36,8 @@ class Monitor(NamedTuple):
 
     recovery: peaks.Recovery  # of all elements
     workspaces: np.ndarray  # (threads, peaks.SIZE)
-    patch: patch.Patch | None  # of the gauges, None without any
-    # (w,6) Pa, subtracted from the stress of the gauges: free expansion is no stress; or None
+    patch: patch.Patch | None  # of the gauges, None without gauges
+    # (w,6) Pa, subtracted from the stress of the gauges (free expansion is no stress), or None
     free: np.ndarray | None
     every: int  # samples from one scan to the next
     shear_modulus: float  # Pa
@@ -70,20 +70,20 @@ def build(system: System, material: MaterialTable, steps_per_sample: int, thread
 def _free_stress(
     thermal: Thermal, origin: np.ndarray, gauges: patch.Patch, law: np.ndarray
 ) -> np.ndarray:
-    """D m e (w,6) Pa of the free strain e in the middle of each patch, which is its mean there."""
+    """D m e (w,6) Pa of the free strain e in the middle of each patch, equal to its mean there."""
     strain = fields(gauges.centre + origin, thermal.middle) @ thermal.amounts[:-1]
     return np.outer(strain, law[:, :3].sum(axis=1))
 
 
 def gauge(monitor: Monitor, displacement: np.ndarray) -> np.ndarray:
-    """Mean stress (w,6) Pa of each patch, where there are any."""
+    """Mean stress (w,6) Pa of each patch, if there are patches."""
     assert monitor.patch is not None
     found = patch.stress(monitor.patch, displacement)
     return found if monitor.free is None else found - monitor.free
 
 
 def scan(monitor: Monitor, displacement: np.ndarray, time: float, peak: Peak, pool) -> None:
-    """Raise ``peak`` to the values of all elements at ``time`` (s); each thread of ``pool`` scans its
+    """Raise ``peak`` to the values of all elements at ``time`` (s); each thread of ``pool`` scans a
     part of them."""
     bounds = np.linspace(0, len(monitor.recovery.cells), len(monitor.workspaces) + 1).astype(int)
     found = [Peak(*(part.copy() for part in peak)) for _ in monitor.workspaces]
@@ -92,7 +92,7 @@ def scan(monitor: Monitor, displacement: np.ndarray, time: float, peak: Peak, po
     peaks.find(displacement, monitor.recovery, *tasks[0])
     for other in others:
         other.result()
-    # in the order of the elements, so that the number of threads does not matter
+    # in the order of the elements, so that the result does not depend on the number of threads
     for part in found:
         higher = part.square > peak.square
         peak.square[higher], peak.place[higher], peak.time[higher] = (
@@ -121,8 +121,7 @@ def record(monitor: Monitor, system: System, peak: Peak, yield_strength: float |
 
 
 def warnings(found: dict) -> list[str]:
-    """Why the stresses of a record are not those of a real rail, one sentence each; none where they
-    may be."""
+    """Reasons why the stresses of a record are not valid for a real rail, one sentence each."""
     texts, strength = [], found["yield_strength_pa"]
     if strength is not None and found["peak_stress_pa"] > strength:
         texts.append(
@@ -144,8 +143,8 @@ def warnings(found: dict) -> list[str]:
 
 
 def rail_name(mesh: RailMesh, element_number: int) -> str:
-    """The rail that holds an element, by the side of the axis it stands on: "+y -z"; "all" for one
-    piece around it."""
+    """Name of the rail with an element, by its side of the axis: "+y -z"; "all" for one piece
+    around the axis."""
     nodes, cells = len(mesh.points), mesh.cells
     ends = np.repeat(cells[:, 0], cells.shape[1] - 1), cells[:, 1:].ravel()
     links = coo_array((np.ones(ends[0].size, dtype=bool), ends), shape=(nodes, nodes))

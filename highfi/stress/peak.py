@@ -2,15 +2,15 @@
 at their nodes.
 
 With G the displacement gradient at a node of an element, e its symmetric and w its antisymmetric
-part, and g the shear modulus, Hooke's law leaves of the equivalent stress::
+part, and g the shear modulus, Hooke's law gives the equivalent stress::
 
     s^2 = g^2 (2 [(exx-eyy)^2 + (eyy-ezz)^2 + (ezz-exx)^2] + 3 [gxy^2 + gyz^2 + gzx^2])
           (shear strains in engineering measure)
     strain^2 = sum e_ij^2  (no principal strain is larger)
     rotation^2 = wyz^2 + wzx^2 + wxy^2  (rad^2)
 
-Stresses of the elements that meet at a node are not averaged: the largest one counts, as usual where
-strength is assessed.
+Stresses of the elements that meet at a node are not averaged: the largest one is used, as is usual
+in strength assessment.
 """
 
 from typing import NamedTuple
@@ -37,10 +37,10 @@ def no_peak() -> Peak:
 
 @inlined
 def measure(space, limit, gradient, squares, nodes):
-    """Squares of STRESS, STRAIN, ROTATION at each of the ``nodes`` of an element, put from
-    ``squares`` on in the workspace ``space``; returns how many of them are above ``limit`` (3,).
+    """Squares of STRESS, STRAIN, ROTATION at each of the ``nodes`` of an element, written from
+    place ``squares`` of the workspace ``space``; returns how many of them are above ``limit`` (3,).
 
-    ``gradient``: where the nine components begin, each a row of all nodes, component * 3 + axis.
+    ``gradient``: start of the nine components, each a row of all nodes, component * 3 + axis.
     Places are constants of the caller, so that the compiler knows the length of every loop.
     """
     above, stress_limit, strain_limit, rotation_limit = 0, limit[0], limit[1], limit[2]
@@ -68,7 +68,7 @@ def measure(space, limit, gradient, squares, nodes):
 
 @inlined
 def note(space, peak, e, squares, nodes):
-    """Raise ``peak`` to the squares that ``measure`` put into ``space`` for element ``e``."""
+    """Raise ``peak`` to the squares of element ``e`` that ``measure`` wrote to ``space``."""
     for what in range(3):
         for k in range(nodes):
             if space[squares + nodes * what + k] > peak.square[what]:

@@ -33,7 +33,7 @@ def find(
     first: int,
     last: int,
 ) -> None:
-    """Raise ``peak`` to what elements ``first`` to ``last`` have under displacement (n,3) m;
+    """Raise ``peak`` to the values of elements ``first`` to ``last`` under displacement (n,3) m;
     ``space`` (SIZE,) is workspace."""
     _KERNELS[recovery.cells.shape[1]].find(displacement, recovery, peak, space, first, last)
 
@@ -50,6 +50,6 @@ def gradients(
 
 
 def samples_between(recovery: Recovery, steps_per_sample: int, share: float) -> int:
-    """Samples from one scan of all elements to the next, such that scans take no more than
-    ``share`` of a run."""
+    """Samples between two scans of all elements, such that scans take at most ``share`` of a
+    run."""
     return math.ceil(_KERNELS[recovery.cells.shape[1]].STEPS / (share * steps_per_sample))

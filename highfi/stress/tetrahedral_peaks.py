@@ -1,9 +1,9 @@
 """Displacement gradients at the nodes of ten-node tetrahedra, and their peaks (``stress.peak``), in
 one pass.
 
-Slopes along the local coordinates are linear in an element, so those at the middle of an edge are
+Slopes along the local coordinates are linear in an element, so at the middle of an edge they are
 the mean of those at its ends (``elements.tetrahedron``). The slopes of the element's class at each
-node make gradients of them, also between curved edges.
+node convert them to gradients, also between curved edges.
 """
 
 from typing import NamedTuple
@@ -16,8 +16,8 @@ from tipoff.kernels.jit import entry, inlined, kernel
 from tipoff.kernels.memory import aligned
 
 NODES = 10
-# that a scan of an element costs at the most: 90 ns against 95 with few classes, 870 with one for
-# each element
+# cost of a scan of an element in steps, at most: 90 ns against 95 with few classes, 870 with one
+# class for each element
 STEPS = 1.0
 _BATCH = 2048  # classes at once; bounds the memory of an unstructured mesh
 # Places in the workspace of one element; one flat array, so that the compiler sees that they do not
@@ -26,7 +26,7 @@ ALONG, GRADIENT, SQUARES, SIZE = 0, 96, 192, 224
 
 
 class Recovery(NamedTuple):
-    """Elements in c shape classes, and what makes gradients of their displacement."""
+    """Elements in c shape classes, and the matrices for gradients of their displacement."""
 
     cells: np.ndarray  # (e,10) numbers in the nodal arrays
     shape_class: np.ndarray  # (e,)
@@ -41,8 +41,7 @@ def build(
     number: np.ndarray,
 ) -> Recovery:
     """Recovery of a mesh, points (n,3) m and cells (e,10), with the classes of its operator;
-    ``number`` (n,) of each node in the nodal arrays. ``law`` is not
-    used."""
+    ``number`` (n,) of each node in the nodal arrays. ``law`` is not used."""
     _, representatives = np.unique(shape_class, return_index=True)
     nodes = points[cells[representatives]]
     parts = [
@@ -55,7 +54,7 @@ def build(
 
 @entry
 def find(displacement, recovery, peak, space, first, last):
-    """Raise ``peak`` to what elements ``first`` to ``last`` have under displacement (n,3) m;
+    """Raise ``peak`` to the values of elements ``first`` to ``last`` under displacement (n,3) m;
     ``space`` (SIZE,) is workspace."""
     u = displacement.T
     for e in range(first, last):
@@ -93,7 +92,7 @@ def _gradients(u, recovery, space, e):
 @inlined
 def _gather(u, nodes, space):
     """ALONG: slopes of one component along each local coordinate, at each node; from its values
-    less that of the first node, so that a rigid translation gives exactly none."""
+    relative to the first node, so that a rigid translation gives exactly zero."""
     first = u[nodes[0]]
     b, c, d = u[nodes[1]] - first, u[nodes[2]] - first, u[nodes[3]] - first
     e, f, g = 4.0 * (u[nodes[4]] - first), 4.0 * (u[nodes[5]] - first), 4.0 * (u[nodes[6]] - first)

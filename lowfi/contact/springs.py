@@ -1,14 +1,13 @@
 """Contact between pad faces and rail walls, one point per face at its centre.
 
 With x the face's centre in platform axes, n its outward normal, along y or z, and u the velocity of
-the pad's point relative to the rail's point at the same place (both inertial, so the frame's own
-turning is in it)::
+the pad's point relative to the rail's point at the same place (both inertial, so the rotation of
+the frame is included)::
 
     p = n . x - wall,     p_dot = n . u,     F = -N n - mu(s)/s N (u - p_dot n),     N = max(0, raw)
 
-``raw`` is the law in ``scenes.effects.contact``. Where walls are warm, p and n are those of
-``lowfi.contact.thermal_offset``. ``lowfi.contact.wall_ends`` has the ends
-of the walls.
+``raw`` is the law in ``scenes.effects.contact``. For warm walls, ``lowfi.contact.thermal_offset``
+defines p and n. ``lowfi.contact.wall_ends`` has the ends of the walls.
 """
 
 from typing import NamedTuple
@@ -25,7 +24,7 @@ from tipoff.scenes.effects.friction import coefficient_over_speed
 class Load(NamedTuple):
     """Load of a touching face on the payload; vectors in scene axes."""
 
-    point: tuple  # m, where it acts
+    point: tuple  # m, point of action
     normal: tuple  # N, normal force
     drag: tuple  # N, two-step friction
     slip: tuple  # m/s, slip velocity
@@ -168,8 +167,7 @@ def along_width(face, size):
 
 @kernel
 def gradient(offset, face, base, point):
-    """What a step of the pad's ``point`` (m, scene axes) adds to the penetration: the normal of the
-    wall."""
+    """Gradient of the penetration by the pad's ``point`` (scene axes): the normal of the wall."""
     if offset is not None:
         return _gradient_with_offset(offset, face, base, point)
     return outward(face, base)
@@ -186,7 +184,7 @@ def _gradient_with_offset(offset, face, base, point):
 
 @kernel
 def slip_velocity(offset, u, closing, n):
-    """The part of ``u`` (m/s) across ``n``, whose square is one where the wall is straight."""
+    """The part of ``u`` (m/s) across ``n``; |n| is one for a straight wall."""
     along = closing
     if offset is not None:
         along = closing / rotation.dot(n, n)
@@ -212,8 +210,7 @@ def relative_velocity(platform, body, base, point):
 
 @kernel
 def friction_force(friction, normal_force, slip):
-    """Friction on the payload (N) at slip velocity ``slip`` (m/s); zero where the effect is
-    absent."""
+    """Friction on the payload (N) at slip velocity ``slip`` (m/s); zero without friction."""
     if friction is not None:
         factor = -normal_force * coefficient_over_speed(friction, rotation.dot(slip, slip) ** 0.5)
         return (factor * slip[0], factor * slip[1], factor * slip[2])

@@ -2,14 +2,15 @@
 
 Linearised, the touching faces are springs and dampers on two rigid bodies: s^2 + C s + K = 0 in the
 metric of the masses. With the slopes k_i = dF/dp and c_i = dF/d(p_dot) of each face and the inverse
-mass w_i it meets (payload plus platform, turning included), the traces bound the spectra of K and
-C, hence every eigenvalue s::
+mass w_i at it (payload plus platform, rotation included), the traces bound the spectra of K and C,
+hence every eigenvalue s::
 
     |s| <= S = C/2 + sqrt(C^2/4 + K),   K = sum_i |k_i| w_i(n),   C = sum_i |c_i| w_i(n) + N_i |mu'| (w_i(t1) + w_i(t2))
 
-and no step is taken above ``STABLE_RADIUS / S`` (``lowfi.dynamics.dormand_prince``). |mu'| is the larger of
-mu/s and |d mu/ds| at the slip now. Under friction that sticks, a sticking face adds its spring
-and damper in both tangents, a sliding one N mu_d/|g| across g (``lowfi.contact.stick_slip``).
+and no step is longer than ``STABLE_RADIUS / S`` (``lowfi.dynamics.dormand_prince``). |mu'| is the
+larger of mu/s and |d mu/ds| at the present slip. Under friction with sticking, a sticking face adds
+its spring and damper in both tangents, a sliding one N mu_d/|g| across g
+(``lowfi.contact.stick_slip``).
 """
 
 import numpy as np
@@ -22,18 +23,17 @@ from tipoff.lowfi.contact.stick_slip import STICKS, heading, row_of
 from tipoff.scenes.effects import contact as law
 from tipoff.scenes.effects.friction import coefficient_over_speed
 
-# relative change of p or s in a difference quotient: truncation and rounding are then both below
-# 1e-5
+# relative change of p or s in a difference quotient: truncation and rounding are both below 1e-5
 _NUDGE = 1e-6
 
 
 @kernel
 def fastest_rate(laws, system, touching, stick, state, ahead):
-    """Bound S (1/s) of the eigenvalues of the ``touching`` faces (f,) at ``state``; 0 when none
-    touches.
+    """Bound S (1/s) of the eigenvalues of the ``touching`` faces (f,) at ``state``; 0 without a
+    touching face.
 
-    With a time ``ahead`` (s) it is a guess of the bound then: every face that closes is taken to go
-    on closing at its speed.
+    With a time ``ahead`` (s) it is an estimate of the later bound: every closing face is assumed to
+    keep its speed.
     """
     rate = 0.0
     if laws is not None:
@@ -97,7 +97,7 @@ def friction_damping(friction, now, platform, payload, body, base, n):
 
 @kernel
 def _tangential(sticking, laws, system, row, face, p, body, base):
-    """Contribution of friction that sticks to K (1/s2) and C (1/s)."""
+    """Contribution of friction with sticking to K (1/s2) and C (1/s)."""
     stiffness, damping = 0.0, 0.0
     if sticking is not None:
         payload, platform = system.payload, system.platform
@@ -135,7 +135,7 @@ def _tangent(n):
 
 @kernel
 def inverse_mass(platform, payload, body, base, point, direction):
-    """Inverse mass (1/kg) that a pair of forces along ``direction`` at ``point`` meets."""
+    """Inverse mass (1/kg) of a pair of forces along ``direction`` at ``point``."""
     total = _own(payload.mass, payload.inverse_inertia, body, point, direction)
     if platform is not None:
         total += _own(platform.mass, platform.inverse_inertia, base, point, direction)

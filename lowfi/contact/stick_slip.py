@@ -1,4 +1,4 @@
-"""Friction with sticking: the force on a face in contact that sticks or slides, and the changes
+"""Friction with sticking: the force on a face in contact that sticks or slides, and the transitions
 between both.
 
 With the tangential spring k and damper c, the displacement xi of the face's centre from its anchor
@@ -8,15 +8,15 @@ speed s_c, the force on the payload is::
     sticks    F = -k xi - c u                                           until |F| = mu_s N
     slides    F = -mu_d N g/|g|,   g = u + (s_c + |u.e| - u.e) e        until u.e = 0
 
-Sliding, this is Coulomb's law with its direction turned by at most s_c/|u|. Along a straight line
-the force is the same before and after the stop, so a step may pass the stop, which is found on its
-interpolant as a contact is. There the face sticks if |u| <= s_c, else e is turned to u. Like the
-set of touching faces, all this is constant within a step.
+In a slide, this is Coulomb's law with its direction turned by at most s_c/|u|. Along a straight
+line the force is the same before and after the stop. So a step may pass the stop, which is found on
+its interpolant as a contact is. There the face sticks if |u| <= s_c, else e is turned to u. Like
+the set of touching faces, these states are constant within a step.
 
-The spring keeps its stretch while the face slides, as the bristles of a brush do. Where the face
-sticks again, the spring takes the stretch up to the force mu_d N; the rest is lost as friction. A
-spring taken up slack would overshoot under any load near mu_s N, slip and be taken up again without
-end. It can give back only what was stored while the face stuck: friction is passive.
+The spring keeps its stretch while the face slides, as the bristles of a brush do. When the face
+sticks again, the spring gets the stretch up to the force mu_d N; the rest is lost as friction. A
+spring without stretch would overshoot under a load near mu_s N, slip, and begin again without end.
+It can return only the energy that was stored while the face stuck: friction is passive.
 """
 
 import numpy as np
@@ -27,17 +27,17 @@ from tipoff.lowfi.contact.springs import pad_point
 from tipoff.lowfi.faces import NORMAL_Y, NORMAL_Z
 
 # Columns of the table of stick-slip states, one row per face: whether it sticks; its anchor (m) if
-# so, else the direction e, in platform axes; stretch (m) that a slide keeps.
+# it does, else the direction e, in platform axes; stretch (m) that a slide keeps.
 STICKS, MARK, STRETCH, ROW_SIZE = 0, 1, 4, 5
 # u.e over s_c that counts as zero: far above the rounding of u, and positive, so that friction
 # never drives
 STOPPED = 1e-3
-SLIPPED = -1e-7  # margin of a sticking face at which it slips: nearer to zero rounding decides
+SLIPPED = -1e-7  # margin of a sticking face at which it slips; closer to zero is rounding
 
 
 @kernel
 def row_of(sticking, stick, number):
-    """Row ``number`` of the table; None where the effect is absent."""
+    """Row ``number`` of the table; None without the effect."""
     if sticking is not None:
         return stick[number]
     return None
@@ -46,7 +46,7 @@ def row_of(sticking, stick, number):
 @kernel
 def traction(sticking, row, face, pad, base):
     """Friction on the payload (N, scene axes) of a ``face`` with the load ``pad``, and the power
-    (W) it turns into heat."""
+    (W) converted to heat."""
     u = pad.slip
     if row[STICKS] != 0.0:
         xi = _from_anchor(row, face, pad.point, base)
@@ -89,14 +89,13 @@ def margin(sticking, row, face, pad, base):
 @kernel
 def used_up(row, before, after):
     """Whether a face slipped or stopped in a step from margin ``before`` to ``after``. A face that
-    has just slipped has hardly any margin yet, but it gains some."""
+    has just slipped has almost no margin, but the margin grows."""
     return after <= 0.5 * SLIPPED if row[STICKS] != 0.0 else (after <= STOPPED and after < before)
 
 
 @kernel
 def last_margin(row, before):
-    """Margin at which a step that begins with ``before`` must end: just within what ``used_up``
-    needs."""
+    """Margin at which a step that begins with ``before`` must end, so that ``used_up`` is true."""
     return SLIPPED if row[STICKS] != 0.0 else 0.5 * min(before, STOPPED)
 
 
@@ -128,8 +127,8 @@ def clear(row):
 
 @kernel
 def stop(sticking, row, pad, base):
-    """Let a face stick that slid, or begins to touch, unless it still moves: then it slides where it
-    moves. The energy (J) lost."""
+    """Let a face stick that slid or begins to touch. If it still moves, it slides in the direction
+    of its motion instead. Returns the lost energy (J)."""
     u, lost = pad.slip, 0.0
     speed = _size(u)
     spare = sticking.dynamic * max(pad.raw, 0.0) - sticking.damping * speed  # N
@@ -154,8 +153,8 @@ def stop(sticking, row, pad, base):
 
 @kernel
 def slip(sticking, row, face, pad, base):
-    """Let a sticking face slide: where it moves, or, while it is slower than s_c, against the force
-    of the spring."""
+    """Let a sticking face slide: in the direction of its motion or, below the speed s_c, against
+    the force of the spring."""
     u, speed = pad.slip, _size(pad.slip)
     force, _ = traction(sticking, row, face, pad, base)
     row[STRETCH] = _size(_from_anchor(row, face, pad.point, base))
@@ -180,7 +179,7 @@ def _set_mark(row, vector, factor, base):
 
 @kernel
 def _from_anchor(row, face, point, base):
-    """xi (m) in scene axes: along the wall only, whose normal is that of the face."""
+    """xi (m) in scene axes, along the wall with the normal of the face."""
     anchor, n = _mark(row, base), rotation.rotate(base.turn, (0.0, face[NORMAL_Y], face[NORMAL_Z]))
     d = (
         point[0] - base.place[0] - anchor[0],

@@ -1,15 +1,15 @@
 """Offset of walls that are warm or not straight as drawn, for contact springs with one point per face.
 
-With W(x) the offset of the wall away from the payload, as a mean over a face whose centre is at x
-along the rail, in platform axes, n the outward normal of the straight wall and e the unit vector
-along the rail::
+With W(x) the mean offset of the wall away from the payload over a face with its centre at x along
+the rail, in platform axes, n the outward normal of the straight wall and e the unit vector along
+the rail::
 
     p = n . x - wall - W,     dp/dx = n - W' e
 
-Contact pushes along dp/dx and friction acts across it, so a wall that recedes ahead pushes forward,
-and no energy is lost. W is the cubic spline through the statics of the rail
-(``mechanics.rail_compliance``) and through means of the wall as drawn (``mechanics.drawn_walls``), and
-continues straight beyond its ends.
+Contact pushes along dp/dx, and friction acts across it. So a wall that recedes ahead pushes
+forward, and no energy is lost. W is the cubic spline through the statics of the rail
+(``mechanics.rail_compliance``) and through means of the wall as drawn (``mechanics.drawn_walls``).
+It continues straight beyond its ends.
 """
 
 from typing import NamedTuple
@@ -39,9 +39,8 @@ class ThermalOffset(NamedTuple):
 def under_pads(
     scene: Scene, model: Model, compliance: RailCompliance | None
 ) -> ThermalOffset | None:
-    """Record for the kernels; None without contact, for walls that are neither warm nor drawn with an
-    offset, and for compliant contact, which holds the offset itself. Raises SceneError as ``require``
-    does."""
+    """Record for the kernels. None without contact, for walls without offset, and for compliant
+    contact, which contains the offset itself. Raises SceneError as ``require`` does."""
     require(scene, compliance)
     if compliance is None or model.contact is None or compliance.flexibility is not None:
         return None
@@ -68,7 +67,7 @@ def _drawn_mean(
     drawn: np.ndarray, model: Model, travel: np.ndarray, origin: np.ndarray
 ) -> np.ndarray:
     """Means (s,f) m of the walls as drawn under faces whose middles are at X = ``origin`` (f,) m plus
-    the ``travel`` (s,) m."""
+    ``travel`` (s,) m."""
     places = np.linspace(model.rail_start, model.rail_end, len(drawn))
     return np.column_stack(
         [
@@ -79,8 +78,8 @@ def _drawn_mean(
 
 
 def lacking(scene: Scene, compliance: RailCompliance | None) -> list[Fault]:
-    """What a scene lacks without rail ``compliance``: the offset of its walls, where they are warm or
-    drawn in a file, which this package does not read."""
+    """Faults of a scene without rail ``compliance`` whose walls are warm or from a file: this
+    package does not read files."""
     if scene.contact is None or compliance is not None:
         return []
     faults = []
@@ -100,8 +99,8 @@ def lacking(scene: Scene, compliance: RailCompliance | None) -> list[Fault]:
 
 
 def require(scene: Scene, compliance: RailCompliance | None) -> None:
-    """Raises SceneError for a scene whose walls are warm or from a file without rail compliance, and
-    for a warm one with that of another rail."""
+    """Raise SceneError for a scene whose walls are warm or from a file without rail compliance, and
+    for a warm scene with the compliance of another rail."""
     if faults := lacking(scene, compliance):
         raise SceneError(faults)
     if compliance is not None and scene.thermal is not None and scene.contact is not None:

@@ -3,15 +3,15 @@
     balance = work - kinetic - strain - stored - losses,     error = balance - balance at ignition
 
 The embedded error of a step does not see energy. Where a face first touches, a law p^e with
-fractional exponent has no bounded fifth derivative, and the error estimate of the worse of two
-methods is that of both; hundreds of contacts add up, all with one sign. So a step in contact that
-takes more than a tenth of what is left of the promise is taken again at half its length. Half of a
-promise is kept for the interpolation of samples between steps.
+fractional exponent has no bounded fifth derivative. Both methods then have one order; the estimate
+sees no error. Hundreds of contacts add up, all with one sign. So a step in contact that uses more
+than a tenth of the remaining promise is taken again at half its length. Half of a promise is kept
+for the interpolation of samples between steps.
 
-What contact loses, ``RELEASED`` and ``DAMPING``, never comes back, except the energy of a face that
-leaves over an edge of its wall and comes back there. Any other energy that comes back is an error
-of both ledgers. The two are added, because where a force is about to be cut off some stages of a
-step count for one and some for the other, with weights of either sign.
+Energy lost in contact, ``RELEASED`` and ``DAMPING``, never returns, except the energy of a face
+that leaves over an edge of its wall and returns there. Any other returned energy is an error of
+both ledgers. The two entries are added, because near the cut-off of a force some stages of a step
+count for one and some for the other, with weights of either sign.
 """
 
 from typing import NamedTuple
@@ -29,7 +29,7 @@ from tipoff.lowfi.state import PAYLOAD, PLATFORM
 from tipoff.mechanics import promises
 
 _HALF = 0.5  # of a promise, for the ends of steps
-_SHARE, _LEAST = 0.1, 1e-3  # of what is left of it, and of all of it, that one step may take
+_SHARE, _LEAST = 0.1, 1e-3  # of the remaining promise, and of the full promise, for one step
 _LOST = 0.1
 _ROUNDING = promises.ROUNDING
 
@@ -135,8 +135,8 @@ def dissipated(state):
 
 @kernel
 def open_books(ledger, is_compliant, system, loop):
-    """Begin the ledgers where the first step does, with the energy that its faces store from the
-    start."""
+    """Begin the ledgers at the start of the first step, with the energy that its faces already
+    store."""
     if ledger is not None:
         in_compliance = 0.0
         if is_compliant is not None:
@@ -161,7 +161,7 @@ def open_books(ledger, is_compliant, system, loop):
 
 @kernel
 def after_step(ledger, system, loop):
-    """Balances at the end of the step just tried, or None where no ledger is kept."""
+    """Balances at the end of the last attempted step, or None without a ledger."""
     found = None
     if ledger is not None:
         found = _balances(system, loop, loop.after, loop.audit.in_compliance, loop.end)
@@ -170,8 +170,8 @@ def after_step(ledger, system, loop):
 
 @kernel
 def step_is_affordable(system, tolerance, loop, found):
-    """Whether the step just tried may be kept. Between contacts the forces are smooth, and the
-    estimated error is enough."""
+    """Whether the attempted step may be kept. Between contacts the forces are smooth, and the
+    estimated error is sufficient."""
     affordable = True
     if found is not None:
         touching = False
@@ -201,15 +201,15 @@ def _is_affordable(tolerance, mass, audit, found):
 
 @kernel
 def _keeps_budget(promise, rounding, before, after):
-    """Whether a ledger whose error goes from ``before`` to ``after`` (J) keeps to what one step may
-    take of a ``promise`` (J)."""
+    """Whether a ledger whose error goes from ``before`` to ``after`` (J) keeps to the part of a
+    ``promise`` (J) for one step."""
     budget = _HALF * promise
     return abs(after - before) <= max(_SHARE * (budget - abs(before)), _LEAST * budget, rounding)
 
 
 @kernel
 def record_step(system, tolerance, loop, found):
-    """Record the step just taken; False when it lost a tenth of the energy."""
+    """Record the accepted step; False if it lost a tenth of the energy."""
     kept = True
     if found is not None:
         kept = _record(tolerance, system.payload.mass, loop, found)
@@ -243,8 +243,8 @@ def _record(tolerance, mass, loop, found):
 
 @entry
 def errors(audit, total, transverse):
-    """Relative errors of the total and the transverse ledger at the ends of all steps, of which
-    ``total`` and ``transverse`` are promised."""
+    """Relative errors of the total and the transverse ledger at the ends of all steps; ``total``
+    and ``transverse`` are promised."""
     created = audit.created
     scale = max(audit.scale, _ROUNDING * audit.terms / total)
     scale_transverse = max(audit.scale_transverse, _ROUNDING * audit.terms / transverse)
@@ -258,8 +258,7 @@ def errors(audit, total, transverse):
 
 @entry
 def usage(audit, total, transverse):
-    """Largest share that a ledger uses of half of what is promised: above one, smaller steps are
-    needed."""
+    """Largest error of a ledger over half of its promise: above one, smaller steps are needed."""
     first, second = errors(audit, total, transverse)
     share = max(first / total, second / transverse) / _HALF
     return np.inf if audit.failed or not share == share else share

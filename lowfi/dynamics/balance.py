@@ -74,8 +74,8 @@ def checks(
     loop: Loop,
     promised: Promises,
 ) -> dict[str, float]:
-    """Measured errors of what is ``promised``: of the ledgers at the ends of all steps, of the momenta
-    at all samples with pad ``forces`` (n,f,3) N."""
+    """Measured errors of the ``promised`` balances: of the ledgers at the ends of all steps, of the
+    momenta at all samples with pad ``forces`` (n,f,3) N."""
     energy, transverse = audit.errors(
         loop.audit, promised.energy_error, promised.transverse_energy_error
     )
@@ -98,7 +98,7 @@ def checks(
 
 
 def _sums(rows: np.ndarray, moved: Motion, forces: np.ndarray, model: Model) -> momenta.Sums:
-    """Momenta and impulses of both bodies, and the sizes of what they are summed from."""
+    """Momenta and impulses of both bodies, and the sums of the magnitudes of their terms."""
     payload, platform = model.payload, model.platform
     bodies = [(payload.mass, moved.position, moved.velocity, moved.rate @ payload.inertia)]
     if platform is not None:
@@ -118,5 +118,5 @@ def _sums(rows: np.ndarray, moved: Motion, forces: np.ndarray, model: Model) -> 
 
 
 def _power(value: float) -> float:
-    # Not finite without a single step. Adding zero turns -0.0 into 0.0.
+    # Not finite if there was no step. Adding zero turns -0.0 into 0.0.
     return float(value) + 0.0 if np.isfinite(value) else 0.0

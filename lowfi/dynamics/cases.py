@@ -1,8 +1,8 @@
 """The cases of one call of the time loop: the inputs that differ between them, and their results.
 
-A run with curves is one case whose samples are taken. Cases of an ensemble have none; their results
-are those of ``lowfi.run``, bit for bit, or none: a case that fails, or whose pads press at ignition,
-needs a message too, and is left to ``lowfi.run``.
+A run with curves is one case with samples. Cases of an ensemble have none. Their results equal
+those of ``lowfi.run``, bit for bit, or are missing: a case that fails, or whose pads press at
+ignition, needs a message too, and is left to ``lowfi.run``.
 """
 
 from typing import NamedTuple
@@ -20,7 +20,7 @@ RESULT_SIZE = BOOK + BOOK_SIZE
 
 
 class Cases(NamedTuple):
-    """What differs between n cases of f faces."""
+    """Inputs that differ between n cases of f faces, and their results."""
 
     mass: np.ndarray  # (n,) kg, of the payload
     inertia: np.ndarray  # (n, 3, 3) kg m2, of the payload
@@ -34,7 +34,7 @@ class Cases(NamedTuple):
 
 
 def alone(system: System, start: np.ndarray, reach: float) -> Cases:
-    """The one case of ``system``."""
+    """``system`` as the only case."""
     offset = system.thrust_offset
     return Cases(
         mass=np.array([system.payload.mass]),
@@ -51,7 +51,7 @@ def alone(system: System, start: np.ndarray, reach: float) -> Cases:
 
 @kernel
 def system_of(common, cases, n):
-    """The ``common`` system with what differs in case ``n``."""
+    """The ``common`` system with the inputs of case ``n``."""
     return System(
         payload=Body(cases.mass[n], cases.inertia[n], cases.inverse_inertia[n]),
         platform=common.platform,

@@ -57,11 +57,11 @@ DENSE = np.array(
 
 @kernel
 def attempt(system, loop, stretch, time, dt, fresh):
-    """From ``loop.start`` at ``time`` (s) to ``loop.end`` at ``time + dt``; unless ``fresh``,
-    ``loop.stages`` holds k_1 already.
+    """Advance ``loop.start`` at ``time`` (s) to ``loop.end`` at ``time + dt``; unless ``fresh``,
+    ``loop.stages`` already has k_1.
 
-    Thrust is evaluated within ``stretch`` (s), the open interval between two corners, also where
-    stage times round beyond it.
+    Thrust is evaluated within ``stretch`` (s), the open interval between two corners, even if
+    rounded stage times are beyond it.
     """
     start, stages, end = loop.start, loop.stages, loop.end
     for stage in range(0 if fresh else 1, STAGES):
@@ -82,8 +82,8 @@ def attempt(system, loop, stretch, time, dt, fresh):
 
 @kernel
 def _restore(system, dt, state):
-    """Restore what the sum of stages of a step of ``dt`` (s) does not keep: quaternions of length
-    one, and rates that agree with the momenta."""
+    """Restore properties that the sum of stages of a step of ``dt`` (s) does not conserve: unit
+    quaternions, and rates that agree with the momenta."""
     normalise(state)
     reconcile(system.payload, dt, state, PAYLOAD)
     _reconcile_platform(system.platform, dt, state)
@@ -97,8 +97,8 @@ def _reconcile_platform(platform, dt, state):
 
 @kernel
 def _combine(stage, h, y, k, out):
-    """out = y + h sum_j a_stage,j k_j, each sum in one pass over the slots; quadratures only where
-    the step ends."""
+    """out = y + h sum_j a_stage,j k_j, each sum in one pass over the slots; quadratures only at the
+    end of the step."""
     if stage == 0:
         copy(y, out, STATE_SIZE)
     elif stage == 1:
@@ -142,7 +142,7 @@ def _combine(stage, h, y, k, out):
 
 @kernel
 def _combine_modes(stage, h, y, k, modal, out):
-    """The same for the ``modal`` numbers of the rails' modes."""
+    """As ``_combine``, for the ``modal`` numbers of the rails' modes."""
     for j in range(STATE_SIZE, STATE_SIZE + modal):
         total = 0.0
         for i in range(min(stage, STAGES - 1)):
@@ -175,7 +175,7 @@ def _difference(h, k, j):
 @kernel
 def interpolate(system, loop, dt, theta, size, out):
     """The first ``size`` slots of the state, at least MOVING_SIZE, and the modes of the rails, at
-    ``theta`` in 0..1 of the step of ``dt`` (s) that ``loop`` holds."""
+    ``theta`` in 0..1 of the step of ``dt`` (s) in ``loop``."""
     start, stages, h = loop.start, loop.stages, dt * theta
     b0, b2, b3, b4, b5, b6 = (
         _polynomial(0, theta),

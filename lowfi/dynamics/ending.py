@@ -1,15 +1,15 @@
 """Exit, settled window and jam of the surrogate, found on the interpolant of every step.
 
-A step is divided into pieces. Where a piece begins and ends on different sides of the rail end, or
-of the jam speed, the crossing is found by regula falsi (Illinois variant) to rounding. Means over
-the window are integrals of the interpolant by the rule of Gauss and Legendre::
+A step is divided into pieces. If a piece begins and ends on different sides of the rail end or of
+the jam speed, the crossing is found by regula falsi (Illinois variant) to rounding. Means over the
+window are integrals of the interpolant by Gauss-Legendre quadrature::
 
     integral over h = h / 2 sum_k w_k f(t_k)         error <= 4e-13 h^11 max |f^(10)|  (five points)
 
-The velocity is a polynomial of degree four in a step, which the rule integrates exactly. The rate in
-body axes is not: it turns with up to twice the attitude. A step may turn by 4 rad at a relative
-tolerance of 1e-2, the loosest allowed, and the error is then 3e-4 of the rate; at 1e-4 these are
-1.2 rad and 2e-9.
+The velocity is a polynomial of degree four in a step, which the rule integrates exactly. The rate
+in body axes is not; it changes with up to twice the angle of the attitude. At a relative tolerance
+of 1e-2, the loosest allowed, a step may turn by 4 rad, and the error is 3e-4 of the rate; at 1e-4
+the values are 1.2 rad and 2e-9.
 """
 
 from typing import NamedTuple
@@ -23,8 +23,8 @@ from tipoff.lowfi.dynamics.sample import posture, rearmost_edge
 from tipoff.mechanics import ending as books
 from tipoff.mechanics.ending import AT_EXIT, DONE, EXCESS, EXIT, NOW, PAST, ROW_SIZE
 
-# s, longest piece of a step: a body that leaves the rail, or rest, and comes back sooner may be
-# missed
+# s, longest piece of a step: a body that leaves the rail, or starts to move, and returns sooner may
+# be missed
 PIECE = 1e-3
 _EDGE, _SPEED = range(2)  # quantities
 _ROUNDING = 1e-15  # of places (m) and speeds (m/s)
@@ -43,7 +43,7 @@ _WEIGHTS = np.array(
 
 
 class Step(NamedTuple):
-    """A step that was taken."""
+    """An accepted step."""
 
     began: float  # s
     ended: float  # s
@@ -52,7 +52,7 @@ class Step(NamedTuple):
 
 @kernel
 def follow(system, marks, loop, step):
-    """Bring the book of ``loop`` up to date with the ``step`` just taken."""
+    """Update the book of ``loop`` for the accepted ``step``."""
     book = loop.book
     if book[DONE] < np.inf:
         return
@@ -64,7 +64,7 @@ def follow(system, marks, loop, step):
 
 @kernel
 def _monitor(system, marks, loop, step):
-    """Look for the exit and for a jam."""
+    """Find the exit and a jam."""
     book = loop.book
     if np.isnan(book[PAST]):
         book[PAST] = _quantity(_EDGE, system, marks, loop, step, step.began)
@@ -104,8 +104,8 @@ def _leave(system, marks, loop, step, at):
 
 @kernel
 def _look_at_speed(system, marks, loop, step, begin, end):
-    """Look at the axial speed at the ``end`` (s) of a piece, and at its first moment if that is the
-    first one to count."""
+    """Check the axial speed at the ``end`` (s) of a piece, and at the first moment from which it
+    counts."""
     book, low = loop.book, max(begin, books.watched_from(marks))
     if low > end:
         return
@@ -131,8 +131,8 @@ def _count(system, loop, step):
 
 @kernel
 def _crossing(kind, system, marks, loop, step, between, values):
-    """Instant (s) in ``between`` at which a quantity, whose ``values`` have different signs there,
-    passes zero."""
+    """Time (s) in ``between`` at which a quantity passes zero; its ``values`` at both ends have
+    different signs."""
     (low, high), (f_low, f_high) = between, values
     side = 0
     for _ in range(60):

@@ -2,8 +2,9 @@
 
     r' = v,   m v' = sum F,   q' = q w / 2,   A' = sum X x F,   h' = h x w + R' (A' - r x sum F)
 
-X is the point a force acts at; h and w are in body axes (``lowfi.state``). There the products of
-h and w of a thin body cancel to rounding, also in stages of a step, where q has no unit length.
+X is the point at which a force acts; h and w are in body axes (``lowfi.state``). There the products
+of h and w of a thin body cancel to rounding, even in stages of a step, where q is no unit
+quaternion.
 
 Every effect adds itself in one line of ``derivative``. Until ``move``, the velocity slots of the
 derivative hold forces (N). Axial power is each force's X component times the X velocity of the
@@ -28,19 +29,19 @@ from tipoff.scenes.effects.thrust_law import magnitude
 
 
 class Bodies(NamedTuple):
-    """What the forces on both bodies need of a system at one instant."""
+    """Data of a system that the forces on both bodies need at one instant."""
 
     payload: slot.Motion
     base: slot.Motion  # of the platform, or of scene axes at rest
-    platform: Body | None  # None where the rails are fixed
+    platform: Body | None  # None for fixed rails
     friction: Friction | None
-    ledger: bool | None  # None where no work, loss or impulse is integrated
+    ledger: bool | None  # None if no work, loss or impulse is integrated
 
 
 @kernel
 def derivative(system, touching, stick, time, state, out):
     """Fill ``out`` with the time derivative of ``state`` (both STATE_SIZE,). ``touching`` (f,) are
-    the faces that carry load, ``stick`` (f, ROW_SIZE) or None their stick-slip states."""
+    the faces with load, ``stick`` (f, ROW_SIZE) their stick-slip states or None."""
     payload, platform = system.payload, system.platform
     bodies = Bodies(
         payload=slot.motion(payload, state, PAYLOAD),
@@ -60,7 +61,7 @@ def derivative(system, touching, stick, time, state, out):
 
 @kernel
 def move(mass, state, first, body, out):
-    """Turn the force in the velocity slots of the body whose slots begin at ``first`` into
+    """Convert the force in the velocity slots of the body whose slots begin at ``first`` to an
     acceleration, and add the kinematics and the change of spin."""
     w = body.body_rate
     turning = rotation.product(
@@ -245,9 +246,9 @@ def add_compliant_contact(compliance, faces, touching, bodies, state, out):
 
 @kernel
 def _add_modes(modes, workspace, pressed, ledger, state, out):
-    """Add the vibration of a rail, ``pressed`` being its number and how many faces press it, and
-    what damping takes from it. A rail that none presses vibrates freely, which a step knows
-    beforehand (``lowfi.contact.compliant.free_vibration``)."""
+    """Add the vibration of a rail and the work of its damping; ``pressed``: its number and the
+    number of faces that press it. A rail without pressing faces vibrates freely; a step knows its
+    motion in advance (``lowfi.contact.compliant.free_vibration``)."""
     if modes is not None:
         rail, count = pressed
         loss = vibrate(modes, workspace, rail, count, state, out) if count > 0 else 0.0
@@ -270,8 +271,8 @@ def _add_axial_power(ledger, power, out):
 
 @kernel
 def _add_pad(pad, bodies, out):
-    """Add the load of one touching face: a pair of forces at one point, and what its energy
-    becomes."""
+    """Add the load of one touching face, a pair of forces at one point, and the conversion of its
+    energy."""
     _pair(bodies.platform, bodies.ledger, pad.normal, pad.point, out)
     axial_speed = _axial_speed(bodies.platform, bodies)
     _add_contact_power(bodies.ledger, pad, axial_speed, out)
@@ -306,8 +307,9 @@ def _add_friction(friction, pad, bodies, axial_speed, out):
 
 @kernel
 def _add_traction(sticking, row, face, pad, bodies, out):
-    """Add friction that sticks. Only the heat of its work is lost, the spring stores the rest. The
-    axial part of all of it counts as friction, as the energy of the spring ends there too."""
+    """Add friction with sticking. Only the heat of its work is lost; the spring stores the rest.
+    The axial part of the whole work counts as friction, because the energy of the spring ends there
+    too."""
     if sticking is not None:
         drag, heat = stick_slip.traction(sticking, row, face, pad, bodies.base)
         _pair(bodies.platform, bodies.ledger, drag, pad.point, out)
@@ -324,7 +326,7 @@ def _add_friction_power(ledger, heat, axial_power, out):
 
 @kernel
 def _pair(platform, ledger, force, point, out):
-    """A force on the payload and its opposite at the same point, on the platform or on the
+    """Add a force on the payload, and its opposite at the same point on the platform or the
     ground."""
     push(out, PAYLOAD, force, point, 1.0)
     if platform is None:
@@ -335,7 +337,7 @@ def _pair(platform, ledger, force, point, out):
 
 @kernel
 def _axial_speed(platform, bodies):
-    """X velocity (m/s) of the payload's mass centre, less the platform's."""
+    """X velocity (m/s) of the payload's mass centre relative to the platform's."""
     if platform is not None:
         return bodies.payload.velocity[0] - bodies.base.velocity[0]
     return bodies.payload.velocity[0]

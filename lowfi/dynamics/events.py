@@ -1,13 +1,13 @@
 """Events inside a step, at which the law of the right-hand side changes: a face closes or opens,
 its force is cut off, it leaves or enters its wall, it sticks or slips.
 
-A face that is open when a step begins carries no load in it: the step passes through the wall, the
-instant of contact is found on its interpolant (regula falsi, Illinois variant), and the step ends
-there. It ends on its interpolant where the right-hand side was smooth and the error leaves room,
-else it is taken again up to there. So no step crosses a jump, and no contact is too short to be
+A face that is open at the start of a step carries no load in it: the step passes through the wall,
+the time of contact is found on its interpolant (regula falsi, Illinois variant), and the step ends
+there. It ends on its interpolant if the right-hand side was smooth and the error is small enough,
+else it is taken again up to that time. So no step crosses a jump, and no contact is too short to be
 found. A gap that closes and opens again within a step is found from the cubic through its ends. A
-face that comes over its wall ends the step there (``lowfi.contact.wall_ends``), so a wall may be
-shorter than a step.
+step ends where a face comes over its wall (``lowfi.contact.wall_ends``), so a wall may be shorter
+than a step.
 """
 
 import numpy as np
@@ -45,7 +45,7 @@ _NEAR = 1e-7  # pull that counts as zero
 @kernel
 def first_event(system, loop, dt, span):
     """Fraction (0..1] of the first ``span`` of a step of ``dt`` (s) at which it must end, and the
-    face to blame. ``loop.before`` and ``loop.after`` survey the ends of that part."""
+    face that causes it. ``loop.before`` and ``loop.after`` survey the ends of that part."""
     first, blamed = _event_on_springs(system.contact, system, loop, dt, span)
     theta, face = _touch_on_compliance(system.is_compliant, system, loop, dt, span)
     if theta < first:
@@ -90,7 +90,7 @@ def _event_on_springs(laws, system, loop, dt, span):
 
 @kernel
 def _change_of_sticking(sticking, system, loop, dt, span):
-    """Where a touching face slips or stops."""
+    """Fraction at which a touching face slips or stops."""
     first, blamed = 1.0, -1
     if sticking is not None:
         for i in range(loop.engaged.size):
@@ -105,7 +105,7 @@ def _change_of_sticking(sticking, system, loop, dt, span):
 
 @kernel
 def _touch_on_compliance(is_compliant, system, loop, dt, span):
-    """Where an open face begins to touch on compliant contact."""
+    """Fraction at which an open face begins to touch on compliant contact."""
     first, blamed = 1.0, -1
     if is_compliant is not None:
         for i in range(loop.engaged.size):
@@ -123,8 +123,8 @@ def _touch_on_compliance(is_compliant, system, loop, dt, span):
 
 @kernel
 def _entry(system, loop, dt, span):
-    """Where a face comes over its wall and may touch. The fraction is never so small that the step
-    would end where it began: a little later the face is over its wall still."""
+    """Fraction at which a face comes over its wall and may touch. It is never so small that the
+    step would end at its start: a little later the face is still over its wall."""
     first, blamed = 1.0, -1
     if system.has_contact:
         rail = (system.rail_start, system.rail_end)
@@ -145,8 +145,8 @@ def _entry(system, loop, dt, span):
 
 @kernel
 def _level(rail, face, engaged, kind, before, after):
-    """Value that a face's quantity ``kind`` must reach for its mode to change in this step; NaN
-    when it does not change. ``comes_over`` finds how a face comes over its wall."""
+    """Value that a face's quantity ``kind`` must reach to change its mode in this step; NaN without
+    a change. ``comes_over`` finds how a face comes over its wall."""
     a, b = before[kind], after[kind]
     level = np.nan
     if kind == DEPTH:
@@ -154,7 +154,7 @@ def _level(rail, face, engaged, kind, before, after):
             level = BEYOND
     elif kind == PULL:
         if before[MODE] * after[MODE] == PRESSING * CUT_OFF:
-            # The force is continuous there, so what is nearer than rounding is no event.
+            # The force is continuous there, so distances below rounding are no event.
             level = 0.0 if min(abs(a), abs(b)) > _NEAR else np.nan
     elif engaged and max(before[DEPTH], after[DEPTH]) > BEYOND:
         if kind == ALONG:
@@ -166,8 +166,8 @@ def _level(rail, face, engaged, kind, before, after):
 
 @kernel
 def _edge(low, high, after):
-    """Place (m) just beyond the edge of its wall that a face passes as it leaves; NaN when it
-    passes none."""
+    """Place (m) just beyond the edge of its wall over which a face leaves; NaN if it does not
+    leave."""
     if low <= after <= high:
         return np.nan
     return high + BEYOND if after > high else low - BEYOND
@@ -176,7 +176,7 @@ def _edge(low, high, after):
 @kernel
 def _locate(system, loop, dt, span, face, kind, level):
     """Fraction of the first ``span`` of a step of ``dt`` (s) at which the quantity ``kind`` of a
-    face, by number, passes ``level``."""
+    face (its number) passes ``level``."""
     before, after = loop.before[face], loop.after[face]
     low, high, side = 0.0, 1.0, 0
     f_low, f_high = before[kind] - level, after[kind] - level
@@ -244,7 +244,7 @@ def _quantity_on_springs(laws, sticking, row, platform, face, kind, motions):
 @kernel
 def _cubic_root(f_low, f_high, rise, fall, guess):
     """A root in 0..1 of the cubic with these values and slopes at 0 and 1, by Newton's method;
-    ``guess`` where it finds none."""
+    ``guess`` if it finds none."""
     step = f_high - f_low
     a, b = rise + fall - 2.0 * step, 3.0 * step - 2.0 * rise - fall
     theta = guess
@@ -257,8 +257,8 @@ def _cubic_root(f_low, f_high, rise, fall, guess):
 
 @kernel
 def _grazing(before, after, dt):
-    """Fraction of ``dt`` (s) at which an open gap is narrowest, if it closes in between: maximum of
-    the cubic through depths and their rates."""
+    """Fraction of ``dt`` (s) at which an open gap is narrowest, if it closes in between: the
+    maximum of the cubic through depths and their rates."""
     rise, fall = dt * before[CLOSING], dt * after[CLOSING]
     if not (rise > 0.0 > fall and max(before[DEPTH], after[DEPTH]) + max(rise, -fall) > BEYOND):
         return 1.0

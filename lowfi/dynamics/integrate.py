@@ -17,15 +17,15 @@ from tipoff.lowfi.dynamics.survey import survey, update_engaged
 from tipoff.lowfi.dynamics.vibration import follow_neglected, reset_neglected
 from tipoff.mechanics import ending as books
 
-# What ``integrate`` returns: all samples taken; exit, settled window and jam are known; or why it
-# stopped before.
+# Results of ``integrate``: all samples taken; exit, settled window and jam known; or the reason of
+# an earlier stop.
 SAMPLED, ENDED, UNDERFLOW, OUT_OF_STEPS, NOT_FINITE, STRUCK, LOST_ENERGY = range(7)
-NOT_BEGUN = -1  # in the place of the number of samples
+NOT_BEGUN = -1  # instead of the number of samples
 
 
 def ready(system, state: np.ndarray, first_step: float) -> Loop:
     """A loop of ``system`` that ``integrate`` begins at ``state`` (STATE_SIZE,) with a first step of
-    ``first_step`` (s). Rails are at rest, or as modes at the end of ``state`` say."""
+    ``first_step`` (s). Rails are at rest, or have the modes at the end of ``state``."""
     loop = allocate(system)
     loop.start[: state.size] = state
     loop.clock.wanted, loop.counts.samples = first_step, NOT_BEGUN
@@ -34,7 +34,7 @@ def ready(system, state: np.ndarray, first_step: float) -> Loop:
 
 @kernel
 def reset(system, state, first_step, loop):
-    """Bring a used loop back to the start of a run."""
+    """Reset a used loop to the start of a run."""
     loop.start[:] = 0.0
     slot.copy(state, loop.start, state.size)
     _begin(system, first_step, loop)
@@ -86,7 +86,7 @@ def _reset_audit(audit):
 
 @kernel
 def _reset_compliance(compliance):
-    """Forget the displacement of the last run, and how it followed the pads."""
+    """Reset the displacement of the last run, and its change with the pads."""
     if compliance is not None:
         compliance.workspace.displacement[:] = 0.0
         compliance.workspace.yielding[:] = 0.0
@@ -101,10 +101,10 @@ def _reset_stick(stick):
 
 @entry
 def integrate(common, plan, tolerance, marks, loop, sampling, cases):
-    """Run ``cases`` of the ``common`` system. With samples, the one case goes on from where ``loop``
-    stands up to sample ``sampling.number``, or begins where it is ready; the result says why it
-    stopped. Without, each runs from its start until exit and jam are known or the scene ends, and
-    fills its row of ``cases.results``."""
+    """Run ``cases`` of the ``common`` system. With samples, there is one case: it continues from
+    the state of ``loop`` up to sample ``sampling.number``, or begins if the loop is ready; the
+    result is the reason of its stop. Without samples, each case runs from its start until exit and
+    jam are known or the scene ends, and fills its row of ``cases.results``."""
     status = SAMPLED
     for n in range(cases.mass.size):
         system = system_of(common, cases, n)
@@ -123,7 +123,7 @@ def integrate(common, plan, tolerance, marks, loop, sampling, cases):
 
 @kernel
 def _note(result, loop, tolerance, left_open):
-    """Fill the ``result`` (RESULT_SIZE,) of a case. One whose ledgers need smaller steps is left
+    """Fill the ``result`` (RESULT_SIZE,) of a case. A case whose ledgers need smaller steps is left
     open."""
     affordable = audit.usage(loop.audit, tolerance.total, tolerance.transverse) <= 1.0
     result[LEFT_OPEN] = 1.0 if left_open or not affordable else 0.0
@@ -141,9 +141,9 @@ def _presses(loop):
 
 @kernel
 def _integrate(system, plan, tolerance, marks, loop, sampling):
-    """Take samples up to ``sampling.number``, and after the last one go on to the end of the scene;
-    fewer, when the settled window is complete or a jam is found. The steps then end at the same
-    instant, whatever is sampled."""
+    """Take samples up to ``sampling.number``, and after the last one continue to the end of the
+    scene; fewer if the settled window is complete or a jam is found. The steps end at the same time
+    for any sampling."""
     clock, counts, end, ended = (
         loop.clock,
         loop.counts,
@@ -176,7 +176,7 @@ def _integrate(system, plan, tolerance, marks, loop, sampling):
 
 @kernel
 def _reach(system, plan, tolerance, marks, loop, whole, time):
-    """Step until ``time`` (s) is reached: SAMPLED, or why it is not."""
+    """Step until ``time`` (s): SAMPLED, or the reason why it is not reached."""
     while loop.clock.now < time:
         if not whole and books.is_over(loop.book, loop.clock.now):
             return ENDED
@@ -188,7 +188,8 @@ def _reach(system, plan, tolerance, marks, loop, whole, time):
 
 @kernel
 def advance(system, plan, tolerance, marks, loop):
-    """Take one step and update the book of exit and jam: SAMPLED, or why there is no step."""
+    """Take one step and update the book of exit and jam: SAMPLED, or the reason why there is no
+    step."""
     if loop.counts.steps >= plan.maximum_steps:
         return OUT_OF_STEPS
     if not step(system, plan, tolerance, loop):
@@ -205,7 +206,7 @@ def advance(system, plan, tolerance, marks, loop):
 
 @kernel
 def _has_finite_energy(state, modal):
-    """Whether the squares of all speeds, and everything else, are finite."""
+    """Whether the squares of all speeds, and all other values, are finite."""
     total = 0.0
     for j in range(slot.DYNAMIC_SIZE):
         total += state[j] * state[j]

@@ -7,12 +7,12 @@ farthest pad from the mass centre and the step h, each body's ratio is the large
     |e_v| along X, |e_r| / h along X                                     over   rtol (floor + |v| along X)
 
 so that 6 m/s along the rail do not loosen the tolerance of the millimetres per second across it.
-All speeds are those of the frame that moves with the platform (``mechanics.comoving``), so a speed
-that all bodies share loosens nothing either. A rate that rounding alone makes is taken off: it
-counts on a thin body that lies across its axes, with moments that differ by a factor of a million.
+This way 6 m/s along the rail do not loosen the tolerance of millimetres per second across it. All
+speeds are in the frame that moves with the platform (``mechanics.comoving``), so a common speed of
+all bodies loosens nothing either. The part of a rate due to rounding is subtracted: it matters for
+a thin body that lies across its axes, with moments of inertia that differ by a factor of a million.
 Modes of the rails are bounded by the error of their energy, as a speed of the payload's mass m. A
-step too long for the highest mode fails here, or at the proven limit before::
-
+step too long for the highest mode fails here, or earlier at the proven limit::
     sqrt(sum over modes of (e_q'^2 + omega^2 e_q^2) / m)                 over   the first of these, of the payload
 """
 
@@ -48,7 +48,7 @@ class Tolerance(NamedTuple):
     """Allowed errors of a run."""
 
     relative: float  # local error of a step, relative to the speeds of the body
-    floor: float  # m/s, speeds below it count as this much
+    floor: float  # m/s, lower speeds count as this value
     reach: float  # m, distance of the farthest pad from the mass centre of the payload
     total: float  # promised relative error of the total ledger
     transverse: float  # promised relative error of the transverse ledger
@@ -79,8 +79,8 @@ def with_reach(tolerance, reach):
 
 @kernel
 def error_ratio(tolerance, system, loop, dt):
-    """Error of the step of ``dt`` (s) to ``loop.end`` over what is allowed; NaN where anything
-    is."""
+    """Error of the step of ``dt`` (s) to ``loop.end`` over the allowed error; NaN if a term is
+    NaN."""
     payload, end, error = system.payload, loop.end, loop.work
     local_error(dt, loop.stages, modal_size(system.compliance), error)
     ratio = _body_ratio(tolerance, payload.inverse_inertia, dt, error[:BODY_SIZE], end[:BODY_SIZE])
@@ -92,7 +92,7 @@ def error_ratio(tolerance, system, loop, dt):
 
 @kernel
 def worse(a, b):
-    """The larger of two numbers; NaN when either is NaN."""
+    """The larger of two numbers; NaN if either is NaN."""
     return a if not a <= b else b
 
 
@@ -131,7 +131,7 @@ def _modal_ratio(tolerance, payload, modes, error, end):
 
 @kernel
 def _body_ratio(tolerance, inverse_inertia, dt, error, end):
-    """Ratio of one body, whose slots stand first in ``error`` and ``end``."""
+    """Ratio of one body, whose slots come first in ``error`` and ``end``."""
     velocity, e_q = triple(end, VELOCITY), quaternion(error, 0)
     e_place, e_velocity = triple(error, PLACE), triple(error, VELOCITY)
     spin = triple(end, SPIN)

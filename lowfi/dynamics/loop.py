@@ -1,5 +1,5 @@
-"""State of the time loop: what evolves from step to step, as arrays and records with named fields
-that the kernels change in place."""
+"""State of the time loop: values that evolve from step to step, as arrays and records with named
+fields. The kernels change them in place."""
 
 from typing import NamedTuple
 
@@ -63,29 +63,29 @@ AUDIT = np.dtype(
 
 @by_reference
 class Plan(NamedTuple):
-    """When steps must end, and how long they may be."""
+    """Times at which steps must end, and their largest length."""
 
-    stops: np.ndarray  # (s,) s, instants a step must end at; the last is the end of the scene
+    stops: np.ndarray  # (s,) s, times at which a step must end; the last is the end of the scene
     caps: np.ndarray  # (s,) s, longest step before each stop
     maximum_steps: int
-    first: float  # s, first step that is tried; error control corrects it in a few attempts
+    first: float  # s, first attempted step; error control corrects it in a few attempts
 
 
 @by_reference
 class Sampling(NamedTuple):
-    """Which samples to take, and where to."""
+    """Samples to take, and their arrays."""
 
     interval: float  # s, between samples
     last: int  # number of the last sample in the scene
-    number: int  # number of the sample to stop at; -1 where none is taken
-    whole: bool  # go on to the end of the scene, also when exit and jam are settled
-    rows: np.ndarray  # (n, SAMPLE_SIZE), of which those up to ``number`` are filled
+    number: int  # number of the sample to stop at; -1 without samples
+    whole: bool  # continue to the end of the scene, even if exit and jam are settled
+    rows: np.ndarray  # (n, SAMPLE_SIZE), filled up to ``number``
     forces: np.ndarray  # (n, f, 3) N, of each pad face on the payload
 
 
 @by_reference
 class Loop(NamedTuple):
-    """What evolves, for f faces and a state of n numbers (STATE_SIZE and those of the modes)."""
+    """Evolving values, for f faces and a state of n numbers (STATE_SIZE and those of the modes)."""
 
     start: np.ndarray  # (n,) state at the start of the last step
     end: np.ndarray  # (n,) state at its end
@@ -93,7 +93,7 @@ class Loop(NamedTuple):
     before: np.ndarray  # (f, SURVEY_SIZE) survey of the start
     after: np.ndarray  # (f, SURVEY_SIZE) survey of the end
     engaged: np.ndarray  # (f,) whether a face is over its wall
-    depth_left: np.ndarray  # (f,) m, penetration with which a face left that is still partly over
+    depth_left: np.ndarray  # (f,) m, penetration at which a face left that is still partly over
     touching: np.ndarray  # (f,) whether a face touches its wall in the step
     stick: np.ndarray | None  # (f, ROW_SIZE) stick-slip state; None without that law
     clock: np.record  # CLOCK

@@ -8,8 +8,8 @@ from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.model import Model
 from tipoff.scenes.effects import thrust_law
 
-# A Gaussian is below 2e-14 of its peak beyond this many widths, and the stages of a step inside, at
-# most half of it apart, see four points in any three widths.
+# A Gaussian is below 2e-14 of its peak beyond this many widths. Stages of a step inside are at most
+# half of it apart, so any three widths contain four of them.
 _REACH, _SHARE = 8.0, 1.5
 _FIRST_SHARE = 1e-3  # of the time to the first stop
 

@@ -27,7 +27,7 @@ from tipoff.lowfi.state import (
 
 # Slots of a sample: payload and platform first (place, velocity, quaternion, rate in body axes),
 # each BODY_SIZE long.
-RATE = slot.SPIN  # where the state holds the spin the sample holds the rate
+RATE = slot.SPIN  # a sample has the rate where the state has the spin
 KINETIC, AXIAL_KINETIC, STORED, STRAIN, WORKS = 26, 27, 28, 29, 30
 LINEAR, ANGULAR, GIVEN = WORKS + WORK_SIZE, WORKS + WORK_SIZE + 3, WORKS + WORK_SIZE + 6
 SAMPLE_SIZE = GIVEN + 6
@@ -36,7 +36,7 @@ SAMPLE_SIZE = GIVEN + 6
 @kernel
 def observe(system, loop, row, forces):
     """Fill ``row`` (SAMPLE_SIZE,) and ``forces`` (f,3) N on the payload, in scene axes, from the
-    state ``loop.work``; False where a number is not finite."""
+    state ``loop.work``; False if a number is not finite."""
     payload, state = system.payload, loop.work
     body = slot.motion(payload, state, PAYLOAD)
     base = slot.frame(system.platform, state)
@@ -57,8 +57,8 @@ def observe(system, loop, row, forces):
 
 @kernel
 def _is_finite(values):
-    """Whether all ``values`` (n,) are finite; without a branch, which would cost more than the
-    numbers."""
+    """Whether all ``values`` (n,) are finite; without a branch, which would take longer than the
+    sum."""
     found = True
     for value in values:
         found &= abs(value) < np.inf
@@ -102,7 +102,7 @@ def rearmost_edge(faces, platform, row):
 
 @kernel
 def _copy(state, body, row):
-    """Places and velocities of one body, whose slots stand first in ``state`` and ``row``."""
+    """Places and velocities of one body, whose slots come first in ``state`` and ``row``."""
     slot.copy(state, row, RATE)
     for i in range(3):
         row[RATE + i] = body.body_rate[i]
@@ -116,8 +116,8 @@ def _platform(platform, state, base, row):
 
 @kernel
 def _body(mass, state, first, body, row):
-    """Add kinetic energy and momenta of the body whose slots begin at ``first``. The momenta are
-    those of its motion, not A: so the check of the ledger sees whether both agree."""
+    """Add kinetic energy and momenta of the body whose slots begin at ``first``. The momenta come
+    from its motion, not from A, so the check of the ledger compares both."""
     orbit = rotation.cross(body.place, body.velocity)
     spin = rotation.rotate(body.turn, slot.triple(state, first + slot.SPIN))
     row[KINETIC] += slot.kinetic(mass, state, first, body)
@@ -129,7 +129,7 @@ def _body(mass, state, first, body, row):
 
 @kernel
 def _observe_springs(laws, system, loop, body, base, forces):
-    """Fill ``forces`` with those of contact springs; the energy (J) stored in all faces."""
+    """Fill ``forces`` of contact springs; returns the energy (J) stored in all faces."""
     energy = 0.0
     forces[:] = 0.0
     if laws is not None:
@@ -151,11 +151,11 @@ def _observe_springs(laws, system, loop, body, base, forces):
 
 @kernel
 def _observe_compliance(compliance, system, loop, body, base, forces):
-    """The same for compliant contact. The next step begins with the displacement that the last one
-    left, whatever is sampled."""
+    """As ``_observe_springs`` for compliant contact. The next step begins with the displacement of
+    the last step, for any sampling."""
     energy = 0.0
     if compliance is not None:
-        # Before the first step no face is known to touch, and every face may press.
+        # Before the first step the touching faces are unknown, so every face may press.
         touching = loop.touching if loop.counts.steps > 0 else loop.engaged
         if touching.any():
             workspace = compliance.workspace
@@ -169,7 +169,7 @@ def _observe_compliance(compliance, system, loop, body, base, forces):
 
 @kernel
 def _observe_pressed(compliance, system, touching, state, body, base, forces):
-    """Fill ``forces`` of the ``touching`` faces (f,); the energy (J) stored under them."""
+    """Fill ``forces`` of the ``touching`` faces (f,); returns the energy (J) stored under them."""
     energy, workspace = 0.0, compliance.workspace
     place, turn = relative_pose(system.platform, body, base)
     for rail in range(compliance.members.shape[0]):

@@ -20,32 +20,34 @@ from tipoff.lowfi.dynamics.survey import keeps_law, survey, update_engaged, upda
 from tipoff.lowfi.dynamics.vibration import longest_step, shortened
 
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 5.0
-# Steps that error control proposes are powers of 2^(1/16). Error estimates of steps in which
-# cells begin to press depend strongly on the step: if the next step followed them continuously, a
-# difference by rounding, such as the order of the pads makes, would grow with each step up to the
+# Steps that error control proposes are powers of 2^(1/16). Error estimates of steps in which cells
+# begin to press depend strongly on the step. If the next step followed them continuously, a
+# rounding difference, for example from the order of the pads, would grow with each step up to the
 # tolerance. The next lower power takes 2 % more steps.
 _RUNGS = 2.0 ** (np.arange(16) / 16.0 - 1.0)
-# Largest error ratio at which interpolation may cut a step; its error is some times larger.
+# Largest error ratio at which interpolation may cut a step; the error at the cut is several times
+# larger.
 _SPARE = 0.1
 # A change of law in this last share of a step does not cut it: the error is of second order in the
 # share, as in the energy of a pad that springs back freely in one step.
 _NEAR_END = 1e-4
 _CUTS = 40  # of one step
-# Of one step for the ledgers; an error that remains does not depend on the step size.
+# Attempts for one step for the sake of the ledgers; an error that remains does not depend on the
+# step size.
 _HALVINGS = 6
 
 
 @kernel
 def step(system, plan, tolerance, loop):
-    """Take one step; False when no step is short enough, when it lost a tenth of the energy, or
-    when a face strikes an edge of its wall where the step would begin."""
+    """Take one step; False if no step is short enough, if it lost a tenth of the energy, or if a
+    face strikes an edge of its wall at the start of the step."""
     clock, counts = loop.clock, loop.counts
     fresh = _begin(system, plan, loop)
     if counts.striking_face >= 0:
         return False
     start, segment = clock.began, counts.segment
     stop, rate, cuts, halvings = plan.stops[segment], clock.rate, 0, 0
-    # At a corner, the thrust of the side from which it is approached.
+    # At a corner, the thrust of the side from which it is reached.
     stretch = (
         np.nextafter(0.0 if segment == 0 else plan.stops[segment - 1], np.inf),
         np.nextafter(stop, -np.inf),
@@ -123,8 +125,8 @@ def _rung(dt):
 
 @kernel
 def _begin(system, plan, loop):
-    """Make the end of the last step the start of the next; what jumps in between jumps here. True
-    when the derivative jumps too."""
+    """Make the end of the last step the start of the next, and apply the jumps in between. True if
+    the derivative jumps too."""
     clock, counts = loop.clock, loop.counts
     slot.copy_all(loop.end, loop.start, slot.modal_size(system.compliance))
     clock.began = clock.now
@@ -151,8 +153,8 @@ def _begin(system, plan, loop):
 
 @kernel
 def _release(is_compliant, system, loop, left, sign):
-    """Count as released the energy in compliant contact that leaving faces take with them: called
-    before they go with ``sign`` 1, and after with -1."""
+    """Count as released the energy in compliant contact that leaving faces remove: called before
+    they leave with ``sign`` 1, and after with -1."""
     if is_compliant is not None:
         if left:
             loop.start[slot.RELEASED] += sign * energy_in_compliance(
@@ -196,8 +198,8 @@ def _within_reach_of_vibration(system, loop, dt):
 
 @kernel
 def _within_predicted_limit(system, loop, dt):
-    """``dt`` (s), less where the proven limit of springs will have fallen below it by the end of
-    such a step: a guess that saves attempts."""
+    """``dt`` (s), or less if the proven limit of springs is expected to fall below it by the end of
+    the step: an estimate that saves attempts."""
     touching = False
     for touches in loop.touching:
         touching = touching or touches
@@ -212,8 +214,8 @@ def _within_predicted_limit(system, loop, dt):
 
 @kernel
 def rate_bound(system, loop, state, solved):
-    """Bound (1/s) of the eigenvalues of the contact at ``state``, for which compliant contact may
-    be ``solved`` already."""
+    """Bound (1/s) of the eigenvalues of the contact at ``state``; ``solved``: compliant contact is
+    already solved there."""
     rate = fastest_rate(system.contact, system, loop.touching, loop.stick, state, 0.0)
     return max(rate, _rate_on_compliance(system.is_compliant, system, loop, state, solved))
 
@@ -238,8 +240,8 @@ def _rate_on_compliance(is_compliant, system, loop, state, solved):
 
 @kernel
 def _cut_at_event(system, loop, dt):
-    """Cut the step at its first event: the fraction kept, with ``loop.end`` and its survey there,
-    or a face that touches from the start."""
+    """Cut the step at its first event: returns the kept fraction, with ``loop.end`` and its survey
+    there, or a face that touches from the start."""
     span, began = 1.0, loop.clock.began
     for _ in range(_CUTS):
         theta, face = first_event(system, loop, dt, span)
@@ -258,7 +260,7 @@ def _cut_at_event(system, loop, dt):
 def _accept(loop, dt, time, ratio, limit):
     clock, derivative = loop.clock, loop.stages[STAGES - 1]
     grown = dt * (min(_GROW, _SAFETY * ratio**-0.2) if ratio > 0.0 else _GROW)
-    # A step cut short by a corner says little about the next one.
+    # A step cut short by a corner gives little information on the next one.
     clock.wanted = grown if dt >= clock.wanted else max(grown, clock.wanted)
     clock.friction_power = max(clock.friction_power, -derivative[slot.FRICTION])
     clock.damping_power = max(clock.damping_power, -derivative[slot.DAMPING])

@@ -1,4 +1,4 @@
-"""Between two steps: which faces stick or slide in the next step, and the energy that leaves
+"""Between two steps: the faces that stick or slide in the next step, and the energy that leaves
 their springs (law: ``lowfi.contact.stick_slip``)."""
 
 from tipoff.kernels.jit import kernel
@@ -10,10 +10,10 @@ from tipoff.lowfi.contact.wall_ends import MARGIN, MODE, OPEN
 
 @kernel
 def update(sticking, system, loop):
-    """Update stick-slip states and surveyed margins as a step begins at ``loop.end``.
+    """Update stick-slip states and surveyed margins at the start ``loop.end`` of a step.
 
-    ``loop.touching`` still holds the faces that touched in the step before. Returns whether
-    anything changed, and the energy (J) that friction takes from the springs.
+    ``loop.touching`` still has the faces that touched in the step before. Returns whether anything
+    changed, and the energy (J) that friction takes from the springs.
     """
     changed, lost = False, 0.0
     if sticking is not None:
@@ -41,8 +41,8 @@ def begin_contact(sticking, system, loop, face):
 
 @kernel
 def _change(sticking, system, loop, number, touched, touches, state):
-    """Change the state of a face that begins to touch, slips, stops, or ceases to touch; the energy
-    (J) lost, and its new margin."""
+    """Change the state of a face that begins to touch, slips, stops, or ceases to touch; returns
+    the lost energy (J) and its new margin."""
     face, row, laws = system.faces[number], loop.stick[number], system.contact
     body = slot.motion(system.payload, state, slot.PAYLOAD)
     base = slot.frame(system.platform, state)

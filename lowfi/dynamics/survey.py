@@ -1,5 +1,5 @@
-"""Contact of every pad face at the ends of a step: which faces are over their walls, how deep
-they press, and which of them touch."""
+"""Contact of every pad face at the ends of a step: the faces that are over their walls, their
+penetration, and the faces that touch."""
 
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
@@ -39,8 +39,9 @@ from tipoff.scenes.effects.contact import stored_energy
 
 @kernel
 def survey(system, loop, solved):
-    """Fill ``loop.after`` at ``loop.end``, for which compliant contact may be ``solved`` already,
-    and the energy (J) stored in it. A face off its wall gets the mode it would have there."""
+    """Fill ``loop.after`` at ``loop.end``, and the energy (J) stored in compliant contact;
+    ``solved``: that is already solved there. A face off its wall gets the mode that it would have
+    there."""
     faces, platform, payload = system.faces, system.platform, system.payload
     _survey_springs(system.contact, system.sticking, faces, platform, payload, loop)
     loop.audit.in_compliance = _survey_compliance(
@@ -84,16 +85,15 @@ def _survey_springs(laws, sticking, faces, platform, payload, loop):
 
 @kernel
 def pull(pad):
-    """Raw force over the sum of the sizes of its elastic and damping parts: -1..1, negative where
-    the law would pull."""
+    """Raw force over the sum of the magnitudes of its elastic and damping parts: -1..1, negative
+    where the law would pull."""
     size = pad.elastic + abs(pad.raw - pad.elastic)
     return pad.raw / size if size > 0.0 else 1.0
 
 
 @kernel
 def margin(laws, sticking, row, platform, face, p, body, base):
-    """Stick-slip margin of a face at penetration ``p`` (m); -1 for a face that sticks across a
-    gap."""
+    """Stick-slip margin of a face at penetration ``p`` (m); -1 for a sticking face with a gap."""
     left = 1.0
     if sticking is not None:
         if p > 0.0:
@@ -107,12 +107,11 @@ def margin(laws, sticking, row, platform, face, p, body, base):
 
 @kernel
 def update_engaged(system, loop):
-    """Update the faces that are over their walls and the depths with which others left.
+    """Update the faces that are over their walls, and the depths at which others left.
 
-    Returns whether any changed, the energy (J) that leaving faces take with them less what
-    entering ones bring, the part of the latter (J) with which they had left, and a face that
-    strikes an edge or is pressed through its wall, or -1. Compliant contact counts its energy
-    itself.
+    Returns whether any changed, the energy (J) of leaving faces minus that of entering ones, the
+    part of the latter (J) with which they had left, and a face that strikes an edge or is pressed
+    through its wall, or -1. Compliant contact counts its energy itself.
     """
     rail = (system.rail_start, system.rail_end)
     return _update_engaged(system.contact, system.has_contact, rail, system.faces, loop)
@@ -144,7 +143,7 @@ def _update_engaged(laws, has_contact, rail, faces, loop):
 
 @kernel
 def update_touching(loop):
-    """Update the faces that touch as a step begins; True when any changed."""
+    """Update the faces that touch at the start of a step; True if any changed."""
     changed = False
     for i in range(loop.engaged.size):
         touches = loop.engaged[i] and loop.after[i, MODE] != OPEN

@@ -10,7 +10,7 @@ from tipoff.lowfi.contact.compliant import free_vibration, neglected
 @kernel
 def advance_free_modes(compliance, touching, dt, start, end, with_work):
     """Fill the modes of rails without a ``touching`` (f,) face in ``end``, ``dt`` (s) after ``start``,
-    and add what damping takes to its work if there is any."""
+    and add the work of damping if there is damping."""
     if compliance is not None:
         free_vibration.advance(compliance, touching, dt, start, end, with_work)
 
@@ -18,7 +18,7 @@ def advance_free_modes(compliance, touching, dt, start, end, with_work):
 @kernel
 def longest_step(compliance, touching, engaged, before, state):
     """Longest step (s) from ``state`` at which vibration cannot hide a touch of an ``engaged`` (f,)
-    face, by the survey ``before`` (f, SURVEY_SIZE): without bound where none is near."""
+    face, by the survey ``before`` (f, SURVEY_SIZE); infinite without a near face."""
     longest = np.inf
     if compliance is not None:
         longest = free_vibration.longest_step(
@@ -29,7 +29,7 @@ def longest_step(compliance, touching, engaged, before, state):
 
 @kernel
 def shortened(compliance, touching, engaged, before, after, state, dt):
-    """``dt`` (s), or the shorter step to try where a face comes near a vibrating wall in it."""
+    """``dt`` (s), or a shorter step to try if a face comes near a vibrating wall in it."""
     if compliance is not None:
         free = free_vibration.Faces(compliance.rail, touching, engaged, before, after)
         dt = free_vibration.shortened(compliance.modes, free, state, dt)
@@ -45,6 +45,6 @@ def reset_neglected(watched):
 
 @kernel
 def follow_neglected(watched, system, loop):
-    """Drive the neglected modes that are ``watched`` through the step just taken."""
+    """Drive the neglected modes that are ``watched`` through the last step."""
     if watched is not None and watched.effect.size > 0:
         neglected.follow(watched, system, loop)

@@ -18,7 +18,7 @@ def kind(name: str) -> str:
 def create(
     group: Any, name: str, cases: int, chunk: int, attributes: Mapping[str, Any], type_: str = "f8"
 ) -> Any:
-    """A new array of ``cases`` rows in a zarr group, ``chunk`` rows a file, without values."""
+    """A new empty array of ``cases`` rows in a zarr group, with ``chunk`` rows per file."""
     from zarr.codecs import Crc32cCodec
 
     inner = (3,) if name in columns.VECTORS else ()

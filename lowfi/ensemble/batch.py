@@ -1,4 +1,4 @@
-"""Cases of an ensemble, in groups that one kernel call runs."""
+"""Cases of an ensemble, in groups for one kernel call each."""
 
 import time as clock
 from collections.abc import Callable, Mapping, Sequence
@@ -39,7 +39,7 @@ class Case(NamedTuple):
 
 
 class _Group(NamedTuple):
-    """Cases that share all records but those of ``cases.Cases``."""
+    """Cases that share all records except those of ``cases.Cases``."""
 
     built: Built
     marks: outcome.Milestones
@@ -49,9 +49,10 @@ class _Group(NamedTuple):
 
 
 class Family:
-    """The cases of one scene, with every clearance larger by ``widening`` (m). The kernel of its
-    group runs a case; ``lowfi.run`` runs those that the kernel leaves open. All have the modes of the
-    ``numerics``: raises ValueError where the rails may vibrate and no number is chosen."""
+    """The cases of one scene, with every clearance increased by ``widening`` (m). The kernel of its
+    group runs a case; ``lowfi.run`` runs cases that the kernel leaves open. All have the modes of
+    the ``numerics``. Raises ValueError if the rails may vibrate and no number of modes is
+    chosen."""
 
     def __init__(
         self,
@@ -77,7 +78,7 @@ class Family:
     def jobs(
         self, table: Sequence[Mapping[str, Any]]
     ) -> list[Callable[[], list[tuple[int, Case]]]]:
-        """Calls that run ``table``: each returns pairs of a row's number and its Case."""
+        """Calls that run ``table``; each returns pairs of a row's number and its Case."""
         groups, alone = self._grouped(table)
         return [
             *(partial(self._run_group, group) for group in groups),
@@ -85,20 +86,20 @@ class Family:
         ]
 
     def kernels(self, table: Sequence[Mapping[str, Any]]) -> list[Callable[[], np.ndarray]]:
-        """Calls of the bare kernel for the groups of ``table``, set up beforehand: each returns the
+        """Calls of the kernel only for the groups of ``table``, set up in advance; each returns the
         results of ``lowfi.dynamics.cases``. For timing."""
         return [self._kernel(group) for group in self._grouped(table)[0]]
 
     def _grouped(
         self, table: Sequence[Mapping[str, Any]]
     ) -> tuple[list[_Group], list[tuple[int, Mapping[str, Any] | Case]]]:
-        """Groups of ``table``, and rows without one, by number: overrides to run alone, or the
+        """Groups of ``table``, and rows without a group, by number: overrides to run alone, or the
         Case of a refused row."""
         groups: dict[tuple, _Group] = {}
         alone: list[tuple[int, Mapping[str, Any] | Case]] = []
         for number, row in enumerate(table):
             if self.calibrated_tables.intersection(key.partition(".")[0] for key in row):
-                # A calibration replaces values of a row in the same table, so the order counts.
+                # A calibration replaces values of a row in the same table, so the order matters.
                 alone.append((number, row))
                 continue
             try:
@@ -113,7 +114,7 @@ class Family:
         return list(groups.values()), alone
 
     def _scene(self, row: Mapping[str, Any]) -> Scene:
-        """The scene of a case, overwritten by that of the next."""
+        """The scene of a case; it is overwritten by the next one."""
         changed = self._changed(row)
         scene = self.variations.of(changed)
         if not self.widening or scene.contact is None:
@@ -121,7 +122,8 @@ class Family:
         return self.variations.of({**changed, **scene.contact.widened(self.widening)})
 
     def _changed(self, row: Mapping[str, Any]) -> Mapping[str, Any]:
-        """The overrides of a row with the changes of the calibration added to what it states."""
+        """The overrides of a row, plus the changes of the calibration to the values that it
+        states."""
         if self.stated is None:
             return row
         return {**row, **changes.overrides(self.stated.of(row), self.changes)}
@@ -138,7 +140,7 @@ class Family:
     def _group(self, groups: dict, built: Built) -> _Group:
         scene, model = built.scene, built.model
         limit, base = scene.time_limit, self.base.scene
-        # The damping of rails that vibrate and the stiffness of mounts are no part of a model.
+        # The damping of vibrating rails and the stiffness of mounts are not part of a model.
         key = (
             self._shared(built),
             scene.thrust.kind,
@@ -162,7 +164,7 @@ class Family:
 
     def _shared(self, built: Built) -> tuple:
         """Content of all records of a model that ``_stacked`` does not take from each case; None
-        for records of the scene itself."""
+        for records of the scene."""
 
         def parts(of: Built) -> tuple:
             shared = of.model._asdict() | {
@@ -235,7 +237,7 @@ class Family:
         try:
             scene, calibration = self.scene.replace(row), self.calibration
             if self.widening:
-                # a calibration may replace the clearance of a row, so that it comes first
+                # a calibration may replace the clearance of a row, so it comes first
                 scene, calibration = calibration.apply(scene) if calibration else scene, None
                 if scene.contact is not None:
                     scene = scene.replace(scene.contact.widened(self.widening))
@@ -256,14 +258,14 @@ def _refused(error: SceneError) -> Case:
 
 
 def _content(record: Any) -> Any:
-    """Values of nested records, arrays and numbers, to the last bit, in a form that can be compared
-    and hashed."""
+    """Values of nested records, arrays and numbers, to the last bit, in a form for comparison and
+    hashing."""
     if record is None:
         return None
     if isinstance(record, tuple):
         return type(record), *(_content(part) for part in record)
     if isinstance(record, float):
-        return record.hex()  # which distinguishes the zeros
+        return record.hex()  # distinguishes 0.0 and -0.0
     values = np.asarray(record)
     return values.dtype.str, values.shape, values.tobytes()
 
@@ -273,7 +275,7 @@ def _stacked(common: system.System, group: _Group) -> cases.Cases:
     centre = np.stack([model.faces.centre for model in of_cases])
     faces = np.repeat(common.faces[None], len(of_cases), axis=0)
     faces[:, :, CENTRE : CENTRE + 3] = centre
-    # all cases of a group have one, or none has
+    # all cases of a group have one, or none
     offsets = [model.thrust_offset for model in of_cases if model.thrust_offset is not None]
     return cases.Cases(
         np.array([model.payload.mass for model in of_cases]),

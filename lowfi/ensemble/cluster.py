@@ -1,8 +1,8 @@
 """Chunks of an ensemble on a Dask cluster: workers run them; only this process draws the cases and
 writes the store.
 
-If a worker dies, its chunks go to others. If the scheduler or the last worker dies, the run ends with
-a message, and the next run continues the store. Every worker must have the sources and library
+If a worker fails, its chunks go to others. If the scheduler or the last worker fails, the run ends
+with a message, and the next run continues the store. Every worker must have the sources and library
 versions of this process, so that the bits are the same.
 """
 
@@ -24,33 +24,33 @@ from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
-PATIENCE = 30.0  # s for a scheduler to answer, for its first worker to come, and without a worker
-_LOOK, _FETCH = 0.1, 1.0  # s between looks for a chunk and its workers, and to fetch its result
+PATIENCE = 30.0  # s without an answer of the scheduler, or without a worker
+_LOOK, _FETCH = 0.1, 1.0  # s between checks of a chunk and its workers, and to fetch its result
 _SCHEMES = ("tcp", "tls", "ucx", "ws", "wss")
 _AHEAD = 2  # chunks sent per worker thread: one runs, the next waits
-_RETRIES = 5  # of a chunk whose worker died
+_RETRIES = 5  # of a chunk whose worker failed
 
 _kept = threading.local()
 _Rows = Sequence[Mapping[str, Any]]
 
 
 class Recipe(NamedTuple):
-    """What a worker needs to run rows of an ensemble; it keeps the Family under ``key``."""
+    """Inputs of a worker for rows of an ensemble."""
 
-    key: str
-    code: dict
+    key: str  # under which the worker keeps the Family
+    code: dict  # digest of sources, versions of libraries
     scene: Scene
     calibration: Calibration | None
     numerics: Numerics
     compliance: RailCompliance | None = None
-    widening: float = 0.0
+    widening: float = 0.0  # m
 
 
 def made(
     ensemble: Ensemble, store: Store, requested: Iterable[tuple[int, _Rows]], scheduler: str
 ) -> Iterator[Chunk]:
-    """The ``requested`` chunks, given by number and rows, in the order in which they end. Raises
-    StoreError, and SceneError for a ``scheduler`` that is no address."""
+    """The ``requested`` chunks, given by number and rows, in the order of completion. Raises
+    StoreError, and SceneError for an invalid address of the ``scheduler``."""
     distributed = _distributed()
     _require_address(scheduler)
     try:
@@ -94,7 +94,7 @@ def _made(client, recipe: Recipe, requested: Iterator[tuple[int, _Rows]]) -> Ite
     ended = as_completed(loop=client.loop)
 
     def send() -> None:
-        # each time anew: workers come and go
+        # checked each time: workers come and go
         wanted = _AHEAD * max(1, sum(client.nthreads().values()))
         for number, rows in islice(requested, max(0, wanted - len(sent))):
             future = client.submit(run_rows, recipe, rows, pure=False, retries=_RETRIES)
@@ -110,9 +110,8 @@ def _made(client, recipe: Recipe, requested: Iterator[tuple[int, _Rows]]) -> Ite
 
 
 def _result(client, ended) -> tuple[Any, Any]:
-    """The next chunk that ends, as its future and its result. Raises TimeoutError after ``PATIENCE``
-    without a worker: Dask itself would wait for ever, for a chunk or for a result that was lost with
-    its worker."""
+    """Future and result of the next completed chunk. Raises TimeoutError after ``PATIENCE`` without
+    a worker: Dask would wait forever for a chunk, or for a result that was lost with its worker."""
     future, served = None, time.monotonic()
     while True:
         if future is None and ended.has_ready():
@@ -132,8 +131,8 @@ def _result(client, ended) -> tuple[Any, Any]:
 
 
 def _require_address(scheduler: str) -> None:
-    """Raise SceneError unless this is the address of a scheduler. A client of a malformed one would
-    hold the process up at its end."""
+    """Raise SceneError unless this is the address of a scheduler. With a malformed address, the
+    client would block the process at its end."""
     from distributed import Security
     from distributed.comm import addressing
 
@@ -151,7 +150,7 @@ def _require_address(scheduler: str) -> None:
 
 
 def run_rows(recipe: Recipe, rows: _Rows) -> tuple[Columns, list[str]]:
-    """Results of ``rows`` and a message each; called in a worker. Raises RuntimeError where its
+    """Results of ``rows`` and a message each; called in a worker. Raises RuntimeError if its
     sources or libraries differ."""
     if (here := code()) != recipe.code:
         other = [name for name, value in recipe.code.items() if here[name] != value]

@@ -18,8 +18,8 @@ _SAMPLE = 16  # cases whose overrides represent ``derive`` in the identity
 class Derived:
     """Rows of cases for ``lowfi.ensemble``. ``derive`` computes columns (n,) of overrides by dotted
     key, SI, from columns (n,) of the draws of ``uncertainty`` by the names of its ``vary``, which
-    need not be keys of a scene. ``derive`` treats each case alone, so that a case has the same bits
-    in every chunk."""
+    need not be keys of a scene. ``derive`` treats each case independently, so that a case has the
+    same bits in every chunk."""
 
     def __init__(self, uncertainty: Uncertainty, derive: Callable[[Numbers], Numbers]):
         self._points, self._vary, self._derive = Points(uncertainty), uncertainty.vary, derive
@@ -44,7 +44,7 @@ class Derived:
 
 def friction(scene: Scene, dynamic: np.ndarray) -> Numbers:
     """Overrides of friction in ``scene``, which has friction, for coefficients ``dynamic`` (n,).
-    The static coefficient keeps its ratio to the dynamic one, so that it is never smaller."""
+    The static coefficient keeps its ratio to the dynamic one, so it is never smaller."""
     assert scene.friction is not None
     return {
         "friction.dynamic": dynamic,

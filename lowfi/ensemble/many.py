@@ -31,12 +31,11 @@ _AXES = ("x", "y", "z")
 
 @dataclass(frozen=True)
 class Execution:
-    """How an ensemble is run and kept: the number of threads ``workers`` (None: all cores), the
-    folder ``store``, and whether the ``sensitivity`` of each case is found too."""
+    """Options of an ensemble."""
 
-    workers: int | None = None
-    store: str | Path | None = None
-    sensitivity: bool = False
+    workers: int | None = None  # threads; None: all cores
+    store: str | Path | None = None  # folder
+    sensitivity: bool = False  # whether the sensitivity of each case is computed too
 
 
 def run_many(
@@ -49,23 +48,23 @@ def run_many(
     numerics: Numerics | None = None,
     **execution: Any,
 ) -> "xarray.Dataset":
-    """Run ``scene`` once per row of ``table``, a row being dotted overrides as in
-    ``Scene.replace``, or per draw of an Uncertainty.
+    """Run ``scene`` once per row of ``table``, a row of dotted overrides as in ``Scene.replace``,
+    or once per draw of an Uncertainty.
 
     The values are those of ``lowfi.run`` to the last bit, with its ``model``, ``compliance`` and
-    ``calibration``; there are no curves. A row that the scene refuses has the status ``refused`` and
-    the reason as its message; the others run. Settled values are NaN where a run has none.
+    ``calibration``; there are no curves. A row that the scene refuses has the status ``refused``
+    and the reason as its message; the others run. Settled values are NaN if a run has none.
     ``wall_s`` of a case is its share of the time of its group. The attributes count ``asked = ok +
-    refused + failed``, failed being the diverged.
+    refused + failed``; failed means diverged.
 
-    ``execution`` are fields of ``Execution``. With a ``store``, a folder, cases go there chunk by
-    chunk, stored cases are not run again (``lowfi.ensemble.fill``), and there is no ``wall_s``. With
-    ``sensitivity=True`` there are also ``rate_change_by_clearance`` and
-    ``rate_change_by_tolerance`` (rad/s): how far 1 um more of every clearance, and a tolerance of
-    1e-10, move the settled rates of the case (``lowfi.ensemble.twins``); their time is
-    ``sensitivity_wall_s``, which ``wall_s`` does not contain. With ``modes="auto"`` all cases have
-    one number of modes (``lowfi.ensemble.pilot``), which the attributes ``modes`` and ``modes_why``
-    state.
+    ``execution`` are fields of ``Execution``. With a ``store``, a folder, cases are stored there
+    chunk by chunk, stored cases are not run again (``lowfi.ensemble.fill``), and there is no
+    ``wall_s``. With ``sensitivity=True`` there are also ``rate_change_by_clearance`` and
+    ``rate_change_by_tolerance`` (rad/s): the change of the settled rates of the case for 1 um more
+    of every clearance, and for a tolerance of 1e-10 (``lowfi.ensemble.twins``). Their time is
+    ``sensitivity_wall_s``, which is not part of ``wall_s``. With ``modes="auto"`` all cases have
+    one number of modes (``lowfi.ensemble.pilot``); the attributes ``modes`` and ``modes_why`` state
+    it.
     """
     chosen = Execution(**execution)
     require(scene, model, compliance, calibration, numerics)

@@ -1,14 +1,15 @@
-"""The modes of an ensemble with ``modes="auto"``: one number for all its cases, from a few of them.
+"""Number of modes of an ensemble with ``modes="auto"``: one for all its cases, chosen from a few of
+them.
 
-``PILOT`` cases, evenly spaced, are run as single runs that choose their own number
-(``lowfi.modes``). The ensemble takes the fewest modes that are enough for half of them: a minority
-that needs modes does not make all cases expensive. On scene ``reference`` a third of the random
-ejections choose modes, and 1 um of clearance moves most of these by more than the modes do, while all
-modes make a case at a loose tolerance over 30 times as expensive (docs/tails.md). A pilot case is
+``PILOT`` cases, evenly spaced, are single runs that choose their own number (``lowfi.modes``). The
+ensemble takes the fewest modes that are sufficient for half of them, so a minority of cases with
+modes does not make all cases expensive. On scene ``reference`` a third of the random ejections
+choose modes, and 1 um of clearance changes most of these by more than the modes do; but all modes
+make a case at a loose tolerance over 30 times as expensive (docs/tails.md). A pilot case is
 integrated at least as accurately as a single run at the default tolerance, because the forces of a
-coarse integration excite modes that the contact does not. All cases then run the same equations, and
-each can be run again by itself with this number. A store keeps the number with its reason, so that
-an ensemble with a store has one pilot.
+coarse integration excite modes that the contact does not. All cases then have the same equations,
+and each can be run again alone with this number. A store keeps the number with its reason, so an
+ensemble with a store has one pilot.
 """
 
 from dataclasses import replace
@@ -29,9 +30,9 @@ _ENOUGH_FOR = 0.5  # of the pilot cases
 
 
 def settled(ensemble: Ensemble, store: str | Path | None = None) -> Ensemble:
-    """``ensemble`` with a number of modes, and the reason as its ``modes_why``; that is empty where the
-    number was given or the model has no modes. No case is run where the ``store`` at this path is of
-    the same ensemble and keeps the number."""
+    """``ensemble`` with a number of modes, and the reason as its ``modes_why``, which is empty if
+    the number was given or the model has no modes. No case is run if the ``store`` at this path
+    belongs to the same ensemble and has the number."""
     if ensemble.numerics.modes != AUTO:
         return ensemble
     if not may_vibrate(ensemble.scene, ensemble.compliance):
@@ -63,7 +64,7 @@ def _kept(ensemble: Ensemble, path: Path) -> Ensemble | None:
 
 
 def _chosen(ensemble: Ensemble) -> list[int]:
-    """Numbers of modes that the pilot cases choose; those that the scene refuses have none."""
+    """Numbers of modes that the pilot cases choose, without the cases that the scene refuses."""
     found, source = [], ensemble.source
     numerics = ensemble.numerics.accurate()
     last, count = source.asked - 1, min(PILOT, source.asked)

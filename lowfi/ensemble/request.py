@@ -24,18 +24,18 @@ class Ensemble(NamedTuple):
 
     scene: Scene
     source: Any  # of the cases (``lowfi.ensemble.rows``, ``lowfi.ensemble.table``)
-    calibration: Calibration | None  # constants of springs, changes of what rows state
+    calibration: Calibration | None  # constants of springs, and changes of the values in rows
     numerics: Numerics
     compliance: RailCompliance | None = None  # None for contact springs on rigid walls
-    widening: float = 0.0  # m, by which every clearance of a case is larger
-    modes_why: str = ""  # reason for the number of modes, where a pilot chose it
+    widening: float = 0.0  # m, added to every clearance of a case
+    modes_why: str = ""  # reason for the number of modes, if a pilot chose it
 
     def family(self) -> Family:
         """The Family that runs its cases."""
         return Family(self.scene, self.calibration, self.numerics, self.compliance, self.widening)
 
     def identity(self) -> dict:
-        """Everything the numbers depend on, as JSON."""
+        """Everything that determines the numbers, as JSON."""
         return {
             "scene": self.scene.hash,
             "cases": self.source.identity,
@@ -52,7 +52,8 @@ class Ensemble(NamedTuple):
         return content_hash(self.identity())
 
     def store(self, path: str | Path) -> stores.Store:
-        """The store of this ensemble at ``path``, made when there is none. Raises StoreError."""
+        """The store of this ensemble at ``path``, created if it does not exist. Raises
+        StoreError."""
         rerun = (
             "case n has the inputs stored under n, and is drawn again from seed and n alone: "
             "tipoff ensemble ... --case n"
@@ -67,7 +68,7 @@ class Ensemble(NamedTuple):
         )
 
     def case(self, number: int) -> tuple[Mapping[str, Any], Case]:
-        """Inputs and result of one case, run alone, to the same bits."""
+        """Inputs and result of one case, run alone, with the same bits."""
         (row,) = self.source.rows(number, number + 1)
         ((found,),) = completed(self.family(), [[row]], workers=1)
         return row, found
@@ -75,7 +76,7 @@ class Ensemble(NamedTuple):
 
 @lru_cache  # the sources do not change while the program runs
 def code() -> dict:
-    """Digest of the sources, and versions of the libraries, that the numbers depend on."""
+    """Digest of the sources and versions of the libraries that determine the numbers."""
     return {
         "code": sources.digest("tipoff.lowfi"),
         "versions": {name: sources.version(name) for name in _LIBRARIES},

@@ -48,7 +48,7 @@ class Listed:
 
     @cached_property
     def keys(self) -> list[str]:
-        """Every dotted key that some row has."""
+        """All dotted keys of all rows."""
         return list(dict.fromkeys(key for row in self._table for key in row))
 
     @cached_property
@@ -65,8 +65,8 @@ class Listed:
 
 
 def numbers(names: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> np.ndarray:
-    """Numbers (n, k) in SI under the k keys ``names`` of n rows; NaN where a row has none, or
-    anything else than a number."""
+    """Numbers (n, k) in SI under the k keys ``names`` of n rows; NaN for a missing value and for a
+    value that is not a number."""
     wanted = [(name, keys.unit(Scene, name)) for name in names]
     found = [
         [

@@ -1,31 +1,33 @@
 """Points of the unit cube by case number: plain sampling, Latin hypercube, scrambled Sobol'. Case n
-has the same bits however the cases are divided into chunks.
+has the same bits for any division into chunks.
 
 Plain sampling takes 52 bits per number from the counter-based generator Philox (Salmon et al., SC
-2011), keyed by the seed, its counter set to the case, so every case costs the same.
-Sobol' (``scipy.stats.qmc``) is wound forward to the case. A Latin hypercube exists only as a whole,
-and is held in memory.
+2011), keyed by the seed, with the case as its counter, so every case costs the same. Sobol'
+(``scipy.stats.qmc``) is advanced to the case. A Latin hypercube exists only as a whole and is held
+in memory.
 """
 
 import warnings
 
 import numpy as np
-import scipy  # its parts load when they are first used
+import scipy  # its submodules load at their first use
 
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.uncertainty import Uncertainty
 
-MOST_HELD = 2**24  # numbers of a Latin hypercube: 128 MiB, and three times as much while it is made
+MOST_HELD = (
+    2**24
+)  # numbers of a Latin hypercube: 128 MiB; its creation takes 3 times as much
 _WORDS = 4  # 64-bit words that Philox makes per count
-_SOBOL_BITS = 32  # SciPy winds forward no sequence of more
-_EDGE = 2.0**-53  # 0 and 1 themselves have no finite quantile in a normal distribution
+_SOBOL_BITS = 32  # SciPy cannot advance longer sequences
+_EDGE = 2.0**-53  # a normal distribution has no finite quantile at 0 and 1
 
 
 class Points:
     """Points of ``uncertainty`` in the open unit cube, one dimension per varied key.
 
-    Raises SceneError for a Latin hypercube that is too large to hold, and for more dimensions than
-    Sobol' has.
+    Raises SceneError for a Latin hypercube that is too large for memory, and for more dimensions
+    than Sobol' has.
     """
 
     def __init__(self, uncertainty: Uncertainty):
@@ -89,8 +91,8 @@ class Points:
         if begin > engine.num_generated:
             engine.fast_forward(begin - engine.num_generated)
         with warnings.catch_warnings():
-            # Balance needs a power of two of all cases, not of this chunk; the summary says so
-            # once.
+            # Balance needs a power of two as the number of all cases, not of this chunk; the
+            # summary states it once.
             warnings.filterwarnings("ignore", "The balance properties", UserWarning)
-            # middles of the cells: zero has no place in a normal law
+            # middles of the cells: a normal law has no quantile at zero
             return engine.random(end - begin) + 0.5 ** (_SOBOL_BITS + 1)

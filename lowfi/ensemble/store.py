@@ -1,18 +1,18 @@
-"""Results of an ensemble in a folder, chunk by chunk, so that it may stop at any instant and go on
+"""Results of an ensemble in a folder, chunk by chunk, so that it may stop at any time and continue
 later::
 
     cases.zarr/        a zarr group: status, exit_time, velocity ... and inputs/<dotted key>, SI,
-                       one chunk per 4096 cases, with checksums; and the columns that ``add``
-                       keeps, made from whole stores and made again on each request
-    done/000012.json   written last, in one piece (``tipoff.cache``): chunk 12 is whole; the ``key``
-                       is that of its ensemble, beside the digest of its numbers, its counts, and
-                       each case that failed
+                       one chunk per 4096 cases, with checksums; and the columns of ``add``,
+                       computed from whole stores, again on each request
+    done/000012.json   written last, atomically (``tipoff.cache``): chunk 12 is complete; with the
+                       ``key`` of its ensemble, the digest of its numbers, its counts, and each case
+                       that failed
     twins/             stores of the same cases with a disturbance (``lowfi.ensemble.twins``)
 
-A chunk counts as done once its file in done/ is there and whole, and has the digest of what is read
-back; any other is run again. The descriptions of the arrays (``zarr.json``) are those
-that a new store would have, and are written again where they are not. No time or place is stored,
-so two runs of one ensemble leave the same numbers, whoever ran them.
+A chunk is done if its file in done/ exists, is intact, and has the digest of the numbers read back;
+any other chunk is run again. The descriptions of the arrays (``zarr.json``) are those of a new
+store, and are written again if they differ. No time or place is stored, so two runs of one ensemble
+leave the same numbers.
 """
 
 import errno
@@ -48,26 +48,25 @@ _FAILED = ("refused", "diverged")
 
 
 class StoreError(RuntimeError):
-    """An ensemble that cannot go on in its store; the message gives the reason and the remedy. Stored
-    cases stay."""
+    """An ensemble that cannot continue in its store; the message gives the reason and the remedy.
+    Stored cases stay."""
 
 
 class Chunk(NamedTuple):
-    """Cases of one chunk: its number, their rows of overrides, results, and a message each, mostly
-    empty."""
+    """Cases of one chunk."""
 
     number: int
-    rows: Sequence[Mapping[str, Any]]
+    rows: Sequence[Mapping[str, Any]]  # overrides
     results: Columns
-    messages: Sequence[str]
+    messages: Sequence[str]  # one per case, mostly empty
 
 
 class Store:
     """The store of ``asked`` cases with inputs under the dotted ``names``, at ``path``: opened, or
-    made when there is none.
+    created if it does not exist.
 
-    ``identity`` (JSON) is everything the numbers depend on; ``attributes`` are kept beside them.
-    Raises StoreError for a folder that is no store, or one of another identity.
+    ``identity`` (JSON) is everything that determines the numbers; ``attributes`` are stored with
+    them. Raises StoreError for a folder that is no store, and for a store of another identity.
     """
 
     def __init__(
@@ -87,7 +86,7 @@ class Store:
 
     def _make(self, attributes: dict) -> bool:
         """Create the store under another name and rename it, so that it is never incomplete. False
-        where another process has made one in the meantime; both then write the same numbers."""
+        if another process has created one in the meantime; both then write the same numbers."""
         self.path.parent.mkdir(parents=True, exist_ok=True)
         folder = Path(tempfile.mkdtemp(prefix=f".{self.path.name}.", dir=self.path.parent))
         try:
@@ -104,7 +103,7 @@ class Store:
             shutil.rmtree(folder, ignore_errors=True)
 
     def _create(self, place, attributes: dict) -> None:
-        """The group and its arrays, without cases, in a folder or in memory."""
+        """Create the group and its arrays, without cases, in a folder or in memory."""
         import zarr
 
         root = zarr.create_group(place, attributes=attributes)
@@ -120,7 +119,7 @@ class Store:
             arrays.create(inputs, name, self.asked, CHUNK, units)
 
     def _require(self, identity: dict) -> None:
-        """Raises StoreError unless this is a store of the ensemble of this ``identity``. Where its
+        """Raise StoreError unless this is a store of the ensemble with this ``identity``. If its
         description is damaged, its chunks identify it."""
         there, expected = described(self.path), plain(identity)
         if there is None:
@@ -143,8 +142,8 @@ class Store:
             return False
 
     def _describe(self, attributes: dict) -> None:
-        """Write every description again that differs from a new store; attributes that fit their
-        digest may differ."""
+        """Rewrite every description that differs from a new store; attributes that fit their digest
+        may differ."""
         import zarr
 
         new: dict = {}
@@ -175,7 +174,7 @@ class Store:
         return -(-self.asked // CHUNK)
 
     def bounds(self, number: int) -> tuple[int, int]:
-        """First case of a chunk, and first of the next."""
+        """First case of a chunk, and first case of the next."""
         return number * CHUNK, min((number + 1) * CHUNK, self.asked)
 
     def pending(self) -> list[int]:
@@ -187,7 +186,8 @@ class Store:
         return self._whole(case // CHUNK)
 
     def write(self, chunk: Chunk) -> None:
-        """Keep the results of a chunk. Raises StoreError when that fails, as on a full disk."""
+        """Store the results of a chunk. Raises StoreError if that fails, for example on a full
+        disk."""
         begin, end = self.bounds(chunk.number)
         inputs = numbers(self.names, chunk.rows)
         with self._explained():
@@ -220,8 +220,8 @@ class Store:
             )
 
     def add(self, name: str, attributes: dict, values: Iterable[np.ndarray]) -> None:
-        """Keep a further column (n,) beside the results, its ``values`` by chunk; it takes the place
-        of the one there, and appears in one piece. Raises StoreError as ``write`` does."""
+        """Store a further column (n,) with the results, its ``values`` by chunk; it replaces an
+        existing one atomically. Raises StoreError as ``write`` does."""
         import zarr
 
         with self._explained():
@@ -270,7 +270,7 @@ class Store:
         return self.path / "done" / f"{number:06}.json"
 
     def _marks(self, number: int) -> Cache[dict]:
-        """Cache of the mark of a chunk. A mark of another layout counts as damaged."""
+        """Cache of the mark of a chunk. A mark with another layout counts as damaged."""
 
         def listed(mark: dict) -> dict:
             if not _is_listed(mark, *self.bounds(number)):
@@ -280,7 +280,7 @@ class Store:
         return documents(dict, listed)
 
     def _read_mark(self, number: int) -> dict | None:
-        """The mark of a chunk, None before it is done. Raises StoreError where it is damaged."""
+        """The mark of a chunk, None before it is done. Raises StoreError if it is damaged."""
         try:
             return self._marks(number).read(self._mark(number), self.ensemble)
         except FileNotFoundError:
@@ -290,19 +290,19 @@ class Store:
             raise StoreError(f"{self._mark(number)} {words}") from fault
 
     def read(self, begin: int, end: int) -> tuple[Columns, np.ndarray]:
-        """Results, and inputs (n, k), of the cases ``begin`` to ``end`` - 1; status -1 in those
-        that did not run yet."""
+        """Results, and inputs (n, k), of the cases ``begin`` to ``end`` - 1; status -1 for cases
+        that have not run yet."""
         found = Columns(*(self._arrays[name][begin:end] for name in Columns._fields))
         return found, np.array([place[begin:end] for place in self._inputs]).reshape(
             len(self.names), -1
         ).T
 
     def column(self, name: str, begin: int = 0, end: int | None = None) -> np.ndarray:
-        """One of the results of the cases ``begin`` to ``end`` - 1, absent: of all."""
+        """One of the results of the cases ``begin`` to ``end`` - 1 (default: all)."""
         return self._arrays[name][begin:end]
 
     def done(self) -> int:
-        """Cases that are stored."""
+        """Number of stored cases."""
         return sum(
             end - begin
             for begin, end in (
@@ -312,7 +312,7 @@ class Store:
 
     def failures(self) -> list[dict]:
         """Case number, status, reason and inputs of each case that was refused or diverged. Raises
-        StoreError where the list is damaged."""
+        StoreError if the list is damaged."""
         return [
             failure
             for number in range(len(self))
@@ -338,7 +338,7 @@ class Store:
 
 
 def described(path: Path) -> dict | None:
-    """Attributes of the store at ``path``; None where there are none, or they do not fit their
+    """Attributes of the store at ``path``; None if there are none or they do not fit their
     digest."""
     try:
         found = json.loads((path / "cases.zarr" / "zarr.json").read_bytes())["attributes"]
@@ -348,7 +348,7 @@ def described(path: Path) -> dict | None:
 
 
 def _is_listed(mark: dict, begin: int, end: int) -> bool:
-    """Whether the lists of a mark have a text for each of their cases, of ``begin`` to ``end`` - 1."""
+    """Whether the lists of a mark have a text for each of the cases ``begin`` to ``end`` - 1."""
     try:
         texts = [(item["case"], item["reason"]) for item in mark["failures"]]
         texts += [(int(case), text) for case, text in mark["warnings"].items()]
@@ -358,13 +358,13 @@ def _is_listed(mark: dict, begin: int, end: int) -> bool:
 
 
 def plain(identity: dict) -> dict:
-    """An identity as a file has it: tuples are lists."""
+    """An identity in the form of a file: tuples are lists."""
     return json.loads(json.dumps(identity))
 
 
 def _alike(there: bytes, new: bytes) -> bool:
-    """Whether two descriptions (JSON) are the same, apart from attributes that fit a digest of
-    their own."""
+    """Whether two descriptions (JSON) are equal, except for attributes that fit their own
+    digest."""
     try:
         found, expected = json.loads(there), json.loads(new)
         if fits_digest(found["attributes"]):
@@ -383,7 +383,7 @@ def _digest(results: Columns, inputs: np.ndarray) -> str:
 
 
 def _plain(row: Mapping[str, Any]) -> dict[str, Any]:
-    """Inputs as JSON has them: text for what is neither a finite number nor text."""
+    """Inputs in the form of JSON: text for values that are neither finite numbers nor text."""
     return {
         key: value
         if isinstance(value, (str, int)) or (isinstance(value, float) and np.isfinite(value))

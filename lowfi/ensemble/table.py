@@ -21,8 +21,8 @@ _TOO_MANY, _TOO_FEW = "cells beyond the header", "a missing cell"
 
 class TableFile:
     """Cases of a CSV file: dotted keys in its header, units in the second line or in each cell, one
-    case a line; an empty cell leaves the scene's own value. A cell that is no number of its unit
-    stays text, for the scene to refuse that one case.
+    case a line; an empty cell leaves the scene's value. A cell that is no number of its unit stays
+    text; the scene then refuses that case.
 
     Raises SceneError for a file that cannot be read, and for keys and units that do not fit a
     scene.
@@ -67,7 +67,7 @@ class TableFile:
 
     def rows(self, begin: int, end: int) -> list[dict[str, Any]]:
         """Overrides of the cases ``begin`` to ``end`` - 1."""
-        # NaN marks a cell that is empty or text
+        # NaN marks an empty cell or text
         found = [
             {key: value for key, value in zip(self.keys, values) if value == value}
             for values in zip(*(column[begin:end] for column in self._columns))
@@ -97,7 +97,7 @@ def _header(path: str, header: list[str]) -> list[str]:
 def _factors(
     path: str, names: list[str], wanted: list[str | None], units_given: list[str]
 ) -> list[float]:
-    """Factors to SI, NaN for a key that holds no number."""
+    """Factors to SI, NaN for a key that is not a number."""
     faults: list[Fault] = []
     factors = []
     for name, unit, text in zip(names, wanted, chain(units_given, repeat(""))):
@@ -119,8 +119,8 @@ def _number(factor: float, text: str) -> float:
 
 
 def _quantity(unit: str | None, text: str) -> float:
-    """SI value of a cell such as "0.1 deg"; the same bits as ``units.to_si``, which reads a unit
-    anew for every number."""
+    """SI value of a cell such as "0.1 deg"; the same bits as ``units.to_si``, which parses the unit
+    for every number."""
     number, _, given = text.strip().partition(" ")
     try:
         return (

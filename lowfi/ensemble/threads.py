@@ -1,5 +1,5 @@
-"""Cases in threads. Kernels release the interpreter lock, and runs share no data, so the number
-of threads changes no bit."""
+"""Cases in threads. Kernels release the interpreter lock, and runs share no data, so the number of
+threads changes no bit."""
 
 import os
 from collections import deque
@@ -10,20 +10,19 @@ from typing import Any
 
 from tipoff.lowfi.ensemble.batch import Case, Family
 
-# cases set up together: enough to make calls cheap, few enough to bound memory
+# cases set up together: large against the cost of a call, small against memory
 PIECE = 256
 
 
 def completed(
     family: Family, pieces: Iterable[Sequence[Mapping[str, Any]]], workers: int | None = None
 ) -> Iterator[list[Case]]:
-    """Cases of each of ``pieces`` of rows, in their order; pieces are taken as threads become
-    free."""
+    """Cases of each of ``pieces`` of rows, in their order; free threads take the next piece."""
     count = workers or os.cpu_count() or 1
     waiting: deque[list[Future[list[tuple[int, Case]]]]] = deque()
     with ThreadPoolExecutor(count) as pool:
         for rows in pieces:
-            # Setting up holds the interpreter lock, kernels do not: this thread prepares, the others
+            # Setting up holds the interpreter lock, kernels do not: this thread sets up, the others
             # run.
             waiting.append([pool.submit(job) for job in family.jobs(rows)])
             while len(waiting) > count:

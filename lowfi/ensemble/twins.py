@@ -1,4 +1,5 @@
-"""Sensitivity of each case of an ensemble: the change of its settled rates by small disturbances.
+"""Sensitivity of each case of an ensemble: the change of its settled rates due to small
+disturbances.
 
 Each disturbance has a twin of the ensemble, with the same cases: one with every clearance 1 um
 larger, one with a tighter tolerance. The change of a case is the largest change of a settled rate
@@ -6,9 +7,9 @@ over the axes::
 
     max over x, y, z of |w' - w|   (rad/s), w of the case, w' of its twin
 
-It is NaN where one of both has no settled rate, and zero for the clearance of a case without
-contact. In a store the twins are stores of their own, below the folder ``twins``, so that they
-continue as it does.
+It is NaN if one of both has no settled rate, and zero for the clearance of a case without contact.
+In a store the twins are stores of their own, in the folder ``twins``, so that they can be continued
+too.
 """
 
 from collections.abc import Iterator
@@ -25,7 +26,7 @@ TOLERANCE = 1e-10  # relative, of a step
 
 
 def of(ensemble: Ensemble) -> dict[str, Ensemble]:
-    """The twins of ``ensemble`` by what differs."""
+    """The twins of ``ensemble`` by the cause of the difference."""
     return {
         "clearance": ensemble._replace(widening=CLEARANCE_CHANGE),
         "tolerance": ensemble._replace(numerics=tight(ensemble.numerics)),
@@ -33,14 +34,14 @@ def of(ensemble: Ensemble) -> dict[str, Ensemble]:
 
 
 def tight(numerics: Numerics) -> Numerics:
-    """``numerics`` at ``TOLERANCE``, or at a tenth of their own tolerance where that is less; at
-    the finest there is, the same."""
+    """``numerics`` at ``TOLERANCE``, or at a tenth of their own tolerance if that is less;
+    unchanged at the finest tolerance."""
     finer = min(TOLERANCE, numerics.tightened().relative_tolerance)
     return replace(numerics, relative_tolerance=finer)
 
 
 def change(rate: np.ndarray, disturbed: np.ndarray) -> np.ndarray:
-    """Largest change over the axes (n,) of settled rates (n, 3), rad/s; NaN where one is."""
+    """Largest change over the axes (n,) of settled rates (n, 3), rad/s; NaN if a rate is NaN."""
     return np.abs(disturbed - rate).max(axis=1)
 
 
@@ -59,13 +60,13 @@ def attributes(cause: str, twin: Ensemble) -> dict[str, str]:
 
 
 def opened(twin: Ensemble, cause: str, store: Store) -> Store:
-    """The store of a twin of ``store``, made when there is none. Raises StoreError."""
+    """The store of a twin of ``store``, created if it does not exist. Raises StoreError."""
     return twin.store(store.path / "twins" / cause)
 
 
 def add(store: Store, cause: str, twin: Ensemble, disturbed: Store) -> None:
-    """Add the column of changes to a whole ``store``; ``disturbed`` is that of its ``twin``. Raises
-    StoreError."""
+    """Add the column of changes to a complete ``store``; ``disturbed`` is the store of its
+    ``twin``. Raises StoreError."""
     store.add(column(cause), attributes(cause, twin), changes(store, disturbed))
 
 

@@ -1,8 +1,8 @@
 """Meshes in input files of Abaqus and CalculiX: nodes, elements, element sets and surfaces, in the
 file itself or in parts that instances place.
 
-A set has all members that any line of the file gives it: elements under its ``*ELEMENT``, numbers,
-ranges and other sets under ``*ELSET``. Names of sets do not depend on capitals. A ``*SURFACE`` of
+A set has all members from any line of the file: elements under its ``*ELEMENT``, and numbers,
+ranges and other sets under ``*ELSET``. Names of sets do not depend on case. A ``*SURFACE`` of
 element faces is a named group as well. See "Keywords reference" of the Abaqus guides.
 """
 
@@ -99,7 +99,7 @@ def _set(model: Model, keyword: Keyword) -> None:
 
 
 def _reference(field: str, scope: str, line: int) -> Reference:
-    """An element or a set, in front of which an instance may stand."""
+    """An element or a set, with an optional instance in front."""
     owner, _, rest = field.strip('"').rpartition(".")
     if rest.isdigit():
         number = whole(rest, line)
@@ -144,7 +144,7 @@ def _instance(model: Model, keyword: Keyword) -> None:
 
 def _placed(points: np.ndarray, numbers: list[list[float]], line: int) -> np.ndarray:
     """Points moved by the first line of an instance, then turned about an axis between two points by
-    degrees in the second."""
+    the angle (degrees) in the second."""
     if [len(each) for each in numbers] not in ([], [3], [3, 7]):
         raise Unreadable(f"line {line}: an instance has three numbers, then seven")
     if numbers:

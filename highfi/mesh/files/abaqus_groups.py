@@ -1,4 +1,4 @@
-"""Members of the sets and surfaces of an Abaqus input file, and the mesh they are groups of."""
+"""Members of the sets and surfaces of an Abaqus input file, and the mesh with these groups."""
 
 import meshio
 import numpy as np
@@ -11,7 +11,7 @@ _SIDES = ("", "SPOS", "SNEG")  # of a shell
 
 
 class _Members:
-    """Elements of each set by the name of their body, worked out once for each set."""
+    """Elements of each set by the name of their body, found once for each set."""
 
     def __init__(self, model: Model) -> None:
         self._model = model
@@ -25,8 +25,8 @@ class _Members:
         }
 
     def of_set(self, scope: str, name: str, line: int) -> dict[str, set[int]]:
-        """Members of a set of a body. Raises Unreadable for a set or an element that is not there,
-        and for a set that contains itself."""
+        """Members of a set of a body. Raises Unreadable for an unknown set or element, and for a
+        set that contains itself."""
         body = self._model.bodies.get(scope)
         if body is None or name not in body.sets:
             raise Unreadable(f"line {line}: no element set {name} {f'in {scope}' * bool(scope)}")
@@ -44,7 +44,7 @@ class _Members:
         return found
 
     def of(self, reference: Reference) -> dict[str, set[int]]:
-        """Elements that a line names. Of a range they are those that exist."""
+        """Elements that a line names; of a range, those that exist."""
         scope, numbers, name, line = reference
         if name:
             return self.of_set(scope, name, line)
@@ -75,7 +75,7 @@ def gathered(model: Model) -> meshio.Mesh:
                 raise Unreadable(f"no coordinates for nodes {shown(missing)}, which elements use")
             blocks.append(Block(kind, np.array(list(found), dtype=np.int64), nodes + shift))
             owners.append(name)
-        # numbers of nodes are those of the body
+        # numbers of nodes belong to a body
         shift += int(np.abs(own).max(initial=0)) + 1
         if shift >= 2**62:
             raise Unreadable("numbers of nodes that are too large")
@@ -103,7 +103,7 @@ class _Groups:
         self._faces: dict[str, dict[str, list[np.ndarray]]] = {}
 
     def add(self, written: str) -> str:
-        """Name of a group as the checks of rails know it."""
+        """Name of a group in the form for the checks of rails."""
         name = any_case(written) or written
         self._inside.setdefault(
             name, [np.zeros(len(block.labels), dtype=bool) for block in self._blocks]
@@ -140,7 +140,7 @@ class _Groups:
             )
 
     def finished(self) -> tuple[list[Block], dict[str, list[np.ndarray]]]:
-        """All blocks, and the places of the members of each group in them."""
+        """All blocks, and the places in them of the members of each group."""
         blocks = list(self._blocks)
         groups = {
             name: [np.flatnonzero(one) for one in inside] for name, inside in self._inside.items()

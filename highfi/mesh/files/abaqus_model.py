@@ -1,8 +1,8 @@
-"""What an Abaqus input file holds: bodies with nodes, elements, sets and surfaces."""
+"""Contents of an Abaqus input file: bodies with nodes, elements, sets and surfaces."""
 
 from typing import NamedTuple
 
-ROOT = ""  # name of what is in no part
+ROOT = ""  # name of the body of lines outside all parts
 
 
 class Reference(NamedTuple):
@@ -32,7 +32,8 @@ class Body:
 
 
 class Model:
-    """Bodies by their names as they are read; names of sets as the file writes them first."""
+    """Bodies by the names under which they are read; names of sets as the file first writes
+    them."""
 
     def __init__(self) -> None:
         self.bodies: dict[str, Body] = {ROOT: Body()}
@@ -41,6 +42,6 @@ class Model:
         self.current, self.scope = self.bodies[ROOT], ROOT
 
     def named(self, name: str) -> str:
-        """Capitals of the name of a set."""
+        """Name of a set in capitals."""
         self.written.setdefault(name.upper(), name)
         return name.upper()

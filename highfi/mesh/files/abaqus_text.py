@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from tipoff.highfi.mesh.files.tables import Unreadable
 
-# They make nodes or elements, or move them, in ways that are not read here.
+# Keywords that make or move nodes or elements in ways that are not read here.
 _MAKERS = {
     *("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "IMPORT", "INCLUDE"),
     *("PARAMETER", "SUBMODEL", "SUBSTRUCTURE"),
@@ -21,7 +21,7 @@ class Keyword(NamedTuple):
     line: int
 
     def of(self, parameter: str) -> str:
-        """Value of a parameter that the keyword must have. Raises Unreadable without."""
+        """Value of a required parameter. Raises Unreadable without it."""
         value = self.given.get(parameter, "")
         if not value:
             raise Unreadable(f"line {self.line}: *{self.name} without {parameter}=")
@@ -29,8 +29,8 @@ class Keyword(NamedTuple):
 
 
 def keywords(text: str) -> Iterator[Keyword]:
-    """The keywords of a file in their order. Raises Unreadable for those that would make or move
-    nodes and elements."""
+    """The keywords of a file in their order. Raises Unreadable for keywords that make or move nodes
+    and elements."""
     current: Keyword | None = None
     header, start = "", 0
     for number, raw in enumerate(text.splitlines(), start=1):

@@ -1,9 +1,9 @@
 """Meshes in gmsh's own formats, in text and in binary: 2, 4.0 and 4.1.
 
-In the formats 4 an element belongs to an entity, and an entity to any number of physical groups;
-the entities of a partitioned mesh are in a section of their own. In format 2 an element is written
-once for each group. See section "Gmsh file formats" of the manual of gmsh 4.15, and for the formats
-2 and 4.0 its "Legacy formats". A physical tag is negative where an entity is used reversed.
+In format 4 an element belongs to an entity, and an entity to any number of physical groups. The
+entities of a partitioned mesh have a section of their own. In format 2 an element is written once
+for each group. See section "Gmsh file formats" of the manual of gmsh 4.15; for formats 2 and 4.0
+"Legacy formats". A physical tag is negative if the entity is used in reverse.
 """
 
 import re
@@ -39,7 +39,7 @@ _TYPES = {
     26: ("line4", 4, 1),
     29: ("tetra20", 20, 3),
 }
-_TETRA10 = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]  # places of VTK's nodes among those of gmsh
+_TETRA10 = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]  # place of each node of VTK in the order of gmsh
 _NAME = re.compile(rb'^\s*(\d+)\s+(-?\d+)\s+"(.*)"\s*$')
 _SIZES = {1, 2, 4, 8}  # bytes of a size_t
 
@@ -79,20 +79,20 @@ class _File:
             self.order = "<" if orders[one] == "little" else ">"
 
     def find(self, name: str) -> bytes | None:
-        """Content of a section from the line after its name on; None without."""
+        """Content of a section, from the line after its name; None without the section."""
         found = re.search(
             rb"^[ \t]*\$" + name.encode() + rb"[ \t]*\r?\n", self.content, re.MULTILINE
         )
         if found is None:
             return None
-        # In a binary section the end is where its counts say; in text nothing else has a $.
+        # A binary section ends where its counts say; in text, $ only begins a section name.
         end = self.content.find(b"$End" + name.encode(), found.end())
         if end < 0:
             raise Unreadable(f"${name} has no end")
         return self.content[found.end() : end if self.is_text else len(self.content)]
 
     def section(self, name: str) -> Section | None:
-        """Numbers of a section; None without."""
+        """Numbers of a section; None without the section."""
         content = self.find(name)
         if content is None:
             return None
@@ -101,7 +101,7 @@ class _File:
         return Binary(name, memoryview(content), self.order, self.size)
 
     def needed(self, name: str) -> Section:
-        """Numbers of a section. Raises Unreadable without."""
+        """Numbers of a section. Raises Unreadable without the section."""
         found = self.section(name)
         if found is None:
             raise Unreadable(f"no ${name}")
@@ -144,7 +144,7 @@ def _names(file: _File) -> Names:
 def _groups(
     blocks: list[Block], names: Names, members: list[list[tuple[int, int]]]
 ) -> dict[str, list[np.ndarray]]:
-    """Members of each named group in each block, from the physical tags with dimension of every
+    """Members of each named group in each block, from the dimension and the physical tags of every
     block."""
     nothing = np.array([], dtype=np.int64)
     groups: dict[str, list[np.ndarray]] = {}
@@ -184,7 +184,7 @@ def _old_nodes(file: _File) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _count_line(file: _File, name: str, section: Section) -> int:
-    """The count that begins a section of format 2, which is text in binary files too."""
+    """The count at the start of a section of format 2; it is text in binary files too."""
     if isinstance(section, Text):
         return section.one()
     assert isinstance(section, Binary)
@@ -197,7 +197,7 @@ def _count_line(file: _File, name: str, section: Section) -> int:
 
 
 def _old_elements(file: _File) -> tuple[list[Block], list[int]]:
-    """Blocks of one type and one physical tag each, and these tags."""
+    """Blocks with one type and one physical tag each, and the tags."""
     section = file.needed("Elements")
     left = _count_line(file, "Elements", section)
     found: dict[tuple[str, int], list[np.ndarray]] = {}
@@ -227,8 +227,8 @@ def _old_elements(file: _File) -> tuple[list[Block], list[int]]:
 def _once(
     blocks: list[Block], groups: dict[str, list[np.ndarray]]
 ) -> tuple[list[Block], dict[str, list[np.ndarray]]]:
-    """Without the copies of solid elements, which format 2 has for each further group they are
-    in."""
+    """Blocks without repeated solid elements: format 2 writes an element once for each of its
+    groups."""
     seen: set[tuple[int, ...]] = set()
     kept = []
     for place, block in enumerate(blocks):
@@ -285,7 +285,7 @@ def _nodes(file: _File) -> tuple[np.ndarray, np.ndarray]:
         dimension, entity, parametric = section.take(3)
         if is_first:
             dimension, entity = entity, dimension
-        # parametric nodes have their coordinates on the entity behind those in space
+        # parametric nodes have their coordinates on the entity after those in space
         place, number = (REAL, 3 + (int(dimension) if parametric else 0)), section.one(size)
         if is_first:
             label, found = section.rows(number, (INT, 1), place)
@@ -297,7 +297,7 @@ def _nodes(file: _File) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _elements(file: _File) -> tuple[list[Block], list[tuple[int, int]]]:
-    """Blocks of elements, and the dimension and tag of the entity each one belongs to."""
+    """Blocks of elements, and the dimension and tag of the entity of each."""
     section, size, is_first = file.needed("Elements"), _size(file), file.version == "4.0"
     blocks, owners = [], []
     count = section.counts(2 if is_first else 4, size)[0]

@@ -1,7 +1,7 @@
 """Meshes in bulk data files of Nastran and OptiStruct.
 
-The format gives elements a property by number. Names are in comments that preprocessors write, and
-a named property is a group:
+The format gives each element a property by its number. Preprocessors write names in comments. A
+named property is a group:
 
     $HMNAME PROP 2"mount" 4                               HyperMesh
     $ANSA_NAME_COMMENT;2;PSHELL;mount;;NO;NO;NO;          ANSA
@@ -102,7 +102,7 @@ def _element(card: Card) -> tuple[int, int, str, list[int]]:
     label = whole(card.fields[0], card.line)
     owner = whole(card.fields[1], card.line) if card.fields[1] else label
     most = card.fields[2 : 2 + max(kinds)]
-    # A solid has middle nodes on all its edges or on none; what follows is no node of a shell.
+    # A solid has middle nodes on all its edges or on none; further fields of a shell are no nodes.
     count = sum(bool(field) for field in most)
     if len(kinds) == 1:
         count = max(kinds)

@@ -12,11 +12,11 @@ from tipoff.highfi.mesh.files.tables import Unreadable
 
 
 class Card(NamedTuple):
-    """A card, its fields without those that only connect lines."""
+    """A card."""
 
     name: str
-    fields: list[str]
-    line: int
+    fields: list[str]  # without those that only connect lines
+    line: int  # its number
     comments: list[str]  # lines of comment in front of the card
 
 
@@ -56,8 +56,8 @@ def cards(text: str) -> Iterator[Card]:
 
 
 def _fields(line: str) -> tuple[str, list[str], str]:
-    """First field of a line, its data, and the mark that its continuation repeats. Data of a line in
-    small or free format are eight fields, in large format four."""
+    """First field of a line, its data, and the mark that its continuation repeats. A line has eight
+    data fields in small or free format, four in large format."""
     if "," in line:
         first, *rest = [field.strip() for field in line.split(",")]
         count = 4 if first.endswith("*") or first.startswith("*") else 8

@@ -1,4 +1,4 @@
-"""A mesh file read by its format, which the end of its name gives."""
+"""Read a mesh file; the end of its name gives its format."""
 
 from pathlib import Path
 
@@ -18,13 +18,13 @@ _READERS = {
     ".dat": ("Nastran", nastran.read),
 }
 SUFFIXES = tuple(_READERS)
-# bytes of memory that reading a mesh takes at most: numbers as text in lists of Python, per byte of
-# the file, and what any file takes
+# bytes: upper bound of the memory to read a mesh. Per byte of the file (lists of Python hold
+# numbers as text), and a constant part
 _PER_BYTE, _BESIDE = 100, 2**29
 
 
 def opened(path: Path) -> meshio.Mesh:
-    """The mesh in a file. Raises Unreadable, and OSError where it cannot be opened."""
+    """The mesh in a file. Raises Unreadable, and OSError if it cannot be opened."""
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise Unreadable(
@@ -39,6 +39,6 @@ def opened(path: Path) -> meshio.Mesh:
             return reader(content)
     except Unreadable as fault:
         raise Unreadable(f"as a file of {name}: {fault}") from fault
-    except Exception as fault:  # what no check foresaw
+    except Exception as fault:  # no check foresaw it
         why = f"{type(fault).__name__}: {fault}"
         raise Unreadable(f"the reader of {name} files fails on it ({why})") from fault

@@ -4,29 +4,29 @@ import numpy as np
 
 from tipoff.highfi.mesh.files.tables import Unreadable
 
-# of numbers in binary files, by their meaning in the description of the format
+# types of numbers in binary files, by their meaning in the description of the format
 INT, REAL = "i4", "f8"
 _NAMES = {INT: "an integer", REAL: "a number"}
 
 
 class Section:
-    """Numbers of one section, read one after the other; a count that the section does not hold is a
-    fault, whatever it would need."""
+    """Numbers of one section, read one after the other. A count is a fault if the section does not
+    have so many numbers."""
 
     def __init__(self, name: str) -> None:
         self.name = name
 
     def take(self, count: int, kind: str = INT) -> np.ndarray:
-        """The next ``count`` numbers. Raises Unreadable where the section has fewer."""
+        """The next ``count`` numbers. Raises Unreadable if the section has fewer."""
         raise NotImplementedError
 
     def rows(self, count: int, *kinds: tuple[str, int]) -> list[np.ndarray]:
-        """``count`` records of numbers, as an array (count,m) for each pair of a kind and a number m
-        in a record."""
+        """``count`` records of numbers: an array (count,m) for each pair of a kind and the number m
+        of its values in a record."""
         raise NotImplementedError
 
     def one(self, kind: str = INT) -> int:
-        """The next number, which counts or names something."""
+        """The next number, a count or a tag."""
         return int(self.take(1, kind)[0])
 
     def counts(self, number: int, kind: str = INT) -> list[int]:
@@ -88,8 +88,8 @@ def _is_number(word: bytes, kind: str) -> bool:
 
 
 class Binary(Section):
-    """A section of bytes. ``order`` is that of the bytes of a number, ``size`` the bytes of an
-    integer that the format calls size_t."""
+    """A section of bytes. ``order`` is the byte order of numbers, ``size`` the number of bytes of
+    the format's size_t."""
 
     def __init__(self, name: str, content: memoryview, order: str, size: int) -> None:
         super().__init__(name)
@@ -127,5 +127,5 @@ class Binary(Section):
 
 
 def _whole(found: np.ndarray) -> np.ndarray:
-    # An unsigned number that does not fit is negative here, hence no number of anything.
+    # An unsigned number that does not fit is negative here, so it is no valid number of anything.
     return found.astype(np.int64)

@@ -1,5 +1,5 @@
-"""What the readers of all formats share: the fault they raise, numbers of nodes turned into places
-in a list, and blocks of elements with named groups turned into a mesh."""
+"""Shared by the readers of all formats: their fault, numbers of nodes converted to places in a
+list, and a mesh made of blocks of elements with named groups."""
 
 import codecs
 import re
@@ -13,15 +13,15 @@ _LISTED = 5  # numbers in one message
 
 
 class Unreadable(ValueError):
-    """A file that its format does not allow, or that says what is not read here; the message names
-    the place and the remedy."""
+    """A file that is not valid in its format, or has contents that are not read here; the message
+    gives the place and the remedy."""
 
 
 _EXPONENT = re.compile(r"^([-+]?[\d.]+)([-+]\d+)$")  # 7.0-1 for 7.0E-1
 
 
 def decoded(content: bytes) -> str:
-    """Text of a file, whose encoding its first bytes may say (a byte order mark); UTF-8 without."""
+    """Text of a file in the encoding of its byte order mark; UTF-8 without a mark."""
     marks = {
         codecs.BOM_UTF8: "utf-8",
         codecs.BOM_UTF16_LE: "utf-16-le",
@@ -45,7 +45,7 @@ def whole(text: str, line: int) -> int:
 
 
 def real(text: str, line: int, is_short: bool = False) -> float:
-    """The number in a field, zero in an empty one; its exponent may have a D in place of the E, and
+    """The number in a field, zero in an empty one. The exponent may have a D instead of the E, and
     with ``is_short`` no letter. Raises Unreadable."""
     if not text:
         return 0.0
@@ -72,7 +72,7 @@ def is_surface(name: str) -> bool:
 
 
 def any_case(name: str) -> str:
-    """Name of a surface in a format that does not tell capitals apart; empty for other groups."""
+    """Name of a surface in a format that ignores case; empty for other groups."""
     lower = name.lower()
     return lower if is_surface(lower) else ""
 
@@ -91,9 +91,9 @@ def mesh(
     groups: dict[str, list[np.ndarray]],
 ) -> meshio.Mesh:
     """Mesh of nodes with numbers ``labels`` (n,) at ``points`` (n,3), and of ``blocks``; ``groups``
-    has the members of each name by their places in each block.
+    has, for each name, the places of its members in each block.
 
-    Raises Unreadable for nodes that have two places or none.
+    Raises Unreadable for nodes with two places or without one.
     """
     order = np.argsort(labels, kind="stable")
     ordered = labels[order]

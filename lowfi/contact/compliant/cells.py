@@ -6,12 +6,12 @@ With the lever (p_0, a, b) of the rigid face, the displacement U of its wall
     p = p_0 + a xi + b eta - relief (xi^4 + eta^4) - sum_a U_a phi_a(xi', eta') - W(X, eta')
     pressure = k max(0, p)
 
-where W is the offset of a wall that is not straight as drawn (``drawn_walls``) at the place X of the
-cell, the crown is its mean over the cell, and xi' = xi + shift, eta' = eta + aside is the place on
-the wall. The compliance belongs to pads midway between all rails; 0.25 mm aside, the leg of an L,
-held along one edge only, is three percent softer or stiffer. Of rows of cells that overhang an end
-of the rail only the part over the wall counts, with sums piecewise linear between the middles of
-the rows.
+where W is the offset as drawn of a wall that is not straight (``drawn_walls``) at the place X of
+the cell, the crown is its mean over the cell, and xi' = xi + shift, eta' = eta + aside is the place
+on the wall. The compliance is that of pads midway between all rails; 0.25 mm aside, the leg of an
+L, held along one edge only, is three percent softer or stiffer. Of a row of cells that overhangs an
+end of the rail, only the part over the wall presses; sums are piecewise linear between the middles
+of the rows.
 """
 
 import numpy as np
@@ -31,8 +31,8 @@ from tipoff.lowfi.contact.springs import along, penetration
 from tipoff.lowfi.faces import NORMAL_Y, NORMAL_Z
 
 _NO_FORCE, _NO_MOMENTS = (0.0,) * 6, (0.0,) * 15
-# in xi, half the travel over which the place of a pad on the wall comes to rest as the pad begins
-# to overhang an end
+# in xi, half the travel over which the place of a pad on the wall slows down to rest while the pad
+# begins to overhang an end
 _EASED = 0.1
 
 
@@ -62,8 +62,8 @@ def take_lever(compliance, faces, face, place, turn):
 
 @kernel
 def eased(over):
-    """``over`` where above zero, else zero, with a rounded corner, and its slope, which a force along
-    the rail contains."""
+    """max(``over``, 0) with a rounded corner, and its slope, which a force along the rail
+    contains."""
     if abs(over) >= _EASED:
         return max(over, 0.0), 1.0 if over > 0.0 else 0.0
     return 0.25 * (over + _EASED) ** 2 / _EASED, 0.5 * (over + _EASED) / _EASED
@@ -71,7 +71,7 @@ def eased(over):
 
 @kernel
 def cover(compliance, half, middle, row):
-    """Share of a row of cells that is over the wall, and its decrease per metre of travel."""
+    """Share over the wall of a row of cells, and its decrease per metre of travel."""
     behind_end, at_end = _behind(compliance, row, (compliance.end - middle) / half)
     behind_start, at_start = _behind(compliance, row, (compliance.start - middle) / half)
     return behind_end - behind_start, (at_end - at_start) / half
@@ -115,7 +115,7 @@ def _place(compliance, face, xi):
 @kernel
 def press(compliance, face):
     """Fill the face's force (p,) N and stiffness (p, p) N/m. Returns the smallest |p| (m) of all
-    cells over the wall: while p changes by less, the same cells press."""
+    cells over the wall: the same cells press while p changes by less."""
     workspace, half, relief = compliance.workspace, compliance.half[face], compliance.relief[face]
     lever, count = workspace.lever[face], compliance.node.size
     stiffness = compliance.interface_stiffness * 4.0 * half[0] * abs(half[1]) / (count * count)
@@ -154,7 +154,7 @@ def press(compliance, face):
 
 @kernel
 def _with_force(force, weight, x, f0, f1, f2):
-    """``force`` with that of one more row of cells."""
+    """``force`` plus that of one more row of cells."""
     return (
         force[0] + weight * f0,
         force[1] + weight * x * f0,
@@ -167,7 +167,7 @@ def _with_force(force, weight, x, f0, f1, f2):
 
 @kernel
 def _with_moments(moments, weight, x, sums):
-    """``moments`` with those of one more row of cells: sums over pressed cells of k dA xi'^i eta'^j
+    """``moments`` plus those of one more row of cells: sums over pressed cells of k dA xi'^i eta'^j
     with i + j up to 4, in the order of i, then j."""
     m0, m1, m2, m3, m4 = sums
     first, second = weight * x, weight * x * x
@@ -210,8 +210,8 @@ def _fill_row(row, values):
 
 @kernel
 def largest_change(compliance, face, change):
-    """Bound (m) of the change of p in any cell of a face by a ``change`` (p,) of the displacement of
-    its wall."""
+    """Bound (m) of the change of p in all cells of a face for a ``change`` (p,) of the displacement
+    of its wall."""
     lever = compliance.workspace.lever[face]
     xi, eta = 1.0 + abs(lever[SHIFT]), 1.0 + abs(lever[ASIDE])
     return (
@@ -248,8 +248,8 @@ def deepest(compliance, face, displacement):
 
 @kernel
 def deepest_at_rest(compliance, face):
-    """The same where the wall has no displacement: p is a sum of a part along and a part across the
-    pad."""
+    """As ``deepest`` for a wall without displacement: p is then a sum of a part along and a part
+    across the pad."""
     lever, relief = compliance.workspace.lever[face], compliance.relief[face]
     along, across, by_xi, by_eta = 0.0, 0.0, -np.inf, -np.inf
     for i in range(compliance.node.size):
@@ -297,8 +297,8 @@ def stored(compliance, face):
 
 @kernel
 def push_of_drawn_slopes(compliance, face):
-    """Force (N) along the rail, and generalised force (N m) per eta, on the face by the slopes of a
-    wall that is not straight as drawn; zeros where all are straight."""
+    """Force (N) along the rail, and generalised force (N m) per eta, on the face due to the slopes
+    of a wall as drawn; zeros if all walls are straight."""
     if compliance.drawn is not None:
         return _push_of_slopes(compliance, face)
     return 0.0, 0.0
@@ -339,7 +339,7 @@ def _push_of_slopes(compliance, face):
 
 @kernel
 def drawn_slope(compliance, face, xi, eta):
-    """Slope along the rail of the wall as drawn under a point of the face; zero where all walls are
+    """Slope along the rail of the wall as drawn under a point of the face; zero if all walls are
     straight."""
     ahead = drawn_walls.slope(compliance.drawn, face, _place(compliance, face, xi))
     aside = eta + compliance.workspace.lever[face, ASIDE]

@@ -1,12 +1,12 @@
 """Slopes of a wall that is not straight as drawn, under one pad face, for the step limit.
 
-With W(X, eta') of ``drawn_walls``, h half the length of the face and a where its middle is on the
-wall across the rail, the slopes under the face are split into a part that is linear in xi and eta,
-and a rest below a bound::
+With W(X, eta') of ``drawn_walls``, h half the length of the face and a the place of its middle
+across the rail, the slopes under the face are split into a part that is linear in xi and eta and a
+bounded rest::
 
     dW/dX = s_0 + s_xi xi + s_eta eta + rest,    dW/deta' = t_0 + t_xi xi + t_eta eta + rest
 
-The linear part is that of the middle and of the ends of the face, so a draft, a bow and a twist have
+The linear part is taken at the middle and the ends of the face. So a draft, a bow and a twist have
 no rest, and a ramp has one only where it begins or ends under the face.
 """
 
@@ -19,7 +19,7 @@ _NOTHING = (0.0, 0.0, 0.0)
 
 @kernel
 def along(compliance, face):
-    """s_0, s_xi and s_eta (1); zeros where all walls are straight."""
+    """s_0, s_xi and s_eta (1); zeros if all walls are straight."""
     if compliance.drawn is not None:
         return _along(compliance, face)
     return _NOTHING
@@ -27,7 +27,7 @@ def along(compliance, face):
 
 @kernel
 def across(compliance, face):
-    """t_0, t_xi and t_eta (m); zeros where all walls are straight."""
+    """t_0, t_xi and t_eta (m); zeros if all walls are straight."""
     if compliance.drawn is not None:
         return _across(compliance, face)
     return _NOTHING
@@ -78,7 +78,7 @@ def _slope(compliance, face, xi):
 
 @kernel
 def _tilt(compliance, face, xi):
-    """dW/deta' there (m)."""
+    """dW/deta' (m) at ``xi`` in the middle of the face across the rail."""
     aside = compliance.workspace.lever[face, ASIDE]
     w = drawn_walls.height(compliance.drawn, face, _place(compliance, face, xi))
     return w[1] + 2.0 * aside * w[2]

@@ -1,5 +1,5 @@
-"""Offset W of walls that are not straight as drawn (``mechanics.drawn_walls``), under the cells of a
-pad face. Where all walls are straight ``drawn`` is None and every function gives zeros."""
+"""Offset W of walls that are not straight as drawn (``mechanics.drawn_walls``), under the cells of
+a pad face. If all walls are straight, ``drawn`` is None and every function gives zeros."""
 
 from tipoff.kernels.jit import kernel
 
@@ -31,7 +31,8 @@ def slope(drawn, face, x):
 
 @kernel
 def _between(drawn, face, x):
-    """Coefficients (ACROSS, 4) after a place, the distance (m) from it, and that beyond an end."""
+    """Coefficients (ACROSS, 4) after a place, the distance (m) from it, and the distance (m) beyond
+    an end."""
     way, last = x - drawn.start, drawn.cubic.shape[0] - 1
     inside = min(max(way, 0.0), drawn.spacing * (last + 1))
     if not way > 0.0:  # also where the place is not a number

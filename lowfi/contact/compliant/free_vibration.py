@@ -3,15 +3,15 @@ limit the step.
 
     q'' + d q' + omega^2 q = 0,    q(t) = e^(-d t / 2) (q_0 C + (q_0' + q_0 d / 2) S)
 
-with C = cos(w t), S = sin(w t) / w and w^2 = omega^2 - d^2 / 4, or cosh and sinh where damping is above
-critical (any text on the linear oscillator). What damping takes is the loss of their energy.
+with C = cos(w t), S = sin(w t) / w and w^2 = omega^2 - d^2 / 4, or cosh and sinh for damping above
+critical (any text on the linear oscillator). The loss of their energy is the work of damping.
 
-A vibrating wall may come to a pad that is near it, and such a touch must not fall between the ends of
-a step. The energy of a mode does not grow, so its amplitude never exceeds a = sqrt(q^2 + (q' /
-omega)^2), and a point of the wall moves by less than the **swing**, the sum of a times the largest
-shape under the face. A face whose gap stays above its swing cannot touch. Beside a nearer one a step
-ends early enough that the cubic through its ends misses the wall by no more than ``_MISSED``; its
-error is h^4 a omega^4 / 384 (Hermite interpolation).
+A vibrating wall may reach a pad near it, and such a touch must not be missed between the ends of a
+step. The energy of a mode does not grow, so its amplitude is at most a = sqrt(q^2 + (q' /
+omega)^2). The **swing** of the wall, the sum of a times the largest shape under the face, bounds
+its motion. A face whose gap stays above its swing cannot touch. With a smaller gap, a step ends
+early enough that the cubic through its ends has an error of at most ``_MISSED``; this error is h^4
+a omega^4 / 384 (Hermite interpolation).
 """
 
 from typing import NamedTuple
@@ -29,10 +29,10 @@ from tipoff.lowfi.contact.wall_ends import (
 )
 from tipoff.lowfi.state import STATE_SIZE, STRUCTURAL
 
-_MISSED = 1e-9  # m, less than pads and walls are smooth
+_MISSED = 1e-9  # m, below the roughness of pads and walls
 _HERMITE = 384.0
-_SHORT_OF = 0.99  # of the way to a wall within reach, so that a step that begins there is short
-_CRITICAL = 1e-7  # of omega^2: w^2 nearer to zero is rounding
+_SHORT_OF = 0.99  # of the way to a wall within reach; a step that begins there is then short
+_CRITICAL = 1e-7  # of omega^2; a smaller w^2 is rounding
 
 
 class Faces(NamedTuple):
@@ -48,7 +48,7 @@ class Faces(NamedTuple):
 @kernel
 def advance(compliance, touching, dt, start, end, with_work):
     """Fill the modes of rails without a ``touching`` (f,) face in ``end``, ``dt`` (s) after ``start``,
-    and add what damping takes to its work if there is any."""
+    and add the work of damping if there is damping."""
     lost = _advance(compliance.modes, compliance.members, touching, dt, start, end)
     if with_work:
         end[STRUCTURAL] += lost
@@ -56,7 +56,7 @@ def advance(compliance, touching, dt, start, end, with_work):
 
 @kernel
 def _advance(modes, members, touching, dt, start, end):
-    """Energy (J) that damping takes."""
+    """Advance the modes of one rail; returns the energy (J) lost to damping."""
     lost = 0.0
     if modes is not None:
         number = modes.square.shape[1]
@@ -107,9 +107,9 @@ def is_pressed(members, rail, touching):
 
 @kernel
 def note_reach(modes, rail, face, count, speed, state, row):
-    """Fill in the ``row`` of a survey how deep (m) a face is at most while its rail swings freely, and
-    the rate of that on a wall at rest, ``speed`` (m/s) of the wall being that of its modes; without
-    bound where ``count`` faces press the rail."""
+    """Fill the ``row`` of a survey with an upper bound of the depth (m) of a face while its rail
+    vibrates freely, and its rate for a wall at rest. ``speed`` (m/s): speed of the wall due to its
+    modes. No bound if ``count`` faces press the rail."""
     if modes is not None:
         row[NEAR], row[NEARING] = np.inf, 0.0
         if count == 0:
@@ -124,7 +124,7 @@ def _nearest(modes, rail, face, speed, state, row):
         swing += modes.reach[face, i] * _amplitude(
             modes.square[rail, i], state[first + i], state[rates + i]
         )
-    # the depth now may be less than that on a wall at rest, by one swing
+    # the present depth may be one swing less than that on a wall at rest
     return row[DEPTH] + 2.0 * swing, row[CLOSING] + speed
 
 
@@ -158,7 +158,7 @@ def longest_step(modes, rail, touching, engaged, before, state):
 
 @kernel
 def _resolved(modes, rail, face, state):
-    """Step (s) whose cubic misses the wall under a face by ``_MISSED``."""
+    """Step (s) whose cubic has an error of ``_MISSED`` at the wall under a face."""
     number, total = modes.square.shape[1], 0.0
     first, rates = STATE_SIZE + rail * number, STATE_SIZE + modes.square.size + rail * number
     for i in range(number):
@@ -170,7 +170,7 @@ def _resolved(modes, rail, face, state):
 
 @kernel
 def shortened(modes, faces, state, dt):
-    """``dt`` (s), or the shorter step to try where a face comes near a vibrating wall in it."""
+    """``dt`` (s), or a shorter step to try if a face comes near a vibrating wall in it."""
     shortest = dt
     if modes is not None:
         for face in range(faces.engaged.size):
@@ -178,7 +178,7 @@ def shortened(modes, faces, state, dt):
             if faces.engaged[face] and not faces.touching[face] and before[NEAR] < np.inf:
                 longest = _resolved(modes, faces.rail[face], face, state)
                 if dt > longest * (1.0 + 1e-6) and not cannot_touch(modes, before, after, dt):
-                    up_to = 0.5  # of the step, where both ends are away
+                    up_to = 0.5  # of the step: both ends are away from the wall
                     if after[NEAR] > BEYOND:
                         up_to = _SHORT_OF * before[NEAR] / (before[NEAR] - after[NEAR])
                     shortest = min(shortest, max(longest, up_to * dt))

@@ -2,20 +2,21 @@
 
     E = sum over cells of k dA max(0, p)^2 / 2 + P' F P / 2
 
-(modes have a potential of their own). They are: P_1 against the normal, at the centre of pressure;
-and along X, where the rail is softer or stiffer ahead::
+(modes have their own potential). The forces are: P_1 against the normal, at the centre of pressure;
+and along X, where the rail becomes softer or stiffer ahead::
 
     X = P' F' P / 2 + P' (T' + W' q)
 
-which acts on payload and platform at the payload's mass centre, whose travel it belongs to. Two more
-act at the middle of the pad, whose place they belong to: along X where the face overhangs an end, so
-that xi' moves with the pad and cells leave the wall; and across, where the wall slopes::
+which acts on payload and platform at the payload's mass centre, because it depends on its travel.
+Two more act at the middle of the pad, because they depend on its place. One acts along X if the
+face overhangs an end: xi' then moves with the pad, and cells leave the wall. One acts across if the
+wall slopes::
 
     X = sum of pressure d(xi')/dx du/dxi' - dE/dx of the shares of the cells over the wall
     Y = sum of pressure d(eta')/dy du/deta'
 
-where u is the displacement of the wall, with its offset W as drawn, which moves with the pad all
-along the rail.
+where u is the displacement of the wall plus its offset W as drawn, which moves with the pad along
+the whole rail.
 """
 
 from tipoff.kernels import rotation
@@ -37,7 +38,7 @@ from tipoff.mechanics.rail_compliance import PATTERNS
 
 @kernel
 def load(compliance, friction, platform, faces, face, body, base):
-    """Load of a pressed face, after ``solve``; the velocity of the wall itself is neglected."""
+    """Load of a pressed face, after ``solve``; the velocity of the wall is neglected."""
     workspace = compliance.workspace
     force, lever, half = workspace.force[face], workspace.lever[face], compliance.half[face]
     across = along_width(faces[face], half[1] * (force[2] / force[0] - lever[ASIDE]))
@@ -66,8 +67,8 @@ def load(compliance, friction, platform, faces, face, body, base):
 
 @kernel
 def wall_force(compliance, faces, face, body, base):
-    """Force (N) along the wall on the payload by a pressed face, by the slope of the wall and by its
-    end, and where it acts (m), in scene axes."""
+    """Force (N) along the wall of a pressed face on the payload, due to the slope and the end of
+    the wall, and its point of action (m), in scene axes."""
     u, force = compliance.workspace.displacement[face], compliance.workspace.force[face]
     drift, along = compliance.workspace.lever[face, DRIFT], 0.0
     if drift != 0.0:  # else all of it is over the wall
@@ -85,7 +86,7 @@ def wall_force(compliance, faces, face, body, base):
 
 @kernel
 def axial_force(compliance, count):
-    """Force (N) along the rail on the payload's mass centre by the ``count`` faces solved for."""
+    """Force (N) along the rail of the ``count`` solved faces on the payload's mass centre."""
     workspace, pull = compliance.workspace, 0.0
     for i in range(count):
         face = workspace.order[i]
@@ -103,8 +104,8 @@ def axial_force(compliance, count):
 
 @kernel
 def energy(compliance, count):
-    """Energy (J) in rail and interface under the ``count`` faces solved for: P' F P is P' (U - T -
-    W q)."""
+    """Energy (J) in rail and interface under the ``count`` solved faces: P' F P is P' (U - T - W
+    q)."""
     total = 0.0
     for i in range(count):
         face = compliance.workspace.order[i]

@@ -1,4 +1,4 @@
-"""Vibration of the rails: their lowest modes, whose states follow those of the bodies (data:
+"""Vibration of the rails: their lowest modes, integrated with the bodies (data:
 ``mechanics.rail_compliance``).
 
     U = F_res P + W q,    q_m'' + d_m q_m' + omega_m^2 q_m = sum_ia W_iam P_ia,    d_m = alpha + beta omega_m^2
@@ -10,12 +10,12 @@ faces press a rail the step size follows its highest mode (``lowfi.dynamics.loca
 ``lowfi.contact.compliant.step_limit``); otherwise its modes are free oscillators, integrated exactly
 (``lowfi.contact.compliant.free_vibration``).
 
-The motion of the mounts with the platform is neglected, in both directions: the inertial load
--L_m a of the modes under its acceleration a, and the momentum L_m q_m' of a vibrating rail, by
-which the force on the platform differs from the contact force. L_m^2 is the effective mass of a
-mode; all of them together are less than the mass of the rail. The reference scene has rails of 0.11
-kg on a platform of 81 kg: a thousandth of the contact force, and 1e-5 m/s of the platform when a
-wall vibrates at 10 mm/s. So the momenta of payload and platform are conserved to rounding.
+The motion of the mounts with the platform is neglected, in both directions: the inertial load -L_m
+a of the modes under the platform's acceleration a, and the momentum L_m q_m' of a vibrating rail,
+by which the force on the platform differs from the contact force. L_m^2 is the effective mass of a
+mode; their sum is below the mass of the rail. The reference scene has rails of 0.11 kg on a
+platform of 81 kg: the effect is a thousandth of the contact force, and 1e-5 m/s of the platform if
+a wall vibrates at 10 mm/s. So the momenta of payload and platform are conserved to rounding.
 """
 
 from tipoff.kernels.jit import kernel
@@ -28,7 +28,7 @@ _XI, _ETA = POWERS.T.copy()
 @kernel
 def evaluate(modes, rail, face, station, way, changes, state):
     """Fill shapes, displacement and speed of the modes of ``rail`` under ``face``, ``way`` (m) from
-    a station, where that distance changes by ``changes`` with the place."""
+    a station; ``changes`` is the derivative of ``way`` by the place."""
     if modes is not None:
         count = modes.square.shape[1]
         first, rates = STATE_SIZE + rail * count, STATE_SIZE + modes.square.size + rail * count
@@ -51,7 +51,7 @@ def evaluate(modes, rail, face, station, way, changes, state):
 
 @kernel
 def offset(modes, face, a):
-    """Displacement (m) of the wall in pattern a by its modes."""
+    """Displacement (m) of the wall in pattern a due to its modes."""
     value = 0.0
     if modes is not None:
         value = modes.offset[face, a]
@@ -60,7 +60,7 @@ def offset(modes, face, a):
 
 @kernel
 def slope(modes, face, a):
-    """Derivative of that displacement along the rail."""
+    """Derivative of ``offset`` along the rail."""
     value = 0.0
     if modes is not None:
         value = modes.slope[face, a]
@@ -69,7 +69,7 @@ def slope(modes, face, a):
 
 @kernel
 def speed_at(modes, face, xi, eta):
-    """Speed (m/s) at which the point (xi, eta) of the wall moves away by the modes."""
+    """Speed (m/s) at which the modes move the point (xi, eta) of the wall away."""
     value = 0.0
     if modes is not None:
         for a in range(PATTERNS):
@@ -79,8 +79,8 @@ def speed_at(modes, face, xi, eta):
 
 @kernel
 def vibrate(modes, workspace, rail, count, state, out):
-    """Fill the derivative ``out`` of the modes of ``rail`` under the ``count`` faces solved for; the
-    power (W) of their damping."""
+    """Fill the derivative ``out`` of the modes of ``rail`` under the ``count`` solved faces;
+    returns the power (W) of their damping."""
     loss = 0.0
     number = modes.square.shape[1]
     first, rates = STATE_SIZE + rail * number, STATE_SIZE + modes.square.size + rail * number
@@ -117,7 +117,7 @@ def energies(modes, state):
 
 @kernel
 def fastest(modes, rail, pressed):
-    """Largest omega^2 (1/s2) and d (1/s) of the modes of a rail; zero while nothing presses it."""
+    """Largest omega^2 (1/s2) and d (1/s) of the modes of a rail; zero if no face presses it."""
     square, drag = 0.0, 0.0
     if modes is not None:
         for i in range(modes.square.shape[1] if pressed else 0):

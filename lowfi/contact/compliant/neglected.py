@@ -1,26 +1,27 @@
-"""Estimate of the change of the rates by the modes that a run treats as quasi-static, from the
-forces of this run.
+"""Estimated change of the rates due to the modes that a run treats as quasi-static, from the forces
+of the run.
 
-The force of the pads on a neglected mode m, linear between the ends of steps, drives an oscillator
-beside the run, exactly::
+The force of the pads on a neglected mode m, linear between the ends of steps, drives a separate
+oscillator, exactly::
 
     f_m = sum_ia W_iam P_ia,    q_m'' + d_m q_m' + omega_m^2 q_m = f_m
 
-A quasi-static mode has q_m = f_m / omega_m^2: no energy stays in it when the pads leave. The rest is
-E_m = (q_m'^2 + omega_m^2 q_m^2) / 2, for a half-sine of duration T on a mode of frequency f at rest
-the closed form of shock spectra (Harris' Shock and Vibration Handbook, chapter on shock response
-spectra: the residual spectrum)::
+A quasi-static mode has q_m = f_m / omega_m^2: no energy stays in it after the pads leave. The
+oscillator keeps E_m = (q_m'^2 + omega_m^2 q_m^2) / 2. For a half-sine of duration T on a mode of
+frequency f at rest, the closed form is the residual shock spectrum (Harris' Shock and Vibration
+Handbook, chapter on shock response spectra)::
 
     omega sqrt(2 E) / F = |4 f T cos(pi f T) / (1 - 4 f^2 T^2)|
 
-This energy is missing, or in excess, where the pad leaves the wall at the speed v. With the effective
-mass M of both bodies at that pad, along its normal n, the impulse changes by dJ, and the rate by::
+This energy is missing, or in excess, when the pad leaves the wall at the speed v. With the
+effective mass M of both bodies at that pad, along its normal n, the impulse changes by dJ, and the
+rate by::
 
     dJ = M |v - sqrt(max(0, v^2 - 2 dE / M))|,    d omega = |I^-1 (arm x n)| dJ
 
-dE being the change of E_m in this contact: a wall that still vibrates from the contact before may give
-energy back. The sum over all contacts is the effect of the mode. It is an estimate: contacts that
-follow may enlarge it, and the phase of several modes may cancel.
+where dE is the change of E_m in this contact: a wall that still vibrates from an earlier contact
+may return energy. The sum over all contacts is the effect of the mode. It is an estimate: later
+contacts may enlarge it, and the phases of several modes may cancel.
 """
 
 from typing import NamedTuple
@@ -52,17 +53,17 @@ MODE = np.dtype(
         ("before", float),  # J, energy as the contact began
     ]
 )
-# The time (s) of the modes of a rail, and whether a contact goes on.
+# The time (s) of the modes of a rail, and whether a contact is in progress.
 RAIL = np.dtype([("time", float), ("pressed", np.bool_)])
-# Of the contact that goes on: impulse (N s) and the last speed (m/s) away from the wall.
+# Of the present contact: impulse (N s) and the last speed (m/s) away from the wall.
 FACE = np.dtype([("impulse", float), ("leaving", float)])
 
 
 @by_reference
 class Neglected(NamedTuple):
-    """All n modes of each of r rails under f faces, and what those that a run neglects would do."""
+    """All n modes of each of r rails under f faces, and the effect of those that a run neglects."""
 
-    first: int  # number of the lowest that is neglected
+    first: int  # number of the lowest neglected mode
     cubic: np.ndarray  # (s-1, f, n, 4, p) 1/kg^0.5, as in ``record.Modes``
     modes: np.ndarray  # (r, n) of MODE
     rails: np.ndarray  # (r,) of RAIL
@@ -74,7 +75,7 @@ def watched(
     scene: Scene, model: Model, found: RailCompliance | None, first: int, watches: bool
 ) -> Neglected | None:
     """Record of the modes of the rail compliance ``found``; those from number ``first`` on are
-    neglected. Where no run ``watches`` them it has no modes, so that the kernels are the same. None
+    neglected. If no run ``watches`` them, it has no modes, so that the kernels are the same. None
     without contact and for rigid walls."""
     if found is None or found.flexibility is None or model.contact is None:
         return None
@@ -117,7 +118,7 @@ def reset(neglected):
 
 @kernel
 def follow(neglected, system, loop):
-    """Drive the neglected modes through the step just taken."""
+    """Drive the neglected modes through the last step."""
     compliance, clock = system.compliance, loop.clock
     for rail in range(compliance.members.shape[0]):
         if is_pressed(compliance.members, rail, loop.touching):
@@ -130,7 +131,7 @@ def follow(neglected, system, loop):
 
 @kernel
 def _begin(neglected, members, rail, time):
-    """Let the modes of a rail swing freely up to the ``time`` (s) at which a contact begins."""
+    """Advance the free modes of a rail to the ``time`` (s) at which a contact begins."""
     record = neglected.rails[rail]
     record.pressed = True
     for i in range(neglected.first, neglected.effect.size):
@@ -171,8 +172,8 @@ def _press(neglected, system, loop, rail):
 
 @kernel
 def drive(mode, dt, force):
-    """Move one mode by ``dt`` (s) under a force that changes linearly up to ``force``: the particular
-    solution is linear too."""
+    """Advance one mode by ``dt`` (s) under a force that changes linearly to ``force``; the
+    particular solution is linear too."""
     square, drag = mode.square, mode.drag
     slope = (force - mode.force) / dt if dt > 0.0 else 0.0
     lag = drag * slope / square
@@ -196,7 +197,7 @@ def energy(mode):
 
 @kernel
 def _leave(neglected, system, state, rail):
-    """End the contact of a rail at ``state`` and add what each mode would do to the rates."""
+    """End the contact of a rail at ``state`` and add the effect of each mode on the rates."""
     compliance, payload, platform = system.compliance, system.payload, system.platform
     neglected.rails[rail].pressed = False
     number = _most_pressed(compliance.members, neglected.faces, rail)

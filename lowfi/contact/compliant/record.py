@@ -14,25 +14,26 @@ from tipoff.scenes.effects.structural_damping import Damping
 from tipoff.scenes.scene import Scene
 
 CELLS = 10  # along each edge of a pad face
-# Columns of a face's lever: penetration (m) of its flat face at the middle, and per xi and eta; how
-# far xi on the wall is ahead of xi on the pad, and by how much more per metre of travel; X (m) of the
-# middle; how far eta on the wall is beyond eta on the pad.
+# Columns of a face's lever: penetration (m) of its flat face at the middle, and its change per xi
+# and eta; distance of xi on the wall ahead of xi on the pad, and its change per metre of travel; X
+# (m) of the middle; distance of eta on the wall beyond eta on the pad.
 DEPTH, BY_XI, BY_ETA, SHIFT, DRIFT, MIDDLE, ASIDE, LEVER_SIZE = range(8)
 
 
 @by_reference
 class Workspace(NamedTuple):
-    """Arrays that one run works in, for f faces, p patterns, at most m faces on a rail, w = m p, and
-    n modes."""
+    """Workspace of one run, for f faces, p patterns, at most m faces on a rail, w = m p, and n
+    modes."""
 
     lever: np.ndarray  # (f, LEVER_SIZE)
     displacement: np.ndarray  # (f, p) m, of the walls; the first guess of the next solution
     saved_displacement: np.ndarray  # (f, p) m, a copy
     saved_lever: np.ndarray  # (f, LEVER_SIZE), a copy
-    yielding: np.ndarray  # (f, 3, p) change of the displacement by one of depth, tilt along, across
+    # (f, 3, p) change of the displacement per unit of depth, tilt along and tilt across
+    yielding: np.ndarray
     force: np.ndarray  # (f, p) N
     stiffness: np.ndarray  # (f, p, p) N/m, of the pressed cells: K of ``solution``
-    order: np.ndarray  # (m,) numbers of the faces that are solved for together
+    order: np.ndarray  # (m,) numbers of the faces that are solved together
     flexibility: np.ndarray  # (m, m, p p) m/N, between these faces
     slope: np.ndarray  # (m, m, p p) 1/N, its derivative along the rail
     matrix: np.ndarray  # (w, w)
@@ -47,9 +48,8 @@ class Modes(NamedTuple):
 
     square: np.ndarray  # (r, n) 1/s2, squares of the angular frequencies
     drag: np.ndarray  # (r, n) 1/s, damping rates
-    cubic: (
-        np.ndarray
-    )  # (s-1, f, n, 4, p) 1/kg^0.5, shapes between stations, as ``Compliance.cubic``
+    # (s-1, f, n, 4, p) 1/kg^0.5, shapes between stations, as ``Compliance.cubic``
+    cubic: np.ndarray
     reach: np.ndarray  # (f, n) 1/kg^0.5, bound of the displacement of a point under a face
     shape: np.ndarray  # (f, n, p) 1/kg^0.5, workspace: shapes at the faces
     offset: np.ndarray  # (f, p) m, workspace: displacement
@@ -105,7 +105,7 @@ def under_pads(
 ) -> Compliance | None:
     """Record of the compliance ``found``, with so many vibrating ``modes`` of each rail; None
     without contact and for rigid walls. Raises SceneError for the compliance of another rail or
-    without these modes, and for friction that sticks."""
+    without these modes, and for friction with sticking."""
     if found is None or found.flexibility is None or model.contact is None:
         return None
     found = found.of(scene)
@@ -132,8 +132,8 @@ def build(
     modes: int = 0,
     damping: Damping | None = None,
 ) -> Compliance:
-    """Record of ``found`` for the faces of ``model``, which has contact; ``modes`` of each rail
-    vibrate, under the ``damping`` of the rails."""
+    """Record of ``found`` for the faces of ``model``, which has contact. ``modes`` of each rail
+    vibrate, with the ``damping`` of the rails."""
     assert model.interface_stiffness is not None
     faces, platform = (
         model.faces,
@@ -194,7 +194,8 @@ def _drawn(found: data.RailCompliance, model: Model) -> DrawnWalls | None:
 
 
 def states(compliance: Compliance | None) -> int:
-    """How many numbers the modes of ``compliance`` add to the state (``lowfi.state.modal_size``)."""
+    """Number of values that the modes of ``compliance`` add to the state
+    (``lowfi.state.modal_size``)."""
     return (
         2 * compliance.modes.square.size
         if compliance is not None and compliance.modes is not None

@@ -4,12 +4,12 @@ piecewise linear equations.
     U = T + F P(U) + W q,    (1 + F K) dU = T + F P + W q - U,
     K_iab = dP_ia/d(-U_ib) = sum over pressed cells of k dA phi_a phi_b
 
-F is the flexibility without the modes, W q the displacement by the modes
+F is the flexibility without the modes, W q the displacement of the modes
 (``lowfi.contact.compliant.modes``), T the thermal offset
 (``lowfi.contact.compliant.thermal_offset``). P is the gradient of a convex potential, so the
-solution is unique. While the set of pressed cells does not change the equations are linear, and a
-whole correction is exact: it is the last one where it cannot change the set. The first guess is the
-displacement of the solution before, moved with the pad as at the end of the last step
+solution is unique. While the set of pressed cells does not change, the equations are linear and a
+full correction is exact: it is the last one if it cannot change the set. The first guess is the
+previous displacement, moved with the pad as at the end of the last step
 (``lowfi.contact.compliant.step_limit``)."""
 
 import numpy as np
@@ -21,15 +21,16 @@ from tipoff.lowfi.contact.compliant.modes import evaluate, offset
 from tipoff.lowfi.contact.compliant.record import BY_ETA, BY_XI, DEPTH
 from tipoff.mechanics.rail_compliance import PATTERNS
 
-_ARRIVED = 1e-14  # m, a correction that is rounding
+_ARRIVED = 1e-14  # m; a smaller correction is rounding
 _MOST = 60  # corrections
-_CAREFUL = 12  # after so many, half corrections, which cannot cycle
+_CAREFUL = 12  # corrections; later ones are halved, which prevents cycles
 
 
 @kernel
 def solve(compliance, faces, rail, touching, place, turn, state):
-    """Number of ``touching`` (f,) faces on ``rail``; ``compliance.workspace`` holds them in
-    ``order``, with lever, displacement and force. Of ``state`` only the modes are read."""
+    """Solve under the ``touching`` (f,) faces on ``rail``; returns their number.
+    ``compliance.workspace`` has them in ``order``, with lever, displacement and force. Only the
+    modes are read from ``state``."""
     workspace, count = compliance.workspace, gather(compliance, rail, touching)
     for i in range(count):
         _move(compliance, faces, workspace.order[i], place, turn)
@@ -38,14 +39,14 @@ def solve(compliance, faces, rail, touching, place, turn, state):
         for correction in range(_MOST):
             if _correct(compliance, count, 1.0 if correction < _CAREFUL else 0.5) < _ARRIVED:
                 return count
-        workspace.force[:] = np.nan  # no convergence; no step is accepted with it
+        workspace.force[:] = np.nan  # no convergence; the step will be rejected
     return count
 
 
 @kernel
 def _move(compliance, faces, face, place, turn):
-    """Fill the lever of a face, and guess how its wall follows; a state that is not finite leaves
-    nothing behind."""
+    """Fill the lever of a face, and guess the displacement of its wall; a state that is not finite
+    changes nothing."""
     lever, displacement = compliance.workspace.lever[face], compliance.workspace.displacement[face]
     depth, by_xi, by_eta = lever[DEPTH], lever[BY_XI], lever[BY_ETA]
     take_lever(compliance, faces, face, place, turn)
@@ -59,7 +60,7 @@ def _move(compliance, faces, face, place, turn):
 
 @kernel
 def gather(compliance, rail, touching):
-    """Fill ``order`` with the ``touching`` (f,) faces on ``rail``; their number."""
+    """Fill ``order`` with the ``touching`` (f,) faces on ``rail``; returns their number."""
     count = 0
     for slot in range(compliance.members.shape[1]):
         face = compliance.members[rail, slot]
@@ -71,8 +72,8 @@ def gather(compliance, rail, touching):
 
 @kernel
 def solve_unless(solved, compliance, faces, rail, touching, place, turn, state):
-    """``solve``, or its number of faces and their order where all rails are already ``solved`` at
-    this ``state``."""
+    """``solve``; if all rails are already ``solved`` at this ``state``, only the number of faces
+    and their order."""
     if solved:
         return gather(compliance, rail, touching)
     return solve(compliance, faces, rail, touching, place, turn, state)
@@ -80,9 +81,9 @@ def solve_unless(solved, compliance, faces, rail, touching, place, turn, state):
 
 @kernel
 def between_stations(compliance, place):
-    """Number of the station before X = ``place`` (m) of the first face, the way (m) from it, inside
-    the table, and by how much that changes with the place: at the last station it stops as the
-    places of pads on the wall do at the end of the rail."""
+    """Number of the station before X = ``place`` (m) of the first face, the distance (m) from it,
+    limited to the table, and its derivative by the place. At the last station the distance stops,
+    as the places of pads on the wall do at the end of the rail."""
     half = compliance.half[0, 0]
     over, rate = eased(
         (place - compliance.origin - compliance.spacing * compliance.cubic.shape[0]) / half
@@ -96,8 +97,8 @@ def between_stations(compliance, place):
 
 @kernel
 def take_flexibility(compliance, count, place, state):
-    """Fill flexibility and slope between the first ``count`` faces in order, and what the modes are
-    under them."""
+    """Fill flexibility and slope between the first ``count`` faces in order, and the modes under
+    them."""
     workspace = compliance.workspace
     station, s, changes = between_stations(compliance, place)
     for i in range(count):
@@ -121,7 +122,7 @@ def take_flexibility(compliance, count, place, state):
 
 @kernel
 def _correct(compliance, count, share):
-    """Take ``share`` of one correction; its largest size (m), or zero where it is exact."""
+    """Apply ``share`` of one correction; returns its largest size (m), zero if it is exact."""
     workspace = compliance.workspace
     for i in range(count):
         workspace.slack[i] = press(compliance, workspace.order[i])
@@ -151,7 +152,7 @@ def _correct(compliance, count, share):
             workspace.displacement[face, a] += change
             for b in range(PATTERNS):
                 workspace.force[face, b] -= workspace.stiffness[face, a, b] * change
-    return 0.0 if exact or largest != largest else largest  # what is not a number stays so
+    return 0.0 if exact or largest != largest else largest  # NaN in the displacement stays
 
 
 @kernel
@@ -199,8 +200,8 @@ def eliminate(matrix, right, size, columns):
 
 @kernel
 def follow(compliance, face, place, count, state, out):
-    """Fill ``out`` (p,) with the displacement of the wall under a face that may not press, by the
-    ``count`` faces solved for and by modes."""
+    """Fill ``out`` (p,) with the displacement of the wall under a face that may not press, due to
+    the ``count`` solved faces and the modes."""
     workspace = compliance.workspace
     station, s, changes = between_stations(compliance, place)
     evaluate(compliance.modes, compliance.rail[face], face, station, s, changes, state)

@@ -1,20 +1,21 @@
 """The proven step limit of compliant contact: stiffness and damping of the faces of each rail
 (``lowfi.contact.step_limit`` derives the bound).
 
-With the tangent T = K (1 + F K)^-1 of ``lowfi.contact.compliant.solution`` and the wrenches g of depth, tilt
-along and tilt across of each rigid face, the linearised springs are sum_ab T_ab g_a g_b', and the
-trace over both bodies is their bound. A motion across the rail along a wall of slope du/deta' =
-U_2 + xi' U_4 + 2 eta' U_5 changes depth and tilts too, so each g has a force across the rail::
+With the tangent T = K (1 + F K)^-1 of ``lowfi.contact.compliant.solution`` and the wrenches g of
+depth, tilt along and tilt across of each rigid face, the linearised springs are sum_ab T_ab g_a
+g_b', and the trace over both bodies is their bound. A motion across the rail along a wall of slope
+du/deta' = U_2 + xi' U_4 + 2 eta' U_5 changes depth and tilts too, so each g includes a force across
+the rail::
 
     K = sum over rails of sum_ab T_ab (g_a . M^-1 g_b)
 
-A wall that is not straight as drawn has slopes along the rail as well. Their part that is linear in
-xi and eta is in g too. The rest, at most r in each cell (``drawn_slopes``), adds a matrix whose trace
-R is at most k A r^2 times the inverse mass that it meets, since T <= K; so the trace is at most
-(sqrt(K) + sqrt(R))^2 (Minkowski).
+A wall that is not straight as drawn also has slopes along the rail. g includes their part that is
+linear in xi and eta. The rest, at most r in each cell (``drawn_slopes``), adds a matrix with a
+trace R. R is at most k A r^2 times the inverse mass, since T <= K; so the trace is at most (sqrt(K)
++ sqrt(R))^2 (Minkowski).
 
-Modes of rails that carry load add a diagonal of omega^2 and d to the matrices, which raises
-their spectra by the largest of each (Weyl), and the trace of contact on the modes, W' T W.
+Modes of loaded rails add a diagonal of omega^2 and d to the matrices. This raises their spectra by
+the largest of each (Weyl), and by the trace of contact on the modes, W' T W.
 """
 
 import numpy as np
@@ -43,8 +44,8 @@ _FORCE, _MOMENT, _RATE, _OF_PLATFORM = 0, 3, 6, 9
 
 @kernel
 def stiffness_and_damping(compliance, friction, faces, platform, payload, touching, state, solved):
-    """Traces K (1/s2) and C (1/s) of all ``touching`` faces (f,) at ``state``, for which all rails
-    may be ``solved`` already."""
+    """Traces K (1/s2) and C (1/s) of all ``touching`` faces (f,) at ``state``; ``solved``: all
+    rails are already solved there."""
     body, base = (
         slot.motion(payload, state, slot.PAYLOAD),
         slot.frame(platform, state),
@@ -76,8 +77,9 @@ def stiffness_and_damping(compliance, friction, faces, platform, payload, touchi
 
 @kernel
 def _tangent(compliance, count):
-    """Fill ``right`` with dU (w,) by a unit of each rigid motion, then of each mode, and
-    ``yielding`` with that of each face by its own; the number of columns of rigid motions."""
+    """Fill ``right`` with dU (w,) for a unit of each rigid motion, then of each mode, and
+    ``yielding`` with dU of each face for its own motions; returns the number of columns of rigid
+    motions."""
     workspace = compliance.workspace
     fill_matrix(workspace, count)
     for i in range(count):
@@ -107,7 +109,7 @@ def _tangent(compliance, count):
 
 @kernel
 def _add_modes(modes, workspace, count):
-    """Fill the columns of the modes, whose number this is, before elimination."""
+    """Fill the columns of the modes before elimination; returns their number."""
     number = 0
     if modes is not None:
         number = modes.square.shape[1]
@@ -124,7 +126,7 @@ def _add_modes(modes, workspace, count):
 
 @kernel
 def _pressure(modes, workspace, face, a, i):
-    """dP_a by a unit of mode i on an otherwise rigid wall."""
+    """dP_a for a unit of mode i on an otherwise rigid wall."""
     value = 0.0
     for b in range(PATTERNS):
         value += workspace.stiffness[face, a, b] * modes.shape[face, i, b]
@@ -133,7 +135,7 @@ def _pressure(modes, workspace, face, a, i):
 
 @kernel
 def _trace_of_modes(modes, workspace, count, first):
-    """Trace (1/s2) of W' T W; dU of the modes stands in ``right`` from the column ``first`` on."""
+    """Trace (1/s2) of W' T W; ``right`` has dU of the modes from the column ``first`` on."""
     total = 0.0
     if modes is not None:
         for k in range(count):
@@ -148,7 +150,7 @@ def _trace_of_modes(modes, workspace, count, first):
 
 @kernel
 def _reaction(workspace, face, a, rigid):
-    """dP_a by a unit of a rigid motion on a wall at rest."""
+    """dP_a for a unit of a rigid motion on a wall at rest."""
     value = workspace.stiffness[face, a, rigid]
     if rigid > 0:
         value -= _beyond(workspace, face, rigid) * workspace.stiffness[face, a, 0]
@@ -157,13 +159,13 @@ def _reaction(workspace, face, a, rigid):
 
 @kernel
 def _beyond(workspace, face, rigid):
-    """How far the place on the wall is beyond that on the pad, along xi or eta."""
+    """Distance of the place on the wall beyond that on the pad, along xi or eta."""
     return workspace.lever[face, SHIFT if rigid == 1 else ASIDE]
 
 
 @kernel
 def _answer(workspace, i, rigid, column):
-    """Generalised force of rigid motion ``rigid`` on face i of the order, by a unit of motion
+    """Generalised force of rigid motion ``rigid`` on face i of the order, for a unit of motion
     number ``column``."""
     face = workspace.order[i]
     total = _own(workspace, face, rigid, column % _RIGID) if column // _RIGID == i else 0.0
@@ -203,8 +205,8 @@ def _trace(compliance, faces, platform, payload, count, body, base):
 
 @kernel
 def _trace_of_rest(compliance, faces, platform, payload, count, body, base):
-    """Bound R (1/s2) of the trace by slopes of drawn walls that are not linear under a face; zero
-    where all are straight."""
+    """Bound R (1/s2) of the trace of slopes of drawn walls that are not linear under a face; zero
+    if all walls are straight."""
     if compliance.drawn is None:
         return 0.0
     total = 0.0
@@ -239,7 +241,7 @@ def _inverse_mass(platform):
 
 @kernel
 def _answer_of_body(inverse_inertia, body, wrench, out):
-    """Force, moment about the mass centre, and the rate that it gives the body per second."""
+    """Force, moment about the mass centre, and the angular acceleration of the body."""
     moment = _moment(body, wrench)
     rate = rotation.angular_velocity(body.turn, inverse_inertia, moment)
     for i in range(3):
@@ -256,7 +258,7 @@ def _answer_of_platform(platform, base, wrench, out):
 
 @kernel
 def _wrench(compliance, faces, face, rigid, body, base):
-    """Force, a point it acts at (m), and couple that belong to a rigid motion of the face."""
+    """Force, its point of action (m), and couple of a rigid motion of the face."""
     n, half = outward(faces[face], base), compliance.half[face]
     size = _by_slope(compliance.workspace, face, rigid)
     size += drawn_slopes.across(compliance, face)[rigid]

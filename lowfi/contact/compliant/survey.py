@@ -39,12 +39,12 @@ from tipoff.lowfi.contact.wall_ends import (
 )
 from tipoff.lowfi.faces import LAST_STRIP, NORMAL_Y, NORMAL_Z, SIDE_MIDDLE
 
-_THERE = 1e-9  # m, by which a step passes its target
+_THERE = 1e-9  # m, excess of a step beyond its target
 
 
 @kernel
 def depth(compliance, faces, face, touching, place, turn, state):
-    """Deepest penetration (m) of a face: negative across the gap, which other faces on the rail may
+    """Deepest penetration (m) of a face, negative across the gap, which other faces on the rail may
     narrow. ``touching`` (f,) are the faces that press."""
     count = solve(compliance, faces, compliance.rail[face], touching, place, turn, state)
     return _deepest(compliance, faces, face, count, touching, place, turn, state)[0]
@@ -52,8 +52,9 @@ def depth(compliance, faces, face, touching, place, turn, state):
 
 @kernel
 def _deepest(compliance, faces, face, count, touching, place, turn, state):
-    """The same after ``solve``, and xi and eta of the deepest cell. A face past the end gets the
-    depth it would have there, so that a contact in the step in which it leaves is found."""
+    """As ``depth`` after ``solve``, and xi and eta of the deepest cell. A face past the end gets
+    the depth that it would have there, so that a contact in the step in which it leaves is
+    found."""
     displacement = compliance.workspace.displacement[face]
     if not touching[face]:
         take_lever(compliance, faces, face, place, turn)
@@ -68,7 +69,7 @@ def _deepest(compliance, faces, face, count, touching, place, turn, state):
 
 @kernel
 def _approach(compliance, faces, face, xi, eta, drift, swing):
-    """Rate (m/s) at which a point of the face approaches its wall, which modes do not move."""
+    """Rate (m/s) at which a point of the face approaches its wall, modes at rest."""
     y, z, half = faces[face, NORMAL_Y], faces[face, NORMAL_Z], compliance.half[face]
     turning = xi * half[0] * (y * swing[3] + z * swing[6]) + eta * half[1] * (
         y * swing[5] + z * swing[7]
@@ -81,7 +82,7 @@ def _approach(compliance, faces, face, xi, eta, drift, swing):
 
 @kernel
 def _on_wall(compliance, face, xi, eta):
-    """xi' and eta' of the wall under a point of the face."""
+    """xi' and eta' on the wall under a point of the face."""
     lever = compliance.workspace.lever[face]
     return xi + lever[SHIFT], eta + lever[ASIDE]
 
@@ -95,8 +96,8 @@ def _speed_of_modes(compliance, face, xi, eta):
 
 @kernel
 def survey(compliance, faces, platform, payload, touching, state, solved, out):
-    """Fill ``out`` (f, SURVEY_SIZE), as ``lowfi.dynamics.survey`` does; the energy (J) stored under
-    the ``touching`` faces (f,)."""
+    """Fill ``out`` (f, SURVEY_SIZE), as ``lowfi.dynamics.survey`` does; returns the energy (J)
+    stored under the ``touching`` faces (f,)."""
     body, base = (
         slot.motion(payload, state, slot.PAYLOAD),
         slot.frame(platform, state),
@@ -126,11 +127,11 @@ def survey(compliance, faces, platform, payload, touching, state, solved, out):
 
 @kernel
 def longest_step_at_ends(compliance, faces, platform, payload, touching, state):
-    """Longest step (s) where a ``touching`` face (f,) is near an end of the rail. The push of the
-    end jumps as it begins to overhang and kinks with every row of cells that leaves,
-    which no error estimate sees; and its last strip leaves at once. So a step ends there at the
-    latest, and where a face that comes over an end is wholly over it, and is a quarter of a cell
-    long at most."""
+    """Longest step (s) if a ``touching`` face (f,) is near an end of the rail. The force of the end
+    jumps when the face begins to overhang, and its slope jumps with every row of cells that leaves.
+    No error estimate sees this. The last strip of the face leaves at once. So a step ends there at
+    the latest, and where a face that comes over an end is completely over it. It is at most a
+    quarter of a cell long."""
     body, base = (
         slot.motion(payload, state, slot.PAYLOAD),
         slot.frame(platform, state),

@@ -1,5 +1,5 @@
 """Thermal offset of warm rails: the displacement T of their walls without load
-(``mechanics.rail_compliance``). Without temperatures ``warm`` is None and every function does
+(``mechanics.rail_compliance``). Without temperatures ``warm`` is None and the functions do
 nothing."""
 
 from tipoff.kernels.jit import kernel
@@ -10,15 +10,15 @@ _XI, _ETA = POWERS.T.copy()
 
 @kernel
 def evaluate(warm, face, station, s, changes):
-    """Fill T and its slope along the rail under ``face``, ``s`` (m) from a station, where that
-    distance changes by ``changes`` with the place."""
+    """Fill T and its slope along the rail under ``face``, ``s`` (m) from a station; ``changes`` is
+    the derivative of ``s`` by the place."""
     if warm is not None:
         fill(warm, face, station, s, changes)
 
 
 @kernel
 def fill(warm, face, station, s, changes):
-    """The work of ``evaluate`` on rails that are warm."""
+    """``evaluate`` on warm rails."""
     c = warm.cubic[station, face]
     for a in range(PATTERNS):
         warm.offset[face, a] = c[0, a] + s * (c[1, a] + s * (c[2, a] + s * c[3, a]))
@@ -36,7 +36,7 @@ def offset(warm, face, pattern):
 
 @kernel
 def axial_force(warm, face, force):
-    """Force (N) along the rail of ``force`` (p,) N on a wall whose offset grows or shrinks ahead."""
+    """Force (N) along the rail of ``force`` (p,) N on a wall whose offset changes ahead."""
     total = 0.0
     if warm is not None:
         for a in range(PATTERNS):
