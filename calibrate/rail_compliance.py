@@ -23,7 +23,8 @@ from tipoff.scenes.studies import element_size as own_size
 
 _SAID: set[Path] = set()  # files whose uncertainty was said
 _PLACES = 4  # stations along the rail at which meshes are compared
-KEPT: cache.Cache[RailCompliance] = cache.binary(content, RailCompliance.load)
+# A loop over scenes with one rail reads it once.
+KEPT: cache.Cache[RailCompliance] = cache.binary(content, RailCompliance.load, cache.Held)
 
 
 def compliance(scene: Scene, element_size: float | None = None) -> RailCompliance:
@@ -54,7 +55,8 @@ def kept(
     """The same in elements of ``element_size`` (m), read from ``folder`` if it is stored there for
     this rail, these pads and this code, else made and stored there. ``say`` gets messages on what
     takes time, and once in a process for each file the uncertainty by the elements."""
-    key, path = _key(scene, element_size), kept_file(scene, folder, element_size)
+    key = _key(scene, element_size)
+    path = cache.file(folder, "compliance", key, ".npz")
     say = say or (lambda _: None)
     found = KEPT.get_or_make(
         path, key, "it is found again", lambda: _made(scene, element_size, path, say)

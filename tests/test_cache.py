@@ -9,6 +9,7 @@ import shutil
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -28,7 +29,7 @@ from tipoff.files import (
     write_json,
     write_sealed,
 )
-from tipoff.kernels.cached import KernelFiles
+from tipoff.kernels.cached import KernelCache
 from tipoff.lowfi.ensemble import store as ensembles
 from tipoff.studies.limits import results
 from tipoff.studies.populations import answers
@@ -180,14 +181,20 @@ def source(folder, monkeypatch) -> Kept:
 def kernel(folder, monkeypatch) -> Kept:
     """The machine code of a kernel, here a text."""
     made, places = [], {}
+    processor = SimpleNamespace(magic_tuple=lambda: "a processor")
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(folder))
 
     def ask(name):
-        there, files = set(folder.iterdir()), KernelFiles(str(folder), "kernel.py311", "stamp")
-        if (found := files.load(name)) is None:
+        files = KernelCache(flight)
+        if (found := files.stored((name,), processor)) is None:
             made.append(name)
-            files.save(name, found := f"code for {name}")
-        if new := set(folder.iterdir()) - there:
-            (places[name],) = new
+            found = f"code for {name}"
+            library = SimpleNamespace(has_dynamic_globals=False)
+            code = SimpleNamespace(library=library, codegen=processor, _reduce=lambda: found)
+            there = set(Path(files.cache_path).glob("*.nbc"))
+            files.save_overload((name,), code)
+            if new := set(Path(files.cache_path).glob("*.nbc")) - there:
+                (places[name],) = new
         return found
 
     return Kept(ask, places.get, made, "the kernel is compiled again", needed=False)
@@ -332,3 +339,32 @@ def test_a_key_is_read_only_from_its_line(tmp_path):
     with sealed(tmp_path / "b") as temporary:
         temporary.write_bytes(f"\n# key {KEY}\nmore".encode())
     assert require_whole(tmp_path / "b") == ""
+
+
+def test_an_untouched_result_is_read_once(tmp_path, monkeypatch):
+    """And the same object is given to all, until its file is written by another process. The last are
+    held. Control: a plain cache reads it again."""
+    read = []
+    files = cache.documents(dict, lambda found: read.append(1) or dict(found), cache.Held)
+    plain = cache.documents(dict, lambda found: read.append(2) or dict(found))
+    monkeypatch.setattr(cache, "time", SimpleNamespace(time_ns=lambda: 2**62))  # much later
+    path = tmp_path / "a.json"
+    first = files.put(path, KEY, {"a": 1})
+    assert all(files.get(path, KEY, "") is first for _ in range(3)) and read == [1]
+    assert plain.get(path, KEY, "") == first and plain.get(path, KEY, "") and read == [1, 2, 2]
+    assert files.get(path, "2" * 64, "") is None
+    write_json(path, {"a": 2, "key": KEY})
+    assert files.get(path, KEY, "")["a"] == 2 and read[-2:] == [2, 1]
+    for number in range(8):
+        files.put(tmp_path / f"{number}.json", KEY, {})
+    count = len(read)
+    assert files.get(path, KEY, "") and len(read) == count + 1
+
+
+def test_a_file_that_was_written_just_now_is_read_again(tmp_path):
+    """A second write may have the same time."""
+    files = cache.documents(dict, dict, cache.Held)
+    path = tmp_path / "a.json"
+    for number in range(20):
+        write_json(path, {"a": number, "key": KEY})
+        assert files.get(path, KEY, "")["a"] == number

@@ -5,8 +5,10 @@ processes that make one result at the same time write the same file, and a file 
 damaged or of another key is never taken for the result. Damage is said once on standard error.
 """
 
+import threading
+import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
@@ -46,7 +48,59 @@ class Cache(Generic[_T]):
         return self.put(path, key, make()) if found is None else found
 
 
-def binary(content: Callable[[_T], bytes | memoryview], load: Callable[[Path], _T]) -> Cache[_T]:
+@dataclass(frozen=True)
+class Held(Cache[_T]):
+    """A cache whose results stay in the memory of the process too: the last ``most``, each as long as
+    its file is untouched. All callers share a result, so that nobody may change it."""
+
+    most: int = 8
+    _results: dict[Path, tuple[str, "_Stamp | None", _T]] = field(default_factory=dict)
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def get(self, path: Path, key: str, again: str) -> _T | None:
+        """As of any cache."""
+        held = self._results.get(path)
+        if held is not None and held[0] == key and held[1] == _stamp(path) is not None:
+            return held[2]
+        found = super().get(path, key, again)
+        if found is not None:
+            self._hold(path, key, found)
+        return found
+
+    def put(self, path: Path, key: str, value: _T) -> _T:
+        """As of any cache."""
+        found = super().put(path, key, value)
+        self._hold(path, key, found)
+        return found
+
+    def _hold(self, path: Path, key: str, found: _T) -> None:
+        with self._lock:
+            self._results.pop(path, None)
+            while len(self._results) >= self.most:
+                self._results.pop(next(iter(self._results)))
+            self._results[path] = key, _stamp(path), found
+
+
+_Stamp = tuple[int, int, int]
+_TICK = 50_000_000  # ns, more than file systems need to give a later write a later time
+
+
+def _stamp(path: Path) -> _Stamp | None:
+    """What changes when a file is written: place on the disk, time, size. None without a file, and where
+    it was written just now: another write may have the same time."""
+    try:
+        state = path.stat()
+    except OSError:
+        return None
+    old = time.time_ns() - state.st_mtime_ns > _TICK
+    return (state.st_ino, state.st_mtime_ns, state.st_size) if old else None
+
+
+def binary(
+    content: Callable[[_T], bytes | memoryview],
+    load: Callable[[Path], _T],
+    kind: type[Cache] = Cache,
+) -> Cache[_T]:
     """Results that ``content`` puts into bytes, and ``load`` reads from a file with further lines at
     its end. Keys have 64 hexadecimal digits."""
 
@@ -54,19 +108,21 @@ def binary(content: Callable[[_T], bytes | memoryview], load: Callable[[Path], _
         write_sealed(path, content(value), key)
         return value
 
-    return Cache(lambda path, key: load(path) if require_whole(path) == key else None, write)
+    return kind(lambda path, key: load(path) if require_whole(path) == key else None, write)
 
 
-def documents(plain: Callable[[_T], Mapping[str, Any]], load: Callable[[dict], _T]) -> Cache[_T]:
+def documents(
+    plain: Callable[[_T], Mapping[str, Any]],
+    load: Callable[[dict], _T],
+    kind: type[Cache] = Cache,
+) -> Cache[_T]:
     """Results that ``plain`` puts into JSON, and ``load`` takes from it. The key is under ``key``."""
 
     def read(path: Path, key: str) -> _T | None:
         found = read_json(path)
         return load(found) if found.get("key") == key else None
 
-    return Cache(
-        read, lambda path, key, value: load(write_json(path, {**plain(value), "key": key}))
-    )
+    return kind(read, lambda path, key, value: load(write_json(path, {**plain(value), "key": key})))
 
 
 def whole(path: Path, again: str, read: Callable[[], _T]) -> _T | None:

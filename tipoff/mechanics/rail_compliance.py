@@ -83,6 +83,11 @@ class RailCompliance(Shown):
     joints: JointTerms | None = None
     drawn: np.ndarray | None = None
 
+    def __post_init__(self):
+        for array in (*vars(self).values(), *(self.joints or ())):
+            if isinstance(array, np.ndarray):
+                array.flags.writeable = False  # runs share a compliance, and what follows from it
+
     def of(self, scene: Scene) -> "RailCompliance":
         """This compliance at the factor that ``scene`` has on the stiffness of its mounts. Raises
         SceneError as ``require`` does."""

@@ -19,9 +19,10 @@ from tipoff.scenes.scene import Scene
 from tipoff.workspace.progress import say
 from tipoff.workspace.run import Run
 
+_AGAIN = "its kernels are announced again"
 _WITH_MODES = ", and the same time again if modes of the rails are needed"
 _SAID: set[Path] = set()  # marks of kernels that this process has announced
-_MARKS: cache.Cache[dict] = cache.documents(dict, dict)
+_MARKS: cache.Cache[dict] = cache.documents(dict, dict, cache.Held)
 
 
 @contextmanager
@@ -71,12 +72,12 @@ def remember(run: Run, chosen: bool = False, many: bool = False) -> None:
     """Note in the cache that ``run``, or ``many`` cases like it, compiled its kernels, or where modes
     were ``chosen`` those with modes."""
     with suppress(OSError):  # they are announced again
-        _MARKS.put(*mark(run, chosen, many), {})
+        _MARKS.get_or_make(*mark(run, chosen, many), _AGAIN, dict)
 
 
 def are_there(run: Run, chosen: bool = False, many: bool = False) -> bool:
     """Whether ``remember`` noted these kernels."""
-    return _MARKS.get(*mark(run, chosen, many), "its kernels are announced again") is not None
+    return _MARKS.get(*mark(run, chosen, many), _AGAIN) is not None
 
 
 def mark(run: Run, chosen: bool = False, many: bool = False) -> tuple[Path, str]:

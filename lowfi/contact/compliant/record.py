@@ -154,8 +154,8 @@ def build(
         origin=float(nominal[0, 0]),
         spacing=spacing,
         members=members,
-        rail=found.rail,
-        half=found.half,
+        rail=found.rail.copy(),  # kernels have one type for arrays, that of the writable ones
+        half=found.half.copy(),
         across=nominal[np.arange(faces.axis.size), 3 - faces.axis],
         relief=faces.relief,
         interface_stiffness=float(model.interface_stiffness),
