@@ -1,5 +1,5 @@
-"""Constants of compliant contact that a fit may determine. They are usually not measured, and the
-statics of the rail do not give them.
+"""Constants of compliant contact that a fit may determine: usually not measured, and not given by
+the statics of the rail.
 
 The interface stiffness is known to a factor (``docs/interface_stiffness.md``), as is the stiffness
 of bolted mounts (``docs/mount_stiffness.md``). Friction and clearance are known to a tolerance. The
@@ -11,7 +11,7 @@ from tipoff.mechanics.joint_terms import LEAST, MOST
 from tipoff.scenes.effects.contact import ContactTable
 from tipoff.scenes.scene import Scene
 
-_INTERFACE = 16.0  # either way
+_INTERFACE = 16.0  # factor in both directions
 CLEARANCE = "contact.clearance"
 AXES = (f"{CLEARANCE}_y", f"{CLEARANCE}_z")
 KEYS = (
@@ -24,9 +24,9 @@ KEYS = (
 
 
 def free(scene: Scene) -> list[Parameter]:
-    """The constants of the contact of ``scene``: interface stiffness, clearance where there is any
-    (along both axes where each states its own), stiffness of the mounts where they are no rigid
-    clamps, and friction if there is any; none without contact."""
+    """The constants of the contact of ``scene``: interface stiffness; clearance if it is above zero
+    (along both axes if each has its own); stiffness of the mounts if they are not rigid; friction
+    if there is any. None without contact."""
     contact = scene.contact
     if contact is None:
         return []
@@ -41,7 +41,7 @@ def free(scene: Scene) -> list[Parameter]:
 
 
 def along_axes(scene: Scene) -> list[Parameter]:
-    """Clearances of the faces along y and along z, for a fit that tells them apart."""
+    """Clearances of the faces along y and along z, for a fit of separate values."""
     contact = scene.contact
     if contact is None:
         return []
@@ -55,7 +55,7 @@ def along_axes(scene: Scene) -> list[Parameter]:
 
 
 def needs(name: str) -> str:
-    """What a scene needs to have the parameter ``name``."""
+    """Text of what a scene needs for the parameter ``name``."""
     if name == CLEARANCE:
         return f"a clearance above zero and an axis without its own ({' and '.join(AXES)})"
     if name.startswith("initial.") or name in AXES:

@@ -1,9 +1,9 @@
-"""The parameters of a fit of springs: their physical meaning, their bounds, and the overrides of a
-scene that they make. Those of compliant contact are in ``calibration.compliant``.
+"""Parameters of a fit of springs: their physical meaning, their bounds, and the resulting overrides
+of a scene. ``calibration.compliant`` has those of compliant contact.
 
-Stiffnesses k in N/m^e of different exponents are not comparable, so the fit varies the elastic
-force at the reference penetration p_r = 0.02 mm (loads of 60 to 180 N press a rail of 3e-8 to 1e-7 m/N by 2
-to 18 um) and k follows::
+Stiffnesses k in N/m^e of different exponents are not comparable. So the fit varies the elastic
+force at the reference penetration p_r = 0.02 mm (loads of 60 to 180 N press a rail of 3e-8 to 1e-7
+m/N by 2 to 18 um), and k follows::
 
     F_r = k p_r^e        B_r = c s(p_r/d),  s(x) = x^2 (3 - 2 x)
 
@@ -23,11 +23,11 @@ from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
 REFERENCE_PENETRATION = 2e-5  # m
-# Softest and stiffest static compliance of the reference rail (1e-7 m/N between mounts, 3e-8 at
+# Largest and smallest static compliance of the reference rail (1e-7 m/N between mounts, 3e-8 at
 # one) over a^2/(E t^3).
 _SOFT, _STIFF = 1.25, 4.2
 _MARGIN = 10.0  # factor from a static estimate to the range of a point contact in impact
-# Parameters that are keys of a scene themselves.
+# Parameters that are keys of a scene.
 _PLAIN = (
     "contact.interface_stiffness",
     "contact.clearance",
@@ -39,19 +39,15 @@ _PLAIN = (
 
 @dataclass(frozen=True)
 class Parameter:
-    """One coordinate of a fit: bounds in SI, searched on a logarithmic or linear scale, with the
-    reason for its bounds.
-
-    ``read`` gives its value in a scene (SI), 0 for a change (``calibration.alignment``).
-    """
+    """One coordinate of a fit, searched between its bounds on a logarithmic or linear scale."""
 
     name: str
     unit: str
-    lower: float
-    upper: float
+    lower: float  # SI
+    upper: float  # SI
     logarithmic: bool
-    justification: str
-    read: Callable[[Scene], float]
+    justification: str  # reason for the bounds
+    read: Callable[[Scene], float]  # value in a scene (SI), 0 for a change (``alignment``)
 
     def value(self, share: float) -> float:
         """Value at ``share`` (0..1) of the way from lower to upper bound."""
@@ -67,8 +63,8 @@ class Parameter:
 
 
 def free(scene: Scene) -> list[Parameter]:
-    """The parameters of the fit of ``scene``: the constants of its contact law, and friction if it has
-    any."""
+    """The parameters of the fit of ``scene``: the constants of its contact law, and friction if it
+    has any."""
     found = {
         "impact": [_force, _exponent, _damping],
         "hunt-crossley": [_force, _exponent, _dissipation],
@@ -80,14 +76,14 @@ def free(scene: Scene) -> list[Parameter]:
 
 
 def held(scene: Scene) -> list[Parameter]:
-    """What the fit leaves at the scene's value because it acts almost only together with a free
-    one."""
+    """Parameters that the fit holds at the scene's value, because they act almost only together
+    with a free one."""
     return [_depth(scene)] if isinstance(scene.contact, ImpactTable) else []
 
 
 def overrides(scene: Scene, values: dict[str, float]) -> dict[str, float]:
     """Dotted overrides (SI) of ``scene`` for values of parameters by name; k is set together with
-    e, whose unit it carries."""
+    e, which is part of its unit."""
     found = {name: value for name, value in values.items() if name in _PLAIN}
     if "contact.force" in values:
         contact = _contact(scene)
