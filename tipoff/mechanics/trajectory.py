@@ -115,10 +115,10 @@ class Trajectory(Carded):
     scene: dict
     message: str = ""
     numerics: dict = field(default_factory=dict)
-    #: Stress of flexible rails, None for rigid rails and diverged runs: peak_stress_pa, the largest
-    #: von Mises stress, at peak_stress_place_m (scene axes, undeformed) of peak_stress_rail at
-    #: peak_stress_time_s; yield_strength_pa or None; largest_strain, largest_rotation_rad; warnings,
-    #: texts on doubts about these; patch_places_m of the w patches.
+    #: Stress of flexible rails, None for rigid rails and diverged runs. It has peak_stress_pa, the
+    #: largest von Mises stress, at peak_stress_place_m (scene axes, undeformed) of peak_stress_rail
+    #: at peak_stress_time_s; yield_strength_pa or None; largest_strain, largest_rotation_rad;
+    #: warnings, texts on doubts about these; patch_places_m of the w patches.
     stress: dict | None = None
     #: (n,w,6) Pa, mean stress of the patches, in platform axes.
     wall_stress: np.ndarray | None = None
