@@ -51,13 +51,13 @@ def changes(values: dict[str, float]) -> dict[str, float]:
 
 def _change(name: str, unit: str, bound: float, justification: str) -> Parameter:
     return Parameter(
-        name,
-        unit,
-        -bound,
-        bound,
-        False,
-        f"a change, the same in every condition; {justification}",
-        lambda _: 0.0,
+        name=name,
+        unit=unit,
+        lower=-bound,
+        upper=bound,
+        logarithmic=False,
+        justification=f"a change, the same in every condition; {justification}",
+        read=lambda _: 0.0,
     )
 
 

@@ -73,26 +73,26 @@ def _contact(scene: Scene) -> ContactTable:
 
 def _interface_stiffness(contact: ContactTable) -> Parameter:
     return Parameter(
-        "contact.interface_stiffness",
-        "N/m**3",
-        contact.interface_stiffness / _INTERFACE,
-        contact.interface_stiffness * _INTERFACE,
-        True,
-        f"{_INTERFACE:g} times less to {_INTERFACE:g} times more than the scene's: roughness and "
+        name="contact.interface_stiffness",
+        unit="N/m**3",
+        lower=contact.interface_stiffness / _INTERFACE,
+        upper=contact.interface_stiffness * _INTERFACE,
+        logarithmic=True,
+        justification=f"{_INTERFACE:g} times less to {_INTERFACE:g} times more than the scene's: roughness and "
         "pressure change it by two orders of magnitude (docs/interface_stiffness.md)",
-        lambda s: _contact(s).interface_stiffness,
+        read=lambda s: _contact(s).interface_stiffness,
     )
 
 
 def _clearance(name: str, own: float, where: str, read) -> Parameter:
     return Parameter(
-        name,
-        "m",
-        0.0,
-        2.0 * own,
-        False,
-        f"from none to twice the scene's{where}",
-        lambda s: read(_contact(s)),
+        name=name,
+        unit="m",
+        lower=0.0,
+        upper=2.0 * own,
+        logarithmic=False,
+        justification=f"from none to twice the scene's{where}",
+        read=lambda s: read(_contact(s)),
     )
 
 
@@ -102,12 +102,12 @@ def _mounts() -> Parameter:
         return scene.rail.mount_stiffness.factor
 
     return Parameter(
-        "rail.mount_stiffness.factor",
-        "1",
-        LEAST,
-        MOST,
-        True,
-        "the factors that one rail compliance serves: bolts between hand-tight and their yield, "
+        name="rail.mount_stiffness.factor",
+        unit="1",
+        lower=LEAST,
+        upper=MOST,
+        logarithmic=True,
+        justification="the factors that one rail compliance serves: bolts between hand-tight and their yield, "
         "rough and ground surfaces",
-        read,
+        read=read,
     )

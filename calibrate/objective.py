@@ -68,7 +68,16 @@ def target(scene: Scene, reference: Curves) -> Target:
         float(np.sqrt(weights @ (rate**2).sum(axis=1))),
         float(np.linalg.norm(settled)),
     )
-    return Target(scene, time, velocity, rate, settled, weights, amplitudes, reference.window_start)
+    return Target(
+        scene=scene,
+        time=time,
+        velocity=velocity,
+        rate=rate,
+        settled=settled,
+        weights=weights,
+        amplitudes=amplitudes,
+        window_start=reference.window_start,
+    )
 
 
 def targets(scene: Scene, references: dict[str, Curves]) -> dict[str, Target]:

@@ -156,30 +156,30 @@ def _force(scene: Scene) -> Parameter:
         return contact.stiffness * REFERENCE_PENETRATION**contact.exponent
 
     return Parameter(
-        "contact.force",
-        "N",
-        low * REFERENCE_PENETRATION,
-        high * REFERENCE_PENETRATION,
-        True,
-        f"elastic force at 0.02 mm: secant stiffness between a tenth of the rail's softest static "
+        name="contact.force",
+        unit="N",
+        lower=low * REFERENCE_PENETRATION,
+        upper=high * REFERENCE_PENETRATION,
+        logarithmic=True,
+        justification=f"elastic force at 0.02 mm: secant stiffness between a tenth of the rail's softest static "
         f"stiffness ({low:.3g} N/m) and "
         f"ten times its stiffest ({high:.3g} N/m), estimated from E t^3/a^2; the rail is the "
         f"spring",
-        read,
+        read=read,
     )
 
 
 def _exponent(scene: Scene) -> Parameter:
     return Parameter(
-        "contact.exponent",
-        "1",
-        1.0,
-        2.2,
-        False,
-        "1 for a linear elastic rail, 1.5 for Hertz, up to 2.2 for crowned pads that gain area; "
+        name="contact.exponent",
+        unit="1",
+        lower=1.0,
+        upper=2.2,
+        logarithmic=False,
+        justification="1 for a linear elastic rail, 1.5 for Hertz, up to 2.2 for crowned pads that gain area; "
         "below 1 a contact would be "
         "infinitely stiff at first touch",
-        lambda s: _contact(s).exponent,
+        read=lambda s: _contact(s).exponent,
     )
 
 
@@ -199,16 +199,16 @@ def _damping(scene: Scene) -> Parameter:
         return contact.damping
 
     return Parameter(
-        "contact.damping",
-        "N*s/m",
-        0.0,
-        0.2 * critical,
-        False,
-        f"{where}: from none to a fifth of critical, 2 sqrt(k m) = {critical:.3g} N s/m of the "
+        name="contact.damping",
+        unit="N*s/m",
+        lower=0.0,
+        upper=0.2 * critical,
+        logarithmic=False,
+        justification=f"{where}: from none to a fifth of critical, 2 sqrt(k m) = {critical:.3g} N s/m of the "
         f"payload on the rail's stiffest "
         "place, where restitution is 0.5: metal does not lose more in one touch at millimetres per "
         "second",
-        read,
+        read=read,
     )
 
 
@@ -218,30 +218,30 @@ def _dissipation(scene: Scene) -> Parameter:
         return scene.contact.dissipation
 
     return Parameter(
-        "contact.dissipation",
-        "s/m",
-        0.1,
-        100.0,
-        True,
-        "restitution between 0.999 and 0.4 at an approach of 20 mm/s, the speed a clearance lets a "
+        name="contact.dissipation",
+        unit="s/m",
+        lower=0.1,
+        upper=100.0,
+        logarithmic=True,
+        justification="restitution between 0.999 and 0.4 at an approach of 20 mm/s, the speed a clearance lets a "
         "pad gain "
         "(1 - 2 a v/3 at low speed)",
-        read,
+        read=read,
     )
 
 
 def friction(scene: Scene) -> Parameter:
     """The coefficient of friction of a scene that has it."""
     return Parameter(
-        "friction.dynamic",
-        "1",
-        0.05,
-        0.5,
-        False,
-        "coated or lubricated (0.05) to clean dry aluminium under light load (0.5); static moves "
+        name="friction.dynamic",
+        unit="1",
+        lower=0.05,
+        upper=0.5,
+        logarithmic=False,
+        justification="coated or lubricated (0.05) to clean dry aluminium under light load (0.5); static moves "
         "with dynamic in the scene's "
         "ratio, because a pad at metres per second never sticks",
-        lambda s: _friction_of(s).dynamic,
+        read=lambda s: _friction_of(s).dynamic,
     )
 
 
@@ -251,13 +251,13 @@ def _depth(scene: Scene) -> Parameter:
         return scene.contact.damping_depth
 
     return Parameter(
-        "contact.damping_depth",
-        "m",
-        3e-5,
-        3e-3,
-        True,
-        "from just above the penetrations that occur to ten times the deepest depth in use",
-        read,
+        name="contact.damping_depth",
+        unit="m",
+        lower=3e-5,
+        upper=3e-3,
+        logarithmic=True,
+        justification="from just above the penetrations that occur to ten times the deepest depth in use",
+        read=read,
     )
 
 

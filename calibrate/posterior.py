@@ -45,7 +45,14 @@ def of(
         none = np.full(shares.size, np.inf)
         words = "the curves determine none of these parameters; the scene's values are kept"
         unknown = np.full(nuisances.shape[1], np.inf)
-        return Posterior(none, none, False, words, "without information", unknown)
+        return Posterior(
+            half=none,
+            half_with_model_error=none,
+            excludes=False,
+            words=words,
+            source="without information",
+            half_of_nuisances=unknown,
+        )
     ends = np.cumsum([curve.time.size for curve in curves])[:-1]
     seen = [
         curve._replace(slope=np.hstack([curve.slope @ vectors, more]))
@@ -65,14 +72,14 @@ def of(
     asks = bool((np.abs(vectors.T @ (own - shares)) > wide * along).any())
     usual = scipy.stats.norm.ppf(0.5 + 0.5 * LEVEL)
     return Posterior(
-        usual * scatter,
-        usual * whole,
-        asks,
-        "the curves exclude the scene's values"
+        half=usual * scatter,
+        half_with_model_error=usual * whole,
+        excludes=asks,
+        words="the curves exclude the scene's values"
         if asks
         else "nothing needs fitting: the scene's values are inside the 95 % intervals with model "
         "error, and are kept",
-        f"from the residuals as white noise; with model error of {100.0 * errors[0]:.2g} % in "
+        source=f"from the residuals as white noise; with model error of {100.0 * errors[0]:.2g} % in "
         f"v_x and {100.0 * errors[1]:.2g} % in the rates at the end of a curve",
-        usual * beside,
+        half_of_nuisances=usual * beside,
     )

@@ -48,7 +48,14 @@ def compiled_code(
 def _arguments(scene: Scene, numerics: Numerics | None, compliance: RailCompliance | None) -> tuple:
     """Arguments of ``integrate``."""
     begun = Run(scene, numerics or Numerics(), compliance)
-    sampling = Sampling(begun.interval, begun.last, 0, begun.whole, begun.rows, begun.forces)
+    sampling = Sampling(
+        interval=begun.interval,
+        last=begun.last,
+        number=0,
+        whole=begun.whole,
+        rows=begun.rows,
+        forces=begun.forces,
+    )
     return (
         begun.system,
         begun.plan,

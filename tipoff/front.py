@@ -123,7 +123,14 @@ def run(
             return highfi.run(scene, sizes, progress)
     chosen = arguments.numerics(lowfi.Numerics, numerics, highfi.Numerics, model)
     found = _pressed(scene, model, compliance, calibration)
-    asked = Run("lowfi", scene.name, scene, chosen, calibration, found)
+    asked = Run(
+        fidelity="lowfi",
+        label=scene.name,
+        scene=scene,
+        numerics=chosen,
+        calibration=calibration,
+        compliance=found,
+    )
     with kernel_marks.first_use(asked), kernel_marks.chosen_modes(asked) as vibrates:
         return lowfi.run(
             scene,
@@ -206,7 +213,14 @@ def ensemble(
         cases = arguments.rows(cases)
     chosen = arguments.numerics(lowfi.Numerics, options, highfi.Numerics, model)
     found = _pressed(scene, model, compliance, calibration)
-    like = Run("lowfi", scene.name, scene, chosen, calibration, found)
+    like = Run(
+        fidelity="lowfi",
+        label=scene.name,
+        scene=scene,
+        numerics=chosen,
+        calibration=calibration,
+        compliance=found,
+    )
     with kernel_marks.first_use(like, many=True):
         return lowfi.run_many(
             scene,

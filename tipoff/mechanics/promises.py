@@ -46,9 +46,23 @@ class Promises(NamedTuple):
         )
 
 
-RIGID = Promises(1e-6, 1e-4, 1e-12, 1e-11, 1e-12, ROUNDING)
+RIGID = Promises(
+    energy_error=1e-6,
+    transverse_energy_error=1e-4,
+    linear_momentum_error=1e-12,
+    angular_momentum_error=1e-11,
+    quaternion_error=1e-12,
+    rounding=ROUNDING,
+)
 # Each of some 100,000 steps sums the energies of some 100,000 nodes.
-FINITE_ELEMENTS = Promises(1e-5, 1e-2, 1e-12, 1e-8, 1e-12, 1e-11)
+FINITE_ELEMENTS = Promises(
+    energy_error=1e-5,
+    transverse_energy_error=1e-2,
+    linear_momentum_error=1e-12,
+    angular_momentum_error=1e-8,
+    quaternion_error=1e-12,
+    rounding=1e-11,
+)
 OF = {"lowfi": RIGID, "highfi": FINITE_ELEMENTS}
 CHECKS = tuple(_WORDS)
 

@@ -63,7 +63,15 @@ def warnings(scene) -> list[str]:
     )
     area = min(pad.length * pad.width for pad in scene.pads)
     springs = (
-        _Spring("stiffness", contact.stiffness, contact.exponent, contact.exponent, 1.0, 1.0, ""),
+        _Spring(
+            key="stiffness",
+            value=contact.stiffness,
+            exponent=contact.exponent,
+            lengths=contact.exponent,
+            area=1.0,
+            share=1.0,
+            share_in_words="",
+        ),
         *_layers(contact, area),
     )
     found = []
@@ -91,10 +99,24 @@ def _layers(contact, area: float) -> Iterator[_Spring]:
     """The interface, up to a tenth of the limit. If the pad has a soft layer, also both in series,
     up to the whole limit."""
     yield _Spring(
-        "interface_stiffness", contact.interface_stiffness, 1.0, 3.0, area, 0.1, "a tenth of "
+        key="interface_stiffness",
+        value=contact.interface_stiffness,
+        exponent=1.0,
+        lengths=3.0,
+        area=area,
+        share=0.1,
+        share_in_words="a tenth of ",
     )
     if contact.pad_layer is not None:
-        yield _Spring(_LAYER, contact.series_stiffness(), 1.0, 3.0, area, 1.0, "")
+        yield _Spring(
+            key=_LAYER,
+            value=contact.series_stiffness(),
+            exponent=1.0,
+            lengths=3.0,
+            area=area,
+            share=1.0,
+            share_in_words="",
+        )
 
 
 def _given(scene, spring: _Spring) -> str:

@@ -132,12 +132,12 @@ class Study:
         numbers = _numerics(lowfi.Numerics, **numerics)
         scene = self.condition(name).replace(overrides or {})
         return Run(
-            "lowfi",
-            label,
-            scene,
-            numbers,
-            calibration,
-            compliance or self.rigid_rails(scene),
+            fidelity="lowfi",
+            label=label,
+            scene=scene,
+            numerics=numbers,
+            calibration=calibration,
+            compliance=compliance or self.rigid_rails(scene),
         )
 
     def rail_compliance(

@@ -128,5 +128,10 @@ def _fitted(times: bytes, forces: bytes) -> GaussianFit | str:
         )
     residual = np.linalg.norm(force - gaussian(time, peak, centre, width)) / np.linalg.norm(force)
     return GaussianFit(
-        peak, centre, width, float(residual), peak * width * math.sqrt(2.0 * math.pi), total
+        peak=peak,
+        centre=centre,
+        width=width,
+        relative_residual=float(residual),
+        impulse=peak * width * math.sqrt(2.0 * math.pi),
+        curve_impulse=total,
     )
