@@ -87,7 +87,7 @@ def intervals(
     """
     curves = [curve for part in parts for curve in (part.velocity, *part.rate.T)]
     count = sum(map(independent, curves))
-    # at the fitted values, where the matrix is valid
+    # the value of the objective, from which the matrix was made
     squares = sum(float(part.vector() @ part.vector()) for part in parts) / len(parts)
     half = half_widths(matrix, squares, count, [item.vector for item in information.weak(matrix)])
     return ends(free, shares, half), count

@@ -23,8 +23,8 @@ _MARGIN = 1e-3  # s: a payload that turns leaves the rail later than its mass ce
 
 
 def advice(scene: Scene, run: "Trajectory") -> str:
-    """Why a ``run`` of ``scene`` has the status ``time_limit`` and which duration would do; empty
-    for any other status."""
+    """Reason why a ``run`` of ``scene`` has the status ``time_limit``, and a sufficient duration;
+    empty for any other status."""
     if run.status != "time_limit":
         return ""
     burnt = thrust_law.burnout(scene.thrust.record(), _BURNT, _HORIZON * scene.time_limit)
@@ -38,8 +38,8 @@ def advice(scene: Scene, run: "Trajectory") -> str:
 
 
 def foreseen(scene: Scene) -> str:
-    """Reason why a ``run`` of ``scene`` has the status ``time_limit``, and a sufficient duration;
-    empty for any other status."""
+    """Reason why no run of ``scene`` can settle within its stated duration, for any friction, and a
+    remedy; empty if this cannot be known in advance."""
     if not ends.is_too_short(scene):
         return ""
     least = ends.earliest(scene)
@@ -56,7 +56,7 @@ def way_to_exit(scene: Scene) -> float:
 
 
 def _without(scene: Scene) -> str:
-    """The way out that needs no number."""
+    """The remedy without a number."""
     if scene.duration is None:
         return ""
     return "; without duration a run ends by itself, once its rates have settled"
