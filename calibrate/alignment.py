@@ -1,17 +1,17 @@
 """Parameters for errors of mounting: initial position and attitude within the clearance, direction
 and line of the thrust, mass centre, products of inertia.
 
-They are changes (``scenes.changes``): one amount for all conditions, added to what each condition
-states. An error that differs from condition to condition cannot be fitted. A table that is absent
+They are changes (``scenes.changes``): one value for all conditions, added to the values of each
+condition. An error that differs from condition to condition cannot be fitted. An absent table
 counts as zero and is added.
 
-Rates show the moment of the thrust F about the mass centre alone (small tilts theta, line of thrust
+Rates show only the moment of the thrust F about the mass centre (small tilts theta, line of thrust
 e, mass centre c, arm a)::
 
     M_y = F (e_z - c_z + a theta_z)        M_z = -F (e_y - c_y + a theta_y)
 
-Before pads touch, three parameters of an axis cannot be told apart. Contact moves with the mass
-centre and the push across, so later curves may separate them.
+Before pads touch, three parameters of an axis have the same effect. Contact depends on the mass
+centre and on the lateral force, so later curves may separate them.
 """
 
 import math
@@ -39,25 +39,25 @@ NAMES = (
 
 
 def free(scene: Scene) -> list[Parameter]:
-    """The changes that a fit of ``scene`` may find; without clearance there is no room for those of
-    the initial state."""
+    """The changes that a fit of ``scene`` may find. Without clearance, the initial state cannot
+    change."""
     return [*_initial(scene), *_thrust(scene), *_mass_centre(), *_inertia(scene)]
 
 
 def changes(values: dict[str, float]) -> dict[str, float]:
-    """Those of the ``values`` of parameters by name that are changes."""
+    """The changes among the ``values`` of parameters by name."""
     return {name: value for name, value in values.items() if name in NAMES}
 
 
 def _change(name: str, unit: str, bound: float, justification: str) -> Parameter:
     return Parameter(
-        name,
-        unit,
-        -bound,
-        bound,
-        False,
-        f"a change, the same in every condition; {justification}",
-        lambda _: 0.0,
+        name=name,
+        unit=unit,
+        lower=-bound,
+        upper=bound,
+        logarithmic=False,
+        justification=f"a change, the same in every condition; {justification}",
+        read=lambda _: 0.0,
     )
 
 
@@ -132,8 +132,8 @@ def _mass_centre() -> list[Parameter]:
 
 def _inertia(scene: Scene) -> list[Parameter]:
     moments = np.linalg.eigvalsh(tensor(scene.payload.inertia))
-    # Three changes b move the principal moments by 2 b at most, and the triangle inequality allows
-    # half of what is left of it.
+    # Three changes b move the principal moments by at most 2 b, and the triangle inequality allows
+    # half of its remaining margin.
     spare = 0.5 * (moments[0] + moments[1] - moments[2])
     bound = float(min(_MOMENT * moments[0], 0.49 * spare))
     return [

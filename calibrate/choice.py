@@ -1,13 +1,13 @@
-"""Selection of the parameters of a fit on compliant contact: those that the user names, or else
-those that the curves determine. The information matrix at the scene's values decides. Candidates
-are the constants of contact and, on request (``ALL``), errors of mounting.
+"""Selection of the parameters of a fit on compliant contact: those named by the user, or else those
+that the curves determine. The information matrix at the scene's values decides. Candidates are the
+constants of contact and, on request (``ALL``), errors of mounting.
 
-From the matrix the parameter with the most information is taken, then the one with the most
-information left when those taken are fitted again, and so on: Cholesky's factorisation with diagonal
-pivoting (Golub and Van Loan, Matrix Computations, section 4.2). It ends where what is left changes
-the curves by less than 0.5 % over a tenth of the bounds (``information.WEAK_EIGENVALUE``). The others
-keep the scene's values. Of parameters that act alike, such as line of thrust and mass centre before
-any contact, one is taken.
+The parameter with the most information is taken first, then the one with the most information left
+when the taken ones are fitted again, and so on: Cholesky's factorisation with diagonal pivoting
+(Golub and Van Loan, Matrix Computations, section 4.2). It ends when the remaining information
+changes the curves by less than 0.5 % over a tenth of the bounds (``information.WEAK_EIGENVALUE``).
+The other parameters keep the scene's values. Of parameters with the same effect, such as line of
+thrust and mass centre before any contact, one is taken.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -27,8 +27,8 @@ ALL = "all"
 def parameters(
     scene: Scene, conditions: Iterable[str], fit: Sequence[str] | None, make: Callable
 ) -> tuple[list[Parameter], list[Parameter], list[str]]:
-    """Parameters of the fit, candidates that are held at the scene's values, and sentences on what
-    is no candidate. ``fit`` is None for constants of contact, ``[ALL]`` for all parameters.
+    """Parameters of the fit, candidates held at the scene's values, and sentences on parameters
+    that are no candidates. ``fit`` is None for constants of contact, ``[ALL]`` for all parameters.
     ``make`` gives the objective of a list of parameters."""
     if fit is not None and list(fit) != [ALL]:
         return named(scene, conditions, fit), [], []
@@ -49,7 +49,7 @@ def parameters(
 
 
 def most(scene: Scene, fit: Sequence[str] | None) -> int:
-    """Largest number of parameters of a fit of ``scene``, as ``fit`` asks for."""
+    """Largest number of parameters of a fit of ``scene`` for this ``fit``."""
     if fit is not None and list(fit) != [ALL]:
         return len(fit)
     return len(_candidates(scene, fit))
@@ -69,14 +69,15 @@ def _candidates(scene: Scene, fit: Sequence[str] | None) -> list[Parameter]:
 
 
 def require_parameters(scene: Scene, conditions: Iterable[str], fit: Sequence[str]) -> None:
-    """Raise CalibrationError, every fault listed, where ``fit`` cannot be fitted to ``conditions``."""
+    """Raise CalibrationError with every fault if ``fit`` cannot be fitted to ``conditions``."""
     if list(fit) != [ALL]:
         named(scene, conditions, fit)
 
 
 def named(scene: Scene, conditions: Iterable[str], names: Sequence[str]) -> list[Parameter]:
-    """The parameters under ``names``. Raises CalibrationError listing every fault: no such parameter,
-    one named twice, a table the scene lacks, a constant that a fitted condition states itself."""
+    """The parameters with these ``names``. Raises CalibrationError with every fault: an unknown
+    parameter, a repeated one, a missing table of the scene, a constant that a fitted condition
+    states itself."""
     known = {item.name: item for item in [*compliant.free(scene), *alignment.free(scene)]}
     known |= {item.name: item for item in compliant.along_axes(scene)}
     faults = [] if names else ["fit: given nothing, expected at least one parameter"]
@@ -84,7 +85,7 @@ def named(scene: Scene, conditions: Iterable[str], names: Sequence[str]) -> list
         if names.count(name) > 1:
             faults.append(f"fit: {name} is named {names.count(name)} times")
         if name == ALL:
-            faults.append(f"fit: {ALL} stands alone, without names")
+            faults.append(f"fit: given {ALL} and names, expected {ALL} or names")
         elif name not in every_name():
             meant = close(name, every_name())
             faults.append(f"fit: {name!r} is none of {', '.join(every_name())}{meant}")
@@ -116,13 +117,13 @@ def determined(matrix: np.ndarray) -> list[int]:
         taken.append(best)
         column = rest[:, best] / np.sqrt(rest[best, best])
         rest = rest - np.outer(column, column)
-        rest[taken, taken] = 0.0  # no rounding is taken again
+        rest[taken, taken] = 0.0  # rounding must not be taken again
     return sorted(taken)
 
 
 def _stated(scene: Scene, conditions: Iterable[str], name: str) -> list[str]:
-    """Sentences on conditions that state the constant ``name``: one value cannot replace those of
-    several conditions. A change is added to what they state."""
+    """Sentences on conditions that state the constant ``name``: one value cannot replace the values
+    of several conditions. A change is added to them."""
     if name in alignment.NAMES:
         return []
     return [

@@ -1,5 +1,5 @@
-"""Constants of compliant contact that a fit may determine. They are usually not measured, and the
-statics of the rail do not give them.
+"""Constants of compliant contact that a fit may determine: usually not measured, and not given by
+the statics of the rail.
 
 The interface stiffness is known to a factor (``docs/interface_stiffness.md``), as is the stiffness
 of bolted mounts (``docs/mount_stiffness.md``). Friction and clearance are known to a tolerance. The
@@ -11,7 +11,7 @@ from tipoff.mechanics.joint_terms import LEAST, MOST
 from tipoff.scenes.effects.contact import ContactTable
 from tipoff.scenes.scene import Scene
 
-_INTERFACE = 16.0  # either way
+_INTERFACE = 16.0  # factor in both directions
 CLEARANCE = "contact.clearance"
 AXES = (f"{CLEARANCE}_y", f"{CLEARANCE}_z")
 KEYS = (
@@ -24,9 +24,9 @@ KEYS = (
 
 
 def free(scene: Scene) -> list[Parameter]:
-    """The constants of the contact of ``scene``: interface stiffness, clearance where there is any
-    (along both axes where each states its own), stiffness of the mounts where they are no rigid
-    clamps, and friction if there is any; none without contact."""
+    """The constants of the contact of ``scene``: interface stiffness; clearance if it is above zero
+    (along both axes if each has its own); stiffness of the mounts if they are not rigid; friction
+    if there is any. None without contact."""
     contact = scene.contact
     if contact is None:
         return []
@@ -41,7 +41,7 @@ def free(scene: Scene) -> list[Parameter]:
 
 
 def along_axes(scene: Scene) -> list[Parameter]:
-    """Clearances of the faces along y and along z, for a fit that tells them apart."""
+    """Clearances of the faces along y and along z, for a fit of separate values."""
     contact = scene.contact
     if contact is None:
         return []
@@ -55,7 +55,7 @@ def along_axes(scene: Scene) -> list[Parameter]:
 
 
 def needs(name: str) -> str:
-    """What a scene needs to have the parameter ``name``."""
+    """Text of what a scene needs for the parameter ``name``."""
     if name == CLEARANCE:
         return f"a clearance above zero and an axis without its own ({' and '.join(AXES)})"
     if name.startswith("initial.") or name in AXES:
@@ -73,26 +73,26 @@ def _contact(scene: Scene) -> ContactTable:
 
 def _interface_stiffness(contact: ContactTable) -> Parameter:
     return Parameter(
-        "contact.interface_stiffness",
-        "N/m**3",
-        contact.interface_stiffness / _INTERFACE,
-        contact.interface_stiffness * _INTERFACE,
-        True,
-        f"{_INTERFACE:g} times less to {_INTERFACE:g} times more than the scene's: roughness and "
+        name="contact.interface_stiffness",
+        unit="N/m**3",
+        lower=contact.interface_stiffness / _INTERFACE,
+        upper=contact.interface_stiffness * _INTERFACE,
+        logarithmic=True,
+        justification=f"{_INTERFACE:g} times less to {_INTERFACE:g} times more than the scene's: roughness and "
         "pressure change it by two orders of magnitude (docs/interface_stiffness.md)",
-        lambda s: _contact(s).interface_stiffness,
+        read=lambda s: _contact(s).interface_stiffness,
     )
 
 
 def _clearance(name: str, own: float, where: str, read) -> Parameter:
     return Parameter(
-        name,
-        "m",
-        0.0,
-        2.0 * own,
-        False,
-        f"from none to twice the scene's{where}",
-        lambda s: read(_contact(s)),
+        name=name,
+        unit="m",
+        lower=0.0,
+        upper=2.0 * own,
+        logarithmic=False,
+        justification=f"from none to twice the scene's{where}",
+        read=lambda s: read(_contact(s)),
     )
 
 
@@ -102,12 +102,12 @@ def _mounts() -> Parameter:
         return scene.rail.mount_stiffness.factor
 
     return Parameter(
-        "rail.mount_stiffness.factor",
-        "1",
-        LEAST,
-        MOST,
-        True,
-        "the factors that one rail compliance serves: bolts between hand-tight and their yield, "
+        name="rail.mount_stiffness.factor",
+        unit="1",
+        lower=LEAST,
+        upper=MOST,
+        logarithmic=True,
+        justification="the factors that one rail compliance serves: bolts between hand-tight and their yield, "
         "rough and ground surfaces",
-        read,
+        read=read,
     )

@@ -26,26 +26,24 @@ COLUMNS = {
 }
 # s; a pad contact lasts milliseconds, and the settled window needs several samples
 LONGEST_STEP = 0.5 * SETTLE_WINDOW
-_ROUNDING = 1e-9  # s; instants are decimal digits of a file, in any unit
+_ROUNDING = 1e-9  # s; times are decimal numbers in a file, in any unit
 
 
 class Curves(NamedTuple):
-    """From ignition to the end of the settled window: time (n,) s, inertial v_x in scene axes (n,)
-    m/s, inertial rates in body axes (n,3) rad/s; start of the window (s), means over it of the
-    rates (3,) rad/s; text on the source of the curves."""
+    """Curves from ignition to the end of the settled window."""
 
-    time: np.ndarray
-    velocity: np.ndarray
-    rate: np.ndarray
-    window_start: float
-    settled: np.ndarray
-    source: str
+    time: np.ndarray  # (n,) s
+    velocity: np.ndarray  # (n,) m/s, inertial v_x in scene axes
+    rate: np.ndarray  # (n,3) rad/s, inertial rates in body axes
+    window_start: float  # s
+    settled: np.ndarray  # (3,) rad/s, means of the rates over the window
+    source: str  # text on the source of the curves
 
     @classmethod
     def from_trajectory(cls, run: Trajectory) -> "Curves":
         """Curves of a run that exited and settled."""
         start = run.outcome.window_start
-        assert start is not None  # as of every run that settled
+        assert start is not None  # true for every settled run
         keep = _until(run.time, start)
         return cls(
             run.time[keep],
@@ -61,9 +59,9 @@ class Curves(NamedTuple):
         """Curves of a table with the columns ``COLUMNS``; the window begins at ``settled_from``
         (s), or ends with the record.
 
-        Raises SceneError listing every fault: a file that cannot be read, columns or units that are
-        missing or of another kind, cells without a finite number, times that do not rise from
-        ignition on or leave a gap, a record too short for the window.
+        Raises SceneError with every fault: an unreadable file, columns or units that are missing or
+        of another kind, cells without a finite number, times that do not increase from ignition or
+        have a gap, a record too short for the window.
         """
         try:
             data = read_input(path)
@@ -96,8 +94,8 @@ def _until(time: np.ndarray, start: float) -> np.ndarray:
 
 
 def _mean(time: np.ndarray, values: np.ndarray, start: float) -> np.ndarray:
-    """Means (k,) of ``values`` (n,k) over the window, by straight lines: the samples may be noisy
-    and unevenly spaced."""
+    """Means (k,) of ``values`` (n,k) over the window, linear between samples: they may be noisy and
+    unevenly spaced."""
     end = min(start + SETTLE_WINDOW, time[-1])
     inside = np.concatenate([[start], time[(time > start) & (time < end)], [end]])
     lines = np.column_stack([np.interp(inside, time, column) for column in values.T])
@@ -149,7 +147,7 @@ def _ms(time: float) -> str:
 
 
 def _likely_unit(step: float) -> str:
-    """The unit that the time column has by the size of a ``step`` (s), as the end of a message."""
+    """Likely unit of the time column from the size of a ``step`` (s), as the end of a message."""
     for factor, words in ((1e-3, "ms with the unit s"), (1e-6, "us with the unit s")):
         if LONGEST_STEP < step and factor * step <= 0.5 * LONGEST_STEP and step >= 10e-3:
             return f" (likely cause: values in {words})"

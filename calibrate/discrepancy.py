@@ -1,73 +1,71 @@
-"""Uncertainty of fitted parameters with an error of the model: measured curve = model + error of
-the model + noise.
+"""Uncertainty of fitted parameters with model error: measured curve = model + model error + noise.
 
     y = f(x) + d(t) + e        Cov d(t) d(t') = (s a)^2 min(t, t') / T        e ~ N(0, v)
 
-This is the model of Kennedy and O'Hagan (J. R. Statist. Soc. B 63, 2001, 425) in its plainest form,
-with a flat prior for x. A surrogate errs in forces, and curves are their integrals: d is a Wiener
-process from ignition on, s its deviation at the end T of a curve relative to the root mean square a
+This is the model of Kennedy and O'Hagan (J. R. Statist. Soc. B 63, 2001, 425) in its simplest form,
+with a flat prior for x. A surrogate has errors of forces, and curves are their integrals. So d is a
+Wiener process from ignition; s is its deviation at the end T of a curve over the root mean square a
 of the curve. v_x has one s, and all rates share another.
 
-s maximises the likelihood from which x is integrated out (restricted likelihood, Patterson and
-Thompson, Biometrika 58, 1971, 545). v comes from differences of neighbours, in which a slow error
-cancels (von Neumann, Ann. Math. Stat. 12, 1941, 367). What of d looks like the effect of a parameter
-is invisible in the residuals (Brynjarsdottir and O'Hagan, Inverse Problems 30, 2014, 114007), so s is
-not below ``LEAST``, the best agreement with the finite elements that is measured.
+s maximises the likelihood with x integrated out (restricted likelihood, Patterson and Thompson,
+Biometrika 58, 1971, 545). v comes from differences of neighbours, in which a slow error cancels
+(von Neumann, Ann. Math. Stat. 12, 1941, 367). A part of d with the effect of a parameter is
+invisible in the residuals (Brynjarsdottir and O'Hagan, Inverse Problems 30, 2014, 114007). So s is
+at least ``LEAST``, the best measured agreement with the finite elements.
 
-The fit has weights w = 1 / mean(r^2) for each curve c. About it the residuals r are linear, and x is
-Gaussian with::
+The fit has weights w = 1 / mean(r^2) for each curve c. Near the fit the residuals r are linear, and
+x is Gaussian with::
 
     dx = sum_c A_c (d_c + e_c)        A_c = (sum w J'J)^-1 w_c J_c'
     sd(dx_i)^2 = sum_c var(A_c e_c)_i + (sum_c sd(A_c d_c)_i)^2
 
-Deviations of model error are added, since two curves may hold the same error. This covers whatever
-correlation they have.
+Deviations of model error are added, since two curves may have the same error. This is sufficient
+for any correlation between them.
 """
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import scipy  # its parts load when they are first used
+import scipy  # its submodules load at their first use
 
 VELOCITY, RATE = 0, 1  # kinds of curves
-LEAST = (1e-4, 5e-3)  # least s by kind: 0.5 % of a rate, a fiftieth of that of v_x
+LEAST = (1e-4, 5e-3)  # least s by kind: 0.5 % of a rate, a fiftieth of this for v_x
 _MOST = 1.0
 _ROUNDING = 1e-6  # of the curve: the tolerance of a run
 
 
 class Curve(NamedTuple):
-    """One curve: times (n,) s since ignition, what the fit leaves of it (n,), its slopes (n,p) to the
-    parameters' shares, its root mean square ``size``, and its kind, VELOCITY or RATE."""
+    """One curve and its fit."""
 
-    time: np.ndarray
-    left: np.ndarray
-    slope: np.ndarray
-    size: float
-    kind: int
+    time: np.ndarray  # (n,) s since ignition
+    left: np.ndarray  # (n,) residual of the fit
+    slope: np.ndarray  # (n,p) to the parameters' shares
+    size: float  # root mean square
+    kind: int  # VELOCITY or RATE
 
     @property
     def noise(self) -> float:
-        """Variance of the noise, not below the rounding of a run."""
+        """Variance of the noise, at least the rounding of a run."""
         white = 0.5 * float(np.mean(np.diff(self.left) ** 2))
         return max(white, (_ROUNDING * self.size) ** 2)
 
     @property
     def weight(self) -> float:
-        """Weight of its squared residuals in a fit."""
+        """Weight of the squared residuals in a fit."""
         return 1.0 / max(float(np.mean(self.left**2)), (_ROUNDING * self.size) ** 2)
 
     def steps(self, deviation: float) -> np.ndarray:
-        """Variance (n,) of what the error of the model gains since the sample before, for its
+        """Variance (n,) of the increase of the model error since the sample before, for its
         relative ``deviation``."""
         since = np.diff(np.append(0.0, self.time)) / self.time[-1]
-        # an error at ignition is a rounding; zero would make the covariance singular
+        # the error at ignition is rounding; zero would make the covariance singular
         return (deviation * self.size) ** 2 * np.maximum(since, 1e-9)
 
 
 def likeliest(curves: Sequence[Curve]) -> tuple[float, float]:
-    """The relative deviations s of v_x and of the rates that make the curves likeliest, whatever the
-    parameters; not below ``LEAST``."""
+    """The relative deviations s of v_x and of the rates with the largest likelihood for any
+    parameters; at least ``LEAST``."""
     limits = np.log([(least, _MOST) for least in LEAST])
 
     def surprise(logarithms: np.ndarray) -> float:
@@ -119,18 +117,18 @@ def whitened(curve: Curve, deviation: float, columns: np.ndarray) -> tuple[np.nd
 def deviations(
     curves: Sequence[Curve], errors: Sequence[float], directions: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Standard deviations (p,) of the fitted shares by scatter alone, what is left counting as white
-    noise, and with the errors of the model, of relative deviations ``errors``.
+    """Standard deviations (p,) of the fitted shares: with residuals as white noise only, and with
+    model errors of the relative deviations ``errors``.
 
-    The slopes of the ``curves`` are along the ``directions`` (p,k) of the shares, unit vectors of
-    which each has an effect.
+    The slopes of the ``curves`` are along the ``directions`` (p,k) of the shares, unit vectors with
+    an effect.
     """
     inverse = np.linalg.inv(sum(curve.weight * curve.slope.T @ curve.slope for curve in curves))
     noise, model = np.zeros(len(directions)), np.zeros(len(directions))
     for curve in curves:
         share = curve.weight * directions @ inverse @ curve.slope.T  # (p,n)
         noise += curve.noise * (share**2).sum(axis=1)
-        # what a step of the error moves: everything after it
+        # a step of the error changes everything after it
         after = np.cumsum(share[:, ::-1], axis=1)[:, ::-1]
         model += np.sqrt((after**2 * curve.steps(errors[curve.kind])).sum(axis=1))
     scatter = np.diag(directions @ inverse @ directions.T)

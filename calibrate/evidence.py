@@ -13,9 +13,9 @@ from tipoff.calibration.parameters import Parameter
 from tipoff.calibration.search import Found, Plan
 from tipoff.scenes.scene import Scene
 
-_ON_BOUND = 1e-3  # share of the bounds; a value so close to a bound counts as on it
-_NOTHING = 1e-12  # rounding of the information matrix, of its largest eigenvalue
-_ALIKE = 0.1  # share of its information left, below which a parameter acts as others do
+_ON_BOUND = 1e-3  # share of the bounds; a closer value counts as on the bound
+_NOTHING = 1e-12  # of the largest eigenvalue of the information matrix; less is rounding
+_ALIKE = 0.1  # remaining share of its information, below which a parameter acts like others
 
 
 def residuals(part: Parts, wanted: Target) -> dict[str, float]:
@@ -37,8 +37,8 @@ def weak_directions(
     matrix: np.ndarray,
     ratio: float = information.WEAK_RATIO,
 ) -> list[str]:
-    """Sentences on weak directions (``information.weak``), on parameters that are held for that
-    reason, and on values at a bound.
+    """Sentences on weak directions (``information.weak``), on parameters held because of them, and
+    on values at a bound.
 
     ``matrix`` is the information on free and held parameters together, in this order.
     """
@@ -61,7 +61,7 @@ def weak_directions(
 
 
 def _why(matrix: np.ndarray, names: list[str], index: int) -> str:
-    """Why the parameter ``index``, which is not among the first, the fitted ``names``, is held."""
+    """Reason why the parameter ``index``, not one of the fitted ``names`` at the start, is held."""
     fitted, alone = range(len(names)), matrix[index, index]
     left = information.left_alone(matrix, index, fitted)
     largest = float(np.linalg.eigvalsh(matrix)[-1])
@@ -80,22 +80,22 @@ def _why(matrix: np.ndarray, names: list[str], index: int) -> str:
 def intervals(
     free: list[Parameter], shares: np.ndarray, matrix: np.ndarray, parts: list[Parts]
 ) -> tuple[list[list[float]], float]:
-    """Interval of every free parameter (SI), and the number of independent residuals these rest on.
+    """Interval of every free parameter (SI), and the number of independent residuals.
 
-    Infinite where the curves do not determine the parameter: in a weak direction, on a bound, or with
+    Infinite if the curves do not determine the parameter: in a weak direction, on a bound, or with
     an interval wider than the bounds, where linear theory is not valid.
     """
     curves = [curve for part in parts for curve in (part.velocity, *part.rate.T)]
     count = sum(map(independent, curves))
-    # the objective, to which the matrix belongs
+    # the value of the objective, from which the matrix was made
     squares = sum(float(part.vector() @ part.vector()) for part in parts) / len(parts)
     half = half_widths(matrix, squares, count, [item.vector for item in information.weak(matrix)])
     return ends(free, shares, half), count
 
 
 def ends(free: list[Parameter], shares: np.ndarray, half: np.ndarray) -> list[list[float]]:
-    """Ends (SI) of intervals of half widths (p,) about the ``shares``; infinite for a parameter on a
-    bound, and where an interval is wider than the bounds."""
+    """Ends (SI) of intervals of half widths (p,) about the ``shares``; infinite for a parameter on
+    a bound or with an interval wider than the bounds."""
     bounded = (half < 0.5) & ~_on_bound(shares)
     return [
         [item.value(share - width), item.value(share + width)] if inside else [-math.inf, math.inf]
@@ -116,7 +116,7 @@ def provenance(
     evaluations: int,
     intervals: str,
 ) -> dict[str, str]:
-    """Text and hashes on the source of the constants, with what the ``intervals`` rest on."""
+    """Text and hashes on the source of the constants, with the basis of the ``intervals``."""
     exponent, stiffness = constants.get("contact.exponent", 1.0), constants.get("contact.stiffness")
     basins = "; ".join(
         f"{value:.6g} at " + ", ".join(f"{share:.4f}" for share in shares)

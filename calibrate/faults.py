@@ -15,10 +15,9 @@ class CalibrationError(InputError):
 
 
 def check(scene: Scene, references: Mapping[str, Trajectory | Curves]) -> None:
-    """Raise CalibrationError listing every fault of the input; SceneError for a condition the scene
-    does not have.
+    """Raise CalibrationError with every fault of the input, SceneError for an unknown condition.
 
-    Runs must cover ``agreement.fitted``; curves from elsewhere are fitted as they come.
+    Runs must cover ``agreement.fitted``; other curves are fitted as given.
     """
     if not isinstance(references, Mapping):
         expected = "runs or calibration.Curves by the name of their condition"
@@ -52,15 +51,15 @@ def check(scene: Scene, references: Mapping[str, Trajectory | Curves]) -> None:
 
 
 def require_model(scene: Scene, model: str, fit: Sequence[str] | None) -> None:
-    """Raise CalibrationError where springs cannot be fitted: without contact there are none, and
-    their law of contact says what is fitted."""
+    """Raise CalibrationError if springs cannot be fitted: without contact there are no springs, and
+    their contact law determines the parameters."""
     faults = []
     if model == SPRINGS and scene.contact is None:
         faults.append("contact: given no table, expected one: without contact there are no springs")
     if model == SPRINGS and fit is not None:
         faults.append(
-            f"fit: given {', '.join(fit)}, expected none with springs, whose law of contact says "
-            "what is fitted"
+            f"fit: given {', '.join(fit)}, expected none with springs, whose contact law determines "
+            "the parameters"
         )
     if faults:
         raise CalibrationError("\n  ".join([f"cannot calibrate {scene.name}", *faults]))
@@ -75,7 +74,7 @@ def _unfit(scene: Scene, reference: Trajectory | Curves) -> list[str]:
             else [f"is {reference.status}, expected exited: no settled rate can be fitted"]
         )
     (burnt,) = thrust.burnouts(scene.thrust.record(), (1e-3,), scene.time_limit)
-    # a record ends with a sample, seldom with the window
+    # a record ends with a sample, usually not with the window
     last_step = float(reference.time[-1] - reference.time[-2])
     found = []
     if reference.window_start < burnt - last_step:

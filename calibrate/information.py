@@ -3,7 +3,7 @@
 J is the Jacobian of the weighted residuals with respect to the parameters' shares (0..1 of their
 bounds). An eigenvalue is the second-order growth of the objective per unit of its direction. A
 change of sqrt(noise^2 / eigenvalue) along a direction changes the objective as much as a relative
-``noise``.
+``noise`` does.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,8 +13,8 @@ import numpy as np
 
 # Large against the surrogate's tolerance (1e-6), small against the width of a basin (about 0.1).
 DIFFERENCE_STEP = 1e-3
-# Curves that are fitted to some percent do not determine a direction in which a tenth of the bounds
-# changes them by 0.5 % of their amplitude.
+# If curves are fitted to some percent, they do not determine a direction in which a tenth of the
+# bounds changes them by 0.5 % of their amplitude.
 WEAK_EIGENVALUE = (0.005 / 0.1) ** 2
 WEAK_RATIO = 1e-3
 ROUNDING = 1e-10  # of the largest eigenvalue: rounding of differences
@@ -40,11 +40,11 @@ def information(matrix: np.ndarray) -> np.ndarray:
 
 
 class Weak(NamedTuple):
-    """A weak direction: its eigenvalue, the ratio to the largest one, and the unit vector (p,)."""
+    """A weak direction."""
 
     eigenvalue: float
-    ratio: float
-    vector: np.ndarray
+    ratio: float  # to the largest eigenvalue
+    vector: np.ndarray  # (p,) unit vector
 
 
 def weak(matrix: np.ndarray, ratio: float = WEAK_RATIO) -> list[Weak]:
@@ -70,7 +70,7 @@ def weak_directions(matrix: np.ndarray, names: list[str], ratio: float = WEAK_RA
 
 
 def left_alone(matrix: np.ndarray, index: int, others: Sequence[int] | None = None) -> float:
-    """Information on parameter ``index`` that is left when the ``others``, None for all, are fitted
+    """Information on parameter ``index`` that remains when the ``others`` (None: all) are fitted
     again: their Schur complement."""
     if others is None:
         others = [other for other in range(len(matrix)) if other != index]

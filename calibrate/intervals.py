@@ -8,19 +8,19 @@ This is the linear theory of least squares (Seber and Wild, Nonlinear Regression
 correlation time of its residuals in samples (``calibration.correlation``).
 
 A parameter with a component in a weak direction has an infinite interval. Model error counts as
-scatter here, but it also shifts the constants; these intervals do not contain that shift.
+scatter here. It also shifts the constants, and these intervals do not contain that shift.
 """
 
 from collections.abc import Sequence
 
 import numpy as np
-import scipy  # its parts load when they are first used
+import scipy  # its submodules load at their first use
 
 from tipoff.calibration.correlation import correlation_time
 from tipoff.calibration.information import ROUNDING
 
 LEVEL = 0.95
-# of a unit vector, from which on a parameter belongs to a direction, as in
+# least component of a unit vector for which a parameter belongs to a direction, as in
 # ``information.combination``
 PART = 0.1
 
@@ -28,11 +28,11 @@ PART = 0.1
 def deviations(
     matrix: np.ndarray, variance: float, unobserved: Sequence[np.ndarray] = ()
 ) -> np.ndarray:
-    """Standard deviations (p,) of parameters with the information ``matrix`` (p,p) on residuals of
-    that variance.
+    """Standard deviations (p,) of parameters with the information ``matrix`` (p,p) from residuals
+    of this ``variance``.
 
-    Infinite for parameters with a part in a direction of no information, or in one of ``unobserved``,
-    unit vectors (p,).
+    Infinite for parameters with a component in a direction without information, or in one of
+    ``unobserved``, unit vectors (p,).
     """
     values, vectors = np.linalg.eigh(matrix)
     least = ROUNDING * values[-1]
@@ -50,7 +50,7 @@ def half_widths(
     """Half widths (p,) of the intervals from the sum of squared residuals and the number of
     independent ones.
 
-    All infinite where that number is not above the number of parameters.
+    All infinite unless there are more independent residuals than parameters.
     """
     freedom = count - len(matrix)
     if freedom <= 0.0:
@@ -61,6 +61,6 @@ def half_widths(
 
 
 def independent(curve: np.ndarray) -> float:
-    """Number of independent residuals in those of one curve (n,), between 1 and n; 0 for a curve
-    without any residual."""
+    """Number of independent residuals among those of one curve (n,), from 1 to n; 0 for a curve
+    without residuals."""
     return curve.size / correlation_time([curve]) if curve.any() else 0.0

@@ -1,7 +1,7 @@
-"""Judgement of curves before their fit is believed: v_x against the model, and rates under other units,
+"""Check of curves before their fit is accepted: v_x against the model, and rates under other units,
 signs and axes.
 
-v_x after the thrust is the impulse over the mass, up to friction, which the model contains. So its
+After the thrust v_x is impulse over mass, except for friction, which the model contains. So its
 ratio to the model's must be 1 within ``VELOCITY``.
 
 Rates are compared by the relative misfit of a transformation T of the curves y, on points f that the
@@ -9,22 +9,22 @@ search visited::
 
     e(T)^2 = (|T y - f|^2 - noise) / max(|T y|^2 - noise, |f|^2)        |a|^2 = int a . a dt
 
-e is 0 for equal curves, about 1 for a wrong unit, and 2 for a wrong sign. T is the identity, a factor
-between units, or one of the 47 other exchanges of axes with signs. Before the first contact the rates
-are those of free flight, which no constant of contact changes. So this part (``Misfits.flight``)
-tells a wrong curve from a model that errs in contact.
+e is 0 for equal curves, about 1 for a wrong unit, and 2 for a wrong sign. T is the identity, a
+factor between units, or one of the 47 other permutations of axes with signs. Before the first
+contact the rates are those of free flight, which no constant of contact changes. So this part
+(``Misfits.flight``) distinguishes a wrong curve from a model error in contact.
 
-A curve is refused where more of its free flight is left than explained (e^2 > 1/2), where compliant
-contact leaves more of the whole than there is (e > 1), and where another
-T has a misfit so much smaller that the F distribution of the ratio of both mean squares gives it a
-probability below 1e-3, with Bonferroni's correction for the number of T. The number of independent
-residuals is that of ``intervals.independent``.
+A curve is refused in three cases. More than half of its free flight is unexplained (e^2 > 1/2).
+Compliant contact explains nothing of the whole (e > 1). Or another T has a much smaller misfit: the
+F distribution of the ratio of both mean squares gives it a probability below 1e-3, with
+Bonferroni's correction for the number of T. ``intervals.independent`` gives the number of
+independent residuals.
 """
 
 import math
 
 import numpy as np
-import scipy  # its parts load when they are first used
+import scipy  # its submodules load at their first use
 
 from tipoff.calibration import rivals
 from tipoff.calibration.faults import CalibrationError
@@ -45,9 +45,9 @@ from tipoff.calibration.posterior import Posterior
 from tipoff.mechanics.models import COMPLIANT
 from tipoff.mechanics.trajectory import Trajectory
 
-HALF = math.sqrt(0.5)  # misfit from which on more is left than explained
-SAID = 0.1  # misfit that a verdict states
-NOTHING = 1.0  # misfit from which on nothing is explained
+HALF = math.sqrt(0.5)  # misfit above which more is unexplained than explained
+SAID = 0.1  # misfit above which the verdict states it
+NOTHING = 1.0  # misfit above which nothing is explained
 _PROBABILITY = 1e-3
 
 
@@ -59,7 +59,7 @@ class Library:
         self.points: list[dict[str, Misfits]] = []
 
     def add(self, runs: dict[str, Trajectory], offsets: dict[str, float]) -> None:
-        """Keep the misfits of one point."""
+        """Add the misfits of one point."""
         self.points.append(
             {
                 name: misfits(wanted, runs[name], offsets[name], self.touch[name])
@@ -70,8 +70,8 @@ class Library:
     def reasons(
         self, runs: dict[str, Trajectory], offsets: dict[str, float], flight: bool
     ) -> dict[str, tuple[float, Kind, float]]:
-        """Of each condition whose rates do not fit the ``runs`` of the end of the search: the misfit,
-        the likely transformation, and the misfit that it leaves. ``flight`` is False where errors of
+        """For each condition whose rates do not fit the ``runs`` at the end of the search: the
+        misfit, the likely transformation, and the misfit with it. ``flight`` is False if errors of
         mounting are fitted, which change free flight too."""
         best, found = self._together(), {}
         for name, wanted in self.targets.items():
@@ -100,7 +100,7 @@ class Library:
     def _reason(
         self, own: Misfits, best: tuple[Kind, Misfits], count: float, flight: bool
     ) -> tuple[float, Kind, float] | None:
-        """Misfit, likely transformation and its misfit, of curves that are refused; None for others."""
+        """Misfit, likely transformation and its misfit, of refused curves; None for others."""
         kind, there = best
         index = next(number for number, item in enumerate(KINDS) if item is kind)
         bound = scipy.stats.f.isf(_PROBABILITY / len(KINDS), count, count)
@@ -140,14 +140,14 @@ def _simplest(found: Misfits) -> int:
 
 
 class Bench:
-    """The judgement of the curves of one fit: offsets in time (by condition), what the search visited,
-    and whether the fit leaves free flight as it is."""
+    """Check of the curves of one fit: offsets in time by condition, points of the search, and
+    whether the fit keeps free flight."""
 
     def __init__(self, offsets: dict[str, Offset], library: Library, flight: bool):
         self.offsets, self.library, self.flight = offsets, library, flight
 
     def ready(self, objective: Objective) -> Objective:
-        """``objective`` with the offsets that are seen, and with the library of the search."""
+        """``objective`` with the detected offsets and the library of the search."""
         objective.offsets = {
             name: item.value if item.is_seen else 0.0 for name, item in self.offsets.items()
         }
@@ -171,7 +171,7 @@ class Bench:
         _refuse(objective, found)
 
     def words(self, objective: Objective, shares: np.ndarray) -> list[str]:
-        """Sentences on offsets that are corrected and on errors that are left at ``shares`` (p,)."""
+        """Sentences on corrected offsets and on the remaining errors at ``shares`` (p,)."""
         runs = objective.runs(shares)
         found = [
             f"{item.words(name)}, which the fit corrects"
@@ -190,7 +190,7 @@ class Bench:
         """The verdict of a fit whose values are at ``shares`` (p,), with the fitted ``offsets``."""
         left = _left(objective, objective.runs(shares))
         words = judged.words
-        if left and not judged.asks:
+        if left and not judged.excludes:
             words = words.replace("nothing needs fitting: ", "", 1)
         late = [
             f"{item.words(name)}, which the fit corrects"
@@ -201,10 +201,10 @@ class Bench:
 
 
 def before(objective: Objective, moves_free_flight: bool) -> Bench:
-    """The judgement of the curves of an ``objective`` without parameters, before any search.
+    """Check of the curves of an ``objective`` without parameters, before any search.
 
-    Raises CalibrationError for a v_x that is not the model's, and where the fit leaves free flight
-    as it is, for rates that are not those of free flight.
+    Raises CalibrationError for a v_x that differs from the model's and, if the fit keeps free
+    flight, for rates that differ from those of free flight.
     """
     none = np.zeros(0)
     runs, wanted = objective.runs(none), objective.targets
@@ -247,8 +247,8 @@ def _left(objective: Objective, runs: dict[str, Trajectory]) -> list[str]:
 
 
 def _unexplained(objective: Objective, runs: dict[str, Trajectory]) -> list[str]:
-    """Sentences on rates of which compliant contact explains nothing: more is left than there is.
-    Springs may miss that much where contact decides."""
+    """Sentences on rates of which compliant contact explains nothing: the residual is larger than
+    the rates. Springs may have such a residual if contact decides."""
     found = []
     for name, wanted in objective.targets.items() if objective.model == COMPLIANT else ():
         whole = misfits(wanted, runs[name], objective.offsets[name], 0.0).whole

@@ -12,12 +12,12 @@ from tipoff.calibration.objective import Target, sampled
 from tipoff.mechanics.trajectory import Trajectory
 
 VELOCITY = 0.05  # largest relative error of v_x: thrust and mass of a test are known better
-_SIGNAL = 5.0  # standard deviations of the noise's power, above which a segment is judged
-NEAR = 1.5  # misfits within this factor are equal: the simplest transformation is taken
-_FEWEST = 8  # samples of a segment that is judged
+_SIGNAL = 5.0  # standard deviations of the noise's power; a weaker segment is not judged
+NEAR = 1.5  # misfits within this factor count as equal: the simplest transformation is taken
+_FEWEST = 8  # samples of a segment; a shorter one is not judged
 
 _TURN = 180.0 / math.pi
-# data over model: what the cells hold, what the header says
+# data over model: unit of the values, unit in the header
 _RATES = (
     (_TURN, "values in deg/s with the unit rad/s"),
     (1.0 / _TURN, "values in rad/s with the unit deg/s"),
@@ -46,11 +46,11 @@ _NAMES = ("rate_x", "rate_y", "rate_z")
 
 
 class Kind(NamedTuple):
-    """A transformation T y = turn y (3,3), the number of changes that it makes, and its words."""
+    """A transformation T y = turn y."""
 
-    turn: np.ndarray
-    changes: int
-    words: str
+    turn: np.ndarray  # (3,3)
+    changes: int  # number of changes that it makes
+    words: str  # description
 
 
 def _kinds() -> list[Kind]:
@@ -88,11 +88,11 @@ _TURNS = np.array([kind.turn for kind in KINDS])
 
 
 class Misfits(NamedTuple):
-    """Misfits (k,) of all ``KINDS``: of the whole curve and of the free flight, None for a segment
-    without a signal above its noise; a run that did not exit has none at all."""
+    """Misfits (k,) of all ``KINDS``; None for a segment without a signal above its noise, and for a
+    run that did not exit."""
 
-    whole: np.ndarray | None
-    flight: np.ndarray | None
+    whole: np.ndarray | None  # of the whole curve
+    flight: np.ndarray | None  # of the free flight
 
 
 def first_touch(run: Trajectory) -> float:
@@ -102,8 +102,8 @@ def first_touch(run: Trajectory) -> float:
 
 
 def misfits(wanted: Target, run: Trajectory, offset: float, touch: float) -> Misfits:
-    """The misfits of the curves ``wanted``, late by ``offset`` (s), from a ``run``; free flight lasts
-    until ``touch`` (s)."""
+    """The misfits of the curves ``wanted``, late by ``offset`` (s), from a ``run``; free flight
+    lasts until ``touch`` (s)."""
     if run.status != "exited":
         return Misfits(None, None)
     model = sampled(run, wanted.time - offset)[:, 1:]
@@ -127,13 +127,13 @@ def _misfits(wanted: Target, model: np.ndarray, keep: np.ndarray) -> np.ndarray 
     loud = weights.sum() * (_TURNS**2 @ noise).sum(axis=1)
     left = turned - 2.0 * np.einsum("kij,ji->k", _TURNS, cross) + power
     whole = np.maximum(turned - loud, power)
-    # what noise and the least error of a model leave by chance
+    # due to noise and the least model error
     least = np.maximum(scatter * loud / max(floor, 1e-300), LEAST[RATE] ** 2 * whole)
     return np.sqrt(np.maximum(left - loud, least) / whole)
 
 
 def velocity_faults(name: str, wanted: Target, run: Trajectory) -> list[str]:
-    """Sentences on a v_x that is not that of the model after the thrust."""
+    """Sentences on a v_x that differs from the model after the thrust."""
     if run.status != "exited" or run.outcome.velocity is None:
         return []
     late = wanted.time >= wanted.window_start
@@ -153,13 +153,13 @@ def velocity_faults(name: str, wanted: Target, run: Trajectory) -> list[str]:
         words = "the sign" if abs(size - 1.0) <= VELOCITY else f"the sign, and {words}"
     return [
         f"velocity_x of {name} settles at {mean:.4g} m/s, and the model at {model:.4g} m/s, which is "
-        f"impulse over mass without what friction takes: ratio {ratio:.4g}, expected 1 within "
+        f"impulse over mass minus the loss by friction: ratio {ratio:.4g}, expected 1 within "
         f"{100.0 * VELOCITY:g} %. Likely cause: {words}"
     ]
 
 
 def shape_faults(name: str, wanted: Target, run: Trajectory, offset: float) -> list[str]:
-    """Sentences on a v_x whose shape is not that of the model, at the best ``offset``."""
+    """Sentences on a v_x whose shape differs from the model, at the best ``offset``."""
     if run.status != "exited":
         return []
     left = wanted.velocity - sampled(run, wanted.time - offset)[:, 0]

@@ -5,13 +5,13 @@
     L2(rate)^2 = sum_axes int |w - w_ref|^2 dt / sum_axes int |w_ref|^2 dt,  L2(v_x) likewise
     w_s: settled rates
 
-Every term is relative to the condition's own amplitude, so a condition with small rates counts as
-much as one with large ones, and roll counts by its size instead of by its noise. Rates and v_x are
-wanted to 5 % and 0.1 %: 50 makes those equally wrong, and lets the few mm/s friction takes be seen.
-The settled rates are what the payload leaves with; a late contact has little time left in the
-integrals. J is rough: where a contact is just missed, everything after it jumps. An amplitude below
-a hundredth of the largest of all conditions is taken as that hundredth: nothing is gained by
-fitting the rounding of a condition without rates.
+Every term is relative to the condition's own amplitude. So a condition with small rates has the
+same weight as one with large ones, and roll is weighted by its size and not by its noise. Rates are
+required to 5 %, v_x to 0.1 %: the factor 50 makes both equally wrong, and makes the few mm/s of
+friction visible. The settled rates are the result for the payload; a late contact has only a short
+time in the integrals. J is rough: if a contact is just missed, everything after it jumps.
+Amplitudes are at least a hundredth of the largest of all conditions: a fit to the rounding of a
+condition without rates has no value.
 
 A curve may be late: y(t) = f(t - offset), with one offset for each condition (``offsets``).
 """
@@ -20,7 +20,7 @@ from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 import numpy as np
-import scipy  # its parts load when they are first used
+import scipy  # its submodules load at their first use
 
 from tipoff import lowfi
 from tipoff.calibration import alignment
@@ -36,23 +36,21 @@ from tipoff.scenes.variation import Variations
 
 VELOCITY_WEIGHT = 50.0
 SMALLEST_AMPLITUDE = 0.01
-# relative error of a run that diverged, jammed or did not settle: worse than any that did
+# relative error of a run that diverged, jammed or did not settle: above that of any other run
 FAILED = 10.0
 
 
 class Target(NamedTuple):
-    """One condition: its scene, times (n,) s, reference v_x (n,) m/s, rates (n,3) and settled rates
-    (3,) rad/s, and the amplitudes sqrt(int v_x^2 dt), sqrt(int |w|^2 dt), |w_s|; start of the settled
-    window (s)."""
+    """One condition of a fit."""
 
     scene: Scene
-    time: np.ndarray
-    velocity: np.ndarray
-    rate: np.ndarray
-    settled: np.ndarray
-    weights: np.ndarray
-    amplitudes: tuple[float, float, float]
-    window_start: float
+    time: np.ndarray  # (n,) s
+    velocity: np.ndarray  # (n,) m/s, reference v_x
+    rate: np.ndarray  # (n,3) rad/s
+    settled: np.ndarray  # (3,) rad/s, settled rates
+    weights: np.ndarray  # (n,) s, of the integrals
+    amplitudes: tuple[float, float, float]  # sqrt(int v_x^2 dt), sqrt(int |w|^2 dt), |w_s|
+    window_start: float  # s, of the settled window
 
 
 def target(scene: Scene, reference: Curves) -> Target:
@@ -70,12 +68,21 @@ def target(scene: Scene, reference: Curves) -> Target:
         float(np.sqrt(weights @ (rate**2).sum(axis=1))),
         float(np.linalg.norm(settled)),
     )
-    return Target(scene, time, velocity, rate, settled, weights, amplitudes, reference.window_start)
+    return Target(
+        scene=scene,
+        time=time,
+        velocity=velocity,
+        rate=rate,
+        settled=settled,
+        weights=weights,
+        amplitudes=amplitudes,
+        window_start=reference.window_start,
+    )
 
 
 def targets(scene: Scene, references: dict[str, Curves]) -> dict[str, Target]:
-    """Targets by condition, with small amplitudes raised. Raises CalibrationError when nothing
-    moves or nothing turns."""
+    """Targets by condition, with small amplitudes raised. Raises CalibrationError if all velocities
+    or all rates are zero."""
     found = {
         name: target(scene.condition(name), reference) for name, reference in references.items()
     }
@@ -93,12 +100,11 @@ def targets(scene: Scene, references: dict[str, Curves]) -> dict[str, Target]:
 
 
 class Parts(NamedTuple):
-    """Weighted residuals of one condition: squared sums are L2(v_x)^2, L2(rate)^2 and the relative
-    settled error squared."""
+    """Weighted residuals of one condition."""
 
-    velocity: np.ndarray
-    rate: np.ndarray
-    settled: np.ndarray
+    velocity: np.ndarray  # sum of squares: L2(v_x)^2, weighted
+    rate: np.ndarray  # sum of squares: L2(rate)^2
+    settled: np.ndarray  # sum of squares: relative settled error squared
 
     def vector(self) -> np.ndarray:
         """Residuals whose squared sum is the condition's share of J times n."""
@@ -106,15 +112,15 @@ class Parts(NamedTuple):
 
 
 def sampled(result: Trajectory, time: np.ndarray) -> np.ndarray:
-    """v_x (m/s) and rates (rad/s) of a run, (n,4), at times (n,): at rest before ignition, and as at
-    its end after it. Cubic between samples, so that a shift of time keeps the shape of a curve."""
+    """v_x (m/s) and rates (rad/s) of a run, (n,4), at times (n,); constant before ignition and
+    after its end. Cubic between samples, so that a shift of time keeps the shape of a curve."""
     columns = np.column_stack([result.velocity[:, 0], result.rate])
     curve = scipy.interpolate.CubicSpline(result.time, columns)
     return curve(np.clip(time, result.time[0], result.time[-1]))
 
 
 def compare(target: Target, result: Trajectory, offset: float = 0.0) -> Parts:
-    """Residuals of a surrogate's run of the target's condition, whose curves are late by ``offset``
+    """Residuals of a surrogate's run of the target's condition; its curves are late by ``offset``
     (s)."""
     root = np.sqrt(target.weights)
     moving, turning, leaving = target.amplitudes
@@ -135,10 +141,10 @@ def compare(target: Target, result: Trajectory, offset: float = 0.0) -> Parts:
 
 
 class Library(Protocol):
-    """What a search leaves for the judgement of its curves."""
+    """Receiver of the runs of a search, for the check of its curves."""
 
     def add(self, runs: dict[str, Trajectory], offsets: dict[str, float]) -> None:
-        """Keep runs (by condition) of one point of the search."""
+        """Add the runs (by condition) of one point of the search."""
 
 
 class Objective:
@@ -146,9 +152,9 @@ class Objective:
     evaluations.
 
     ``over`` applies a function to every condition, in order: ``map``, or that of a pool of threads,
-    since the surrogate's kernels release the interpreter. The result has the same bits with both.
-    Runs are on compliant contact with a rail ``compliance``, on springs without one or, where the
-    rails are warm, with a rigid one.
+    since the surrogate's kernels release the interpreter lock. Both give the same bits. Runs use
+    compliant contact with a rail ``compliance``, springs without one or, if the rails are warm,
+    with a rigid one.
     """
 
     def __init__(
@@ -162,7 +168,7 @@ class Objective:
     ):
         self.model = model_of(scene, compliance)
         self.scene, self.targets, self.parameters = scene, targets, parameters
-        # a number of modes that changes from trial to trial would make the objective jump
+        # a number of modes that changes between trials would make the objective jump
         self.numerics, self.over, self.compliance = (
             numerics or lowfi.Numerics(modes=0),
             over,
@@ -182,15 +188,15 @@ class Objective:
         }
 
     def runs(self, shares: np.ndarray) -> dict[str, Trajectory]:
-        """The surrogate's runs by condition. Those of the last shares are kept: an offset needs no
-        other run."""
+        """The surrogate's runs by condition. The last runs are kept, because a changed offset needs
+        no new run."""
         if self._last is not None and self._last[0] == shares.tobytes():
             return self._last[1]
         self.evaluations += 1
         values = self.values(shares)
         constants, changes = overrides(self.scene, values), alignment.changes(values)
         if self.compliance is not None and self.model == COMPLIANT:
-            self.compliance.of(self.scene.replace(constants))  # once, and not in each thread
+            self.compliance.of(self.scene.replace(constants))  # once, not in each thread
 
         def one(name: str) -> Trajectory:
             change = added.overrides(self.targets[name].scene, changes)

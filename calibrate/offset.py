@@ -1,14 +1,14 @@
 """Offset in time of measured curves: y(t) = f(t - offset).
 
-v_x during the thrust determines the offset, since the contact hardly changes v_x. The estimate is the
-least squares of v_x over the offset, first on a grid. Its uncertainty contains noise and model error
+v_x during the thrust determines the offset, because contact hardly changes v_x. The offset is found
+by least squares of v_x, first on a grid. Its uncertainty contains noise and model error
 (``discrepancy``).
 """
 
 from typing import NamedTuple
 
 import numpy as np
-import scipy  # its parts load when they are first used
+import scipy  # its submodules load at their first use
 
 from tipoff.calibration.discrepancy import VELOCITY, Curve, deviations, likeliest
 from tipoff.calibration.objective import Target, sampled
@@ -21,12 +21,11 @@ _LEVEL = 1.96  # standard deviations of a 95 % interval
 
 
 class Offset(NamedTuple):
-    """Offset (s), positive for late curves, with the half width of its 95 % interval (s), and the
-    median step of the samples (s)."""
+    """Offset of curves in time."""
 
-    value: float
-    half: float
-    step: float
+    value: float  # s, positive for late curves
+    half: float  # s, half width of its 95 % interval
+    step: float  # s, median step of the samples
 
     @property
     def is_seen(self) -> bool:
@@ -40,8 +39,8 @@ class Offset(NamedTuple):
 
 
 def estimate(wanted: Target, run: Trajectory) -> Offset:
-    """The offset of the curves ``wanted`` from a run, at most the time until the thrust is over,
-    either way."""
+    """The offset of the curves ``wanted`` from a run, at most the duration of the thrust in both
+    directions."""
     (limit,) = thrust.burnouts(wanted.scene.thrust.record(), (1e-3,), wanted.scene.time_limit)
     limit = float(min(limit, 0.5 * wanted.time[-1]))
 

@@ -1,9 +1,9 @@
-"""The parameters of a fit of springs: their physical meaning, their bounds, and the overrides of a
-scene that they make. Those of compliant contact are in ``calibration.compliant``.
+"""Parameters of a fit of springs: their physical meaning, their bounds, and the resulting overrides
+of a scene. ``calibration.compliant`` has those of compliant contact.
 
-Stiffnesses k in N/m^e of different exponents are not comparable, so the fit varies the elastic
-force at the reference penetration p_r = 0.02 mm (loads of 60 to 180 N press a rail of 3e-8 to 1e-7 m/N by 2
-to 18 um) and k follows::
+Stiffnesses k in N/m^e of different exponents are not comparable. So the fit varies the elastic
+force at the reference penetration p_r = 0.02 mm (loads of 60 to 180 N press a rail of 3e-8 to 1e-7
+m/N by 2 to 18 um), and k follows::
 
     F_r = k p_r^e        B_r = c s(p_r/d),  s(x) = x^2 (3 - 2 x)
 
@@ -23,11 +23,11 @@ from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
 REFERENCE_PENETRATION = 2e-5  # m
-# Softest and stiffest static compliance of the reference rail (1e-7 m/N between mounts, 3e-8 at
+# Largest and smallest static compliance of the reference rail (1e-7 m/N between mounts, 3e-8 at
 # one) over a^2/(E t^3).
 _SOFT, _STIFF = 1.25, 4.2
 _MARGIN = 10.0  # factor from a static estimate to the range of a point contact in impact
-# Parameters that are keys of a scene themselves.
+# Parameters that are keys of a scene.
 _PLAIN = (
     "contact.interface_stiffness",
     "contact.clearance",
@@ -39,19 +39,15 @@ _PLAIN = (
 
 @dataclass(frozen=True)
 class Parameter:
-    """One coordinate of a fit: bounds in SI, searched on a logarithmic or linear scale, with the
-    reason for its bounds.
-
-    ``read`` gives its value in a scene (SI), 0 for a change (``calibration.alignment``).
-    """
+    """One coordinate of a fit, searched between its bounds on a logarithmic or linear scale."""
 
     name: str
     unit: str
-    lower: float
-    upper: float
+    lower: float  # SI
+    upper: float  # SI
     logarithmic: bool
-    justification: str
-    read: Callable[[Scene], float]
+    justification: str  # reason for the bounds
+    read: Callable[[Scene], float]  # value in a scene (SI), 0 for a change (``alignment``)
 
     def value(self, share: float) -> float:
         """Value at ``share`` (0..1) of the way from lower to upper bound."""
@@ -67,8 +63,8 @@ class Parameter:
 
 
 def free(scene: Scene) -> list[Parameter]:
-    """The parameters of the fit of ``scene``: the constants of its contact law, and friction if it has
-    any."""
+    """The parameters of the fit of ``scene``: the constants of its contact law, and friction if it
+    has any."""
     found = {
         "impact": [_force, _exponent, _damping],
         "hunt-crossley": [_force, _exponent, _dissipation],
@@ -80,14 +76,14 @@ def free(scene: Scene) -> list[Parameter]:
 
 
 def held(scene: Scene) -> list[Parameter]:
-    """What the fit leaves at the scene's value because it acts almost only together with a free
-    one."""
+    """Parameters that the fit holds at the scene's value, because they act almost only together
+    with a free one."""
     return [_depth(scene)] if isinstance(scene.contact, ImpactTable) else []
 
 
 def overrides(scene: Scene, values: dict[str, float]) -> dict[str, float]:
     """Dotted overrides (SI) of ``scene`` for values of parameters by name; k is set together with
-    e, whose unit it carries."""
+    e, which is part of its unit."""
     found = {name: value for name, value in values.items() if name in _PLAIN}
     if "contact.force" in values:
         contact = _contact(scene)
@@ -160,30 +156,30 @@ def _force(scene: Scene) -> Parameter:
         return contact.stiffness * REFERENCE_PENETRATION**contact.exponent
 
     return Parameter(
-        "contact.force",
-        "N",
-        low * REFERENCE_PENETRATION,
-        high * REFERENCE_PENETRATION,
-        True,
-        f"elastic force at 0.02 mm: secant stiffness between a tenth of the rail's softest static "
+        name="contact.force",
+        unit="N",
+        lower=low * REFERENCE_PENETRATION,
+        upper=high * REFERENCE_PENETRATION,
+        logarithmic=True,
+        justification=f"elastic force at 0.02 mm: secant stiffness between a tenth of the rail's softest static "
         f"stiffness ({low:.3g} N/m) and "
         f"ten times its stiffest ({high:.3g} N/m), estimated from E t^3/a^2; the rail is the "
         f"spring",
-        read,
+        read=read,
     )
 
 
 def _exponent(scene: Scene) -> Parameter:
     return Parameter(
-        "contact.exponent",
-        "1",
-        1.0,
-        2.2,
-        False,
-        "1 for a linear elastic rail, 1.5 for Hertz, up to 2.2 for crowned pads that gain area; "
+        name="contact.exponent",
+        unit="1",
+        lower=1.0,
+        upper=2.2,
+        logarithmic=False,
+        justification="1 for a linear elastic rail, 1.5 for Hertz, up to 2.2 for crowned pads that gain area; "
         "below 1 a contact would be "
         "infinitely stiff at first touch",
-        lambda s: _contact(s).exponent,
+        read=lambda s: _contact(s).exponent,
     )
 
 
@@ -203,16 +199,16 @@ def _damping(scene: Scene) -> Parameter:
         return contact.damping
 
     return Parameter(
-        "contact.damping",
-        "N*s/m",
-        0.0,
-        0.2 * critical,
-        False,
-        f"{where}: from none to a fifth of critical, 2 sqrt(k m) = {critical:.3g} N s/m of the "
+        name="contact.damping",
+        unit="N*s/m",
+        lower=0.0,
+        upper=0.2 * critical,
+        logarithmic=False,
+        justification=f"{where}: from none to a fifth of critical, 2 sqrt(k m) = {critical:.3g} N s/m of the "
         f"payload on the rail's stiffest "
         "place, where restitution is 0.5: metal does not lose more in one touch at millimetres per "
         "second",
-        read,
+        read=read,
     )
 
 
@@ -222,30 +218,30 @@ def _dissipation(scene: Scene) -> Parameter:
         return scene.contact.dissipation
 
     return Parameter(
-        "contact.dissipation",
-        "s/m",
-        0.1,
-        100.0,
-        True,
-        "restitution between 0.999 and 0.4 at an approach of 20 mm/s, the speed a clearance lets a "
+        name="contact.dissipation",
+        unit="s/m",
+        lower=0.1,
+        upper=100.0,
+        logarithmic=True,
+        justification="restitution between 0.999 and 0.4 at an approach of 20 mm/s, the speed a clearance lets a "
         "pad gain "
         "(1 - 2 a v/3 at low speed)",
-        read,
+        read=read,
     )
 
 
 def friction(scene: Scene) -> Parameter:
     """The coefficient of friction of a scene that has it."""
     return Parameter(
-        "friction.dynamic",
-        "1",
-        0.05,
-        0.5,
-        False,
-        "coated or lubricated (0.05) to clean dry aluminium under light load (0.5); static moves "
+        name="friction.dynamic",
+        unit="1",
+        lower=0.05,
+        upper=0.5,
+        logarithmic=False,
+        justification="coated or lubricated (0.05) to clean dry aluminium under light load (0.5); static moves "
         "with dynamic in the scene's "
         "ratio, because a pad at metres per second never sticks",
-        lambda s: _friction_of(s).dynamic,
+        read=lambda s: _friction_of(s).dynamic,
     )
 
 
@@ -255,13 +251,13 @@ def _depth(scene: Scene) -> Parameter:
         return scene.contact.damping_depth
 
     return Parameter(
-        "contact.damping_depth",
-        "m",
-        3e-5,
-        3e-3,
-        True,
-        "from just above the penetrations that occur to ten times the deepest depth in use",
-        read,
+        name="contact.damping_depth",
+        unit="m",
+        lower=3e-5,
+        upper=3e-3,
+        logarithmic=True,
+        justification="from just above the penetrations that occur to ten times the deepest depth in use",
+        read=read,
     )
 
 

@@ -1,32 +1,30 @@
 """Intervals of the parameters of a fit on compliant contact: half widths at 95 % without and with
 model error (``discrepancy``), and whether the curves exclude the scene's own values.
 
-They do not where the scene's values are inside the interval with model error of every direction that
-is not weak, at a level of 1 - 0.05 / k for k directions, so that all hold together with 95 %
-(Bonferroni). The scene's values are kept then.
+The curves exclude the scene's values if these are outside the interval with model error in a
+direction that is not weak. The level is 1 - 0.05 / k for k directions, so that all intervals hold
+together with 95 % (Bonferroni). Otherwise the scene's values are kept.
 """
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import scipy  # its parts load when they are first used
+import scipy  # its submodules load at their first use
 
 from tipoff.calibration import discrepancy, information
 from tipoff.calibration.intervals import LEVEL, PART
 
 
 class Posterior(NamedTuple):
-    """Half widths (p,) in shares, infinite where the curves do not determine a parameter; whether the
-    curves ask for other values than the scene's, in ``words`` too; what the intervals rest on; half
-    widths (c,) of the nuisances, with model error."""
+    """Half widths in shares, infinite if the curves do not determine a parameter."""
 
-    half: np.ndarray
-    half_with_model_error: np.ndarray
-    asks: bool
-    words: str
-    source: str
-    half_of_nuisances: np.ndarray
+    half: np.ndarray  # (p,) without model error
+    half_with_model_error: np.ndarray  # (p,)
+    excludes: bool  # whether the curves exclude the scene's own values
+    words: str  # the same as text
+    source: str  # basis of the intervals
+    half_of_nuisances: np.ndarray  # (c,) with model error
 
 
 def of(
@@ -37,8 +35,8 @@ def of(
     nuisances: np.ndarray | None = None,
 ) -> Posterior:
     """The posterior about the fitted ``shares`` (p,), with the ``curves`` and the information
-    ``matrix`` (p,p) there; ``own`` (p,) are the scene's values. ``nuisances`` (n,c) are slopes of all
-    curves, one after the other, to what is fitted too but not asked for, in any unit."""
+    ``matrix`` (p,p) there; ``own`` (p,) are the scene's values. ``nuisances`` (n,c) are slopes of
+    all curves, one after the other, to the nuisances of the fit, in any unit."""
     if nuisances is None:
         nuisances = np.zeros((sum(curve.time.size for curve in curves), 0))
     weak = information.weak(matrix, information.ROUNDING)
@@ -47,7 +45,14 @@ def of(
         none = np.full(shares.size, np.inf)
         words = "the curves determine none of these parameters; the scene's values are kept"
         unknown = np.full(nuisances.shape[1], np.inf)
-        return Posterior(none, none, False, words, "without information", unknown)
+        return Posterior(
+            half=none,
+            half_with_model_error=none,
+            excludes=False,
+            words=words,
+            source="without information",
+            half_of_nuisances=unknown,
+        )
     ends = np.cumsum([curve.time.size for curve in curves])[:-1]
     seen = [
         curve._replace(slope=np.hstack([curve.slope @ vectors, more]))
@@ -67,14 +72,14 @@ def of(
     asks = bool((np.abs(vectors.T @ (own - shares)) > wide * along).any())
     usual = scipy.stats.norm.ppf(0.5 + 0.5 * LEVEL)
     return Posterior(
-        usual * scatter,
-        usual * whole,
-        asks,
-        "the curves ask for other values than the scene's"
+        half=usual * scatter,
+        half_with_model_error=usual * whole,
+        excludes=asks,
+        words="the curves exclude the scene's values"
         if asks
         else "nothing needs fitting: the scene's values are inside the 95 % intervals with model "
         "error, and are kept",
-        f"from what the fit leaves as white noise; with model error of {100.0 * errors[0]:.2g} % in "
+        source=f"from the residuals as white noise; with model error of {100.0 * errors[0]:.2g} % in "
         f"v_x and {100.0 * errors[1]:.2g} % in the rates at the end of a curve",
-        usual * beside,
+        half_of_nuisances=usual * beside,
     )

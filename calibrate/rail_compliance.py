@@ -1,8 +1,7 @@
-"""The rail's compliance under the pads, condensed from the finite elements and kept in a folder.
+"""The rail's compliance under the pads, computed from the finite elements and stored in a folder.
 
-Its elements are those of the reference unless another size is asked for. So all commands and the
-Python interface have the same compliance, and a surrogate is judged with the one that it answers
-with.
+Its elements have the size of the reference by default. So all commands and the Python interface use
+the same compliance, and a surrogate is judged with the compliance of its results.
 """
 
 import time
@@ -21,16 +20,16 @@ from tipoff.mechanics.rail_compliance import RailCompliance, content, digest
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.studies import element_size as own_size
 
-_SAID: set[Path] = set()  # files whose uncertainty was said
+_SAID: set[Path] = set()  # files whose uncertainty was reported
 _PLACES = 4  # stations along the rail at which meshes are compared
 # A loop over scenes with one rail reads it once.
 KEPT: cache.Cache[RailCompliance] = cache.binary(content, RailCompliance.load, cache.Held)
 
 
 def compliance(scene: Scene, element_size: float | None = None) -> RailCompliance:
-    """Compliance of the rails of ``scene`` under its pads, with the modes of the rails, in elements
-    of ``element_size`` (m), else in those of the reference (``scenes.studies``), and with its
-    uncertainty by these elements.
+    """Compliance of the rails of ``scene`` under its pads, with the modes of the rails and the
+    uncertainty by the elements, in elements of ``element_size`` (m), by default those of the
+    reference (``scenes.studies``).
 
     Takes seconds to minutes, once for a rail and its pads. Raises SceneError or MeshError.
     """
@@ -39,9 +38,9 @@ def compliance(scene: Scene, element_size: float | None = None) -> RailComplianc
 
 
 def walls(scene: Scene, element_size: float | None = None) -> RailCompliance | None:
-    """The rigid walls that springs of ``scene`` need where they may be offset: warm, with the statics
-    of ``compliance``, or from a file, as drawn there. None for the built-in section, which is
-    straight, and without contact. ``element_size`` (m) is that of a solid. Raises SceneError or MeshError."""
+    """The rigid walls that springs of ``scene`` need if they may be offset: warm, with the statics
+    of ``compliance``, or from a file, as drawn. None for the built-in section, which is straight,
+    and without contact. ``element_size`` (m) is that of a solid. Raises SceneError or MeshError."""
     if scene.contact is None:
         return None
     if scene.thermal is not None:
@@ -52,14 +51,14 @@ def walls(scene: Scene, element_size: float | None = None) -> RailCompliance | N
 def kept(
     scene: Scene, folder: Path, element_size: float, say: Callable[[str], None] | None = None
 ) -> RailCompliance:
-    """The same in elements of ``element_size`` (m), read from ``folder`` if it is stored there for
-    this rail, these pads and this code, else made and stored there. ``say`` gets messages on what
-    takes time, and once in a process for each file the uncertainty by the elements."""
+    """As ``compliance``, in elements of ``element_size`` (m), read from ``folder`` if it is stored
+    there for this rail, these pads and this code, else computed and stored. ``say`` gets messages
+    on long computations and, once per process and file, the uncertainty by the elements."""
     key = _key(scene, element_size)
     path = cache.file(folder, "compliance", key, ".npz")
     say = say or (lambda _: None)
     found = KEPT.get_or_make(
-        path, key, "it is found again", lambda: _made(scene, element_size, path, say)
+        path, key, "it is computed again", lambda: _made(scene, element_size, path, say)
     )
     if path not in _SAID:
         _SAID.add(path)
@@ -71,20 +70,20 @@ def _made(
     scene: Scene, element_size: float, path: Path, say: Callable[[str], None]
 ) -> RailCompliance:
     say(
-        f"rail compliance, once per rail and pads: {1e3 * element_size:g} mm elements, and half of "
-        f"that for its uncertainty, seconds to minutes"
+        f"rail compliance, once per rail and pads: {1e3 * element_size:g} mm elements, then "
+        f"{500 * element_size:g} mm for its uncertainty; takes seconds to minutes"
     )
     began = time.perf_counter()
     with statics.progress_to(_Waiting(say, time.perf_counter)):
         found = compliance(scene, element_size)
-    say(f"  found in {time.perf_counter() - began:.3g} s, kept in {path}")
+    say(f"  computed in {time.perf_counter() - began:.3g} s, stored in {path}")
     return found
 
 
 class _Waiting:
-    """Progress of what takes more than ``LONG`` seconds by the ``clock``: the time that is left
-    is said first, and again at each quarter. The speed is that since the first report, before which
-    a mesh is made."""
+    """Reports the remaining time of computations of more than ``LONG`` seconds by the ``clock``:
+    first, and again at each quarter. The speed is counted from the first report, because a mesh is
+    made before it."""
 
     LONG = 30.0
 
@@ -109,7 +108,7 @@ class _Waiting:
 
 
 def kept_file(scene: Scene, folder: Path, element_size: float) -> Path:
-    """The file of ``kept``: named after all that the compliance is computed from."""
+    """The file of ``kept``, named after all inputs of the compliance."""
     return cache.file(folder, "compliance", _key(scene, element_size), ".npz")
 
 
@@ -119,9 +118,9 @@ def _key(scene: Scene, element_size: float) -> str:
 
 
 def made_from(scene: Scene) -> str:
-    """Hexadecimal digest of all that the compliance reads from ``scene``, the clearance included, and
-    of the rail and pads it is made for. Scenes with the same digest share a compliance. Raises
-    SceneError where the built-in section does not fit the pads."""
+    """Hexadecimal digest of all inputs of the compliance from ``scene``, including the clearance,
+    and of its rail and pads. Scenes with the same digest share a compliance. Raises SceneError if
+    the built-in section does not fit the pads."""
     return content_hash(digest(scene), inputs.of(statics.nominal(scene)).digest())
 
 

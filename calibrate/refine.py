@@ -1,11 +1,12 @@
 """The last stage of a fit on compliant contact: least squares, weighted by the scatter of each
 curve.
 
-The objective of the search wants v_x to 0.1 % and rates to 5 %. Noise seldom has this ratio. With
-every curve weighted by its scatter, least squares uses all information in curves with white noise.
+The objective of the search requires v_x to 0.1 % and rates to 5 %. Noise seldom has this ratio. If
+every curve is weighted by its scatter, least squares uses all information in curves with white
+noise.
 
-The time of ignition is seldom known to a sample, so the offset of each condition is a nuisance of this
-fit. v_x during the thrust determines it, whatever the contact.
+The time of ignition is seldom known to a sample, so the offset of each condition is a nuisance of
+this fit. v_x during the thrust determines it, for any contact.
 """
 
 import numpy as np
@@ -15,7 +16,7 @@ from tipoff.calibration.discrepancy import RATE, VELOCITY, Curve
 from tipoff.calibration.information import jacobian
 from tipoff.calibration.objective import Objective
 
-ROUNDS = 2  # the weights follow from what the round before leaves
+ROUNDS = 2  # the weights come from the residuals of the round before
 ITERATIONS = 6
 UNIT = 1e-3  # s, of an offset among the coordinates of the fit
 STEP = 1e-3  # of UNIT, for slopes
@@ -23,7 +24,7 @@ STEP = 1e-3  # of UNIT, for slopes
 
 def refined(objective: Objective, shares: np.ndarray) -> np.ndarray:
     """Shares (p,) of the weighted fit next to ``shares``. The offsets of the curves are fitted
-    together with them, and are left in ``objective.offsets``."""
+    together with them and stored in ``objective.offsets``."""
     count = shares.size
     point = np.append(shares, [value / UNIT for value in objective.offsets.values()])
     free = np.full(len(objective.offsets), np.inf)
@@ -57,7 +58,7 @@ def refined(objective: Objective, shares: np.ndarray) -> np.ndarray:
 
 
 def set_offsets(objective: Objective, values: np.ndarray) -> None:
-    """Offsets of all conditions from ``values`` (c,), in units of ``UNIT``."""
+    """Set the offsets of all conditions to ``values`` (c,), in units of ``UNIT``."""
     objective.offsets = dict(zip(objective.offsets, (UNIT * values).tolist()))
 
 
@@ -87,7 +88,7 @@ def evaluations(parameters: int) -> int:
 
 
 def both(objective: Objective, shares: np.ndarray) -> np.ndarray:
-    """The residuals of the objective, and behind them the differences from all curves."""
+    """The residuals of the objective, then the differences from all curves."""
     parts = objective.parts(shares)
     return np.concatenate([objective.joined(parts), *objective.curves(parts)])
 

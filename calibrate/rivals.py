@@ -1,9 +1,9 @@
-"""The likely cause of curves that no errors of mounting explain: the fit is repeated with the curves
-transformed, and the transformation that leaves the least is named. Curves may be those of another
-condition too.
+"""The likely cause of curves that no errors of mounting explain. The fit is repeated with the
+curves transformed, and the transformation with the least residual is named. Curves may also be
+those of another condition.
 
-Where mounting is fitted, the points of a search do not explain the transformed curves, since few of
-them are near its optimum. So each candidate gets a least squares of its own.
+If mounting is fitted, the points of a search do not explain the transformed curves, since few of
+them are near the optimum. So each candidate gets its own least squares.
 """
 
 import copy
@@ -22,7 +22,7 @@ _ITERATIONS = 8
 
 def likely(objective: Objective, name: str, best: Kind) -> tuple[Kind, float]:
     """The transformation of the curves of the condition ``name`` that is the likely cause, and the
-    misfit that it leaves; ``best`` is that of the search. Among those that leave about the least, it is
+    remaining misfit; ``best`` is that of the search. Among those with about the least misfit, it is
     the one whose fit is nearest to the scene's values."""
     own = np.array([item.share(item.read(objective.scene)) for item in objective.parameters])
     own, tried = np.clip(own, 0.0, 1.0), []
@@ -50,9 +50,10 @@ def likely(objective: Objective, name: str, best: Kind) -> tuple[Kind, float]:
 def condition(
     objective: Objective, runs: dict[str, Trajectory], name: str, touch: float
 ) -> tuple[str, float]:
-    """The other condition whose run is nearest to the curves of the condition ``name``, and the misfit
-    that it leaves; infinite without another. Free flight, until ``touch`` (s), tells conditions apart
-    whatever the fit is, which wrong curves have moved; the whole curve where it has no signal."""
+    """The other condition whose run is nearest to the curves of the condition ``name``, and the
+    remaining misfit; infinite without another. Free flight, until ``touch`` (s), distinguishes
+    conditions even if wrong curves have changed the fit; the whole curve is used if free flight has
+    no signal."""
     found = [("", math.inf)]
     for other, run in runs.items():
         there = misfits(objective.targets[name], run, objective.offsets[name], touch)

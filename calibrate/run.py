@@ -44,18 +44,18 @@ def run(
     fit: Sequence[str] | None = None,
 ) -> Calibration:
     """Fit parameters of the surrogate to ``references`` (condition name to reference run or curves)
-    of ``scene``: of ``springs`` the constants of the contact law (``parameters``); of ``compliant``
-    contact on the rail ``compliance``, or without contact, those under the names ``fit``, None for
-    those that the curves determine (``choice``).
+    of ``scene``. For ``springs`` these are the constants of the contact law (``parameters``). For
+    ``compliant`` contact on the rail ``compliance``, or without contact, they have the names
+    ``fit``; None: those that the curves determine (``choice``).
 
-    ``numerics`` are the surrogate's (lowfi.Numerics), ``progress`` is called with the fraction
-    done, ``plan`` sizes the search; the same plan gives the same bits, however many ``workers`` run
-    conditions in parallel. Springs on rails that are warm or from a file need their rigid
-    ``compliance`` (``lowfi.run``).
+    ``numerics`` are the surrogate's (lowfi.Numerics), ``progress`` is called with the completed
+    fraction, ``plan`` sets the size of the search; the same plan gives the same bits for any number
+    of ``workers``, which run conditions in parallel. Springs on rails that are warm or from a file
+    need their rigid ``compliance`` (``lowfi.run``).
+
     Raises CalibrationError for references that are missing, did not exit, are too short or do not
     turn, for names that cannot be fitted, and for curves that the model does not explain, with the
-    likely cause (``judgement``); SceneError for an unknown condition and for a compliance that is
-    missing.
+    likely cause (``judgement``); SceneError for an unknown condition and for a missing compliance.
     """
     faults.check(scene, references)
     curves = {
@@ -107,8 +107,7 @@ def _of_springs(
             found,
             plan,
             objective.evaluations + wide.evaluations,
-            f"from what the fit leaves, {count:.0f} independent residuals; model error is not in "
-            "them",
+            f"from the residuals, {count:.0f} of them independent; model error is not in them",
         ),
     )
 
@@ -148,7 +147,7 @@ def _of_compliant_contact(
     )
     weak = evidence.weak_directions(scene, free, held, found.shares, matrix, information.ROUNDING)
     optimum = found
-    if not judged.asks:  # then the residuals are those of the values that are kept
+    if not judged.excludes:  # then the residuals are those of the scene's values
         residuals = objective.parts(own)
         vector = objective.joined(residuals)
         found = found._replace(shares=own, value=float(vector @ vector))
@@ -163,7 +162,7 @@ def _of_compliant_contact(
         found,
         residuals,
         inner,
-        changed=judged.asks,
+        changed=judged.excludes,
         fitted=[item.value(share) for item, share in zip(free, optimum.shares.tolist())],
         intervals=evidence.ends(free, optimum.shares, judged.half),
         with_model_error=evidence.ends(free, optimum.shares, judged.half_with_model_error),
@@ -190,7 +189,7 @@ def _record(
     changed: bool = True,
     **evidence_found,
 ) -> Calibration:
-    """The record of values ``found``; its constants are empty where the scene's are not ``changed``."""
+    """The record of the values ``found``; without constants if the scene's are not ``changed``."""
     values, free = objective.values(found.shares), objective.parameters
     return Calibration(
         constants=parameters.overrides(objective.scene, values) if changed else {},

@@ -1,15 +1,15 @@
 """Global minimum of a sum of squares with small jumps on the unit cube.
 
-1. Sobol' points (scrambled by the seed) and the scene's own constants find the basins.
-2. CMA-ES (Hansen) from the best points that are apart from each other crosses jumps that would stop
-   a gradient method.
-3. Trust-region least squares from the end of each, and from the scene's own constants, converges
+1. Sobol' points (scrambled by the seed) and the scene's constants find the basins.
+2. CMA-ES (Hansen) starts at the best points that are apart from each other. It crosses jumps that
+   would stop a gradient method.
+3. Trust-region least squares starts at the end of each, and at the scene's constants. It converges
    faster than CMA-ES near the minimum.
-   Starts that end in one point show that there is one basin.
 
-One parameter needs no evolution strategy, and CMA-ES fails in one dimension. The points scan the
-interval then, and a bounded scalar search (Brent) descends between the neighbours of the lowest
-local minima of the scan.
+Starts that end in one point show that there is one basin.
+
+For one parameter, CMA-ES cannot be used. The points then scan the interval, and a bounded scalar
+search (Brent) descends between the neighbours of the lowest local minima of the scan.
 """
 
 from collections.abc import Callable
@@ -22,29 +22,24 @@ from tipoff.calibration.information import jacobian
 
 
 class Plan(NamedTuple):
-    """Size of a search.
+    """Size of a search. With one parameter, ``starts`` are the local minima from which the scalar
+    search descends."""
 
-    ``points``: Sobol' points, a power of two; ``starts`` of CMA-ES, at least ``apart`` from each
-    other, with first step ``step`` and ``evaluations`` each; ``polish``: iterations of least
-    squares from each; ``seed`` of the points and of CMA-ES. With one parameter, ``starts`` are the
-    local minima from which the scalar search descends, with ``evaluations`` each.
-    """
-
-    points: int = 128
-    starts: int = 3
-    evaluations: int = 100
-    apart: float = 0.2
-    step: float = 0.1
-    polish: int = 8
-    seed: int = 0
+    points: int = 128  # Sobol' points, a power of two
+    starts: int = 3  # of CMA-ES
+    evaluations: int = 100  # of each start
+    apart: float = 0.2  # least distance between starts
+    step: float = 0.1  # first step of CMA-ES
+    polish: int = 8  # iterations of least squares from each start
+    seed: int = 0  # of the points and of CMA-ES
 
 
 class Found(NamedTuple):
-    """Best point (p,), its value, and where each start ended, as (value, point), best first."""
+    """Result of a search."""
 
-    shares: np.ndarray
-    value: float
-    basins: list[tuple[float, np.ndarray]]
+    shares: np.ndarray  # (p,) best point
+    value: float  # at the best point
+    basins: list[tuple[float, np.ndarray]]  # end of each start, (value, point), best first
 
 
 def search(
@@ -58,7 +53,7 @@ def search(
 
     ``progress`` is called with the fraction of the evaluations done.
     """
-    from scipy.stats import qmc  # slow to load, and commands that do not calibrate do without
+    from scipy.stats import qmc  # slow to load, and only calibration needs it
 
     counted = _Counted(residuals, evaluations(first.size, plan), progress)
     points = np.vstack(
@@ -126,7 +121,7 @@ def _scalar(
     places, index = np.unique(points, return_index=True)
     heights = np.concatenate([[np.inf], values[index], [np.inf]])
     around = np.concatenate([[0.0], places, [1.0]])
-    # a plateau, where a parameter has no effect, counts once, by its first point
+    # a plateau, if a parameter has no effect, counts once, by its first point
     lowest = np.flatnonzero((heights[1:-1] < heights[:-2]) & (heights[1:-1] <= heights[2:])) + 1
     found = []
     for place in lowest[np.argsort(heights[lowest], kind="stable")][: plan.starts].tolist():
@@ -144,8 +139,8 @@ def _scalar(
 def _evolve(
     objective, value: float, start: np.ndarray, plan: Plan, generator: np.random.Generator
 ) -> tuple[float, np.ndarray]:
-    """Value and point CMA-ES reaches from ``start``, whose ``value`` is known. It draws from
-    ``generator`` only, never from NumPy's global state."""
+    """Value and point that CMA-ES reaches from ``start``, whose ``value`` is known. Random numbers
+    come only from ``generator``, never from NumPy's global state."""
     import cma  # loads matplotlib
 
     strategy = cma.CMAEvolutionStrategy(
@@ -170,7 +165,7 @@ def _evolve(
 
 
 def _polish(residuals, value: float, shares: np.ndarray, plan: Plan) -> tuple[float, np.ndarray]:
-    """Value and point least squares reaches, or those given where it gains nothing."""
+    """Value and point that least squares reaches, or the given ones without an improvement."""
     found = least_squares(
         residuals, shares, lambda x: jacobian(residuals, x), bounds=(0.0, 1.0), max_nfev=plan.polish
     )

@@ -1,4 +1,4 @@
-"""Which effects the compiled time loop of a scene contains, read from its machine code."""
+"""Effects in the compiled time loop of a scene, read from its machine code."""
 
 from tipoff.highfi.contact import cells
 from tipoff.highfi.dynamics import damping, loads, mounts

@@ -107,19 +107,19 @@ def condense(
     flexibility = np.einsum("siab,sibjc,sjcd->siajd", inverse, found.matrix, inverse, optimize=True)
     warm = np.einsum("siab,sibt->tsia", inverse, found.warm)
     return RailCompliance(
-        stations,
-        flexibility,
-        found.rail,
-        found.half,
-        found.frequency,
-        inverse @ found.shape,
-        digest(scene),
-        warm,
-        found.joints
+        travel=stations,
+        flexibility=flexibility,
+        rail=found.rail,
+        half=found.half,
+        frequency=found.frequency,
+        shape=inverse @ found.shape,
+        made_for=digest(scene),
+        warm=warm,
+        joints=found.joints
         and found.joints._replace(
             moved=inverse @ found.joints.moved, shape=inverse @ found.joints.shape
         ),
-        _drawn(scene, element_size),
+        drawn=_drawn(scene, element_size),
     )
 
 

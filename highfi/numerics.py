@@ -15,14 +15,14 @@ class Numerics:
 
     #: Length of an edge of an element (m).
     element_size: float = 0.004
-    #: Contact cells along each edge of a pad face; None: at least ``LEAST_CELLS``, with no cell
-    #: longer than half a facet.
+    #: Contact cells along each edge of a pad face. None means at least ``LEAST_CELLS``, with no
+    #: cell longer than half a facet.
     cells: int | None = None
     #: Fraction of the critical step.
     safety: float = 0.9
-    #: Requested step (s), refused above the limit; None: the critical step times ``safety``.
+    #: Requested step (s), refused above the limit. None means the critical step times ``safety``.
     step: float | None = None
-    #: True: rails at rest (``dynamics.resting``) are stepped too, and there are no long steps.
+    #: Whether rails at rest (``dynamics.resting``) are stepped too; there are then no long steps.
     step_everything: bool = False
 
     def __post_init__(self):

@@ -381,7 +381,14 @@ class Loop:
 
     def _perform(self, kind: int, thread: int = 0, steps: int = 0, span: float = 0.0) -> float:
         first, most = self.steps * self.substeps, substeps.most_damping(self)
-        task = Task(kind, first, steps, span, self.stride, most)
+        task = Task(
+            kind=kind,
+            first_step=first,
+            steps=steps,
+            span=span,
+            stride=self.stride,
+            most_damping=most,
+        )
         return perform(*self.arguments(), thread, task)
 
     def trajectory(self, cost: dict, numerics: Numerics) -> Trajectory:

@@ -1,4 +1,4 @@
-"""Which effects the compiled time loop of a scene contains, read from its machine code."""
+"""Effects in the compiled time loop of a scene, read from its machine code."""
 
 from tipoff.kernels.compiled import effects
 from tipoff.kernels.jit import machine_code
@@ -48,7 +48,14 @@ def compiled_code(
 def _arguments(scene: Scene, numerics: Numerics | None, compliance: RailCompliance | None) -> tuple:
     """Arguments of ``integrate``."""
     begun = Run(scene, numerics or Numerics(), compliance)
-    sampling = Sampling(begun.interval, begun.last, 0, begun.whole, begun.rows, begun.forces)
+    sampling = Sampling(
+        interval=begun.interval,
+        last=begun.last,
+        number=0,
+        whole=begun.whole,
+        rows=begun.rows,
+        forces=begun.forces,
+    )
     return (
         begun.system,
         begun.plan,

@@ -22,12 +22,14 @@ class Numerics:
     (``promises_of``). Raises ValueError for values out of range.
     """
 
-    relative_tolerance: float = 2e-7  # local error of a step, relative to the speeds of the body
-    # m/s; lower speeds count as this value: the absolute tolerance over the relative one
+    #: Local error of a step, relative to the speeds of the body.
+    relative_tolerance: float = 2e-7
+    #: Lower speeds (m/s) count as this value, the absolute tolerance over the relative one.
     speed_floor: float = 1e-3
-    maximum_steps: int = 500_000  # a run that needs more fails
-    # lowest modes of each rail that vibrate on compliant contact; 0: rails without inertia; "auto":
-    # as many as matter to the run (``lowfi.modes``)
+    #: A run that needs more steps fails.
+    maximum_steps: int = 500_000
+    #: Number of the lowest modes of each rail that vibrate on compliant contact. 0 means rails
+    #: without inertia, ``"auto"`` as many modes as matter to the run (``lowfi.modes``).
     modes: int | str = AUTO
 
     def __post_init__(self):

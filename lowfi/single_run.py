@@ -102,7 +102,14 @@ class Run:
             self.tolerance,
             self.marks,
             self.loop,
-            Sampling(self.interval, self.last, number, self.whole, self.rows, self.forces),
+            Sampling(
+                interval=self.interval,
+                last=self.last,
+                number=number,
+                whole=self.whole,
+                rows=self.rows,
+                forces=self.forces,
+            ),
             cases.alone(self.system, self.loop.start, self.tolerance.reach),
         )
         self.taken = int(self.loop.counts.samples)

@@ -16,8 +16,8 @@ def filled(lines: list[np.ndarray], metal: np.ndarray) -> tuple[np.ndarray, np.n
     true.
 
     ``lines``: ascending places (m) of the planes across each of three right-handed axes, p, q and r
-    of them; ``metal`` (p-1,q-1,r-1). Points and elements are numbered along the third axis first
-    and along the first one last; the elements stand in the order of ``np.argwhere(metal)``.
+    of them; ``metal`` (p-1,q-1,r-1). Points are numbered along the third axis first and along the
+    first one last; elements have the order of ``np.argwhere(metal)``.
     """
     nodes = np.ravel_multi_index(
         np.moveaxis(np.argwhere(metal)[:, None] + CUBE, -1, 0), [len(line) for line in lines]

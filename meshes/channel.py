@@ -1,10 +1,10 @@
 """Two C channels with lightening holes as structured hexahedra: the rail file of the catalogue
 scene `channel`.
 
-Scene frame: SI, origin at the payload mass centre at t = 0, +X to the open end. One channel stands
-at each side, y > 0 and y < 0, open towards the payload: pads press its web along y and its flanges
-along z. Between the mounts the web has holes, each a block of grid cells left out whose border
-nodes are drawn onto a circle, so that the mesh stays a grid of one layer with blunt corners.
+Scene frame: SI, origin at the payload mass centre at t = 0, +X to the open end. One channel is at
+each side, y > 0 and y < 0, open towards the payload: pads press its web along y and its flanges
+along z. Between the mounts the web has holes. Each is a block of missing grid cells whose border
+nodes are moved onto a circle, so that the mesh stays a grid of one layer with blunt corners.
 
     python -m meshes.channel scenes/catalog/channel.msh      writes the file of the catalogue, bit for bit
 """
@@ -59,8 +59,7 @@ def _lines(start: float, pieces) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _channel():
-    """Points (n,3), hexes (e,8) and facets of the channel at y > 0: cells of one grid, used where
-    the section has metal."""
+    """Points (n,3), hexes (e,8) and facets of the channel at y > 0: the metal cells of one grid."""
     x, along = _lines(_START, _ALONG)
     y, inwards = _lines(_WEB - _REACH, ((_REACH, 4), (_THICKNESS, 1)))
     z, across = _lines(-_FLANGE - _THICKNESS, _ACROSS)
@@ -100,7 +99,7 @@ def _channel():
 
 
 def _inner(lines, piece, cell) -> np.ndarray:
-    """Whether a cell is none of the two at the ends of its piece."""
+    """Whether a cell is not at an end of its piece."""
     return (piece[cell] == piece[np.maximum(cell - 1, 0)]) & (
         piece[cell] == piece[np.minimum(cell + 1, len(piece) - 1)]
     )

@@ -7,8 +7,8 @@ can read the list of packages.
 
 import contextlib
 
-# All six are needed and no fewer: tried one by one on a minimal Debian 12. The names are the same
-# on Ubuntu.
+# The smallest set of packages on a minimal Debian 12, found one by one. The names are the same on
+# Ubuntu.
 SYSTEM_PACKAGES = ("libgl1", "libglu1-mesa", "libgomp1", "libxcursor1", "libxft2", "libxinerama1")
 SYSTEM_INSTALL = "apt-get install --no-install-recommends " + " ".join(SYSTEM_PACKAGES)
 
@@ -19,7 +19,7 @@ class GmshUnavailable(RuntimeError):
 
 
 def load():
-    """The module gmsh. Raises GmshUnavailable where it does not load."""
+    """The module gmsh. Raises GmshUnavailable if it does not load."""
     try:
         import gmsh  # here and not above: only solids need gmsh
     except ModuleNotFoundError as error:
@@ -40,7 +40,7 @@ def load():
 def session(name: str):
     """gmsh with no signal handler, no user settings, one thread, no output; finalised at the end.
 
-    Raises GmshUnavailable where it does not load.
+    Raises GmshUnavailable if it does not load.
     """
     gmsh = load()
     gmsh.initialize(readConfigFiles=False, interruptible=False)

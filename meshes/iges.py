@@ -1,7 +1,7 @@
 """Solids from IGES files. Such a file gives faces that share no edges, so the faces are sewn.
 
 An edge of a closed surface belongs to two faces, or twice to one face that closes on itself. Sewn
-faces that are connected by edges are the surface of one solid where every edge obeys this.
+faces that are connected by edges are the surface of one solid if every edge obeys this rule.
 """
 
 import re
@@ -9,8 +9,8 @@ from collections import Counter
 from pathlib import Path
 
 SUFFIXES = (".iges", ".igs")
-_GAP = 1e-6  # m, at most between edges of two faces that are sewn
-_POINT = 1e-12  # m: an edge of less length is the tip of a cone or the pole of a sphere
+_GAP = 1e-6  # m, largest distance between edges of two faces that are sewn
+_POINT = 1e-12  # m; a shorter edge is the tip of a cone or the pole of a sphere
 _WAY_OUT = "export the solid as STEP"
 _TEXT = re.compile(r" *(\d+)H")  # before a text, its number of characters
 _SCALE = 12  # place of the scale of the model among the global parameters
@@ -19,15 +19,15 @@ _SCALE = 12  # place of the scale of the model among the global parameters
 def load(gmsh, path: Path) -> None:
     """Read the solids of an IGES file into the current model of gmsh, in metres.
 
-    Raises ValueError for a model at another scale than 1, where the faces do not close, where solids
-    touch or contain each other, and where gmsh does not make solids of them; gmsh raises Exception for
-    what it does not read.
+    Raises ValueError for a model at another scale than 1, for faces that do not close, for solids
+    that touch or contain each other, and for faces of which gmsh makes no solids; gmsh raises
+    Exception for a file that it does not read.
     """
     if (scale := (_global_parameters(path)[_SCALE:] or [""])[0]) and not _is_one(scale):
-        # gmsh takes the lengths of the model for those of the part.
+        # gmsh takes the lengths of the model as those of the part.
         raise ValueError(f"its model has the scale {scale}, where 1 is expected; {_WAY_OUT}")
-    # gmsh sets the unit of its kernel before it starts the kernel's reader of IGES, which has to
-    # be there. So the first file read by a process fails with a unit, but not without one.
+    # gmsh sets the unit of its kernel before it starts the kernel's reader of IGES, which must
+    # exist. So the first file of a process fails with a unit, but not without one.
     unit = gmsh.option.getString("Geometry.OCCTargetUnit")
     gmsh.option.setString("Geometry.OCCTargetUnit", "")
     gmsh.model.add("units")
@@ -57,8 +57,8 @@ def load(gmsh, path: Path) -> None:
 
 
 def _global_parameters(path: Path) -> list[str]:
-    """The parameters of the global section, without those at the end that a file leaves out. The first
-    two are the separators, which are a comma and a semicolon where they are empty."""
+    """The parameters of the global section, without trailing ones that the file omits. The first
+    two are the separators; empty ones mean a comma and a semicolon."""
     lines = path.read_text(encoding="latin-1").splitlines()
     text = "".join(line[:72].ljust(72) for line in lines if line[72:73] == "G")
     found: list[str] = []
@@ -125,8 +125,8 @@ def _shells(gmsh, faces: list[int]) -> list[list[int]]:
 
 
 def _check_apart(gmsh) -> None:
-    """Raise ValueError for solids without volume and for a solid inside another: the surface of a
-    cavity looks like it."""
+    """Raise ValueError for solids without volume, and for a solid inside another: the surface of a
+    cavity looks the same."""
     solids = gmsh.model.getEntities(3)
     if any(gmsh.model.occ.getMass(*solid) <= 0.0 for solid in solids):
         raise ValueError(f"its faces enclose no volume; {_WAY_OUT}")

@@ -1,7 +1,7 @@
 """Boxes on a solid: the parts of its faces inside the boxes, their areas, and their borders drawn
 onto the solid. So each element face is either inside or outside.
 
-Places within ``SAME`` of a box count as inside, so that a box may be flat; but a face that only
+Places within ``SAME`` of a box count as inside, so that a box may be flat. But a face that only
 touches a box from outside, at most ``2 SAME`` deep, has no part in it.
 """
 
@@ -9,14 +9,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
-SAME = 1e-6  # m, how far a node of a facet may lie outside the box that names it
-_BEYOND = 1e-3  # m, how far a cutting tool reaches past the end of a face
+SAME = 1e-6  # m, largest distance of a node of a facet from the box that names it
+_BEYOND = 1e-3  # m, length of a cutting tool beyond the end of a face
 
 Boxes = Mapping[str, np.ndarray]  # name of a surface: (b,2,3) m, corners of its boxes
 
 
 class Outside(ValueError):
-    """Boxes in which no face of the solid lies; ``extent`` (2,3) m is where the solid is."""
+    """Boxes without a face of the solid; ``extent`` (2,3) m of the solid."""
 
     def __init__(self, message: str, extent: np.ndarray):
         super().__init__(message)
@@ -24,10 +24,9 @@ class Outside(ValueError):
 
 
 def areas(gmsh, boxes: Boxes) -> dict[str, float]:
-    """Area (m2) of the faces of all solids inside the boxes of each surface, where boxes overlap
-    counted once.
+    """Area (m2) of the faces of all solids inside the boxes of each surface; overlaps count once.
 
-    Raises Outside with every box in which no face lies.
+    Raises Outside with every box that contains no face.
     """
     found, empty = {}, []
     for name, given in boxes.items():
@@ -62,7 +61,7 @@ def draw(gmsh, boxes: list[np.ndarray], faces: list[list[int]]) -> None:
 
 
 def _remove_loose(gmsh) -> None:
-    """Remove the faces that are on no solid."""
+    """Remove the faces that belong to no solid."""
     solids = gmsh.model.getEntities(3)
     bounds = {abs(tag) for _, tag in gmsh.model.getBoundary(solids, combined=False)}
     loose = [(2, tag) for _, tag in gmsh.model.getEntities(2) if tag not in bounds]
@@ -77,13 +76,13 @@ def extent(gmsh) -> np.ndarray:
 
 
 def _faces(gmsh) -> list[int]:
-    """Faces of the solids that no two of them share."""
+    """Faces that belong to one solid only."""
     solids = gmsh.model.getEntities(3)
     return sorted(abs(tag) for _, tag in gmsh.model.getBoundary(solids, combined=True))
 
 
 def _inside(gmsh, faces: list[int], box: np.ndarray) -> list[int]:
-    """Parts of ``faces`` inside a ``box`` (2,3) m: faces of their own, or a whole face itself."""
+    """Parts of ``faces`` inside a ``box`` (2,3) m: separate faces, or a whole face."""
     parts = []
     for face in faces:
         bounds = np.array(gmsh.model.getBoundingBox(2, face)).reshape(2, 3)
@@ -106,7 +105,7 @@ def _inside(gmsh, faces: list[int], box: np.ndarray) -> list[int]:
 
 
 def _union(gmsh, faces: list[int]) -> float:
-    """Area (m2) of faces, where they overlap counted once."""
+    """Area (m2) of faces; overlaps count once."""
     copies = gmsh.model.occ.copy([(2, face) for face in faces]) if faces else []
     if len(copies) > 1:
         copies, _ = gmsh.model.occ.fragment(copies[:1], copies[1:])

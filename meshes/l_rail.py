@@ -1,14 +1,14 @@
 """Four L-section launch rails as structured hexahedra.
 
-Scene frame: SI, origin at the payload mass centre at t = 0, +X to the open end. One rail stands at
-each corner (sign_y, sign_z) = (+-1, +-1). Its outer corner edge is at |y| = inner_corner_y +
-thickness, |z| = inner_corner_z + thickness, and its inner walls |y| = inner_corner_y and |z| =
-inner_corner_z face the payload.
+Scene frame: SI, origin at the payload mass centre at t = 0, +X to the open end. One rail is at each
+corner (sign_y, sign_z) = (+-1, +-1). Its outer corner edge is at |y| = inner_corner_y + thickness,
+|z| = inner_corner_z + thickness. Its inner walls |y| = inner_corner_y and |z| = inner_corner_z face
+the payload.
 
-A grid gives the rail of the (+,+) corner. The other three are mirror images of it with the same
-bits, so that a symmetric scene has a symmetric result; their elements are numbered along the axes
-again, since a reflection reverses their orientation. A section of rectangles needs no mesh
-generator; one makes the same mesh in the tests.
+A grid gives the rail of the (+,+) corner. The other three are mirror images with the same bits, so
+that a symmetric scene has a symmetric result; their elements are numbered along the axes again,
+since a reflection reverses their orientation. A section of rectangles needs no mesh generator; the
+tests compare with one.
 """
 
 import itertools
@@ -26,7 +26,7 @@ _CORNERS = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
 # Position in the VTK corner order of the corner with axis bits x + 2 y + 4 z (bit set: on the
 # larger side).
 _VTK_POSITION = np.array([0, 1, 3, 2, 4, 5, 7, 6])
-# Corners of a brick of the grid inwards from the outer corner: its faces towards the payload and
+# Corners of a brick of the grid, inwards from the outer corner: its faces towards the payload and
 # towards the platform.
 _INWARD_Y, _INWARD_Z, _OUTWARD_Y, _OUTWARD_Z = (
     [3, 7, 6, 2],
@@ -34,14 +34,13 @@ _INWARD_Y, _INWARD_Z, _OUTWARD_Y, _OUTWARD_Z = (
     [0, 1, 5, 4],
     [0, 3, 2, 1],
 )
-_TOUCH = 1e-9  # m: two coordinates closer than this are the same plane
-# of the element size: largest deviation from it of a layer length that all layers have
+_TOUCH = 1e-9  # m; coordinates closer than this are on the same plane
+# of the element size: its largest difference from a common length of all layers
 _EVEN = 0.1
 
 
 class LRailGeometry(NamedTuple):
-    """Dimensions in metres; `mount_spans` are measured from the rear end of the rail, `mount_width`
-    from its outer corner."""
+    """Dimensions of the rails in m."""
 
     leg: float = 0.024
     thickness: float = 0.004
@@ -49,18 +48,19 @@ class LRailGeometry(NamedTuple):
     x_end: float = 0.132
     inner_corner_y: float = 0.10025
     inner_corner_z: float = 0.10025
+    # from the rear end of the rail
     mount_spans: tuple[tuple[float, float], ...] = ((0.008, 0.028), (0.100, 0.120), (0.192, 0.212))
-    mount_width: float = 0.004
+    mount_width: float = 0.004  # from the outer corner
 
 
 def build(geometry: LRailGeometry, element_size: float) -> meshio.Mesh:
-    """Mesh the four rails; every border of a mount and of a wall lies on a grid plane, whatever the
-    element size.
+    """Mesh the four rails; every border of a mount and of a wall is a grid plane, for any element
+    size.
 
-    Each interval between borders gets round(length / element_size) divisions, one at least; along X
-    all layers have the same length where one near the element size divides every interval, since an
-    even extrusion is solved several times faster. With the default geometry all elements are cubes
-    for sizes of 4, 2 and 1 mm.
+    Each interval between borders gets round(length / element_size) divisions, at least one. Along X
+    all layers have the same length if a length near the element size divides every interval,
+    because an even extrusion is solved several times faster. With the default geometry all elements
+    are cubes for sizes of 4, 2 and 1 mm.
 
     Returns a mesh with one `hexahedron` block (volume `rail`) and one `quad` block per surface in
     `SURFACES`, numbered from 0 and tagged with the field `gmsh:physical`. Raises ValueError for
@@ -71,7 +71,7 @@ def build(geometry: LRailGeometry, element_size: float) -> meshio.Mesh:
 
 
 def elements(geometry: LRailGeometry, element_size: float) -> int:
-    """Elements that ``build`` would make, without making them. Raises ValueError as it does."""
+    """Number of elements of ``build``, without making them. Raises ValueError as it does."""
     _check(geometry, element_size)
     depths, stations = grid_depths(geometry), grid_stations(geometry)
     layer, across = (
@@ -134,7 +134,7 @@ def _grid_lines(*borders: float) -> list[float]:
 
 def layer_length(stations: list[float], element_size: float) -> float:
     """Length (m) that divides every interval between ``stations`` (m) and is within a tenth of
-    ``element_size`` (m); that size where no length does both."""
+    ``element_size`` (m); ``element_size`` if there is none."""
     common = (
         math.gcd(*(round((right - left) / _TOUCH) for left, right in itertools.pairwise(stations)))
         * _TOUCH
@@ -144,7 +144,7 @@ def layer_length(stations: list[float], element_size: float) -> float:
 
 
 def divisions(length: float, element_size: float) -> int:
-    """Elements of about ``element_size`` (m) along ``length`` (m), one at least."""
+    """Elements of about ``element_size`` (m) along ``length`` (m), at least one."""
     return max(1, round(length / element_size))
 
 
@@ -152,7 +152,7 @@ def _corner_rail(
     geometry: LRailGeometry, element_size: float
 ) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
     """Points (n,3), hexes (e,8) and facets per surface of the (+,+) rail: a grid along X and
-    inwards from the outer corner, axes that are right-handed like x, y and z."""
+    inwards from the outer corner, in right-handed axes like x, y and z."""
     depths, stations = np.array(grid_depths(geometry)), np.array(grid_stations(geometry))
     fine = bricks.divided(depths, _all_divisions(depths, element_size))
     along = bricks.divided(
@@ -193,7 +193,7 @@ def _all_divisions(borders: np.ndarray, element_size: float) -> list[int]:
 
 
 def _mirrored(points, hexes, surfaces):
-    """One rail per corner of the launcher, their elements numbered alike (see the module
+    """One rail per corner of the launcher, with elements numbered alike (see the module
     docstring)."""
     count = len(points)
     all_points = np.concatenate([points * (1, sign_y, sign_z) for sign_y, sign_z in _CORNERS])

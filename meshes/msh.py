@@ -1,5 +1,5 @@
-"""Elements with named surfaces as meshio objects, tagged so that they are the same from memory
-and from a gmsh file."""
+"""Elements with named surfaces as meshio objects, tagged so that memory and a gmsh file give the
+same."""
 
 from pathlib import Path
 

@@ -2,12 +2,12 @@
 gmsh.
 
 A solid whose faces are all plane and parallel to the axes is a set of bricks: the planes of its
-faces divide space into cells, each of which is metal or not. A solid with one section along X is
-meshed as an extrusion of this section in quadrilaterals. Any other solid is filled with tetrahedra
-of twice the element size, each split into four hexahedra at the centres of its edges and faces;
-such elements are skewed, which shortens the step and makes thin walls too stiff. Quadratic
-tetrahedra, on request, have ten nodes, about ``element_size`` apart, and edges that follow curved
-faces. Boxes that name parts of the faces are drawn onto them (``meshes.imprint``).
+faces divide space into cells, and each is metal or not. A solid with a constant section along X is
+an extrusion of this section, meshed in quadrilaterals. Any other solid is filled with tetrahedra of
+twice the element size, each split into four hexahedra at the centres of its edges and faces. Such
+elements are skewed: the step becomes shorter and thin walls too stiff. Quadratic tetrahedra, on
+request, have ten nodes, about ``element_size`` apart, and edges that follow curved faces. Boxes
+that name parts of the faces are drawn onto them (``meshes.imprint``).
 """
 
 from collections.abc import Callable
@@ -19,7 +19,7 @@ import numpy as np
 from tipoff.meshes import bricks, generator, iges, imprint
 from tipoff.meshes.tetrahedra import Cost, filled
 
-_SAME = 1e-9  # m: two planes closer than this are one
+_SAME = 1e-9  # m; planes closer than this are one
 _TIE = 1e-6  # divisions
 _PROBES = 9  # points of an edge at which its curvature is tested
 
@@ -33,14 +33,13 @@ class Meshed(NamedTuple):
 
 
 class Filling(NamedTuple):
-    """How solids that are neither bricks nor extrusions are filled."""
+    """Options for solids that are neither bricks nor extrusions."""
 
-    tetrahedra: bool = False  # else each is split into four hexahedra; bricks too have these
-    cost: Cost = lambda points, cells: 0.0  # of a mesh, by which the best one is taken
-    enough: float = 0.0  # cost below which no further mesh is tried
-    fits: Callable[[float], None] = lambda volume: (
-        None
-    )  # raises for a volume (m3) too large to mesh
+    tetrahedra: bool = False  # False: each is split into four hexahedra; True: also for bricks
+    cost: Cost = lambda points, cells: 0.0  # of a mesh; the lowest one is taken
+    enough: float = 0.0  # cost below which no other mesh is tried
+    # raises for a volume (m3) that is too large to mesh
+    fits: Callable[[float], None] = lambda volume: None
 
 
 _HEXAHEDRA = Filling()
@@ -49,11 +48,11 @@ _HEXAHEDRA = Filling()
 def build(
     path: Path, element_size: float, boxes: imprint.Boxes, filling: Filling = _HEXAHEDRA
 ) -> Meshed:
-    """Elements about ``element_size`` (m) of every solid in a file, whatever its length unit, with
-    the borders of the ``boxes`` between elements.
+    """Elements about ``element_size`` (m) of every solid in a file of any length unit, with the
+    borders of the ``boxes`` between elements.
 
-    Raises ValueError for a file without a solid that gmsh can read, imprint.Outside for boxes in
-    which no face lies, GmshUnavailable where gmsh does not load, and what ``filling.fits`` raises.
+    Raises ValueError for a file without a solid that gmsh can read, imprint.Outside for boxes
+    without a face, GmshUnavailable if gmsh does not load, and the errors of ``filling.fits``.
     """
     with generator.session("solid") as gmsh:
         gmsh.option.setString("Geometry.OCCTargetUnit", "M")
@@ -119,8 +118,8 @@ def _is_bricks(gmsh) -> bool:
 def _bricks(
     gmsh, volumes: list[int], element_size: float, planes: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Cells between all planes that lie in a solid, each interval with about length / element_size
-    divisions, one at least."""
+    """Cells between all planes, inside a solid; each interval has about length / element_size
+    divisions, at least one."""
     corners = _vertices(gmsh, 3, -1)
     lines = [_different(corners[:, axis], planes[:, axis]) for axis in range(3)]
     middles = [0.5 * (line[1:] + line[:-1]) for line in lines]
@@ -134,7 +133,7 @@ def _bricks(
 
 
 def _different(solid: np.ndarray, requested: np.ndarray) -> np.ndarray:
-    """Positions of the solid's own planes and of the requested ones inside it, in order, without
+    """Positions of the solid's planes and of the requested ones inside it, in order, without
     duplicates."""
     inside = (requested > solid.min()) & (requested < solid.max())
     places = np.sort(np.concatenate([solid, requested[inside]]))
@@ -142,8 +141,8 @@ def _different(solid: np.ndarray, requested: np.ndarray) -> np.ndarray:
 
 
 def _divisions(line: np.ndarray, element_size: float) -> np.ndarray:
-    """Elements in each interval. Halves are rounded down whatever the rounding of positions, so
-    that symmetric solids get symmetric meshes."""
+    """Elements in each interval. Halves are rounded down for any rounding of positions, so that
+    symmetric solids get symmetric meshes."""
     return np.maximum(1, np.ceil(np.diff(line) / element_size - 0.5 - _TIE).astype(int))
 
 
@@ -153,8 +152,7 @@ def _divided(line: np.ndarray, element_size: float) -> np.ndarray:
 
 
 def _is_extruded(gmsh) -> bool:
-    """Whether every edge runs along X from one end to the other, or lies in one of the two end
-    planes."""
+    """Whether every edge runs along X from one end to the other, or lies in an end plane."""
     x = _vertices(gmsh, 3, -1)[:, 0]
     for _, edge in gmsh.model.getEntities(1):
         low, high = np.array(gmsh.model.getParametrizationBounds(1, edge)).ravel()
@@ -177,7 +175,7 @@ def _extruded(gmsh, element_size: float, boxes: list[np.ndarray]) -> tuple[np.nd
     ends = _faces_at(gmsh, x[0])
     _set_size(gmsh, 2.0 * element_size)
     gmsh.option.setNumber("Mesh.RecombineAll", 1)
-    # halves every side, so that no triangle is left over
+    # halves every side, so that no triangle remains
     gmsh.option.setNumber("Mesh.SubdivisionAlgorithm", 1)
     gmsh.model.mesh.generate(2)
     places, quads = _quadrilaterals(gmsh, ends)
@@ -197,7 +195,7 @@ def _extruded(gmsh, element_size: float, boxes: list[np.ndarray]) -> tuple[np.nd
 
 def _draw_on_section(gmsh, boxes: list[np.ndarray], ends: np.ndarray) -> None:
     """Draw the borders of ``boxes`` onto an extrusion from one of its ``ends`` (2,) m to the other;
-    its end face gets those of boxes that reach an end."""
+    its end face gets the borders of boxes that reach an end."""
     first = _faces_at(gmsh, ends[0])
     sides = [
         tag

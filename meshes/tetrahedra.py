@@ -1,10 +1,10 @@
 """Quadratic tetrahedra of a solid in gmsh, and hexahedra made of them.
 
-Tetrahedra between other planes than those of a grid are of mixed quality, and the worst one sets the
-time step of all. So several meshes are made, with and without Netgen's optimisation, with and without
-smaller elements where faces are curved, and the first good one or else the best one is taken. Edges
-that follow a curved face may fold the elements behind them; high-order optimisation moves their
-nodes, and what it cannot unfold gets straight edges.
+Tetrahedra between other planes than those of a grid are of mixed quality, and the worst one sets
+the time step of all. So several meshes are made, with and without Netgen's optimisation, with and
+without smaller elements at curved faces. The first good one is taken, or else the best one. Edges
+that follow a curved face may fold the elements behind them. High-order optimisation moves their
+nodes; elements that it cannot unfold get straight edges.
 """
 
 from collections.abc import Callable
@@ -13,28 +13,28 @@ from typing import NamedTuple
 
 import numpy as np
 
-_VTK = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]  # nodes of gmsh's quadratic tetrahedron in VTK order
+_VTK = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]  # place of each node of VTK in gmsh's quadratic tetrahedron
 _EDGES = {
     frozenset(edge): node
     for node, edge in enumerate(((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)), start=4)
 }
 _FACES = list(combinations(range(4), 3))
-_POOR = 0.7  # quality up to which gmsh optimises an element
+_POOR = 0.7  # quality below which gmsh optimises an element
 _PER_TURN = 8  # edges of elements around a cylinder
 _STRAIGHT = 0.05  # scaled Jacobian below which the edges of an element become straight
 _PASSES = 20
 # Corners of the reference tetrahedron, and the three neighbours of each in right-handed order.
 _AROUND = ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))
 
-# (points, cells) -> how many times the steps of good hexahedra of this size the mesh needs
+# (points, cells) -> number of steps over that of good hexahedra of this size
 Cost = Callable[[np.ndarray, np.ndarray], float]
 
 
 class Way(NamedTuple):
     """One way to fill a solid."""
 
-    per_turn: int  # smaller elements where a face turns, so many in a full turn; 0: none
-    optimisers: tuple[str, ...]  # of gmsh, one after the other; its own has no name
+    per_turn: int  # elements per full turn of a curved face; 0: no smaller elements
+    optimisers: tuple[str, ...]  # of gmsh, one after the other; the default one has no name
 
 
 _NETGEN, _BOTH = ("Netgen",), ("Netgen", "", "Netgen")
@@ -51,8 +51,8 @@ def filled(
     gmsh, element_size: float, hexahedra: bool, cost: Cost, enough: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Points (n,3) m and tetrahedra (e,10), VTK order, with nodes about ``element_size`` (m) apart,
-    or hexahedra (4e,8) instead: the first mesh whose ``cost`` is at most ``enough``, else the one
-    with the lowest."""
+    or hexahedra (4e,8): the first mesh whose ``cost`` is at most ``enough``, else the one with the
+    lowest."""
     gmsh.option.setNumber("Mesh.MeshSizeMin", 0.5 * element_size)
     gmsh.option.setNumber("Mesh.MeshSizeMax", 2.0 * element_size)
     gmsh.option.setNumber("Mesh.OptimizeThreshold", _POOR)
@@ -88,8 +88,8 @@ def _made(gmsh, way: Way) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _straightened(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The same with straight edges on all elements that curved ones fold, or nearly so, once split
-    into hexahedra."""
+    """The same mesh with straight edges on all elements that curved edges fold, or almost fold,
+    after the split into hexahedra."""
     points = points.copy()
     for _ in range(_PASSES):
         folded = split_quality(points, cells) < _STRAIGHT
@@ -119,7 +119,7 @@ def split_quality(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
 def as_hexahedra(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Points (m,3) m and hexahedra (4e,8), VTK order, of tetrahedra (e,10): one at each corner of
-    each, between the middles of its edges and faces and its own; curved edges stay on their
+    each, between the middles of its edges, its faces and itself; curved edges stay on their
     faces."""
     places, hexes = _split(points, cells)
     return _compact(places, hexes.reshape(4, -1, 8).swapaxes(0, 1).reshape(-1, 8))
@@ -173,6 +173,6 @@ def _split(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def _compact(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The same without points that no element uses."""
+    """Points and elements without unused points."""
     used, number = np.unique(cells, return_inverse=True)
     return points[used], number.reshape(cells.shape)

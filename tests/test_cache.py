@@ -104,7 +104,7 @@ def walls(folder, monkeypatch) -> Kept:
         lambda name: rail_compliance.kept(SCENE, folder, sizes[name]).hash,
         lambda name: rail_compliance.kept_file(SCENE, folder, sizes[name]),
         made,
-        "it is found again",
+        "it is computed again",
     )
 
 

@@ -7,8 +7,8 @@ import threading
 
 
 def main() -> None:
-    """Run the command line. Ctrl-C ends it with exit code 130 and a file that the machine refuses
-    with 1, also while modules load."""
+    """Run the command line. The exit code is 130 after Ctrl-C, and 1 if the machine refuses a file,
+    even while modules load."""
     _one_thread_of_blas()
     sys.unraisablehook = _keep_interrupts
     try:
@@ -24,8 +24,9 @@ def main() -> None:
 
 
 def _keep_interrupts(dropped: "sys.UnraisableHookArgs") -> None:
-    """Send Ctrl-C again after a callback has ended. Python drops what is raised in a destructor or in
-    the callback of a weak reference, KeyboardInterrupt too, and an import runs many of them."""
+    """Send Ctrl-C again after a callback has ended. Python ignores exceptions in a destructor or in
+    the callback of a weak reference, including KeyboardInterrupt, and an import runs many of
+    them."""
     if not issubclass(dropped.exc_type, KeyboardInterrupt):
         sys.__unraisablehook__(dropped)
         return
@@ -34,8 +35,8 @@ def _keep_interrupts(dropped: "sys.UnraisableHookArgs") -> None:
 
 
 def _one_thread_of_blas() -> None:
-    """Before NumPy loads. The matrices of this program are small: more threads of BLAS wait for
-    each other, and take the cores of the kernels and of runs side by side."""
+    """Set BLAS to one thread, before NumPy loads. The matrices of this program are small: more
+    threads wait for each other and take the cores of the kernels and of parallel runs."""
     for library in ("OPENBLAS", "MKL", "BLIS"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
 

@@ -1,8 +1,8 @@
 """Results in files, each under a key: the digest of everything that the result depends on.
 
 A file has its key and a digest of its content (``tipoff.files``), and is written atomically. So two
-processes that make one result at the same time write the same file, and a file that is missing,
-damaged or of another key is never taken for the result. Damage is said once on standard error.
+processes that make one result at the same time write the same file. A file that is missing, damaged
+or of another key is never used. Damage is reported once on standard error.
 """
 
 import threading
@@ -15,7 +15,7 @@ from typing import Any, Generic, TypeVar
 from tipoff.files import read_json, require_whole, tell, write_json, write_sealed
 
 _T = TypeVar("_T")
-_SAID: dict[Path, str] = {}  # what this process said of files that were not written again since
+_SAID: dict[Path, str] = {}  # reports of this process on files that were not written again since
 
 
 def file(folder: Path, label: str, key: str, suffix: str) -> Path:
@@ -25,16 +25,16 @@ def file(folder: Path, label: str, key: str, suffix: str) -> Path:
 
 @dataclass(frozen=True)
 class Cache(Generic[_T]):
-    """Results of one kind. ``read`` takes one from a file, or returns None for that of another key. It
-    raises FileNotFoundError, and any exception for a damaged file. ``write`` returns the result as
-    the file has it, and raises OSError."""
+    """Results of one kind. ``read`` returns the result in a file, or None for a file of another
+    key. It raises FileNotFoundError, and any exception for a damaged file. ``write`` returns the
+    result as read back from the file, and raises OSError."""
 
     read: Callable[[Path, str], _T | None]
     write: Callable[[Path, str, _T], _T]
 
     def get(self, path: Path, key: str, again: str) -> _T | None:
-        """The result ``key`` in the file, None without a whole one. What damage leads to, ``again``,
-        follows the path in a message."""
+        """The result ``key`` in the file; None without an intact one. A message on damage is the
+        path and ``again``, its consequence."""
         return whole(path, again, lambda: self.read(path, key))
 
     def put(self, path: Path, key: str, value: _T) -> _T:
@@ -43,7 +43,7 @@ class Cache(Generic[_T]):
         return self.write(path, key, value)
 
     def get_or_make(self, path: Path, key: str, again: str, make: Callable[[], _T]) -> _T:
-        """The result ``key`` in the file, else what ``make`` returns, which is written."""
+        """The result ``key`` in the file; else the result of ``make``, which is written."""
         found = self.get(path, key, again)
         return self.put(path, key, make()) if found is None else found
 
@@ -101,7 +101,7 @@ def binary(
     load: Callable[[Path], _T],
     kind: type[Cache] = Cache,
 ) -> Cache[_T]:
-    """Results that ``content`` puts into bytes, and ``load`` reads from a file with further lines at
+    """Results that ``content`` converts to bytes, and ``load`` reads from a file with further lines at
     its end. Keys have 64 hexadecimal digits."""
 
     def write(path: Path, key: str, value: _T) -> _T:
@@ -116,7 +116,7 @@ def documents(
     load: Callable[[dict], _T],
     kind: type[Cache] = Cache,
 ) -> Cache[_T]:
-    """Results that ``plain`` puts into JSON, and ``load`` takes from it. The key is under ``key``."""
+    """Results that ``plain`` converts to JSON and ``load`` reads from it. The key is under ``key``."""
 
     def read(path: Path, key: str) -> _T | None:
         found = read_json(path)
@@ -126,8 +126,8 @@ def documents(
 
 
 def whole(path: Path, again: str, read: Callable[[], _T]) -> _T | None:
-    """What ``read`` makes of a file; None without one. Says once that it is damaged, and what that
-    leads to: ``again``."""
+    """The result of ``read`` for a file; None without a file. Reports damage once, with ``again``,
+    its consequence."""
     try:
         found = read()
     except FileNotFoundError:

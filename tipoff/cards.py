@@ -1,13 +1,13 @@
-"""What people see of an object: a summary, a line for each fact, and a card for notebooks.
+"""Summaries of an object for users: a line for each fact, and a card for notebooks.
 
-Both are made from the same facts: words by their title.
+Both are made from the same facts: text by its title.
 """
 
 from collections.abc import Mapping
 
 from markupsafe import Markup
 
-# Colours are those of the page around it, light or dark.
+# Colours of the page around it, light or dark.
 _TABLE = "border-collapse:collapse;color:inherit;background:transparent"
 _CELL = (
     "text-align:left;vertical-align:top;color:inherit;background:transparent;padding:2px 12px 2px 0"
@@ -19,7 +19,7 @@ class Carded:
     """Base of classes with a ``summary`` and a card, both from their facts."""
 
     def _facts(self) -> dict[str, str]:
-        """Words by their title, most important first."""
+        """Text by its title, most important first."""
         raise NotImplementedError
 
     def summary(self) -> str:
@@ -41,7 +41,7 @@ class Carded:
 
 
 def text(facts: Mapping[str, str]) -> str:
-    """``facts`` as lines of text, the words below each other."""
+    """``facts`` as lines of text, with aligned columns."""
     width = max(map(len, facts), default=0)
     return "\n".join(f"{title:{max(width, 10)}} {words}" for title, words in facts.items())
 

@@ -5,10 +5,10 @@ ends with the bytes::
 
     # sha-256 <hexadecimal digest of every byte before this line>
 
-a line that is a comment in TOML, and that readers of HDF5, netCDF and zip ignore. A file of a cache
+This line is a comment in TOML, and readers of HDF5, netCDF and zip ignore it. A file of a cache
 (``tipoff.cache``) has a line ``# key <key>`` before it. A JSON file has the digest under the key
-``sha256`` instead: that of the canonical JSON of all its other keys, so that it does not depend on
-the layout.
+``sha256`` instead; it is the digest of the canonical JSON of all other keys, so that it does not
+depend on the layout.
 """
 
 import errno
@@ -26,9 +26,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-MOST_TEXT = (
-    2**25
-)  # bytes of a file of text that a user gives: read, it takes some ten times as much
+MOST_TEXT = 2**25  # bytes of a text file from a user; reading takes about ten times as much memory
 KEY = "sha256"  # of the digest in a JSON object
 _MARK = b"# sha-256 "
 _LINE = re.compile(_MARK + rb"([0-9a-f]{64})\n")
@@ -41,8 +39,7 @@ _DIFFERS = "differs from its digest (damaged, or edited)"
 
 
 class DamageError(ValueError):
-    """A file without a digest or with another content; ``reason`` follows the path in a
-    sentence."""
+    """A file without a digest or with another content; ``reason`` follows the path in a message."""
 
     def __init__(self, path: str | Path, reason: str):
         self.path, self.reason = path, reason
@@ -54,13 +51,13 @@ class DamageError(ValueError):
 
 @contextmanager
 def open_input(path: str | Path) -> Iterator[io.BufferedReader]:
-    """Yield the bytes of a file that a user named. Raises OSError for what is not a regular file: a
+    """Yield the bytes of a file that a user named. Raises OSError unless it is a regular file: a
     device or a pipe may never end, and opening a pipe may never return."""
 
     def opened(name: str, flags: int) -> int:
         return os.open(name, flags | getattr(os, "O_NONBLOCK", 0))
 
-    path = os.fspath(path)  # a number would be a file that is open already
+    path = os.fspath(path)  # a number would mean an open file
     if "\0" in str(path):
         raise OSError(errno.EINVAL, "a null character in its name", str(path))
     with open(path, "rb", opener=opened) as stream:
@@ -70,8 +67,8 @@ def open_input(path: str | Path) -> Iterator[io.BufferedReader]:
 
 
 def read_input(path: str | Path, most: int = MOST_TEXT) -> bytes:
-    """Content of a file that a user named. Raises OSError as ``open_input``, and for a file of more
-    than ``most`` bytes, of which no more are read."""
+    """Content of a file that a user named. Raises OSError as ``open_input`` does, and for a file of
+    more than ``most`` bytes; no more are read."""
     with open_input(path) as stream:
         content = stream.read(most + 1)
     if len(content) > most:
@@ -81,7 +78,7 @@ def read_input(path: str | Path, most: int = MOST_TEXT) -> bytes:
 
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
-    """Yield a temporary path; on success it replaces ``path`` atomically, on any exception it is
+    """Yield a temporary path. On success it replaces ``path`` atomically; on any exception it is
     removed."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -96,7 +93,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
         temporary.chmod(0o644)
         temporary.replace(path)
     except OSError as error:
-        if error.errno and not error.filename:  # writing names none
+        if error.errno and not error.filename:  # errors of writing have no file name
             error.filename = str(path)
         raise
     finally:
@@ -105,14 +102,14 @@ def replacing(path: str | Path) -> Iterator[Path]:
 
 
 def remove_temporaries() -> None:
-    """Remove the temporary files of ``replacing`` in all threads. For a process that ends at once and
-    leaves no time to its threads."""
+    """Remove the temporary files of ``replacing`` in all threads, for a process that ends at
+    once."""
     for temporary in list(_temporaries):
         temporary.unlink(missing_ok=True)
 
 
 def discard(path: str | Path) -> None:
-    """Remove ``path`` if it is there, and the temporary files of an interrupted ``replacing``."""
+    """Remove ``path`` if it exists, and the temporary files of an interrupted ``replacing``."""
     path = Path(path)
     path.unlink(missing_ok=True)
     for leftover in path.parent.glob(f".{glob.escape(path.name)}.*{glob.escape(path.suffix)}"):
@@ -144,27 +141,27 @@ def sealed(path: str | Path) -> Iterator[Path]:
 
 
 def write_sealed(path: str | Path, content: bytes | memoryview, key: str = "") -> None:
-    """Write ``content`` as ``sealed``, with the ``key`` (64 hexadecimal digits) of a cache if there is
-    one."""
+    """Write ``content`` as ``sealed`` does, with the ``key`` (64 hexadecimal digits) of a cache if
+    given."""
     with sealed(path) as temporary, open(temporary, "wb") as stream:
         stream.write(content)
         stream.write(f"\n# key {key}\n".encode() if key else b"")
 
 
 def netcdf(found: Any) -> bytes | memoryview:
-    """An xarray Dataset or DataTree as a file of netCDF. It is made in memory, because HDF5 ends the
-    whole process where the disk is full."""
+    """An xarray Dataset or DataTree as a netCDF file. It is made in memory, because HDF5 ends the
+    whole process if the disk is full."""
     return found.to_netcdf(engine="h5netcdf")
 
 
 def write_netcdf(path: str | Path, found: Any) -> None:
-    """Write an xarray Dataset or DataTree as ``sealed``."""
+    """Write an xarray Dataset or DataTree as ``sealed`` does."""
     write_sealed(path, netcdf(found))
 
 
 def require_whole(path: str | Path) -> str:
-    """The key with which ``write_sealed`` left the file, empty without one. Raises DamageError unless
-    the file is as ``sealed`` left it, FileNotFoundError or another OSError where it cannot be read."""
+    """The key of a file of ``write_sealed``, empty without one. Raises DamageError unless the file
+    is as ``sealed`` wrote it, FileNotFoundError or another OSError if it cannot be read."""
     content = memoryview(_content(path))
     last = _LINE.fullmatch(content[-_LENGTH:])
     if last is None:
@@ -177,7 +174,7 @@ def require_whole(path: str | Path) -> str:
 
 
 def is_sealed(path: str | Path) -> bool:
-    """Whether any line of the file begins like the line of a digest. Raises OSError where the file
+    """Whether any line of the file begins like the line of a digest. Raises OSError if the file
     cannot be read."""
     return any(line.startswith(_MARK) for line in _content(path).splitlines())
 
@@ -188,15 +185,15 @@ def _content(path: str | Path) -> bytes:
 
 
 def write_json(path: str | Path, value: Mapping[str, Any]) -> dict[str, Any]:
-    """Write ``value`` as strict JSON (no NaN) with its digest, atomically; returns the object as
-    the file holds it."""
+    """Write ``value`` as strict JSON (no NaN) with its digest, atomically; returns the object as in
+    the file."""
     found = with_digest(value)
     write_text(path, json.dumps(found, indent=1, allow_nan=False) + "\n")
     return found
 
 
 def read_json(path: str | Path) -> dict[str, Any]:
-    """The object that ``write_json`` wrote. Raises DamageError, or OSError where the file cannot be
+    """The object that ``write_json`` wrote. Raises DamageError, or OSError if the file cannot be
     read."""
     try:
         found = json.loads(_content(path))
@@ -213,12 +210,12 @@ def read_json(path: str | Path) -> dict[str, Any]:
 def with_digest(value: Mapping[str, Any]) -> dict[str, Any]:
     """``value`` with the digest of its content; an existing one is replaced."""
     rest = {key: item for key, item in value.items() if key != KEY}
-    # keys are text only once they were JSON
+    # keys are text only after conversion to JSON
     return rest | {KEY: content_hash(json.loads(json.dumps(rest, allow_nan=False)))}
 
 
 def fits_digest(value: Mapping[str, Any]) -> bool:
-    """Whether the content of ``value``, as read from JSON, has the digest in it."""
+    """Whether the content of ``value``, as read from JSON, fits its digest."""
     return value.get(KEY) == content_hash({key: item for key, item in value.items() if key != KEY})
 
 

@@ -56,8 +56,8 @@ def load(name_or_path: str | Path) -> Scene:
         SceneError: every fault with file, key, given and expected.
 
     Warns:
-        UserWarning: a value of a file that extends another, which the conditions that it inherits
-            replace.
+        UserWarning: a value of a file that extends another, if inherited conditions replace the
+            value.
 
     Example:
         >>> scene = tipoff.load("tiny")
@@ -85,18 +85,18 @@ def run(
         scene: the scene, or one of its conditions (``Scene.condition``); or a name or path as in
             ``load``.
         model: ``compliant``, ``springs`` or ``finite-elements``.
-        compliance: rail compliance, for the model ``compliant``; computed where it is not given.
+        compliance: rail compliance, for the model ``compliant``; computed by default.
         calibration: constants that were fitted on the same model.
-        progress: called with the fraction of the expected time done, 0 to 1.
+        progress: called with the completed fraction of the expected time, 0 to 1.
         numerics: fields of ``lowfi.Numerics`` or ``highfi.Numerics``, such as ``element_size=2e-3``
-            (m), ``element_size="2 mm"`` or ``modes=4``. Elements are those that the scene states
-            (``[studies]``) without it.
+            (m), ``element_size="2 mm"`` or ``modes=4``. The scene may state the size of elements
+            (``[studies]``).
 
     Returns:
         Trajectory: motion over time. A failure of the run is its ``status``.
 
     Raises:
-        SceneError: every fault of scene and options listed.
+        SceneError: every fault of scene and options.
         ValueError: numerics that are out of range.
 
     Example:
@@ -123,7 +123,14 @@ def run(
             return highfi.run(scene, sizes, progress)
     chosen = arguments.numerics(lowfi.Numerics, numerics, highfi.Numerics, model)
     found = _pressed(scene, model, compliance, calibration)
-    asked = Run("lowfi", scene.name, scene, chosen, calibration, found)
+    asked = Run(
+        fidelity="lowfi",
+        label=scene.name,
+        scene=scene,
+        numerics=chosen,
+        calibration=calibration,
+        compliance=found,
+    )
     with kernel_marks.first_use(asked), kernel_marks.chosen_modes(asked) as vibrates:
         return lowfi.run(
             scene,
@@ -158,10 +165,10 @@ def ensemble(
         model: ``compliant`` or ``springs``.
         compliance: as in ``run``.
         calibration: as in ``run``.
-        workers: number of threads; all cores without it.
+        workers: number of threads; all cores by default.
         store: folder for results, so that an interrupted ensemble continues.
-        sensitivity: add how far 1 um more of every clearance and a tolerance of 1e-10 move the
-            settled rates of each case (rad/s).
+        sensitivity: add the change of the settled rates of each case (rad/s) for 1 um more of every
+            clearance and for a tolerance of 1e-10.
         options: ``count`` and ``seed``, which replace those of the file of distributions, and the
             numerics of ``run``.
 
@@ -170,7 +177,7 @@ def ensemble(
         in ``attrs["units"]``.
 
     Raises:
-        SceneError: every fault of scene, distributions and options listed.
+        SceneError: every fault of scene, distributions and options.
         StoreError: a ``store`` of another ensemble.
         ValueError: numerics that are out of range.
 
@@ -206,7 +213,14 @@ def ensemble(
         cases = arguments.rows(cases)
     chosen = arguments.numerics(lowfi.Numerics, options, highfi.Numerics, model)
     found = _pressed(scene, model, compliance, calibration)
-    like = Run("lowfi", scene.name, scene, chosen, calibration, found)
+    like = Run(
+        fidelity="lowfi",
+        label=scene.name,
+        scene=scene,
+        numerics=chosen,
+        calibration=calibration,
+        compliance=found,
+    )
     with kernel_marks.first_use(like, many=True):
         return lowfi.run_many(
             scene,
@@ -226,19 +240,19 @@ def compliance(
 ) -> RailCompliance:
     """Rail compliance under the pads of a scene, from the statics of its finite elements.
 
-    Takes seconds to minutes, once for a rail and its pads: it is stored in the cache folder of the
-    user, beside the compiled kernels, and announced on standard error.
+    Takes seconds to minutes, once for a rail and its pads. The result is stored in the cache folder
+    of the user, with the compiled kernels. A message is printed on standard error.
 
     Args:
-        scene: the scene; its rail and pads count.
-        element_size: size of the elements (m, or text with a unit); without it that of the
+        scene: the scene; only its rail and pads matter.
+        element_size: size of the elements (m, or text with a unit); by default that of the
             reference, which the scene may state (``[studies]``).
 
     Returns:
         RailCompliance: flexibility and lowest modes at stations along the rail.
 
     Raises:
-        SceneError: every fault listed.
+        SceneError: every fault.
         MeshError: a rail that cannot be meshed, or that nothing holds.
 
     Example:
@@ -266,16 +280,16 @@ def calibrate(
 ) -> Calibration:
     """Fit parameters of a surrogate model to runs of the reference or to other curves.
 
-    On compliant contact the parameters are those of ``fit`` (``calibration.choice.every_name``),
-    those of ``["all"]`` that the curves determine, or by default those of interface and mount
-    stiffness, clearance and friction that they determine.
+    On compliant contact the parameters are those of ``fit`` (``calibration.choice.every_name``).
+    With ``["all"]`` they are all those that the curves determine. By default they are interface and
+    mount stiffness, clearance and friction, as far as the curves determine them.
 
     Args:
         scene: the scene whose conditions the curves belong to.
         references: runs of the reference, or ``calibration.Curves``, by the name of their condition.
-        progress: called with the fraction done, 0 to 1.
+        progress: called with the completed fraction, 0 to 1.
         seed: of the search.
-        model: ``springs`` (default), or ``compliant`` (default where ``fit`` is given).
+        model: ``springs`` (default), or ``compliant`` (default with ``fit``).
         compliance: as in ``run``.
         fit: names of parameters of compliant contact.
 
@@ -284,7 +298,7 @@ def calibrate(
 
     Raises:
         CalibrationError: curves that determine nothing.
-        SceneError: every fault listed.
+        SceneError: every fault.
 
     Example:
         >>> scene = tipoff.load("tiny")
@@ -351,12 +365,12 @@ def _pressed(
     given: RailCompliance | None,
     calibration: Calibration | None = None,
 ) -> RailCompliance | None:
-    """The rail compliance that ``model`` needs; rigid walls for springs at walls that are warm or from
+    """The rail compliance that ``model`` needs; rigid walls for springs at warm walls or walls from
     a file."""
     if scene.contact is None:
         return given
     if model == COMPLIANT:
-        if calibration is not None and calibration.is_of_springs:  # before seconds of statics
+        if calibration is not None and calibration.is_of_springs:  # before the statics, for speed
             _require_none(scene, model, calibration=calibration)
         return given or compliance(scene)
     if given is not None:

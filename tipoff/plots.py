@@ -1,4 +1,4 @@
-"""Line plots for people: a figure of its own, which no global state of pyplot knows."""
+"""Line plots: each is a figure of its own, unknown to the global state of pyplot."""
 
 import io
 from collections.abc import Sequence
@@ -29,8 +29,8 @@ def lines(
 ) -> Figure:
     """``curves`` by name over one variable ``across``; both axes have a title with a unit.
 
-    ``axes`` are those of a figure that there is; without them a new figure is made. ``style`` is
-    that of ``Axes.plot``. Returns the figure. Raises TypeError for other ``axes``.
+    ``axes`` belong to an existing figure; by default a new figure is made. ``style``: see
+    ``Axes.plot``. Returns the figure. Raises TypeError for other ``axes``.
     """
     if axes is not None and not isinstance(axes, Axes):
         raise TypeError(f"axes: given a {type(axes).__name__}, expected axes of matplotlib")
@@ -43,5 +43,5 @@ def lines(
     if len(curves) > 1:
         axes.legend()
     found = axes.get_figure(root=True)
-    assert found is not None  # of axes that are drawn in
+    assert found is not None  # true for axes of a figure
     return found

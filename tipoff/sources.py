@@ -1,9 +1,8 @@
-"""Digests of code: what a module depends on, without its docstrings and comments.
+"""Digests of code: the code on which a module depends, without docstrings and comments.
 
 A module depends on itself and on every module of the project that it imports, at its top or inside
-a function, and these import in turn. `from package import name` depends on the module
-`package.name` if there is one, else on the `package` itself. Imports for the type checker alone do
-not count.
+a function; their imports count too. `from package import name` depends on the module `package.name`
+if it exists, else on `package`. Imports only for the type checker do not count.
 """
 
 import ast
@@ -21,16 +20,16 @@ from tipoff.files import content_hash
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = "tipoff"
-WITH_CODE = (PACKAGE, "tests", "validation")  # the last two have kernels of their own
-LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "scikit-fem")  # other ones change last bits
-# What a Source follows from beside its file: syntax trees differ between versions of Python.
+WITH_CODE = (PACKAGE, "tests", "validation")  # the last two also have kernels
+LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "scikit-fem")  # they may change last bits
+# Inputs of a Source besides its file: syntax trees differ between versions of Python.
 _RULES = content_hash(sys.version_info[:2], Path(__file__).read_text(encoding="utf-8"))
 _DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 
 
 def cache_folder() -> Path:
     """Folder of compiled kernels and digests of sources: ``NUMBA_CACHE_DIR`` if it is set, else
-    ``tipoff`` in the user's caches."""
+    ``tipoff`` in the user's cache folder."""
     chosen = os.environ.get("NUMBA_CACHE_DIR")
     caches = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
     return Path(chosen) if chosen else caches / "tipoff"
@@ -45,14 +44,15 @@ class Source(NamedTuple):
 
 @functools.cache
 def digest(*modules: str) -> str:
-    """Hexadecimal SHA-256 of the code that ``modules`` (dotted names) depend on."""
+    """Hexadecimal SHA-256 of the code on which ``modules`` (dotted names) depend."""
     parts = [f"{name} {source(name).code}" for name in closure(*modules)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
 
 def program(*modules: str, libraries: Sequence[str] = ()) -> str:
-    """Hexadecimal SHA-256 of all that the numbers of ``modules`` (dotted names) follow from beside their
-    inputs: the code, and the versions of ``LIBRARIES`` and of further ``libraries``."""
+    """Hexadecimal SHA-256 of everything that determines the numbers of ``modules`` (dotted names)
+    besides their inputs: the code, and the versions of ``LIBRARIES`` and of further
+    ``libraries``."""
     return content_hash(digest(*modules), [version(name) for name in (*LIBRARIES, *libraries)])
 
 
@@ -68,7 +68,7 @@ def version(library: str) -> str:
 
 
 def closure(*modules: str) -> list[str]:
-    """Dotted names of all modules of the project that ``modules`` depend on, themselves included, in
+    """Dotted names of ``modules`` and of all modules of the project on which they depend, in
     alphabetical order. Raises ModuleNotFoundError for a module that the project does not have."""
     found: set[str] = set()
     waiting = list(modules)
@@ -85,7 +85,7 @@ def closure(*modules: str) -> list[str]:
 
 @functools.cache
 def used_by(module: str) -> frozenset[str]:
-    """Dotted names of the modules of the project that ``module`` imports itself."""
+    """Dotted names of the modules of the project that ``module`` imports directly."""
     return frozenset(used for used in map(_module, source(module).imports) if used)
 
 
@@ -101,7 +101,7 @@ def path(module: str) -> Path | None:
 
 
 def _module(name: str) -> str | None:
-    """The module that a dotted ``name`` is, or is found in; None outside the project."""
+    """The module with this dotted ``name``, or that contains it; None outside the project."""
     if path(name):
         return name
     parent = name.rpartition(".")[0]
@@ -115,7 +115,7 @@ _KEPT: cache.Cache[Source] = cache.documents(
 
 @functools.cache
 def source(module: str) -> Source:
-    """The source of ``module``. It is stored beside the kernels, since parsing all files takes a
+    """The source of ``module``. It is stored with the kernels, because parsing all files takes a
     second."""
     code = path(module)
     assert code is not None

@@ -114,7 +114,9 @@ def place_of(touch, face, row, column):
 def no_spot():
     """No wall."""
     height = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    return Spot(-1, height, 0.0, 0.0, -np.inf, 0.0, 0.0, 0.0)
+    return Spot(
+        facet=-1, height=height, r=0.0, s=0.0, penetration=-np.inf, share=0.0, by_x=0.0, by_y=0.0
+    )
 
 
 @inlined
@@ -144,7 +146,16 @@ def spot_under(touch, face, place, last):
     if facet >= 0:
         weight = wall.functions(surface.quadratic, r, s)
         penetration = face.sign * (level - wall.blend(weight, height))
-    return Spot(facet, height, r, s, penetration, share, by_x, by_y)
+    return Spot(
+        facet=facet,
+        height=height,
+        r=r,
+        s=s,
+        penetration=penetration,
+        share=share,
+        by_x=by_x,
+        by_y=by_y,
+    )
 
 
 @inlined

@@ -156,8 +156,8 @@ def _copy(source, target):
 
 @kernel
 def collect_damping(history, state):
-    """What the parts with a resultant, those with m and of joints, do to the frame into
-    ``state.reaction``, the energy taken over the step into ``state.work``."""
+    """Add the damping forces on the frame, of the parts with m and of joints, to
+    ``state.reaction``, and the energy dissipated over the step to ``state.work``."""
     if history is not None:
         for block in range(history.loss.size):
             state.work[TOTAL].structural_damping += history.loss[block]

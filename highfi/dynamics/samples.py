@@ -24,15 +24,15 @@ def motion(samples: np.ndarray, interval: float, body_offset: np.ndarray) -> Mot
     offset = frame @ body_offset
     spin = np.einsum("nij,nj->ni", frame, part(observe.PLATFORM_RATE))
     return Motion(
-        np.arange(len(samples)) * interval,
-        part(observe.POSITION),
-        part(observe.VELOCITY),
-        part(observe.QUATERNION, 4),
-        part(observe.RATE),
-        part(observe.PLATFORM_POSITION) + offset,
-        part(observe.PLATFORM_VELOCITY) + np.cross(spin, offset),
-        part(observe.PLATFORM_QUATERNION, 4),
-        part(observe.PLATFORM_RATE),
+        time=np.arange(len(samples)) * interval,
+        position=part(observe.POSITION),
+        velocity=part(observe.VELOCITY),
+        quaternion=part(observe.QUATERNION, 4),
+        rate=part(observe.RATE),
+        platform_position=part(observe.PLATFORM_POSITION) + offset,
+        platform_velocity=part(observe.PLATFORM_VELOCITY) + np.cross(spin, offset),
+        platform_quaternion=part(observe.PLATFORM_QUATERNION, 4),
+        platform_rate=part(observe.PLATFORM_RATE),
     )
 
 

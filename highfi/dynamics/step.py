@@ -56,7 +56,7 @@ class Task(NamedTuple):
     first_step: int  # number of the step to begin with, whose places are the present ones
     steps: int = 0  # to advance by at most, of length ``Constants.dt``
     span: float = 0.0  # s, of a kick
-    stride: int = 1  # what a step adds to the number of the step
+    stride: int = 1  # increase of the number of the step per step
     most_damping: float = np.inf  # 1/s, friction damping / mass that such steps can follow
 
 

@@ -29,12 +29,14 @@ class Kind(NamedTuple):
 
 
 HEXAHEDRON = Kind(
-    "8-node hexahedra",
-    "quadrilateral",
-    "hexahedron",
-    "quad",
-    np.array([[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]]),
-    np.array(
+    name="8-node hexahedra",
+    facets="quadrilateral",
+    cell="hexahedron",
+    facet="quad",
+    faces=np.array(
+        [[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]]
+    ),
+    edges=np.array(
         [
             [0, 1],
             [1, 2],
@@ -50,16 +52,18 @@ HEXAHEDRON = Kind(
             [3, 7],
         ]
     ),
-    "edge",
+    thickness="edge",
 )
 TETRAHEDRON = Kind(
-    "10-node tetrahedra",
-    "6-node triangle",
-    "tetra10",
-    "triangle6",
-    np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]]),
-    tetrahedron.EDGES,
-    "altitude",
+    name="10-node tetrahedra",
+    facets="6-node triangle",
+    cell="tetra10",
+    facet="triangle6",
+    faces=np.array(
+        [[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]]
+    ),
+    edges=tetrahedron.EDGES,
+    thickness="altitude",
 )
 KINDS = {8: HEXAHEDRON, 10: TETRAHEDRON}
 

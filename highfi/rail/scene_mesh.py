@@ -82,12 +82,12 @@ def _l_section(scene: Scene, rail: SectionTable) -> l_rail.LRailGeometry:
     y, z = places.pop()
     clearance = scene.contact.clearance if scene.contact else 0.0
     return l_rail.LRailGeometry(
-        rail.leg,
-        rail.thickness,
-        rail.start,
-        rail.end,
-        y + clearance,
-        z + clearance,
-        tuple(sorted((span.start, span.end) for span in rail.mounts)),
-        rail.mount_width,
+        leg=rail.leg,
+        thickness=rail.thickness,
+        x_start=rail.start,
+        x_end=rail.end,
+        inner_corner_y=y + clearance,
+        inner_corner_z=z + clearance,
+        mount_spans=tuple(sorted((span.start, span.end) for span in rail.mounts)),
+        mount_width=rail.mount_width,
     )

@@ -1,4 +1,4 @@
-"""Arrays of the time loop: what is constant in a run (Constants) and what evolves (State, Active).
+"""Arrays of the time loop: constant ones (Constants) and evolving ones (State, Active).
 
 All places and nodal vectors are in the axes of the platform-fixed frame. Its origin is the mass
 centre of the platform without the moving rail nodes; for a fixed platform it is the scene origin.
@@ -122,7 +122,7 @@ class Frame(NamedTuple):
 
 @by_reference
 class Drive(NamedTuple):
-    """How thrust acts on payload and platform."""
+    """Action of the thrust on payload and platform."""
 
     arm: float  # m, from the nominal mass centre back to the point of thrust
     reacts_on_platform: bool  # whether the platform takes the reaction

@@ -229,11 +229,11 @@ def load(laws, friction, platform, face, p, body, base):
     force = max(raw, 0.0)
     slip = slip_velocity(laws.thermal_offset, u, closing, n)
     return Load(
-        point,
-        (-force * n[0], -force * n[1], -force * n[2]),
-        friction_force(friction, force, slip),
-        slip,
-        closing,
-        elastic,
-        raw,
+        point=point,
+        normal=(-force * n[0], -force * n[1], -force * n[2]),
+        drag=friction_force(friction, force, slip),
+        slip=slip,
+        closing=closing,
+        elastic=elastic,
+        raw=raw,
     )

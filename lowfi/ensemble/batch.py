@@ -278,13 +278,13 @@ def _stacked(common: system.System, group: _Group) -> cases.Cases:
     # all cases of a group have one, or none
     offsets = [model.thrust_offset for model in of_cases if model.thrust_offset is not None]
     return cases.Cases(
-        np.array([model.payload.mass for model in of_cases]),
-        np.stack([model.payload.inertia for model in of_cases]),
-        np.stack([model.payload.inverse_inertia for model in of_cases]),
-        faces,
-        np.array([offset.direction for offset in offsets]) if offsets else None,
-        np.array([offset.arm for offset in offsets]) if offsets else None,
-        np.stack([state.initial(model) for model in of_cases]),
-        np.sqrt((centre**2).sum(axis=2).max(axis=1)),
-        np.zeros((len(of_cases), cases.RESULT_SIZE)),
+        mass=np.array([model.payload.mass for model in of_cases]),
+        inertia=np.stack([model.payload.inertia for model in of_cases]),
+        inverse_inertia=np.stack([model.payload.inverse_inertia for model in of_cases]),
+        faces=faces,
+        direction=np.array([offset.direction for offset in offsets]) if offsets else None,
+        arm=np.array([offset.arm for offset in offsets]) if offsets else None,
+        start=np.stack([state.initial(model) for model in of_cases]),
+        reach=np.sqrt((centre**2).sum(axis=2).max(axis=1)),
+        results=np.zeros((len(of_cases), cases.RESULT_SIZE)),
     )

@@ -64,13 +64,13 @@ def made(
         yield from _made(
             client,
             Recipe(
-                ensemble.key,
-                code(),
-                ensemble.scene,
-                ensemble.calibration,
-                ensemble.numerics,
-                ensemble.compliance,
-                ensemble.widening,
+                key=ensemble.key,
+                code=code(),
+                scene=ensemble.scene,
+                calibration=ensemble.calibration,
+                numerics=ensemble.numerics,
+                compliance=ensemble.compliance,
+                widening=ensemble.widening,
             ),
             iter(requested),
         )

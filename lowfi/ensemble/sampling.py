@@ -15,7 +15,8 @@ import scipy  # its submodules load at their first use
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.uncertainty import Uncertainty
 
-MOST_HELD = 2**24  # numbers of a Latin hypercube: 128 MiB; its creation takes 3 times as much
+# numbers of a Latin hypercube: 128 MiB, and three times as much during its creation
+MOST_HELD = 2**24
 _WORDS = 4  # 64-bit words that Philox makes per count
 _SOBOL_BITS = 32  # SciPy cannot advance longer sequences
 _EDGE = 2.0**-53  # a normal distribution has no finite quantile at 0 and 1

@@ -74,7 +74,7 @@ def require_hidden_values(found: Calibration) -> None:
     assert values["friction.dynamic"] == pytest.approx(0.13, rel=1e-4)
     assert values["contact.interface_stiffness"] == pytest.approx(4.1e12, rel=1e-2)
     assert found.objective < 1e-8
-    assert found.verdict == "the curves ask for other values than the scene's"
+    assert found.verdict == "the curves exclude the scene's values"
     assert inside(found.with_model_error, [4.1e12, 0.262e-3, 0.13]).all()
     low, high = found.with_model_error[0]
     assert high > 1.2 * low

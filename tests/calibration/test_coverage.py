@@ -46,7 +46,7 @@ def drawn(count: int, share: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]
     hits, narrow, errors = np.zeros(4), np.zeros(4), []
     for seed in range(count):
         found = fitted(curves(HIDDEN, 0.02, seed), NAMES)
-        assert found.verdict.startswith("the curves ask for other values")
+        assert found.verdict.startswith("the curves exclude the scene")
         middle = np.mean(found.intervals, axis=1, keepdims=True)
         hits += inside(found.intervals, TRUTH)
         narrow += inside(middle + share * (np.array(found.intervals) - middle), TRUTH)

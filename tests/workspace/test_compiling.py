@@ -82,7 +82,7 @@ def test_kernels_with_modes_of_the_rails_are_others(monkeypatch, tmp_path, capfd
         return capfd.readouterr().err
 
     assert "again if modes" in announced("auto")
-    # it began without modes, so those with modes are not there
+    # it began without modes, so the kernels with modes are not compiled
     assert "with modes of the rails" in announced("auto", chosen=True)
     assert [announced(modes) for modes in ("auto", 0, 4, 20)] == [""] * 4
 

@@ -1,1 +1,1 @@
-"""How two runs are compared, and what the runs of several meshes say about each other."""
+"""Comparison of two runs, and discretisation uncertainty from several meshes."""

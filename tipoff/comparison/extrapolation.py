@@ -1,10 +1,10 @@
-"""Discretisation uncertainty of a value from grids, coarsest first, by the order that it shows.
+"""Discretisation uncertainty of a value from grids, coarsest first, by the observed order.
 
     f(h) = f_0 + a h^p,   e32 / e21 = r21^p (r32^p - 1) / (r21^p - 1)      gives the observed order p
     U = F |e21| / (r21^p - 1)                              the finest value f_1 is within U of f_0
 
-with e21 = f_2 - f_1, e32 = f_3 - f_2, r21 = h_2 / h_1, r32 = h_3 / h_2. The last change e21 itself
-is no estimate: at first order and r21 = 2 the error is as large, at order 1/2 it is 2.4 times that.
+with e21 = f_2 - f_1, e32 = f_3 - f_2, r21 = h_2 / h_1, r32 = h_3 / h_2. The last change e21 is no
+estimate: at first order and r21 = 2 the error is as large, at order 1/2 it is 2.4 times that.
 
 ======================================  =====================  ====================================
 three values                            order used             F
@@ -16,12 +16,12 @@ changes of alternating sign that fall   1                      3
 changes that do not fall                none: not converged    3 times the range of the three values
 ======================================  =====================  ====================================
 
-A last change smaller than the order of the method makes it from the change before is a coincidence:
-where F is 3 because of it, e21 is replaced by what that order gives.
+If the last change is smaller than the order of the method predicts from the change before, this is
+a coincidence: F is then 3, and e21 is replaced by the predicted change.
 
-Two values show no order. The first is assumed, as at the edge of a clamped strip, where the stress
-is singular, and F is 3. Sources: Roache, J. Fluids Eng. 116 (1994) 405, the grid convergence index
-with 1.25 for three grids and 3 for two; ASME V&V 20-2009, section 2-4; Oberkampf and Roy,
+Two values show no order. The first order is assumed, as at the edge of a clamped strip, where the
+stress is singular, and F is 3. Sources: Roache, J. Fluids Eng. 116 (1994) 405, the grid convergence
+index with 1.25 for three grids and 3 for two; ASME V&V 20-2009, section 2-4; Oberkampf and Roy,
 Verification and Validation in Scientific Computing, Cambridge 2010, the limits of the order; Eca
 and Hoekstra, J. Comput. Phys. 262 (2014) 104, a bound by the range.
 """
@@ -37,26 +37,24 @@ CAUTIOUS_FACTOR = 3.0
 METHOD_ORDER = 2.0  # central differences in time, displacements of the elements
 _ASSUMED_ORDER = 1.0
 _LEAST_ORDER = 0.5
-_STEEPEST = 60.0  # an order beyond this is a difference that vanished
+_STEEPEST = 60.0  # a larger order comes from a difference of almost zero
 _FEWEST = 2
 NOT_CONVERGED = "not converged: changes do not fall"
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """Observed ``order`` or None, ``uncertainty`` of the finest value in its own unit (None:
-    unknown), ``gci_percent``, the same in per cent of that value (or None), and the ``method`` by
-    name."""
+    """Result of ``estimate``."""
 
-    order: float | None
-    uncertainty: float | None
-    gci_percent: float | None
-    method: str
+    order: float | None  # observed
+    uncertainty: float | None  # of the finest value, in its unit; None if unknown
+    gci_percent: float | None  # the same in per cent of the value
+    method: str  # its name
 
 
 def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float | None:
-    """Order p of three values on grids of three falling ``sizes``; negative where differences grow,
-    None where the values do not go one way. Raises ValueError for other sizes."""
+    """Order p of three values on grids of three decreasing ``sizes``; negative if differences grow,
+    None if the values are not monotone. Raises ValueError for other sizes."""
     (r32, r21), (e32, e21) = _ratios(sizes), (values[0] - values[1], values[1] - values[2])
     if e32 * e21 <= 0.0:
         return None
@@ -72,8 +70,8 @@ def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float | N
 
 
 def estimate(sizes: Sequence[float], values: Sequence[float | None]) -> Estimate:
-    """Uncertainty of the last of the ``values``, from the three finest grids or from two; None
-    stands for a run that did not settle."""
+    """Uncertainty of the last of the ``values``, from the three finest grids or from two; None is a
+    run that did not settle."""
     sizes, finest = sizes[-3:], [value for value in values[-3:] if value is not None]
     if len(finest) < len(values[-3:]):
         return Estimate(None, None, None, "a run did not settle")
@@ -106,14 +104,14 @@ def _of_three(sizes: Sequence[float], values: Sequence[float]) -> Estimate:
 
 
 def _least_change(sizes: Sequence[float], values: Sequence[float]) -> float:
-    """The last change that the order of the method makes of the first."""
+    """The last change that the order of the method predicts from the first."""
     coarse, fine = (ratio**METHOD_ORDER - 1.0 for ratio in _ratios(sizes))
     return abs(values[0] - values[1]) * fine / (coarse * (fine + 1.0))
 
 
 def _falls(values: Sequence[float], order: float | None) -> bool:
-    """Whether the second change is smaller than the first, as a power of the size has it where
-    there is an ``order``."""
+    """Whether the second change is smaller than the first; with an ``order``, as the power of the
+    size requires."""
     if order is not None:
         return order > 0.0
     return abs(values[1] - values[2]) < abs(values[0] - values[1])
@@ -128,7 +126,7 @@ def _estimate(
 
 
 def _error(ratio: float, values: Sequence[float], order: float) -> float:
-    """Error of the last value, whose size is ``ratio`` times smaller than the one before."""
+    """Error of the last value; its grid is ``ratio`` times finer than the one before."""
     return abs(values[-2] - values[-1]) / (ratio**order - 1.0)
 
 

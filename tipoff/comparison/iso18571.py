@@ -22,7 +22,7 @@ from tipoff.kernels.jit import njit
 _INNER, _OUTER, _CORRIDOR_EXPONENT = 0.05, 0.5, 2.0
 _LARGEST_SHIFT, _LARGEST_MAGNITUDE_ERROR, _LARGEST_SLOPE_ERROR = 0.2, 0.5, 2.0
 _WARPING_BAND = 0.1
-_SMOOTHING = (1, 3, 5, 7, 9)  # samples averaged at the ends ... and inside
+_SMOOTHING = (1, 3, 5, 7, 9)  # samples averaged, from the ends to the inside
 
 
 class Rating(NamedTuple):
@@ -39,8 +39,8 @@ def rate(reference: np.ndarray, curve: np.ndarray) -> Rating:
     """Rating of ``curve`` (n,) against ``reference`` (n,), both sampled at the same equidistant
     times, n >= 20.
 
-    Raises ValueError for curves of different or too small length. A reference that is zero
-    throughout is rated 1 when the curve is zero too, else 0.
+    Raises ValueError for curves of different or too small length. For a reference of zeros the
+    rating is 1 if the curve is zero too, else 0.
     """
     reference, curve = np.asarray(reference, dtype=float), np.asarray(curve, dtype=float)
     if reference.shape != curve.shape or reference.ndim != 1 or reference.size < 20:
@@ -63,10 +63,10 @@ def rate(reference: np.ndarray, curve: np.ndarray) -> Rating:
 
 
 def best_shift(reference: np.ndarray, curve: np.ndarray) -> int:
-    """Samples by which ``curve`` lags the reference (positive: late) where the normalised
-    cross-correlation is largest."""
+    """Samples by which ``curve`` lags the reference (positive: late) at the largest normalised
+    cross-correlation."""
     limit = math.floor(_LARGEST_SHIFT * reference.size)
-    # of equal correlations the smallest shift wins
+    # of equal correlations the smallest shift is taken
     shifts = sorted(range(-limit, limit + 1), key=abs)
     return max(shifts, key=lambda shift: _correlation(*_overlap(reference, curve, shift)))
 

@@ -5,7 +5,7 @@
     Sprague and Geers:  M = sqrt(I_cc / I_rr) - 1,   P = acos(I_rc / sqrt(I_rr I_cc)) / pi,   I_ab = sum_axes int a b dt
 
 Integrals run from ignition to the end of the reference's settled window, at the same times, without
-any shift. Source of the last: Sprague and Geers, Commun. Numer. Meth. Eng. 20 (2004) 467.
+a shift. Source of the last metric: Sprague and Geers, Commun. Numer. Meth. Eng. 20 (2004) 467.
 """
 
 import math
@@ -24,7 +24,7 @@ CHANNELS = ("velocity_x", "rate_x", "rate_y", "rate_z")
 
 @dataclass(frozen=True)
 class Difference(Carded):
-    """Every metric between two runs of one condition; None where a run has no settled values or the
+    """Every metric between two runs of one condition; None if a run has no settled values or the
     reference is zero.
 
     ``iso18571`` is the mean rating of the three rates, ``iso18571_channels`` and
@@ -73,7 +73,7 @@ class Difference(Carded):
         """Plain values for a result file.
 
         Returns:
-            dict: the metrics by name, the end of which is their unit.
+            dict: the metrics by name, which ends with the unit.
 
         Example:
             >>> run = tipoff.run(tipoff.load("tiny"), "springs")
@@ -123,8 +123,8 @@ def compare(reference: Trajectory, surrogate: Trajectory) -> Difference:
 
 
 def common_time(reference: Trajectory, surrogate: Trajectory) -> np.ndarray:
-    """Equidistant times (s) from ignition to the end of the reference's settled window, or as far
-    as both runs go."""
+    """Equidistant times (s) from ignition to the end of the reference's settled window, or to the
+    end of the shorter run."""
     start = reference.outcome.window_start
     end = math.inf if start is None else start + SETTLE_WINDOW
     end = min(end, float(reference.time[-1]), float(surrogate.time[-1]))
@@ -135,8 +135,8 @@ def common_time(reference: Trajectory, surrogate: Trajectory) -> np.ndarray:
 
 
 def relative_l2(time: np.ndarray, reference: np.ndarray, other: np.ndarray) -> float | None:
-    """Relative L2 difference of curves (n,c) over ``time`` (n,) s, summed over columns; None where
-    the reference is zero."""
+    """Relative L2 difference of curves (n,c) over ``time`` (n,) s, summed over columns; None for a
+    reference of zeros."""
     scale = _inner(time, reference, reference)
     return (
         math.sqrt(_inner(time, other - reference, other - reference) / scale)
@@ -148,7 +148,7 @@ def relative_l2(time: np.ndarray, reference: np.ndarray, other: np.ndarray) -> f
 def sprague_geers(
     time: np.ndarray, reference: np.ndarray, other: np.ndarray
 ) -> tuple[float, float] | None:
-    """Magnitude and phase error of curves (n,c), summed over columns; None where one of them is
+    """Magnitude and phase error of curves (n,c), summed over columns; None if one of them is
     zero."""
     rr, cc, rc = (
         _inner(time, reference, reference),
@@ -158,12 +158,12 @@ def sprague_geers(
     if not (rr > 0.0 and cc > 0.0):
         return None
     cosine = rc / math.sqrt(rr * cc)
-    # Cauchy and Schwarz hold only up to rounding.
+    # The inequality of Cauchy and Schwarz holds only up to rounding.
     return math.sqrt(cc / rr) - 1.0, math.acos(min(1.0, max(-1.0, cosine))) / math.pi
 
 
 def settled_rate_errors(reference: Trajectory, other: Trajectory) -> list[float] | None:
-    """Difference of the settled rates per axis (deg/s), or None where one run did not settle."""
+    """Difference of the settled rates per axis (deg/s), or None if one run did not settle."""
     if reference.outcome.rate is None or other.outcome.rate is None:
         return None
     return np.degrees(np.subtract(other.outcome.rate, reference.outcome.rate)).tolist()

@@ -1,7 +1,7 @@
 """Bounds of quantiles from the order of independent draws, for any distribution.
 
-The number of n draws below the quantile of probability p is binomial, so that a pair of draws
-bounds the quantile (``scipy.stats.quantile_test``). The largest of n draws is above it with
+The number of n draws below the quantile of probability p is binomial, so a pair of draws bounds the
+quantile (``scipy.stats.quantile_test``). The largest of n draws is above it with
 confidence ``1 - p^n``; the smallest and the largest enclose a share p of the distribution with
 confidence ``1 - n p^(n-1) + (n-1) p^n`` (Wilks, Ann. Math. Statist. 12, 1941).
 """
@@ -30,8 +30,8 @@ def runs_needed(share: float, confidence: float = 0.95, sides: int = 1) -> int:
 def bounds(
     values: np.ndarray, share: float, confidence: float = 0.95
 ) -> tuple[float | None, float | None]:
-    """Two-sided bounds of the quantile ``share`` from independent draws (n,); a bound is None where
-    n is too small for it."""
+    """Two-sided bounds of the quantile ``share`` from independent draws (n,); a bound is None if n
+    is too small for it."""
     low, high = _places(len(values), share, confidence)
     ordered = np.sort(values)
     return (
@@ -42,7 +42,7 @@ def bounds(
 
 @functools.cache
 def _places(count: int, share: float, confidence: float) -> tuple[int, int]:
-    """Places of both bounds among ``count`` ordered draws, -1 and ``count`` where there is none."""
+    """Places of both bounds among ``count`` ordered draws; -1 and ``count`` for missing ones."""
     from scipy.stats import binom  # slow to load
 
     below, tail = binom(count, share), 0.5 * (1.0 - confidence)

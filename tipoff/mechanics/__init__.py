@@ -1,1 +1,1 @@
-"""What both solvers share: records, exit, trajectory, energy and momentum, rail compliance."""
+"""Shared by both solvers: records, exit, trajectory, energy and momentum, rail compliance."""

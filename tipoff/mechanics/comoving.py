@@ -2,16 +2,16 @@
 falls freely.
 
 Rounding depends on the frame: at 7.5 km/s, millimetres per second are the last digits of a
-velocity, and a step control that compares errors with speeds finds no error. A body force that
-payload and platform share accelerates both alike, so it changes no relative motion, but it would
-change errors and steps. So both solvers integrate
+velocity, and a step control that compares errors with speeds finds no error. A common body force
+accelerates payload and platform alike. It changes no relative motion, but it would change errors
+and steps. So both solvers integrate
 
     r' = r - r_0 - V t - a t^2 / 2,    v' = v - V - a t
 
-with the payload's displacement r_0 at ignition, the platform's velocity V then and the body force
-per mass a, and return positions and velocities in scene axes. Contact, thrust, rates, attitudes and
-times are the same in both frames. In the moving frame no body force acts; ledgers and momenta are
-those of this frame. Where the rails are fixed in space, r_0, V and a are zero, and the body force
+with the payload's displacement r_0 and the platform's velocity V at ignition, and the body force
+per mass a. They return positions and velocities in scene axes. Contact, thrust, rates, attitudes
+and times are the same in both frames. In the moving frame no body force acts; ledgers and momenta
+are those of this frame. If the rails are fixed in space, r_0, V and a are zero, and the body force
 acts on the payload (``mechanics.model``).
 """
 
@@ -23,11 +23,11 @@ from tipoff.mechanics.outcome import SETTLE_WINDOW, Motion, Outcome
 
 
 class Frame(NamedTuple):
-    """Origin (m) and velocity (m/s) at ignition, and acceleration (m/s2), in scene axes."""
+    """Frame of the solution, in scene axes."""
 
-    origin: tuple
-    velocity: tuple
-    acceleration: tuple
+    origin: tuple  # (3,) m, at ignition
+    velocity: tuple  # (3,) m/s, at ignition
+    acceleration: tuple  # (3,) m/s2
 
     @property
     def is_that_of_the_scene(self) -> bool:
@@ -45,17 +45,16 @@ class Frame(NamedTuple):
 
 
 class Start(NamedTuple):
-    """Mass centres (m) and velocities (m/s) of payload and platform at ignition, in the moving
-    frame; without a platform its own are zero."""
+    """Payload and platform at ignition, in the moving frame; zeros for a missing platform."""
 
-    place: np.ndarray
-    velocity: np.ndarray
-    platform_place: np.ndarray
-    platform_velocity: np.ndarray
+    place: np.ndarray  # (3,) m, mass centre of the payload
+    velocity: np.ndarray  # (3,) m/s
+    platform_place: np.ndarray  # (3,) m, mass centre
+    platform_velocity: np.ndarray  # (3,) m/s
 
 
 def frame(model) -> Frame:
-    """The frame ``model`` is solved in."""
+    """The frame of the solution of ``model``."""
     zero = (0.0, 0.0, 0.0)
     if model.platform is None:
         return Frame(zero, zero, zero)
@@ -113,7 +112,7 @@ def outcome(seen_from: Frame, found: Outcome) -> Outcome:
         and found.exit_platform_velocity is not None
     )  # as the velocity
     way, speed = seen_from.place(found.exit_time), seen_from.speed(found.exit_time)
-    # a mean over the window, in whose middle a linear function has its mean
+    # a mean over the window equals a linear function at its middle
     velocity = np.add(found.velocity, seen_from.speed(found.window_start + 0.5 * SETTLE_WINDOW))
     lateral = float(np.hypot(velocity[1], velocity[2]))
     return found._replace(

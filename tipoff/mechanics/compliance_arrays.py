@@ -1,4 +1,4 @@
-"""Whether the arrays of a rail compliance belong together, as a file gives them."""
+"""Check that the arrays of a rail compliance from a file are consistent."""
 
 import math
 from typing import Any
@@ -13,8 +13,8 @@ _ROUNDING = 1e-6
 
 
 def require(found: Any, patterns: int) -> None:
-    """Raises ValueError where types or shapes of ``found``, a ``RailCompliance``, do not belong
-    together, or a number is not finite; ``patterns`` is the number of those on a face."""
+    """Raise ValueError if types or shapes of ``found``, a ``RailCompliance``, are not consistent,
+    or if a number is not finite; ``patterns``: number of patterns of a face."""
     _require_plain(found)
     _require_dimensions("travel", found.travel, 1)
     _require_dimensions("rail", found.rail, 1, "iu")

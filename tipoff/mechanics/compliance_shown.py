@@ -51,11 +51,11 @@ class Shown(Elements, Carded):
     def plot(self, axes: Any = None) -> "Figure":
         """Draw the compliance (nm/N) of each pad face over the travel of the payload (mm).
 
-        It is the mean displacement of the wall under a face by a force of 1 N spread evenly over
+        It is the mean displacement of the wall under a face for a force of 1 N spread evenly over
         this face.
 
         Args:
-            axes: matplotlib axes to draw in; a new figure without them.
+            axes: matplotlib axes to draw in; a new figure by default.
 
         Returns:
             Figure: the figure. pyplot does not know a new one; a notebook shows it.

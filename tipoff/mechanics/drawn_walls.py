@@ -2,21 +2,21 @@
 
     W(X, eta) = w_0(X) + w_1(X) eta + w_2(X) eta^2
 
-is the offset of the wall away from the payload, from the straight wall that the scene states, under
-the track of a pad face, eta from -1 to 1 across the face. It is known at places about ``SPACING``
-apart from one end of the rail to the other. Between them it is the monotone cubic of Fritsch and
+is the offset of the wall away from the payload, relative to the straight wall of the scene, under
+the track of a pad face, eta from -1 to 1 across the face. It is given at places about ``SPACING``
+apart from one end of the rail to the other. The interpolation is the monotone cubic of Fritsch and
 Carlson (SIAM J. Numer. Anal. 17 (1980) 238-246), which is exact for a straight draft and does not
-overshoot beside a step.
+overshoot at a step.
 """
 
 import numpy as np
 
-SPACING = 0.5e-3  # m, at most: a small part of the length of a pad
+SPACING = 0.5e-3  # m, largest spacing: a small part of the length of a pad
 ACROSS = 3  # powers of eta
 
 
 def grid(start: float, end: float) -> np.ndarray:
-    """Places X (n,) m from ``start`` to ``end`` (m) at which the offset is known."""
+    """Places X (n,) m from ``start`` to ``end`` (m) at which the offset is given."""
     return np.linspace(start, end, int(np.ceil((end - start) / SPACING - 1e-9)) + 1)
 
 
@@ -29,9 +29,9 @@ def cubic(places: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def mean(places: np.ndarray, values: np.ndarray, middle: np.ndarray, half: float) -> np.ndarray:
-    """Mean (s,) m of W over a face of half length ``half`` (m) with its middle at X = ``middle`` (s,)
-    m, where all of it is over the rail; ``values`` (n,ACROSS) m at ``places`` (n,) m. Beyond an end
-    it is that of the last such place."""
+    """Mean (s,) m of W over a face of half length ``half`` (m) with its middle at X = ``middle``
+    (s,) m; ``values`` (n,ACROSS) m at ``places`` (n,) m. Where the face is not completely over the
+    rail, it is the mean at the last place where it is."""
     from scipy.interpolate import PchipInterpolator
 
     over = PchipInterpolator(places, values[:, 0] + values[:, 2] / 3.0).antiderivative()

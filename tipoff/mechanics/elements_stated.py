@@ -1,21 +1,20 @@
-"""What a rail compliance states about its elements: their size, and how uncertain they leave it."""
+"""Statements of a rail compliance on its elements: their size, and the resulting uncertainty."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-COARSE = 0.1  # uncertainty by the elements beyond which finer ones are advised
+COARSE = 0.1  # uncertainty by the elements above which finer ones are advised
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Elements:
-    """element_size (m) of the statics, None where it is not known; uncertainty (f,) by these elements of
-    the compliance under each face, relative to it, and frequency_uncertainty of the lowest mode
-    (``highfi.discretisation``), both None where not_known says why. They change no run."""
+    """Elements of the statics (``highfi.discretisation``). They change no run."""
 
-    element_size: float | None = None
+    element_size: float | None = None  # m, None if unknown
+    # (f,) relative uncertainty of the compliance under each face, None for the reason not_known
     uncertainty: np.ndarray | None = None
-    frequency_uncertainty: float | None = None
+    frequency_uncertainty: float | None = None  # relative, of the lowest mode; None likewise
     not_known: str = ""
 
     @property
@@ -25,8 +24,8 @@ class Elements:
 
     def stated(self) -> dict | None:
         """As in results: ``element_size_m``; the largest ``uncertainty`` of any face and
-        ``frequency_uncertainty``, None where ``not_known`` says why; ``words``. None where the
-        elements are not known."""
+        ``frequency_uncertainty``, None for the reason ``not_known``; ``words``. None if the
+        elements are unknown."""
         if self.element_size is None:
             return None
         return {
@@ -38,7 +37,7 @@ class Elements:
         }
 
     def accuracy(self) -> str:
-        """The elements and what they leave uncertain, in words; empty where they are not known."""
+        """Text on the elements and their uncertainty; empty if they are unknown."""
         if self.element_size is None:
             return ""
         size = 1e3 * self.element_size

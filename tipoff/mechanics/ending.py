@@ -11,28 +11,28 @@ from tipoff.kernels.jit import entry, inlined, kernel
 from tipoff.mechanics.outcome import JAM_DURATION, SETTLE_WINDOW, Outcome, window_start
 
 # A row: payload and platform, each with place (m), velocity (m/s), quaternion and rate in body axes
-# (rad/s) from here on.
+# (rad/s) from this offset.
 PLACE, SPEED, ATTITUDE, SPIN, BODY = 0, 3, 6, 10, 13
 ROW_SIZE = 2 * BODY
 # Slots of a book. Times (s), infinite until they are found:
 #   EXIT        the exit
 #   WINDOW      start of the settled window
 #   DONE        end of the settled window or of a jam, when the outcome is complete
-#   SLOW_SINCE  time from which on the payload is slow
+#   SLOW_SINCE  time since which the payload is slow
 # At the last step, NaN before the first one:
 #   PAST        distance of the rearmost trailing edge beyond the rail end (m)
 #   EXCESS      axial speed minus jam speed (m/s)
-# Integrals over the part of the window that is done:
+# Integrals over the completed part of the window:
 #   WAY, ANGLE  of velocity (m) and of rate (rad)
 # Rows:
 #   AT_EXIT, NOW, BEFORE   at the exit, at the last step, at the step before it
 EXIT, WINDOW, DONE, SLOW_SINCE, PAST, EXCESS, WAY, ANGLE, AT_EXIT = 0, 1, 2, 3, 4, 5, 6, 9, 12
 NOW, BEFORE = AT_EXIT + ROW_SIZE, AT_EXIT + 2 * ROW_SIZE
 BOOK_SIZE = AT_EXIT + 3 * ROW_SIZE
-# s from DONE to the end of a run, so that one more sample follows the settled window where samples
-# are close
+# s from DONE to the end of a run, so that closely spaced samples include one after the settled
+# window
 AFTER = 1e-3
-_ROUNDING = 1e-12  # relative: a scene that ends with the window holds all of it
+_ROUNDING = 1e-12  # relative; a scene that ends with the window contains it completely
 
 
 @entry
@@ -45,7 +45,7 @@ def reset(book):
 
 @inlined
 def watched_from(marks):
-    """Time (s) from which on a slow payload counts as jammed."""
+    """Time (s) after which a slow payload counts as jammed."""
     return 0.0 if marks.constant_thrust else marks.spent_thrust
 
 
@@ -86,8 +86,8 @@ def look_at_speed(book, excess, at, crossing):
 
 @inlined
 def part_in_window(book, began, ended):
-    """Start and end (s) of the part of a step inside the settled window; the end is the smaller one
-    where the step is outside."""
+    """Start and end (s) of the part of a step inside the settled window; for a step outside, the
+    end is the smaller value."""
     return max(began, book[WINDOW]), min(ended, book[WINDOW] + SETTLE_WINDOW)
 
 
@@ -115,8 +115,8 @@ def is_over(book, now):
 
 @entry(forceinline=True)
 def is_left_out(book, time, interval):
-    """Whether the sample at ``time`` (s) is left out: it is too late, or the sample one ``interval``
-    (s) earlier was the last one."""
+    """Whether the sample at ``time`` (s) is left out: it is too late, or the sample one
+    ``interval`` (s) before was the last one."""
     return time > book[DONE] + AFTER or time - interval >= book[DONE]
 
 
@@ -134,16 +134,16 @@ def found(book: np.ndarray) -> tuple[str, Outcome]:
         book[AT_EXIT + BODY : AT_EXIT + ROW_SIZE].tolist(),
     )
     return "exited", Outcome(
-        float(book[EXIT]),
-        float(book[WINDOW]),
-        velocity.tolist(),
-        rate.tolist(),
-        lateral,
-        float(np.arctan2(lateral, velocity[0])),
-        rotation.vector(payload[ATTITUDE:SPIN]),
-        payload[PLACE:SPEED],
-        platform[PLACE:SPEED],
-        platform[SPEED:ATTITUDE],
-        rotation.vector(platform[ATTITUDE:SPIN]),
-        platform[SPIN:BODY],
+        exit_time=float(book[EXIT]),
+        window_start=float(book[WINDOW]),
+        velocity=velocity.tolist(),
+        rate=rate.tolist(),
+        lateral_velocity=lateral,
+        direction_error=float(np.arctan2(lateral, velocity[0])),
+        exit_attitude=rotation.vector(payload[ATTITUDE:SPIN]),
+        exit_position=payload[PLACE:SPEED],
+        exit_platform_position=platform[PLACE:SPEED],
+        exit_platform_velocity=platform[SPEED:ATTITUDE],
+        exit_platform_attitude=rotation.vector(platform[ATTITUDE:SPIN]),
+        exit_platform_rate=platform[SPIN:BODY],
     )

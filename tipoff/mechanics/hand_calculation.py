@@ -2,9 +2,9 @@
 
     w = w_0 + J^-1 (r x d I + sum over the pad of integral of c x f dt)
 
-with the inertia J, the impulse I of the thrust along d at r from the mass centre, and the force f on
-the one pad that touches, at c; all in body axes. Left out are the gyroscopic term w x J w and what a
-second pad would do. So it holds where nothing or one pad touches.
+with the inertia J, the impulse I of the thrust along d at r from the mass centre, and the force f
+on the only pad that touches, at c; all in body axes. The gyroscopic term w x J w and the effect of
+a second pad are left out. So the result is valid if no pad or one pad touches.
 """
 
 from typing import TYPE_CHECKING, NamedTuple
@@ -21,21 +21,21 @@ if TYPE_CHECKING:
 
 
 class ByHand(NamedTuple):
-    """``rate`` (3,) rad/s in body axes, and the index of the ``pad`` that touches, None for none."""
+    """Result of the calculation."""
 
-    rate: np.ndarray
-    pad: int | None
+    rate: np.ndarray  # (3,) rad/s, in body axes
+    pad: int | None  # index of the pad that touches
 
     @property
     def words(self) -> str:
-        """What it counts."""
+        """Names the pads that are included."""
         touched = "no pad touches" if self.pad is None else f"pad {self.pad + 1} alone touches"
         return f"moment impulse over inertia, {touched}"
 
 
 def rates(scene: Scene, run: "Trajectory") -> ByHand | None:
-    """Rates of a settled ``run`` of ``scene`` by hand; None where more than one pad touches in its
-    samples, or where it did not settle."""
+    """Rates of a settled ``run`` of ``scene`` by hand; None if more than one pad touches in its
+    samples, or if it did not settle."""
     if run.outcome.rate is None:
         return None
     model = models.build(scene)

@@ -7,9 +7,10 @@ pattern under a face. With B' K^-1 B = Q diag(a) Q' the formula of Woodbury give
     L' [K + (g - 1) S]^-1 L = L' K^-1 L - sum_i h_i d_i d_i'
     d_i = L' K^-1 B Q_i,    h_i = (g - 1) / (1 + (g - 1) a_i),    0 < a_i <= 1
 
-A term that is small under every pad is left out (``TERMS``). The thermal displacement follows in the
-same way. The modes are those of Rayleigh and Ritz among the modes at g = 1/4, 1 and 4: their part of
-the compliance is never more than the whole, so the rest stays positive semidefinite.
+Terms that are small under every pad are left out (``TERMS``). The thermal displacement follows in
+the same way. The modes are found by the method of Rayleigh and Ritz among the modes at g = 1/4, 1
+and 4. Their part of the compliance is never more than the whole, so the rest stays positive
+semidefinite.
 
 Source: Golub and Van Loan, Matrix Computations, 4th ed. 2013, section 2.1.4; Bathe, Finite Element
 Procedures, 1996, section 11.3.2.
@@ -20,17 +21,17 @@ from typing import NamedTuple
 import numpy as np
 
 LEAST, MOST = 0.25, 4.0  # factors between which the modes are accurate
-TERMS = 1e-7  # relative, of the displacement under a pad, that terms left out may hold
+TERMS = 1e-7  # relative to the displacement under a pad: sum of the terms that are left out
 
 
 class JointTerms(NamedTuple):
-    """What a factor on the stiffness of the joints changes, for r rails, n terms and m shapes."""
+    """Effect of a factor on the stiffness of the joints, for r rails, n terms and m shapes."""
 
     share: np.ndarray  # (r,n) a
     moved: np.ndarray  # (s,f,p,n) 1/N^0.5 m^0.5, d under the faces
     heated: np.ndarray  # (r,n,t) N^0.5 m^0.5, part of each term in the load of each thermal field
-    shape: np.ndarray  # (s,f,p,m) 1/kg^0.5, displacement in orthonormal shapes that hold the modes
-    stiffness: np.ndarray  # (r,m,m) 1/s2, of the rail on its joints among these shapes
+    shape: np.ndarray  # (s,f,p,m) 1/kg^0.5, displacement in orthonormal shapes that span the modes
+    stiffness: np.ndarray  # (r,m,m) 1/s2, of the rail on its joints in these shapes
     joint: np.ndarray  # (r,m,m) 1/s2, of the joints alone
 
 
@@ -42,8 +43,8 @@ def _weights(terms: JointTerms, factor: float) -> np.ndarray:
 def flexibility(
     terms: JointTerms, factor: float, nominal: np.ndarray, rail: np.ndarray
 ) -> np.ndarray:
-    """Flexibility (s,f,p,f,p) m/N at a ``factor``, from the ``nominal`` one of faces on the rails of
-    number ``rail`` (f,)."""
+    """Flexibility (s,f,p,f,p) m/N at a ``factor``, from the ``nominal`` one; ``rail`` (f,): number
+    of the rail of each face."""
     found, weights = nominal.copy(), _weights(terms, factor)
     for number in range(len(weights)):
         own = np.flatnonzero(rail == number)
@@ -61,7 +62,7 @@ def modes(
     """Frequencies (r,n) rad/s of the lowest ``count`` modes at a ``factor``, and their shapes
     (s,f,p,n) 1/kg^0.5."""
     squares, vectors = np.linalg.eigh(terms.stiffness + (factor - 1.0) * terms.joint)
-    # The sign of the largest entry is positive, whatever the library returns.
+    # The largest entry is positive, for any sign from the library.
     vectors = vectors[..., :count]
     largest = np.take_along_axis(vectors, np.abs(vectors).argmax(axis=1)[:, None], axis=1)
     vectors = vectors * np.sign(largest)
@@ -70,8 +71,8 @@ def modes(
 
 
 def warm(terms: JointTerms, factor: float, nominal: np.ndarray, rail: np.ndarray) -> np.ndarray:
-    """Displacement (t,s,f,p) m by one of each thermal field at a ``factor``; the last field, the
-    strain of the platform, loads the joints alone."""
+    """Displacement (t,s,f,p) m for a unit of each thermal field at a ``factor``; the last field,
+    the strain of the platform, loads only the joints."""
     part = _weights(terms, factor)[:, :, None] * terms.heated
     found = nominal - np.einsum("sfpn,fnt->tsfp", terms.moved, part[rail])
     found[-1] *= factor

@@ -6,10 +6,10 @@ each sample).
 
 E(0) is kinetic + strain + contact_stored at ignition. The **total** ledger has ``contact_axial`` =
 0. The **transverse** ledger omits the axial part of every entry: the X component of each force
-times the X velocity of the mass centre of its body (payload, or platform with rails), and
-M V_x^2 / 2 of each body in the kinetic entry. Its ``contact_axial`` is the axial work of the normal
-contact forces. So 500 J of axial motion do not hide the 1 mJ that decides the rates. Both ledgers
-are those of the frame a run is solved in (``mechanics.comoving``).
+times the X velocity of the mass centre of its body (payload, or platform with rails), and M V_x^2 /
+2 of each body in the kinetic entry. Its ``contact_axial`` is the axial work of the normal contact
+forces. So 500 J of axial motion do not hide the 1 mJ that determines the rates. Both ledgers are in
+the frame of the solution (``mechanics.comoving``).
 """
 
 import numpy as np
@@ -31,7 +31,7 @@ ENTRIES = (
     "released",
     "contact_axial",
 )
-# entries that depend on the present state alone
+# entries that depend only on the present state
 STATE = [ENTRIES.index(name) for name in ("kinetic", "strain", "contact_stored")]
 _WORK = [ENTRIES.index(name) for name in WORK]
 _SPENT = [i for i in range(len(ENTRIES)) if i not in _WORK]
@@ -44,14 +44,13 @@ def residual(entries: np.ndarray) -> np.ndarray:
 
 
 def terms(entries: np.ndarray) -> float:
-    """Size (J) of the terms that are summed, which decides the rounding: the largest sum of absolute
-    entries."""
+    """Largest sum of absolute entries (J), which determines the rounding."""
     return float(np.abs(entries).sum(axis=1).max())
 
 
 def total_error(entries: np.ndarray, promised: promises.Promises = promises.RIGID) -> float:
-    """Largest residual over max(|work| of each kind, summed; kinetic energy). Works may cancel: that
-    of a thrust that lifts a weight. The scale is bounded below by ``promises.scale``."""
+    """Largest residual over max(|work| of each kind, summed; kinetic energy). Works may cancel, as
+    for a thrust that lifts a weight. ``promises.scale`` bounds the scale from below."""
     work = np.abs(entries[:, _WORK]).sum(axis=1).max()
     largest = max(work, entries[:, ENTRIES.index("kinetic")].max())
     scale = promises.scale(largest, terms(entries), promised.energy_error, promised.rounding)
@@ -64,7 +63,7 @@ def transverse_error(
     promised: promises.Promises = promises.RIGID,
 ) -> float:
     """Largest residual over the largest sum of non-axial kinetic, strain and stored contact energy.
-    The entries are differences of those of the ``total`` ledger, if given, and have its
+    The entries are differences of entries of the ``total`` ledger, if given, and have its
     rounding."""
     size = terms(entries if total is None else total)
     scale = promises.scale(

@@ -1,4 +1,4 @@
-"""Constant records of a scene for the kernels of both solvers; None where an effect is absent.
+"""Constant records of a scene for the kernels of both solvers; None for an absent effect.
 
 Places on the payload are measured from its *actual* mass centre in body axes; places on the rail
 from the platform's mass centre at ignition (the scene origin when the platform is fixed), in
@@ -39,73 +39,65 @@ _OF_FACES = ("pads", "rail", "contact", "platform")
 
 @by_reference
 class Payload(NamedTuple):
-    """Mass (kg), inertia about the mass centre (3,3), its inverse, and the mass centre at rest in
-    scene axes (m)."""
+    """Mass properties of the payload."""
 
-    mass: float
-    inertia: np.ndarray
-    inverse_inertia: np.ndarray
-    mass_centre: tuple
+    mass: float  # kg
+    inertia: np.ndarray  # (3,3) kg m2, about the mass centre
+    inverse_inertia: np.ndarray  # (3,3) 1/(kg m2)
+    mass_centre: tuple  # (3,) m, at rest, in scene axes
 
 
 @by_reference
 class Faces(NamedTuple):
-    """Pad faces, f of them, and the rail walls they may touch.
+    """f pad faces, and the rail walls that they may touch."""
 
-    centre (f,3) m in body axes; axis (f,) 1 or 2, the normal's axis; sign (f,) of the normal;
-    half_length and half_width (f,) m; relief (f,) m; wall (f,) m, coordinate of the undeformed wall
-    along axis in platform axes; pad (f,) index.
-    """
-
-    centre: np.ndarray
-    axis: np.ndarray
-    sign: np.ndarray
-    half_length: np.ndarray
-    half_width: np.ndarray
-    relief: np.ndarray
-    wall: np.ndarray
-    pad: np.ndarray
+    centre: np.ndarray  # (f,3) m, in body axes
+    axis: np.ndarray  # (f,) 1 or 2, axis of the normal
+    sign: np.ndarray  # (f,) of the normal
+    half_length: np.ndarray  # (f,) m
+    half_width: np.ndarray  # (f,) m
+    relief: np.ndarray  # (f,) m
+    wall: np.ndarray  # (f,) m, coordinate of the undeformed wall along axis, in platform axes
+    pad: np.ndarray  # (f,) index of its pad
 
 
 class Plate(NamedTuple):
-    """Bounds of the walls across the rail: thickness (m) of the walls, leg (m), which is their
-    largest width, and the position of each centred face across the rail, across (f,) m in platform
-    axes. A rail from a file without thickness or leg gets those of the built-in section."""
+    """Bounds of the walls across the rail. A rail from a file without thickness or leg has those of
+    the built-in section."""
 
-    thickness: float
-    leg: float
-    across: np.ndarray
+    thickness: float  # m, of the walls
+    leg: float  # m, largest width of the walls
+    across: np.ndarray  # (f,) m, position of each centred face across the rail, in platform axes
 
 
 class Model(NamedTuple):
-    """All records of one scene. ``rail_start`` and ``rail_end`` (m) are X in platform axes;
-    ``interface_stiffness`` (N/m3) is that of interface and pad layer in series."""
+    """All records of one scene."""
 
     payload: Payload
     faces: Faces
     plate: Plate
-    rail_start: float
-    rail_end: float
+    rail_start: float  # m, X in platform axes
+    rail_end: float  # m, X in platform axes
     thrust: thrust.Thrust
     reacts_on_platform: bool
     thrust_offset: thrust_offset.ThrustOffset | None
     contact: contact.Laws | None
-    interface_stiffness: float | None
+    interface_stiffness: float | None  # N/m3, interface and pad layer in series
     friction: Friction | Sticking | None
     platform: Platform | None
     body_force: BodyForce | None  # on the payload; None on a free platform, which falls alike
     fall: BodyForce | None  # acceleration of the frame of the solution (``mechanics.comoving``)
     thermal: Thermal | None
     initial: Initial
-    thrust_arm: float
+    thrust_arm: float  # m
 
 
 class Built(NamedTuple):
-    """A model, the scene it was made from, and its faces measured from the nominal mass centre."""
+    """A model with its scene."""
 
     scene: Scene
     model: Model
-    nominal: Faces
+    nominal: Faces  # relative to the nominal mass centre
 
 
 def build(scene: Scene) -> Model:
@@ -114,7 +106,7 @@ def build(scene: Scene) -> Model:
 
 
 def built(scene: Scene, earlier: Built | None = None) -> Built:
-    """Records of ``scene``. Records of tables that ``scene`` shares with an ``earlier`` scene are
+    """Records of ``scene``. Records of tables that are the same in an ``earlier`` scene are
     reused."""
     same = (
         {name for name in _REUSED if getattr(earlier.scene, name) is getattr(scene, name)}
@@ -123,7 +115,7 @@ def built(scene: Scene, earlier: Built | None = None) -> Built:
     )
 
     def kept(field: str, make: Callable[[], Any], *tables: str) -> Any:
-        """The earlier record where its ``tables`` (none: that of its name) are the same, else a
+        """The earlier record if its ``tables`` (default: the one of its name) are the same, else a
         new one."""
         if earlier and same.issuperset(tables or (field,)):
             return getattr(earlier.model, field)
@@ -148,7 +140,7 @@ def built(scene: Scene, earlier: Built | None = None) -> Built:
             "contact", lambda: contact.laws(scene.contact.record()) if scene.contact else None
         ),
         interface_stiffness=scene.contact.series_stiffness() if scene.contact else None,
-        # Friction without contact has no normal force to act on, so it is absent too.
+        # Friction without contact has no normal force, so it is absent too.
         friction=kept(
             "friction",
             lambda: scene.friction.record() if scene.friction and scene.contact else None,
@@ -177,7 +169,7 @@ def in_scene_axes(scene: Scene, nominal: Faces) -> Faces:
 
 
 def half_sizes(faces: Faces) -> np.ndarray:
-    """Half size (f,2) m of ``nominal`` faces along xi and eta, negative where eta runs against the
+    """Half size (f,2) m of ``nominal`` faces along xi and eta; negative if eta is opposite to the
     axis, as on mirrored pads."""
     across = faces.centre[np.arange(faces.axis.size), 3 - faces.axis]
     return np.column_stack(
@@ -202,7 +194,7 @@ def _plate(scene: Scene, nominal: Faces, platform: Platform | None) -> Plate:
 
 
 def _faces(scene: Scene, platform: Platform | None) -> Faces:
-    """Faces with their centres measured from the nominal mass centre."""
+    """Faces with centres relative to the nominal mass centre."""
     origin = platform.mass_centre if platform else (0.0, 0.0, 0.0)
     gaps = scene.contact.gaps() if scene.contact else (0.0, 0.0, 0.0)
     gap = scene.rail.gap(gaps[0])
@@ -214,7 +206,7 @@ def _faces(scene: Scene, platform: Platform | None) -> Faces:
             across = 3 - axis
             centre = corner.copy()
             centre[across] -= np.sign(corner[across]) * pad.inset
-            # a shim, where walls as drawn have another distance from the pads
+            # a shim, if walls as drawn have another distance from the pads
             centre[axis] += sign * (gap - gaps[axis])
             wall = corner[axis] + sign * gap - origin[axis]
             rows.append(

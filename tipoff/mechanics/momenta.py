@@ -4,15 +4,14 @@
     error = largest |change of a sum of momenta - impulse from outside| / scale
     scale = largest sum of the magnitudes of the momenta of all parts
 
-Parts are the bodies, and the nodes of elastic rails. Their momenta may cancel: those of payload and
-platform, of two rails, or those of the nodes of a body that turns. So the scale is the sum of
-magnitudes and not the magnitude of the sum. An angular momentum is split into those of the orbits
-and of the spins, all about the origin.
+Parts are the bodies, and the nodes of elastic rails. Momenta may cancel: between payload and
+platform, two rails, or the nodes of a body that turns. So the scale is the sum of magnitudes, not
+the magnitude of the sum. An angular momentum is split into orbits and spins, all about the origin.
 
-Impulses from outside round where they cancel, as weight and reaction of the ground do, and so do
+Impulses from outside that cancel, such as weight and reaction of the ground, cause rounding; so do
 moments about the origin. The sums of magnitudes of all of these enter the lower bound of the scale
-(``mechanics.promises``). Momenta are sums over the steps, each rounded by half a unit in the last
-place at most. Under a constant force these errors have one sign, so n steps may add n eps / 2 of
+(``mechanics.promises``). Momenta are sums over the steps, each rounded by at most half a unit in
+the last place. Under a constant force these errors have one sign, so n steps may add n eps / 2 of
 the momentum.
 """
 
@@ -26,22 +25,21 @@ from tipoff.mechanics import promises
 
 
 class Sizes(NamedTuple):
-    """Sums over all parts at n samples, of magnitudes."""
+    """Sums of magnitudes over all parts at n samples."""
 
     linear: np.ndarray  # (n,) kg m/s, of m v
     angular: np.ndarray  # (n,) kg m2/s, of r x m v and of the spins
-    terms: (
-        np.ndarray
-    )  # (n,) kg m2/s, of |r| |m v| and of the spins: what the line above rounds with
+    # (n,) kg m2/s, of |r| |m v| and of the spins: determines the rounding of ``angular``
+    terms: np.ndarray
 
 
 class Sums(NamedTuple):
-    """What is balanced at n samples, and what it is summed from."""
+    """Balanced momenta at n samples, and the sizes of their terms."""
 
     values: np.ndarray  # (n,6) kg m/s and kg m2/s, momenta of the whole
     given: np.ndarray  # (n,6) N s and N m s, from outside
     sizes: Sizes
-    impulses: float  # N s, sum of the magnitudes of all impulses, those that cancel too
+    impulses: float  # N s, sum of the magnitudes of all impulses, including those that cancel
     reach: float  # m, largest distance of a force from the origin
 
 
@@ -62,8 +60,8 @@ def of_bodies(bodies: Iterable[tuple[float, np.ndarray, np.ndarray, np.ndarray]]
 
 
 def impulses(time: np.ndarray, given: np.ndarray, forces: np.ndarray, weight: float) -> float:
-    """Bound of the sum of the magnitudes of all impulses (N s) up to the last of the times (n,) s, of
-    which ``given`` (n,6) is the sum: pad ``forces`` (n,f,3) N and ``weight`` (N) may cancel in it."""
+    """Bound of the sum of the magnitudes of all impulses (N s) up to the last of the times (n,) s.
+    Their sum is ``given`` (n,6); pad ``forces`` (n,f,3) N and ``weight`` (N) may cancel in it."""
     changes = size(np.diff(given[:, :3], axis=0)).sum()
     interval = time[1] - time[0] if time.size > 1 else 0.0
     pressed = interval * np.sqrt(np.einsum("nfi,nfi->nf", forces, forces)).sum()

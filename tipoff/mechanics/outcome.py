@@ -2,12 +2,13 @@
 definitions.
 
 * **Exit**: first instant at which the trailing edge of the last pad face is past the rail end.
-* **Settled window**: 2 ms from the later of exit + 1 ms and thrust below 0.1 % of its peak; settled
-  values are means over it.
-* **Jammed**: after thrust fell below 1 % of its peak, or under a brisk constant thrust, relative axial
-  speed below the friction transition speed (10 mm/s where friction has none) for 5 ms.
+* **Settled window**: 2 ms from the later of two times, exit + 1 ms and thrust below 0.1 % of its
+  peak; settled values are means over it.
+* **Jammed**: relative axial speed below the friction transition speed (10 mm/s if friction has
+  none) for 5 ms, after the thrust fell below 1 % of its peak or under a strong constant thrust.
 
-All of it is found from the steps of a run (``mechanics.ending``), whatever the sampling interval.
+All values come from the steps of a run (``mechanics.ending``), independent of the sampling
+interval.
 """
 
 from typing import NamedTuple
@@ -40,35 +41,32 @@ class Motion(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """Exit time (s), settled window start (s), means over it: velocity (m/s), rate (rad/s); lateral
-    velocity (m/s), direction error of the velocity (rad). At the exit: attitude of the payload as a
-    rotation vector (rad), its position (m), and position (m), velocity (m/s), attitude (rad) and
-    rate (rad/s) of the platform. All None unless the payload exited and settled."""
+    """Outcome of a run. All values are None unless the payload exited and settled."""
 
-    exit_time: float | None = None
-    window_start: float | None = None
-    velocity: list[float] | None = None
-    rate: list[float] | None = None
-    lateral_velocity: float | None = None
-    direction_error: float | None = None
-    exit_attitude: list[float] | None = None
-    exit_position: list[float] | None = None
-    exit_platform_position: list[float] | None = None
-    exit_platform_velocity: list[float] | None = None
-    exit_platform_attitude: list[float] | None = None
-    exit_platform_rate: list[float] | None = None
+    exit_time: float | None = None  # s
+    window_start: float | None = None  # s, of the settled window
+    velocity: list[float] | None = None  # m/s, mean over the window
+    rate: list[float] | None = None  # rad/s, mean over the window
+    lateral_velocity: float | None = None  # m/s
+    direction_error: float | None = None  # rad, of the velocity
+    exit_attitude: list[float] | None = None  # rad, rotation vector
+    exit_position: list[float] | None = None  # m
+    exit_platform_position: list[float] | None = None  # m
+    exit_platform_velocity: list[float] | None = None  # m/s
+    exit_platform_attitude: list[float] | None = None  # rad, rotation vector
+    exit_platform_rate: list[float] | None = None  # rad/s
 
 
 _VECTORS = {name for name, kind in Outcome.__annotations__.items() if kind == list[float] | None}
 
 
 def is_number(value: object) -> bool:
-    """Whether a value is a number of ordinary size, as JSON has it."""
+    """Whether a value is a finite number, not True or False."""
     return isinstance(value, float) or (type(value) is int and abs(value) < 2**53)
 
 
 def require(found: Outcome) -> None:
-    """Raises ValueError for an entry that is neither None nor a number, or three of a vector."""
+    """Raise ValueError for an entry that is neither None nor a number, or three for a vector."""
     for name, value in found._asdict().items():
         numbers = value if name in _VECTORS else [value]
         is_right = value is None or (
@@ -81,14 +79,14 @@ def require(found: Outcome) -> None:
 
 
 class Milestones(NamedTuple):
-    """Values that the scene alone determines: times (s) from which on the thrust is below 0.1 % and
-    1 % of its peak, the latter no earlier than a body force can set a payload in motion; the jam speed
-    (m/s); whether a constant thrust is so strong that a payload that is slow under it is jammed."""
+    """Values that only the scene determines."""
 
-    settled_thrust: float
+    settled_thrust: float  # s, time after which the thrust is below 0.1 % of its peak
+    # s, time after which it is below 1 %, at least the time at which a body force can move the
+    # payload
     spent_thrust: float
-    jam_speed: float
-    constant_thrust: bool
+    jam_speed: float  # m/s
+    constant_thrust: bool  # whether a slow payload is jammed under the thrust: constant and strong
 
 
 def milestones(scene: Scene, model) -> Milestones:
@@ -109,8 +107,8 @@ def jam_speed(model) -> float:
 
 
 def relative_motion(motion) -> dict[str, np.ndarray]:
-    """Payload position (m) and velocity (m/s) relative to the platform in its axes, and rate
-    (rad/s) in payload body axes."""
+    """Position (m) and velocity (m/s) of the payload relative to the platform, in platform axes,
+    and rate (rad/s) in payload body axes."""
     frame = rotation.matrices(motion.platform_quaternion)
     separation = motion.position - motion.platform_position
     spin = np.einsum("nij,nj->ni", frame, motion.platform_rate)
@@ -130,7 +128,7 @@ def window_start(exit_at, marks):
 
 
 def pressed_at_ignition(faces, forces: np.ndarray) -> str:
-    """A warning that names the pads with ``forces`` (f,3) N at ignition; empty where there are
+    """A warning that names the pads with ``forces`` (f,3) N at ignition; empty if there are
     none."""
     pads = sorted(set(faces.pad[(forces != 0.0).any(axis=1)].tolist()))
     return (
@@ -142,8 +140,8 @@ def pressed_at_ignition(faces, forces: np.ndarray) -> str:
 
 def strike(faces, face: int, how: str, depth: float, place: float, time: float) -> str:
     """Message of a run that ends because a pad meets a wall where no contact is modelled. ``how``
-    says what the pad does, ``depth`` (m) is its penetration, ``place`` (m) the X of the middle of
-    the face in scene axes at ignition, ``time`` in s."""
+    is the verb of the pad, ``depth`` (m) its penetration, ``place`` (m) the X of the middle of the
+    face in scene axes at ignition, ``time`` in s."""
     name = f"{'+' if faces.sign[face] > 0.0 else '-'}{'xyz'[faces.axis[face]]}"
     return (
         f"pad {faces.pad[face]} {how} of its rail with its face {name}, {depth * 1e3:.4g} mm "

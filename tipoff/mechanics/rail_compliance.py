@@ -8,20 +8,20 @@ away from the payload by u::
     phi = 1, xi, eta, xi^2, xi eta, eta^2
 
 F is the flexibility of linear statics, symmetric and positive definite, at every station along the
-rail. Near an end of the rail a face keeps the last station where all of it has a wall under it, and
-xi continues beyond.
+rail. Near an end of the rail a face keeps the last station where it is completely over the wall,
+and xi continues beyond.
 
-The lowest modes of the rail, mass-normalised and of frequencies omega_m, are a part of it. The rest
-is static::
+The lowest modes of the rail, mass-normalised and with frequencies omega_m, are a part of it. The
+rest is static::
 
     U = F_res P + W q,   F_res = F - sum_m W_m W_m' / omega_m^2,   W_iam(travel) the displacement in mode m
 
 F_res is positive semidefinite: it is the part of the other modes. A warm rail
-(``scenes.effects.thermal``) has the thermal offset T = sum_t amount_t warm_t of the same patterns,
-to which U is added. Walls from a file that are not straight as drawn have an offset W beside it
-(``mechanics.drawn_walls``). Warm and rigid walls have T and W but no F. On joints of finite stiffness all of this
-holds for the nominal stiffness, and ``RailCompliance.of`` gives it for the factor of a scene
-(``mechanics.joint_terms``).
+(``scenes.effects.thermal``) has the thermal offset T = sum_t amount_t warm_t in the same patterns,
+to which U is added. Walls from a file that are not straight have a further offset W
+(``mechanics.drawn_walls``). Warm and rigid walls have T and W but no F. On joints of finite
+stiffness this holds for the nominal stiffness, and ``RailCompliance.of`` gives it for the factor of
+a scene (``mechanics.joint_terms``).
 """
 
 import hashlib
@@ -41,15 +41,15 @@ from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
-MODES = 20  # of each rail, kept beside its compliance
+MODES = 20  # of each rail, stored with its compliance
 PATTERNS = 6  # phi: all products of powers of xi and eta up to the second degree
 POWERS = np.array([[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]])  # of xi and eta
 
 _KEEPING = threading.Lock()
-_KEPT_FACTORS = 4  # compliances at other factors that are kept
+_KEPT_FACTORS = 4  # compliances at other factors that are kept in memory
 _PLAIN = ("made_for", "element_size", "frequency_uncertainty", "not_known")  # no arrays
-_JOINTS = "joints."  # before the names of their arrays in a file
-_ROUNDING = 1e-9  # of the largest eigenvalue of F: error of one of zero by that of the modes
+_JOINTS = "joints."  # prefix of the names of their arrays in a file
+_ROUNDING = 1e-9  # of the largest eigenvalue of F: error of a zero eigenvalue due to the modes
 
 # Means over a face of products of two patterns: the mean of xi^n is 1 / (n + 1) for even n.
 _TOGETHER = POWERS[:, None] + POWERS
@@ -58,29 +58,35 @@ GRAM = np.where((_TOGETHER % 2 == 0).all(axis=2), 1.0 / (_TOGETHER + 1.0).prod(a
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RailCompliance(Shown):
-    """travel (s,) m of the payload along X since ignition, evenly spaced; flexibility (s,f,p,f,p) m/N; rail
-    (f,) number of the rail each face is on; half (f,2) m, half the size of each face along xi and eta,
-    negative where eta runs against the axis; frequency (r,n) rad/s of the lowest modes of each rail,
-    ascending, and their shape W (s,f,p,n) 1/kg^0.5; made_for, digest of the rail and pads; warm (t,s,f,p) m
-    away from the payload under one of each field of temperature, or None; joints, what a factor on the
-    stiffness of the mounts changes, or None; drawn (n,f,3) m, offset of walls that are not straight as
-    drawn, at places from end to end of the rail (``mechanics.drawn_walls``), or None. Rigid walls have no
-    flexibility (None). The other fields are those of ``mechanics.elements_stated``.
+    """Static compliance of the rails under the pads, with their lowest modes; rigid walls have no
+    flexibility. Fields on its elements are in ``mechanics.elements_stated``.
 
     Example:
         >>> rail = tipoff.compliance(tipoff.load("tiny"), 8e-3)
         >>> run = tipoff.run(tipoff.load("tiny"), compliance=rail, modes=0)
     """
 
+    #: (s,) m, travel of the payload along X since ignition, evenly spaced.
     travel: np.ndarray
+    #: (s,f,p,f,p) m/N, None for rigid walls.
     flexibility: np.ndarray | None
+    #: (f,) number of the rail of each face.
     rail: np.ndarray
+    #: (f,2) m, half the size of each face along xi and eta; negative if eta is opposite to the
+    #: axis.
     half: np.ndarray
+    #: (r,n) rad/s, frequencies of the lowest modes of each rail, ascending.
     frequency: np.ndarray
+    #: (s,f,p,n) 1/kg^0.5, shapes W of the modes.
     shape: np.ndarray
+    #: Digest of the rail and pads.
     made_for: str
+    #: (t,s,f,p) m, displacement away from the payload for a unit of each field of temperature.
     warm: np.ndarray | None = None
+    #: Effect of a factor on the stiffness of the mounts.
     joints: JointTerms | None = None
+    #: (n,f,3) m, offset of walls that are not straight, from end to end
+    #: (``mechanics.drawn_walls``).
     drawn: np.ndarray | None = None
 
     def __post_init__(self):
@@ -89,7 +95,7 @@ class RailCompliance(Shown):
                 array.flags.writeable = False  # runs share a compliance, and what follows from it
 
     def of(self, scene: Scene) -> "RailCompliance":
-        """This compliance at the factor that ``scene`` has on the stiffness of its mounts. Raises
+        """This compliance at the factor of ``scene`` on the stiffness of its mounts. Raises
         SceneError as ``require`` does."""
         self.require(scene)
         factor = _factor(scene)
@@ -110,7 +116,7 @@ class RailCompliance(Shown):
 
     def _at(self, factor: float) -> "RailCompliance":
         terms, flexibility, heat = self.joints, self.flexibility, self.warm
-        assert terms is not None  # by require
+        assert terms is not None  # checked by require
         if flexibility is not None:
             flexibility = joint_terms.flexibility(terms, factor, flexibility, self.rail)
         if heat is not None:
@@ -153,8 +159,7 @@ class RailCompliance(Shown):
 
     def residual(self, modes: int) -> np.ndarray:
         """Flexibility (s,f,p,f,p) m/N without the part of the first ``modes`` of each rail. Raises
-        ValueError where this is no longer positive semidefinite: the modes are not those of the
-        rail the flexibility belongs to."""
+        ValueError if this is not positive semidefinite: the modes then belong to another rail."""
         flexibility = self._flexibility()
         if modes == 0:
             return flexibility
@@ -174,17 +179,17 @@ class RailCompliance(Shown):
         return rest
 
     def _flexibility(self) -> np.ndarray:
-        """The flexibility of walls that are not rigid."""
+        """The flexibility; fails for rigid walls."""
         assert self.flexibility is not None
         return self.flexibility
 
     def __getstate__(self) -> dict:
-        """The fields, for another process; derived arrays are made again there."""
+        """The fields, for another process; derived arrays are computed again there."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @cached_property
     def hash(self) -> str:
-        """Hexadecimal SHA-256 of all of it but its ``mechanics.elements_stated``."""
+        """Hexadecimal SHA-256 of all fields except ``mechanics.elements_stated``."""
         digest = hashlib.sha256(self.made_for.encode())
         for array in (
             self.travel,
@@ -207,7 +212,7 @@ class RailCompliance(Shown):
         return (GRAM @ self._flexibility().transpose(0, 1, 3, 2, 4) @ GRAM)[..., 0, 0]
 
     def rigid(self) -> "RailCompliance":
-        """The same walls without flexibility: their offsets alone, for springs."""
+        """The same walls without flexibility: only their offsets, for springs."""
         return replace(self, flexibility=None, element_size=None, uncertainty=None)
 
     def moved(self, amounts: np.ndarray) -> np.ndarray:
@@ -216,7 +221,7 @@ class RailCompliance(Shown):
         return np.tensordot(amounts, self.warm, 1)
 
     def restricted(self, patterns: int = PATTERNS, coupled: bool = True) -> "RailCompliance":
-        """The compliance of a simpler model: the first ``patterns`` only, and, unless ``coupled``,
+        """The compliance of a simpler model: only the first ``patterns``, and, unless ``coupled``,
         without the coupling between faces and without modes."""
         kept = np.arange(PATTERNS) < patterns
         full = self._flexibility()
@@ -234,15 +239,15 @@ class RailCompliance(Shown):
         return replace(self, flexibility=flexibility, frequency=frequency, shape=shape, joints=None)
 
     def require(self, scene: Scene) -> None:
-        """Raises SceneError where ``scene`` has another rail or other pads than this compliance was made for, a
-        temperature while this has no thermal offset, or a factor on the stiffness of its mounts that this does
-        not cover."""
+        """Raise SceneError if ``scene`` has another rail or other pads than this compliance, a
+        temperature while this has no thermal offset, or a factor on the stiffness of its mounts
+        outside its range."""
         if self.made_for != digest(scene):
-            expected = "those of this compliance: make it again"
+            expected = "those of this compliance: compute it again"
             raise SceneError([Fault(scene.name, "rail", "another rail, or other pads", expected)])
         if scene.thermal is not None and self.warm is None:
             given = "a compliance without thermal offset"
-            expected = "a compliance for warm rails: make it again"
+            expected = "a compliance for warm rails: compute it again"
             raise SceneError([Fault(scene.name, "thermal", given, expected)])
         factor = _factor(scene)
         if factor != 1.0 and (self.joints is None or not LEAST <= factor <= MOST):
@@ -266,7 +271,7 @@ class RailCompliance(Shown):
         write_sealed(path, content(self))
 
     def _arrays(self) -> dict:
-        """The fields by name, those of ``joints`` one by one."""
+        """The fields by name, with the arrays of ``joints`` one by one."""
         found = self.__getstate__()
         terms = found.pop("joints")
         parts = terms._asdict() if terms is not None else {}
@@ -323,19 +328,19 @@ def content(compliance: RailCompliance) -> bytes:
 
 
 def model_of(scene: Scene, compliance: RailCompliance | None) -> str:
-    """The surrogate model that ``scene`` gets with ``compliance``: springs without it or on rigid
-    walls. Without contact both models are the same, and the default is returned."""
+    """The surrogate model of ``scene`` with ``compliance``: springs without it or on rigid walls.
+    Without contact both models are the same, and the default is returned."""
     flexible = compliance is not None and compliance.flexibility is not None
     return COMPLIANT if flexible or scene.contact is None else SPRINGS
 
 
 def may_vibrate(scene: Scene, compliance: RailCompliance | None) -> bool:
-    """Whether the rails of ``scene`` may have modes: on compliant contact alone."""
+    """Whether the rails of ``scene`` may have modes: only on compliant contact."""
     return scene.contact is not None and model_of(scene, compliance) == COMPLIANT
 
 
 def require_modes(source: str, compliance: RailCompliance | None, modes: int) -> None:
-    """Raises SceneError, naming ``source``, where ``compliance`` has fewer ``modes``."""
+    """Raise SceneError, naming ``source``, if ``compliance`` has fewer ``modes``."""
     if compliance is not None and modes > (most := compliance.frequency.shape[1]):
         raise SceneError(
             [
@@ -365,13 +370,13 @@ def _factor(scene: Scene) -> float:
 
 
 def digest(scene: Scene) -> str:
-    """Hexadecimal digest of the rail and pads that a compliance is made for. The clearance is not part of it:
-    one compliance serves the cases of a population, whose clearances vary around that of their scene. A
-    compliance is stored under all that it is computed from, the clearance included
+    """Hexadecimal digest of the rail and pads of a compliance, without the clearance: one
+    compliance serves the cases of a population, whose clearances vary around that of their scene. A
+    compliance is stored under all its inputs, including the clearance
     (``calibration.rail_compliance.made_from``)."""
     described = scene.model_dump(mode="json", include={"rail", "pads"})
     described["rail"] |= scene.rail.contents()
-    described["rail"].pop("damping", None)  # statics
+    described["rail"].pop("damping", None)  # statics do not use it
     described["rail"].get("mount_stiffness", {}).pop("factor", None)  # see ``RailCompliance.of``
     described["rail"]["material"].pop("expansion", None)  # the offset is per unit of each field
     return content_hash(described)

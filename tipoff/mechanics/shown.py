@@ -27,7 +27,7 @@ def line(run: "Trajectory") -> str:
 
 
 def facts(run: "Trajectory") -> dict[str, str]:
-    """What a user asks first, as words by their title."""
+    """The main results as text by title."""
     found = run.outcome
     text = {"scene": str(run.scene.get("name", "")), "model": run.model, "status": run.status}
     if run.message:
@@ -50,7 +50,7 @@ def facts(run: "Trajectory") -> dict[str, str]:
 
 
 def _beside(run: "Trajectory") -> dict[str, str]:
-    """The rates by hand, and what would help a run that ended too early. Both need the scene; a
+    """The rates by hand, and advice for a run that ended too early. Both need the scene; a
     trajectory that was read back may lack its files."""
     try:
         scene = parse(run.scene, bare_numbers_are_si=True)

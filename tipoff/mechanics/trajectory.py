@@ -1,9 +1,9 @@
-"""The result of one run, the same in both fidelities: names, units and coordinates, and a netCDF
-file of it.
+"""The result of one run, the same for all models: names, units and coordinates, and a netCDF file
+of it.
 
 Positions and velocities are of the payload's mass centre, inertial, in initial scene axes; rates
-are in body axes; quaternions are scalar first, body to inertial. Ledgers and momenta are those of
-the frame a run is solved in, which moves with the platform's mass centre as that moves at ignition
+are in body axes; quaternions are scalar first, body to inertial. Ledgers and momenta are in the
+frame of the solution, which keeps the velocity of the platform's mass centre at ignition
 (``mechanics.comoving``).
 """
 
@@ -63,33 +63,19 @@ _UNITS = {
 
 
 def versions() -> dict[str, str]:
-    """Versions of the libraries a result depends on."""
+    """Versions of the libraries that determine a result."""
     names = ("tipoff", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
     return {name: sources.version(name) for name in names}
 
 
 @dataclass(frozen=True, eq=False)
 class Trajectory(Carded):
-    """Sampled motion of payload and platform, pad forces on the payload (scene axes) and both
-    energy ledgers.
-
-    Arrays have the samples first: time (n,) s, vectors (n,3), quaternions (n,4), pad_force (n,f,3)
-    N, ledgers (n, len(ledger.ENTRIES)) J. ``checks`` holds the errors of the balances (1),
-    ``cost`` wall_s, compile_s, steps, dt_s and what a model adds, ``scene`` the resolved inputs. A
+    """Sampled motion of payload and platform, pad forces and both energy ledgers, of n samples. A
     diverged or refused run has no settled values.
 
-    A run with flexible rails also has their stress. ``stress``: peak_stress_pa, the largest von
-    Mises stress, at peak_stress_place_m (scene axes, undeformed) of peak_stress_rail at
-    peak_stress_time_s; yield_strength_pa or None; largest_strain, largest_rotation_rad; warnings,
-    text on what these make doubtful; patch_places_m of the w patches whose mean stress in
-    platform axes is ``wall_stress`` (n,w,6) Pa. A rigid rail and a run that diverged have None and no
-    patches.
-
-    ``model`` is one of ``mechanics.models.MODELS``.
-
     Raises:
-        ValueError: another model or status, arrays that do not fit each other, and any NaN or inf,
-            naming where it is.
+        ValueError: another model or status, arrays that do not fit each other, and NaN or inf, with
+            their place.
 
     Example:
         >>> run = tipoff.run(tipoff.load("tiny"), "springs")
@@ -97,27 +83,44 @@ class Trajectory(Carded):
         True
     """
 
+    #: One of ``mechanics.models.MODELS``.
     model: str
     status: str
+    #: (n,) s.
     time: np.ndarray
+    #: (n,3) m.
     position: np.ndarray
+    #: (n,3) m/s.
     velocity: np.ndarray
+    #: (n,4).
     quaternion: np.ndarray
+    #: (n,3) rad/s.
     rate: np.ndarray
     platform_position: np.ndarray
     platform_velocity: np.ndarray
     platform_quaternion: np.ndarray
     platform_rate: np.ndarray
+    #: (n,f,3) N, on the payload, in scene axes.
     pad_force: np.ndarray
+    #: (n, len(ledger.ENTRIES)) J, total ledger.
     energy: np.ndarray
+    #: The transverse ledger.
     transverse_energy: np.ndarray
     outcome: outcome.Outcome
+    #: Relative errors of the balances.
     checks: dict[str, float]
+    #: wall_s, compile_s, steps, dt_s and values of the model.
     cost: dict[str, float]
+    #: Resolved inputs.
     scene: dict
     message: str = ""
     numerics: dict = field(default_factory=dict)
+    #: Stress of flexible rails, None for rigid rails and diverged runs. It has peak_stress_pa, the
+    #: largest von Mises stress, at peak_stress_place_m (scene axes, undeformed) of peak_stress_rail
+    #: at peak_stress_time_s; yield_strength_pa or None; largest_strain, largest_rotation_rad;
+    #: warnings, texts on doubts about these; patch_places_m of the w patches.
     stress: dict | None = None
+    #: (n,w,6) Pa, mean stress of the patches, in platform axes.
     wall_stress: np.ndarray | None = None
     versions: dict[str, str] = field(default_factory=versions)
 
@@ -170,7 +173,7 @@ class Trajectory(Carded):
         Args:
             quantity: ``rate`` (deg/s, inertial, in body axes), ``velocity`` (m/s) or ``position``
                 (mm), both inertial in scene axes.
-            axes: matplotlib axes to draw in; a new figure without them.
+            axes: matplotlib axes to draw in; a new figure by default.
 
         Returns:
             Figure: the figure. pyplot does not know a new one; a notebook shows it.
@@ -198,8 +201,8 @@ class Trajectory(Carded):
         )
 
     def to_csv(self, path: str | Path) -> None:
-        """Write time, position, velocity and rates of the payload, units in the header, atomically:
-        a file that ``tipoff calibrate --reference`` reads.
+        """Write time, position, velocity and rates of the payload, with units in the header,
+        atomically. ``tipoff calibrate --reference`` reads this file.
 
         Args:
             path: file to write.
@@ -220,7 +223,7 @@ class Trajectory(Carded):
         write_csv(path, columns)
 
     def to_xarray(self) -> "xarray.Dataset":
-        """Labelled copy; motion relative to the platform is added.
+        """Labelled copy, with the motion relative to the platform.
 
         Returns:
             xarray.Dataset: variables over ``time`` (s) with their unit in ``attrs["units"]``.
@@ -230,7 +233,7 @@ class Trajectory(Carded):
             >>> data.rate.dims, data.rate.attrs["units"]
             (('time', 'axis'), 'rad/s')
         """
-        import xarray  # slow to load, and a run that writes no file does without
+        import xarray  # slow to load, and a run that writes no file does not need it
 
         variables = {
             name: (dims, getattr(self, name), {"units": _UNITS[name]})
@@ -253,7 +256,7 @@ class Trajectory(Carded):
         if self.wall_stress.size:
             coordinates["stress_component"] = list(_STRESS)
         else:
-            # a dimension of no length means an unlimited one to netCDF
+            # netCDF takes a dimension of length zero as unlimited
             del variables["wall_stress"]
         plain = {name: json.dumps(getattr(self, name), allow_nan=False) for name in _PLAIN}
         return xarray.Dataset(
@@ -269,8 +272,8 @@ class Trajectory(Carded):
         )
 
     def save(self, path: str | Path) -> None:
-        """Write netCDF with its digest, atomically: an interrupted call leaves the file that was
-        there, or none.
+        """Write netCDF with its digest, atomically: an interrupted call leaves the earlier file, or
+        none.
 
         Args:
             path: file to write.
@@ -329,12 +332,12 @@ class Trajectory(Carded):
             raise OSError(
                 f"{path}: not a whole trajectory file: it {fault.reason}; make it again"
             ) from fault
-        except Exception as error:  # that of HDF5 for a foreign file depends on the file
+        except Exception as error:  # the type from HDF5 depends on the foreign file
             raise OSError(f"{path}: not a whole trajectory file ({error})") from error
 
 
 def _require_plain(plain: dict[str, Any]) -> None:
-    """Raises ValueError where what a file holds as JSON has other types than ``save`` writes."""
+    """Raise ValueError if the JSON of a file has other types than ``save`` writes."""
     for name in ("checks", "cost", "scene", "numerics", "versions"):
         if not isinstance(plain[name], dict):
             raise ValueError(f"{name}: given {plain[name]!r}, expected a table")

@@ -15,16 +15,16 @@ from tipoff.scenes.scene import Scene
 if TYPE_CHECKING:
     from tipoff.mechanics.trajectory import Trajectory
 
-_HORIZON = 100.0  # durations of the scene within which the end of the thrust is looked for
+_HORIZON = 100.0  # durations of the scene in which the end of the thrust is searched
 _BURNT = 1e-3  # of the peak, as in ``mechanics.outcome``
 _SLOW = 0.01  # m/s, as for a jam
-_STEP = 1e-5  # s, to which a duration is rounded up
-_MARGIN = 1e-3  # s: a payload that turns leaves the rail later than its mass centre tells
+_STEP = 1e-5  # s, durations are rounded up to it
+_MARGIN = 1e-3  # s: a payload that turns leaves the rail later than its mass centre suggests
 
 
 def advice(scene: Scene, run: "Trajectory") -> str:
-    """Why a ``run`` of ``scene`` has the status ``time_limit`` and which duration would do; empty
-    for any other status."""
+    """Reason why a ``run`` of ``scene`` has the status ``time_limit``, and a sufficient duration;
+    empty for any other status."""
     if run.status != "time_limit":
         return ""
     burnt = thrust_law.burnout(scene.thrust.record(), _BURNT, _HORIZON * scene.time_limit)
@@ -38,8 +38,8 @@ def advice(scene: Scene, run: "Trajectory") -> str:
 
 
 def foreseen(scene: Scene) -> str:
-    """Why no run of ``scene`` can settle within its stated duration, whatever friction is, and what
-    helps; empty where that cannot be said beforehand."""
+    """Reason why no run of ``scene`` can settle within its stated duration, for any friction, and a
+    remedy; empty if this cannot be known in advance."""
     if not ends.is_too_short(scene):
         return ""
     least = ends.earliest(scene)
@@ -56,7 +56,7 @@ def way_to_exit(scene: Scene) -> float:
 
 
 def _without(scene: Scene) -> str:
-    """The way out that needs no number."""
+    """The remedy without a number."""
     if scene.duration is None:
         return ""
     return "; without duration a run ends by itself, once its rates have settled"

@@ -1,4 +1,4 @@
-"""What a user writes: scenes with their effects, distributions, calibrated constants."""
+"""Input of a user: scenes with their effects, distributions, calibrated constants."""
 
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError

@@ -1,5 +1,5 @@
-"""What Python callers pass: scenes, numbers with or without units, tables of cases. Faults are those of
-files: all at once, each with the name of the argument."""
+"""Arguments of Python callers: scenes, numbers with or without units, tables of cases. Faults are
+reported as for files: all at once, each with the name of the argument."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import fields
@@ -26,9 +26,9 @@ def scene_of(given: Any) -> Scene:
 
 
 def numerics(kind: Callable[..., _T], given: Mapping[str, Any], other: type, model: str) -> _T:
-    """Numerics of a ``kind`` from the options ``given``; ``other`` is that of other models. Text and
-    quantities have their units. Raises SceneError, every option that ``model`` does not have or
-    that is no number listed, and ValueError for values out of range."""
+    """Numerics of a ``kind`` from the options ``given``; ``other`` are those of other models. Text
+    and quantities have their units. Raises SceneError with every option that ``model`` does not
+    have or that is no number, and ValueError for values out of range."""
     known = [field.name for field in fields(kind)]  # type: ignore[arg-type]
     theirs = {field.name for field in fields(other)}
     values, faults = {}, []
@@ -51,15 +51,15 @@ def numerics(kind: Callable[..., _T], given: Mapping[str, Any], other: type, mod
 
 
 class Expected(NamedTuple):
-    """What an argument may be: a check, and its words."""
+    """Allowed values of an argument."""
 
-    is_right: Callable[[Any], bool]
-    words: str
+    is_right: Callable[[Any], bool]  # check
+    words: str  # text for messages
 
 
 def require(expected: Mapping[str, Expected], **given: Any) -> None:
-    """Raises SceneError listing every argument that is not what is ``expected`` under its name. None
-    is what is not given."""
+    """Raise SceneError with every argument that does not fit its ``expected`` entry. None means not
+    given."""
     faults = [
         Fault("arguments", name, _shown(value), expected[name].words)
         for name, value in given.items()
@@ -101,7 +101,7 @@ def kind(type_: type, words: str) -> Expected:
 
 
 def _shown(value: Any) -> str:
-    """Numbers and text as they are, the class of anything else."""
+    """Numbers and text unchanged, the class of anything else."""
     is_plain = isinstance(value, (str, float)) or (isinstance(value, int) and abs(value) < 2**62)
     text = repr(value) if is_plain else ""
     return text if 0 < len(text) <= 80 else kind_of(value)
@@ -147,7 +147,7 @@ def rows(given: Any) -> list[Mapping[str, Any]]:
 
 
 def _require_keys(given: Iterable[Any]) -> None:
-    """Raises SceneError for keys that no scene has; without this every case would be refused."""
+    """Raise SceneError for keys that no scene has; otherwise every case would be refused."""
     unknown = {
         key: None
         for key in dict.fromkeys(given)
@@ -193,7 +193,7 @@ def _of_columns(columns: Mapping[str, Any]) -> list[Mapping[str, Any]]:
 
 
 def plain(value: Any) -> Any:
-    """A scalar of numpy as Python has it."""
+    """A scalar of numpy as a Python value."""
     return (
         value.item() if getattr(value, "shape", None) == () and hasattr(value, "dtype") else value
     )

@@ -1,4 +1,4 @@
-"""Inertia of a rigid body: the table a scene file holds and the tensor kernels use."""
+"""Inertia of a rigid body: the table of a scene file and the tensor of the kernels."""
 
 import numpy as np
 from pydantic import model_validator
@@ -9,8 +9,8 @@ from tipoff.scenes.units import Inertia, PositiveInertia
 
 
 class InertiaTensor(Table):
-    """Inertia tensor entries (kg m2) about the mass centre in body axes; xy, xz, yz are tensor
-    entries, not products' negatives."""
+    """Inertia tensor (kg m2) about the mass centre in body axes. xy, xz, yz are entries of the
+    tensor, not products of inertia of opposite sign."""
 
     #: Moment of inertia about x.
     xx: PositiveInertia
@@ -39,8 +39,8 @@ class InertiaTensor(Table):
 
 
 def inverse(inertia: np.ndarray) -> np.ndarray:
-    """Inverse (3,3) of an ``inertia`` tensor (3,3) by its principal axes. It is symmetric, and has
-    those axes to rounding also where one moment is far below the others."""
+    """Inverse (3,3) of an ``inertia`` tensor (3,3) by its principal axes. It is symmetric, and its
+    axes are accurate to rounding even if one moment is far below the others."""
     moments, axes = np.linalg.eigh(inertia)
     whole = (axes / moments) @ axes.T
     return 0.5 * (whole + whole.T)

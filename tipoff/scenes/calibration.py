@@ -1,5 +1,5 @@
-"""Calibrated surrogate constants: values with their evidence, as a TOML file. Data only; the fit
-itself is in ``calibrate``."""
+"""Calibrated surrogate constants: values with their evidence, as a TOML file. Only data; the fit is
+in ``calibrate``."""
 
 import tomllib
 from dataclasses import asdict, dataclass, field, replace
@@ -22,8 +22,8 @@ _OF_COMPLIANT_CONTACT = {"contact.interface_stiffness", "rail.mount_stiffness.fa
 
 
 def _has(scene: Scene, key: str) -> bool:
-    """Whether no table on the way to the dotted ``key`` is absent. One that does not exist is left
-    to the scene to refuse."""
+    """Whether no table on the way to the dotted ``key`` is absent. An unknown table is left to the
+    scene, which refuses it."""
     table: object = scene
     for name in key.split(".")[:-1]:
         table = getattr(table, name, "unknown")
@@ -32,46 +32,48 @@ def _has(scene: Scene, key: str) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class Calibration(Carded):
-    """Constants found for a scene.
-
-    ``constants`` are dotted overrides in SI, and ``changes`` amounts that are added to what a scene
-    states (``scenes.changes``); ``apply`` applies both. ``parameters`` name the fitted coordinates
-    (with ``values``, their 95 % ``intervals``, infinite where the curves do not determine them and
-    without model error, ``lower``, ``upper`` bounds and ``justification``); ``with_model_error`` are
-    the intervals that contain it, of a fit on compliant contact; ``information`` is the matrix (p,p)
-    of the scaled parameters; ``weak_directions`` describe what the curves do not determine;
-    ``residuals`` are per condition. ``verdict`` says whether the curves ask for other values than
-    the scene's, empty where that is not judged. ``fitted`` are the values that the intervals belong
-    to: those of the fit, also where ``values`` are the scene's, which are kept; empty where both are
-    the same.
+    """Constants found for a scene, with their evidence.
 
     Example:
         >>> found = tipoff.Calibration.load("calibration.toml")  # written by tipoff calibrate
         >>> run = tipoff.run(tipoff.load("tiny"), "springs", calibration=found)
     """
 
+    #: Dotted overrides in SI.
     constants: dict[str, float]
+    #: Names of the p fitted parameters.
     parameters: list[str]
     values: list[float]
     units: list[str]
+    #: Bounds of the fit.
     lower: list[float]
     upper: list[float]
+    #: Reasons for the bounds.
     justification: list[str]
+    #: Information matrix (p,p) of the scaled parameters.
     information: np.ndarray
+    #: Sentences on what the curves do not determine.
     weak_directions: list[str]
+    #: By condition.
     residuals: dict[str, dict[str, float]]
+    #: Names of the fitted conditions.
     conditions: list[str]
     objective: float
     provenance: dict[str, str] = field(default_factory=dict)
+    #: 95 % intervals without model error; infinite if the curves do not determine the value.
     intervals: list[list[float]] = field(default_factory=list)
+    #: Amounts in SI that are added to the values of a scene (``scenes.changes``).
     changes: dict[str, float] = field(default_factory=dict)
+    #: 95 % intervals with model error, of a fit on compliant contact.
     with_model_error: list[list[float]] = field(default_factory=list)
+    #: Whether the curves exclude the scene's values, as text; empty if that is not judged.
     verdict: str = ""
+    #: Values of the fit if ``values`` are the scene's, which are kept; else empty.
     fitted: list[float] = field(default_factory=list)
 
     @property
     def estimates(self) -> list[float]:
-        """The values that the intervals belong to."""
+        """The values to which the intervals belong."""
         return self.fitted or self.values
 
     def __repr__(self) -> str:
@@ -99,7 +101,7 @@ class Calibration(Carded):
         """A scene with the calibrated constants and changes.
 
         Args:
-            scene: of a condition where there is one. Constants of an effect it lacks are left out.
+            scene: a scene, or one of its conditions. Constants of absent effects are left out.
 
         Returns:
             Scene: the new scene.
@@ -118,24 +120,24 @@ class Calibration(Carded):
 
     def split(self, scene: Scene) -> "tuple[Scene, Calibration | None]":
         """``scene`` with the calibrated constants, which a case of an ensemble may replace, and the
-        changes that are added to each case; None where there are none."""
+        changes that are added to each case, None without changes."""
         if not self.changes:
             return self.apply(scene), None
         return replace(self, changes={}).apply(scene), replace(self, constants={})
 
     @property
     def applied(self) -> dict:
-        """What ``apply`` depends on, as JSON; the constants alone where nothing is added."""
+        """Inputs of ``apply`` as JSON; only the constants if there are no changes."""
         return self.constants | ({"changes": self.changes} if self.changes else {})
 
     @property
     def is_of_springs(self) -> bool:
-        """Whether some of these constants belong to contact springs alone."""
+        """Whether some of these constants belong only to contact springs."""
         return not _OF_SPRINGS.isdisjoint(self.constants)
 
     @property
     def is_of_compliant_contact(self) -> bool:
-        """Whether some of these constants belong to compliant contact alone."""
+        """Whether some of these constants belong only to compliant contact."""
         return not _OF_COMPLIANT_CONTACT.isdisjoint(self.constants)
 
     def save(self, path: str | Path) -> None:

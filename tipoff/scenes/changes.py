@@ -1,14 +1,14 @@
-"""Changes of numbers of a scene: amounts that are added to what the scene and its condition state.
+"""Changes of numbers of a scene: amounts that are added to the values of the scene and its
+condition.
 
-An error of mounting is common to all conditions, and each condition has a deviation of its own
-beside it. So such an error is added, where a constant replaces. The tables of a direction and of an
-eccentricity are polar; changes of them are components along y and z, which also have a meaning at
-zero::
+An error of mounting is common to all conditions, and each condition may have its own deviation too.
+So the error is added and does not replace. The tables of a direction and of an eccentricity are
+polar; changes of them are components along y and z, which also have a meaning at zero::
 
     misalignment   (y, z) = axial (cos radial, sin radial)
     eccentricity   (y, z) = axial (sin radial, cos radial)
 
-A table that is absent counts as zero.
+An absent table counts as zero.
 """
 
 import math
@@ -16,7 +16,7 @@ from collections.abc import Mapping
 
 from tipoff.scenes.scene import Scene
 
-# whether the clock angle counts from +Y towards +Z, or from +Z towards +Y
+# whether the clock angle is counted from +Y towards +Z, or from +Z towards +Y
 POLAR = {
     "thrust_offset.misalignment": True,
     "thrust_offset.eccentricity": False,
@@ -45,8 +45,8 @@ def overrides(scene: Scene, changes: Mapping[str, float]) -> dict[str, float]:
 
 
 def stated(scene: Scene, key: str) -> float:
-    """The number (SI) under a dotted ``key``, 0 where a table on the way is absent. A key that no
-    scene has is left to the scene to refuse."""
+    """The number (SI) under a dotted ``key``, 0 if a table on the way is absent. An unknown key is
+    left to the scene, which refuses it."""
     found: object = scene
     for part in key.split("."):
         found = getattr(found, part, None)

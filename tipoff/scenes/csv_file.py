@@ -1,8 +1,8 @@
 """Tables of numbers in CSV files: lines, columns, units and cells. All faults of a table are found
 in one pass.
 
-A table has a header. The unit of a column stands in brackets after its name, ``rate_x [deg/s]``, or
-in the second line. Columns that are not wanted are ignored.
+A table has a header. The unit of a column is in brackets after its name, ``rate_x [deg/s]``, or in
+the second line. Other columns are ignored.
 """
 
 import csv
@@ -23,8 +23,8 @@ Line = tuple[int, list[str]]  # its number in the file, and its cells
 _HEAD = re.compile(r"\s*(.*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
 _LONGEST = 2**20  # characters of a line
 _MOST_COLUMNS = 1000
-MOST_LINES = 1_000_000  # of a curve or a log, which is held in memory as text
-_SHOWN = 3  # lines with one fault that are listed; the rest is counted
+MOST_LINES = 1_000_000  # of a curve or a log, which is kept in memory as text
+_SHOWN = 3  # lines listed for one fault; the others are counted
 _CELL = 80  # characters of a cell that a fault shows
 
 
@@ -32,7 +32,7 @@ def lines(
     path: str | Path, data: bytes | None = None, comment: str | None = None
 ) -> Iterator[Line]:
     """Lines of a CSV file that are not blank and do not begin with ``comment``, one after another.
-    ``data`` is the content of the file where the caller has read it.
+    ``data`` is the content of the file if the caller has read it.
 
     Raises SceneError for a file that cannot be read, is not text, or is not CSV.
     """
@@ -56,7 +56,7 @@ def lines(
 
 
 def listed(path: str | Path, data: bytes | None = None, comment: str | None = None) -> list[Line]:
-    """The same in a list. Raises SceneError also for more than ``MOST_LINES`` lines."""
+    """``lines`` as a list. Raises SceneError also for more than ``MOST_LINES`` lines."""
     found = list(itertools.islice(lines(path, data, comment), MOST_LINES + 1))
     if len(found) > MOST_LINES:
         raise SceneError([Fault(str(path), "file", "more lines", f"{MOST_LINES:,} lines at most")])
@@ -64,8 +64,8 @@ def listed(path: str | Path, data: bytes | None = None, comment: str | None = No
 
 
 def _text(stream: TextIO, comment: str | None) -> Iterator[str]:
-    """Lines of text. One that begins with ``comment`` is empty, so that the others keep their
-    numbers."""
+    """Lines of text. A line that begins with ``comment`` becomes empty, so that the others keep
+    their numbers."""
     while line := stream.readline(_LONGEST):
         if len(line) == _LONGEST:
             raise csv.Error(f"a line of {_LONGEST:,} characters or more")
@@ -101,8 +101,8 @@ def quantities(
 def places(
     source: str, header: list[str], wanted: Iterable[str]
 ) -> tuple[dict[str, int], list[Fault]]:
-    """The place of each wanted column in the header, and a fault for each that is not there exactly
-    once."""
+    """The place of each wanted column in the header, and a fault for each column that is not there
+    exactly once."""
     shown = ", ".join(filter(None, header)) or "nothing"
     found, faults = {}, []
     for name in wanted:
@@ -117,7 +117,7 @@ def places(
 def numbers(
     source: str, name: str, place: int, table: list[Line], gaps: bool = False
 ) -> tuple[np.ndarray, list[Fault]]:
-    """The column (n,) ``name`` as it is written, and its faults: cells that hold no finite number.
+    """The column (n,) ``name``, and its faults: cells without a finite number.
 
     With ``gaps`` an empty cell becomes NaN, and NaN and inf are no faults.
     """

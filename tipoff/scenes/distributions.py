@@ -4,10 +4,10 @@
     truncated normal, a < x < b:        redraw  m + s z(A + u (B - A)), A = Phi((a - m)/s), B = Phi((b - m)/s)
                                         clip    min(max(m + s z(u), a), b)
 
-A truncated normal names its rule. "redraw" is the law of a draw repeated until it lies inside the
-limits; "clip" puts what lies outside onto the limit, so that probability piles up there. Each value
-depends on its own u alone, in every bit: ``scipy.special`` works element by element, where NumPy's
-vector code may treat the end of an array in another way than its middle.
+A truncated normal names its rule. "redraw" is the law of a draw that is repeated until it is inside
+the limits. "clip" moves values outside to the limit, which then has a finite probability. Each
+value depends only on its own u, in every bit: ``scipy.special`` works element by element, while
+NumPy's vector code may treat the end of an array differently from its middle.
 """
 
 from typing import Annotated, Any, Literal
@@ -65,7 +65,7 @@ class Fixed(Table):
 
 
 class Uniform(_Limits):
-    """Every value from ``low`` to ``high`` alike."""
+    """Equal probability for every value from ``low`` to ``high``."""
 
     distribution: Literal["uniform"]
     provenance: str = ""
@@ -76,8 +76,8 @@ class Uniform(_Limits):
 
 
 class LogUniform(_Limits):
-    """All values of the logarithm between ``low`` and ``high`` are equally likely. It suits a
-    number known to an order of magnitude."""
+    """Equal probability for all values of the logarithm between ``low`` and ``high``, for a number
+    that is known to an order of magnitude."""
 
     distribution: Literal["log-uniform"]
     provenance: str = ""
@@ -105,7 +105,7 @@ class Normal(Table):
 
 
 class TruncatedNormal(_Limits):
-    """Gaussian (``mean`` and ``sd`` before it is cut) between ``low`` and ``high`` by a
+    """Gaussian (``mean`` and ``sd`` before truncation) between ``low`` and ``high`` by a
     ``rule``."""
 
     distribution: Literal["truncated-normal"]
@@ -120,8 +120,7 @@ class TruncatedNormal(_Limits):
         """Quantiles (SI) of probabilities ``u``, any shape."""
         if self.rule == "redraw":
             a, b = (self.low - self.mean) / self.sd, (self.high - self.mean) / self.sd
-            # Probabilities near one have no digits left, so limits above the mean are mirrored to
-            # below it.
+            # Probabilities near one have no digits left, so limits above the mean are mirrored.
             z = -_between(-b, -a, 1.0 - u) if a > 0.0 else _between(a, b, u)
         else:
             z = ndtri(u)
@@ -129,7 +128,7 @@ class TruncatedNormal(_Limits):
 
 
 class Rayleigh(Table):
-    """Length of a plane vector whose two parts are normal with standard deviation ``scale``."""
+    """Length of a plane vector with two normal components of standard deviation ``scale``."""
 
     distribution: Literal["rayleigh"]
     scale: Value

@@ -1,14 +1,14 @@
-"""When a run of a scene ends: the limit where the scene states no duration, the expected end, and
-the earliest instant at which rates can be settled.
+"""End of a run of a scene: the time limit without a stated duration, the expected end, and the
+earliest time at which rates can be settled.
 
-A run ends by itself once its rates have settled or the payload is jammed (``mechanics.outcome``). After the
+A run ends once its rates have settled or the payload is jammed (``mechanics.outcome``). After the
 thrust a payload is either faster than the jam speed and leaves within rail length / jam speed, or
-slower and is jammed. So without a stated duration a run ends at the latest at::
+slower and jammed. So without a stated duration a run ends at the latest at::
 
     end of thrust + way / v + jam + settled window,     v = max(jam speed, 10 mm/s)
 
 rounded up to a power of two of 1 ms, so that variations of a scene share one limit. Gravity that
-pulls a payload back on fixed rails ends its way forward after v_max / g, with v_max from the
+pulls a payload back on fixed rails ends its forward motion after v_max / g, with v_max from the
 impulse alone.
 """
 
@@ -29,7 +29,7 @@ SETTLE_DELAY = 1e-3  # s, from the exit to the settled window
 SETTLE_WINDOW = 2e-3  # s
 JAM_DURATION = 5e-3  # s
 JAM_SPEED = 0.01  # m/s, where friction has no transition speed
-_AFTER = 1e-3  # s, that a run goes on after its end
+_AFTER = 1e-3  # s, duration of a run after its end
 _BURNT = 1e-3  # of the peak
 _UNIT = 1e-3  # s
 _REACH = 8.0  # widths of a Gaussian beyond which it is below 2e-14 of its peak
@@ -38,13 +38,12 @@ _POINTS = 4001  # of the thrust
 
 
 class Timed:
-    """Base of ``scenes.scene.Scene``: when its runs end."""
+    """Base of ``scenes.scene.Scene``: the end of its runs."""
 
     @property
     def time_limit(self: Any) -> float:
-        """Time (s) at which a run ends at the latest: the duration, or without one a bound
-        that follows from rail, thrust, friction and body forces. A run that has settled or is jammed
-        ends before.
+        """Time (s) at which a run ends at the latest: the duration, or without one a bound from
+        rail, thrust, friction and body forces. A run that has settled or is jammed ends earlier.
 
         Example:
             >>> scene = tipoff.load("tiny")
@@ -58,7 +57,7 @@ class Timed:
     @property
     def expected_end(self: Any) -> float:
         """Estimate of the end of a run (s), for plots, progress and costs: the duration, or without
-        one that of a payload without friction."""
+        one the end for a payload without friction."""
         return expected(self)
 
 
@@ -81,13 +80,13 @@ def limit(scene: Any) -> float:
 
 
 def longest(scene: Any) -> float:
-    """Longest run (s) without a stated duration: that of the most samples, an hour at most."""
+    """Longest run (s) without a stated duration: the one with the most samples, at most an hour."""
     return min(MOST_SAMPLES * scene.output.interval, LONGEST)
 
 
 def burns_too_long(scene: Any) -> float | None:
-    """Time (s) that a scene without a duration needs until its thrust is over and rates settle,
-    where that is longer than the longest run; else None."""
+    """Time (s) that a scene without a duration needs until its thrust is over and rates settle, if
+    that is longer than the longest run; else None."""
     if scene.duration is not None:
         return None
     record, most = scene.thrust.record(), longest(scene)
@@ -98,9 +97,9 @@ def burns_too_long(scene: Any) -> float | None:
 
 
 def require(tables: dict[str, Any], output: OutputTable) -> None:
-    """Refuse a thrust that lasts longer than a run without a duration can be sampled: ``tables`` of
-    a scene that are valid so far, and its ``output``."""
-    if not {"duration", "thrust"} <= tables.keys():  # they have faults of their own
+    """Refuse a thrust that lasts longer than a run without a duration can be sampled. ``tables``
+    are the tables of a scene that are valid so far, ``output`` its output."""
+    if not {"duration", "thrust"} <= tables.keys():  # these have other faults
         return
     needed = burns_too_long(SimpleNamespace(**tables, output=output))
     if needed is not None:
@@ -135,7 +134,7 @@ def expected(scene: Any) -> float:
 def earliest(scene: Any) -> float:
     """Lower bound (s) of the end of the settled window, infinite if the payload cannot leave in an
     hour: no friction, no thrust and no body force backwards, and a platform that recoils along the
-    rail with all of its freedom. Zero where bodies turn at ignition, which moves the rail too."""
+    rail with all of its freedom. Zero if bodies turn at ignition, which moves the rail too."""
     record = scene.thrust.record()
     initial = scene.initial
     turns = initial is not None and any(
@@ -160,7 +159,7 @@ def exit_speed(scene: Any) -> float | None:
 
 
 def is_driven_otherwise(scene: Any) -> bool:
-    """Whether anything but the thrust moves the payload along the rail."""
+    """Whether anything except the thrust moves the payload along the rail."""
     return _begun(scene) != 0.0 or _pull(scene) != 0.0
 
 
@@ -171,13 +170,13 @@ def speed_change(scene: Any) -> float:
 
 
 def is_too_short(scene: Any) -> bool:
-    """Whether no run of ``scene`` can settle within its stated duration, whatever friction is."""
+    """Whether no run of ``scene`` can settle within its stated duration, for any friction."""
     return scene.duration is not None and below(scene.duration, earliest(scene))
 
 
 def way(scene: Any) -> float:
     """Travel (m) along the rail from ignition to the exit: the trailing edge of the rearmost pad
-    reaches the end of the rail. A payload that turns has a little more or less to go."""
+    reaches the end of the rail. A payload that turns has a little more or less."""
     rearmost = min(pad.position[0] - 0.5 * pad.length for pad in scene.pads)
     initial = scene.initial
     begun = initial.position.x if initial is not None else 0.0
@@ -185,8 +184,8 @@ def way(scene: Any) -> float:
 
 
 def starts_briskly(scene: Any, speed: float) -> bool:
-    """Whether a constant thrust from ignition on would bring a payload without friction to ``speed``
-    (m/s) in half the duration of a jam, so that one that is slow then is held by friction."""
+    """Whether a constant thrust from ignition would bring a payload without friction to ``speed``
+    (m/s) in half the duration of a jam; a payload that is slow then is held by friction."""
     return (
         scene.thrust.kind == "constant"
         and scene.thrust.start <= 0.0
@@ -202,7 +201,7 @@ def slides(scene: Any, speed: float) -> float:
 
 
 def thrust_end(record: thrust_law.Thrust) -> float:
-    """Time (s) from which on the thrust is zero, or a share of 2e-14 of a pulse's peak."""
+    """Time (s) after which the thrust is zero, or 2e-14 of a pulse's peak."""
     if record.pulses is not None:
         last = float((record.pulses.centres + _REACH * record.pulses.widths).max())
         return max(0.0, min(last, record.pulses.end))
@@ -210,12 +209,12 @@ def thrust_end(record: thrust_law.Thrust) -> float:
 
 
 def _burnt(record: thrust_law.Thrust) -> float:
-    """Time (s) from which on the thrust is below 0.1 % of its peak."""
+    """Time (s) after which the thrust is below 0.1 % of its peak."""
     return thrust_law.burnout(record, _BURNT, 2.0 * thrust_end(record) + _UNIT)
 
 
 def _forces(record: thrust_law.Thrust) -> tuple[np.ndarray, np.ndarray]:
-    """Times (s) from ignition to the end of the thrust, corners among them, and forces (N)."""
+    """Times (s) from ignition to the end of the thrust, including corners, and forces (N)."""
     last = thrust_end(record)
     corners = np.append(thrust_law.corners(record, last), last)
     both_sides = np.append(corners, np.nextafter(corners, -np.inf))  # of a jump
@@ -224,15 +223,15 @@ def _forces(record: thrust_law.Thrust) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _pushed(record: thrust_law.Thrust) -> float:
-    """Impulse (N s) of the parts of the thrust that push forwards."""
+    """Impulse (N s) of the forward parts of the thrust."""
     time, force = _forces(record)
     return float(np.trapezoid(np.maximum(force, 0.0), time))
 
 
 def _exit(scene: Any, record: thrust_law.Thrust, gain: float, pull: float, forwards: bool) -> float:
-    """Time (s) at which a payload without friction has gone its way; infinite if it never does.
-    ``gain`` is its acceleration relative to the rail per force (1/kg); with ``forwards`` only what
-    pushes it forwards counts."""
+    """Time (s) at which a payload without friction reaches the exit; infinite if it never does.
+    ``gain`` is its acceleration relative to the rail per force (1/kg); with ``forwards`` only
+    forward forces count."""
     time, force = _forces(record)
     force = np.maximum(force, 0.0) if forwards else force
     begun = max(_begun(scene), 0.0) if forwards else _begun(scene)
@@ -268,8 +267,8 @@ def _begun(scene: Any) -> float:
 
 
 def _pull(scene: Any) -> float:
-    """Acceleration (m/s2) along the rail relative to it: a free platform falls as the payload
-    does."""
+    """Acceleration (m/s2) along the rail relative to it; zero on a free platform, which falls like
+    the payload."""
     force = registry.body_force(scene)
     return force.x if force is not None and scene.platform is None else 0.0
 
@@ -284,7 +283,7 @@ def _fixed_gain(scene: Any) -> float:
 
 
 def _freest_gain(scene: Any) -> float:
-    """The largest such gain: the platform turns too, about the axis of its smallest inertia."""
+    """The largest gain: the platform turns too, about the axis of its smallest inertia."""
     gain = _fixed_gain(scene)
     platform = scene.platform
     if platform is None or scene.thrust.reaction != "platform":

@@ -1,5 +1,5 @@
-"""Faults of input. All of them are reported at once, each with file, key, the given value and the
-expected one."""
+"""Faults of input. All of them are reported at once, each with file, key, given and expected
+value."""
 
 import difflib
 import re
@@ -11,7 +11,7 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 
 
 class Fault(NamedTuple):
-    """One wrong field: file or option, dotted key, what was given, what was expected.
+    """One wrong field: file or option, dotted key, given value, expected value.
 
     Example:
         >>> try:
@@ -28,7 +28,7 @@ class Fault(NamedTuple):
 
     @property
     def place(self) -> str:
-        """Where it is: "options" and arguments of a command, "files", or the "scene"."""
+        """Place of the fault: "options" and arguments of a command, "files", or the "scene"."""
         if self.source.startswith("--") or self.source.isupper():
             return "options"
         return "files" if self.key in ("file", "vary") else "scene"
@@ -40,22 +40,23 @@ class Fault(NamedTuple):
 
 
 NO_SUCH_KEY = "no such key"
-MOST_NAMES = 3  # that a message proposes
-MOST_ALIKE = 3  # faults of one kind that a message lists
-MOST_LINES = 40  # of a message, whatever kinds there are
+MOST_NAMES = 3  # proposed in a message
+MOST_ALIKE = 3  # faults of one kind listed in a message
+MOST_LINES = 40  # of a message
 _NAMED = re.compile(r"^(conditions|provenance|rail\.surfaces)\.[^.]+")  # by the user
 _NUMBERS = re.compile(r"[+-]?\d+(?:\.\d*)?(?:[eE][+-]?\d+)?")
 _ALIKE = 0.7  # of difflib: one or two letters in ten differ
 
 
 def close(name: str, known: Iterable[str]) -> str:
-    """Which of the ``known`` names are like ``name``, as the end of a message; empty without any."""
+    """The ``known`` names that are similar to ``name``, as the end of a message; empty without
+    any."""
     found = difflib.get_close_matches(name, list(known), MOST_NAMES, _ALIKE)
     return f", did you mean {' or '.join(found)}?" if found else ""
 
 
 def kind_of(given: object) -> str:
-    """What an argument is, in words."""
+    """Text on the kind of an argument."""
     return "None" if given is None else f"a {type(given).__name__}"
 
 
@@ -84,14 +85,14 @@ class SceneError(InputError):
         )
 
     def __reduce__(self):
-        # As it comes back from another process; by default it would take the message for the faults.
+        # From another process; by default the message would be taken as the faults.
         return type(self), (self.faults,)
 
 
 def listed(faults: list[Fault]) -> list[str]:
-    """The faults as lines: of each kind ``MOST_ALIKE``, and how many more there are; ``MOST_LINES`` at
-    most. Faults of one kind have the same source, and keys and expected values that differ in numbers
-    and in names of the user alone."""
+    """The faults as lines: ``MOST_ALIKE`` of each kind and the number of further ones; at most
+    ``MOST_LINES``. Faults of one kind have the same source; keys and expected values differ only in
+    numbers and in names of the user."""
     kinds: dict[tuple[str, ...], list[Fault]] = {}
     for fault in faults:
         key = _NAMED.sub(r"\1.#", fault.key)
@@ -128,10 +129,10 @@ def within(key: str, given: str, expected: str) -> PydanticCustomError:
     )
 
 
-# Pydantic puts the chosen variant into the location: ("thrust", "gaussian", "width") is the key
+# Pydantic puts the chosen variant into the location: ("thrust", "gaussian", "width") means
 # thrust.width.
 _VARIANTS = ("thrust", "contact", "friction", "rail")
-# variants that the presence of a key chooses
+# variants that are chosen by the presence of a key
 _FILED = (("rail", "mesh"), ("rail", "geometry"))
 _RENAMED = {"contact.penalty": "contact.interface_stiffness"}
 _WORDS = {
@@ -149,7 +150,7 @@ _WORDS = {
 
 
 def renamed(key: str) -> str | None:
-    """What to write instead of a dotted ``key`` that had this name once; None for other keys."""
+    """The new name for a dotted ``key`` with a former name; None for other keys."""
     new = _RENAMED.get(key)
     return new and f"the key {new}, with the same value and unit"
 

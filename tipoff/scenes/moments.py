@@ -1,13 +1,13 @@
-"""Moment impulse of a thrust beside the mass centre, for arrays of cases.
+"""Moment impulse of a thrust off the mass centre, for arrays of cases.
 
-Thrust along the unit vector f through the point r, from the mass centre, gives a free payload the
-moment impulse::
+Thrust along the unit vector f through the point r, relative to the mass centre, gives a free
+payload the moment impulse::
 
     L = J (r x f),   J = integral of F dt
     f = (cos t, sin t cos p, sin t sin p),   r = (-arm, e sin a - m sin b, e cos a - m cos b)
 
-with misalignment t at p, thrust eccentricity e at a and mass eccentricity m at b: the angles of
-``scenes.effects``, here as arrays.
+with misalignment t at p, thrust eccentricity e at a and mass eccentricity m at b, the angles of
+``scenes.effects``; here as arrays.
 """
 
 from collections.abc import Mapping
@@ -19,8 +19,8 @@ Inputs = Mapping[str, np.ndarray]
 
 
 def column(scene, inputs: Inputs, key: str) -> np.ndarray | float:
-    """The numbers (n,) under a dotted ``key`` in ``inputs``, SI; the scene's own, zero where it has
-    none, where a case has none (NaN)."""
+    """The numbers (n,) under a dotted ``key`` in ``inputs``, SI. Cases without one (NaN) have the
+    scene's value, zero if it has none."""
     own = reduce(lambda table, part: getattr(table, part, None), key.split("."), scene)
     own = 0.0 if own is None else own
     values = inputs.get(key)
@@ -29,7 +29,7 @@ def column(scene, inputs: Inputs, key: str) -> np.ndarray | float:
 
 def moment_impulses(scene, inputs: Inputs, impulse: np.ndarray | float) -> np.ndarray:
     """Moment impulses (n,3) or (3,) in N m s, body axes, about the mass centre, of variations of
-    ``scene`` by ``inputs`` (n,), SI, whose thrusts have the ``impulse`` (n,) in N s."""
+    ``scene`` by ``inputs`` (n,), SI, with the ``impulse`` (n,) in N s of their thrusts."""
 
     def offset(table: str) -> tuple:
         size, angle = (
@@ -50,5 +50,5 @@ def moment_impulses(scene, inputs: Inputs, impulse: np.ndarray | float) -> np.nd
 
 
 def transverse(scene, inputs: Inputs, impulse: np.ndarray | float) -> np.ndarray:
-    """Size (n,) or () of the part of the moment impulse across the axis, |L_yz| in N m s."""
+    """Magnitude (n,) or () of the moment impulse across the axis, |L_yz| in N m s."""
     return np.hypot(*np.moveaxis(moment_impulses(scene, inputs, impulse)[..., 1:], -1, 0))

@@ -1,5 +1,5 @@
-"""Names of scenes and conditions. Results are filed under them, so each must be a valid file name
-on every system."""
+"""Names of scenes and conditions. They name result files, so each must be a valid file name on
+every system."""
 
 import re
 from collections.abc import Iterable

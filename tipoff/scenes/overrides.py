@@ -9,13 +9,12 @@ from typing import Annotated, Any, Union, get_args, get_origin
 from tipoff.scenes.faults import NO_SUCH_KEY, Fault, SceneError, kind_of
 from tipoff.scenes.table import Table
 
-DEEPEST = 32  # tables and lists inside each other; a scene has five
+DEEPEST = 32  # levels of tables and lists; a scene has five
 
 
 def require_shallow(raw: Any, source: str) -> None:
-    """Raise SceneError for what is no table with names as keys, and for tables and lists more than
-    ``DEEPEST`` levels inside each other, which no scene has; what reads tables here calls itself at
-    each level."""
+    """Raise SceneError unless ``raw`` is a table with names as keys and at most ``DEEPEST`` levels
+    of tables and lists. Functions that read tables here are recursive."""
     if not isinstance(raw, Mapping):
         expected = "values by their keys, as a dict or another mapping"
         raise SceneError([Fault(source, "table", kind_of(raw), expected)])
@@ -41,14 +40,14 @@ def too_deep(source: str) -> Fault:
 
 
 def index(text: str, length: int) -> int | None:
-    """The place in a list of so many items that a part of a dotted key names; None for none."""
-    # isdigit alone would take superscripts, and int no more than 4300 digits
+    """The place in a list of so many items that a part of a dotted key names, or None."""
+    # isdigit alone accepts superscripts, and int at most 4300 digits
     is_number = text.isascii() and text.isdigit() and len(text) < 10
     return int(text) if is_number and int(text) < length else None
 
 
 def plain(value: Any) -> Any:
-    """A copy that shares no container with ``value``, tuples turned into lists as TOML has them."""
+    """A copy that shares no container with ``value``; tuples become lists, as in TOML."""
     if isinstance(value, Mapping):
         return {key: plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
@@ -57,8 +56,8 @@ def plain(value: Any) -> Any:
 
 
 def dotted(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """(dotted key, value) pairs of a nested mapping, so that ``a.b = 1`` means the same as ``"a.b"
-    = 1`` in a file."""
+    """(dotted key, value) pairs of a nested mapping, so that ``a.b = 1`` and ``"a.b" = 1`` mean the
+    same."""
     for key, value in table.items():
         if isinstance(value, Mapping) and value:
             yield from dotted(value, f"{prefix}{key}.")
@@ -67,7 +66,7 @@ def dotted(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, An
 
 
 def texts(table: Any) -> dict[str, Any] | None:
-    """A ``[provenance]`` by dotted key, empty where it is absent; None where it is no table."""
+    """A ``[provenance]`` by dotted key, empty if it is absent; None if it is no table."""
     if table is None or is_drop(table):
         return {}
     return dict(dotted(table)) if isinstance(table, Mapping) else None
@@ -81,10 +80,9 @@ def is_key(annotation: Any, key: str) -> bool:
 
 
 def unit(annotation: Any, key: str) -> str | None:
-    """SI unit of the number that a table of type ``annotation`` holds under the dotted ``key``.
+    """SI unit of the number that a table of type ``annotation`` has under the dotted ``key``.
 
-    Empty where it depends on other keys (a contact stiffness on its exponent), None where there is
-    no number.
+    Empty if it depends on other keys (a contact stiffness on its exponent), None without a number.
     """
     part, _, rest = key.partition(".")
     found = [unit(item, rest) if rest else _unit(item) for item in _inside(annotation, part)]
@@ -125,7 +123,7 @@ def is_drop(value: Any) -> bool:
 def apply_all(
     raw: dict, overrides: Mapping[str, Any], table_type: type
 ) -> list[tuple[str, str, str]]:
-    """Apply overrides in place; returns faults (key, given, expected) of keys that do not exist.
+    """Apply overrides in place; returns faults (key, given, expected) of unknown keys.
 
     The validation of ``table_type`` finds a misspelt key that is set, but not one that is dropped.
     """
@@ -139,10 +137,9 @@ def apply_all(
 
 
 def apply(raw: dict, key: str, value: Any) -> tuple[str, str, str] | None:
-    """Set one dotted key in place, or drop it; returns (key, given, expected) when it does not
-    exist.
+    """Set one dotted key in place, or drop it; returns (key, given, expected) if it does not exist.
 
-    A table that loses its last key is dropped with it, since an empty table is a fault.
+    A table that loses its last key is dropped too, since an empty table is a fault.
     """
     if key.count(".") >= DEEPEST:
         return key, repr(value), NO_SUCH_KEY

@@ -1,13 +1,12 @@
-"""Pads by pattern: a ``[pads]`` table in place of one ``[[pads]]`` each.
+"""Pads by pattern: a ``[pads]`` table instead of one ``[[pads]]`` each.
 
     [pads]
     stations = ["-80 mm", "80 mm"]   # X of the pads
     corner = ["100 mm", "100 mm"]    # distance of the corners from the axis along Y and Z
     inset = "9 mm"                   # and every other key of a pad
 
-has a pad at each of the four corners of each station, with the two normals that point outwards. It
-is replaced by the list of pads when a scene is read, so overrides, hashes and results know lists
-only.
+has a pad at each of the four corners of each station, with the two outward normals. The list of
+pads replaces it when a scene is read, so overrides, hashes and results only know lists.
 """
 
 from collections.abc import Iterator, Mapping
@@ -21,8 +20,8 @@ _Faults = list[tuple[str, str, str]]
 
 
 def expand(raw: dict) -> _Faults:
-    """Replace a pattern in ``raw`` by its pads in place, also in ``[provenance]``, whose keys are
-    dotted or not; returns the faults (key, given, expected) of the pattern."""
+    """Replace a pattern in ``raw`` by its pads in place, also in ``[provenance]`` with dotted or
+    nested keys; returns the faults (key, given, expected) of the pattern."""
     pattern = raw.get("pads")
     if not isinstance(pattern, dict):
         return []
@@ -61,7 +60,8 @@ def _sign(sign: int) -> str:
 
 
 def _signed(value: Any, sign: int) -> Any:
-    """A text with its unit, or a number, times ``sign``; anything else is left to be refused."""
+    """A text with its unit, or a number, times ``sign``; anything else unchanged, for the scene to
+    refuse."""
     if sign > 0 or isinstance(value, bool):
         return value
     if isinstance(value, (int, float)):
@@ -73,7 +73,8 @@ def _signed(value: Any, sign: int) -> Any:
 
 
 def _of_each(stated: Mapping[str, Any], pads: int) -> dict[str, Any]:
-    """The provenance ``stated``, that of a key of the pattern under the same key of each pad."""
+    """The provenance ``stated``, with the text of a key of the pattern under the same key of each
+    pad."""
     found: dict[str, Any] = {}
     for key, text in stated.items():
         table, _, name = key.partition(".")

@@ -12,20 +12,20 @@ from tipoff.scenes.rail import SectionTable
 
 _WAVE_SPEED = (100.0, 10_000.0)
 _DENSITY = (10.0, 20_000.0)
-# N/m3: a millimetre of rubber, and ground surfaces under the highest pressure of a bolt
+# N/m3: from a millimetre of rubber to ground surfaces under the highest pressure of a bolt
 _JOINT = (1e9, 1e16)
-_EXPANSION = 1e-4  # 1/K: polymers; metals expand by a third of it at most
-_FREE_STRAIN = 5e-3  # 200 K in aluminium, whose constants have changed by then
+_EXPANSION = 1e-4  # 1/K: polymers; metals have at most a third of it
+_FREE_STRAIN = 5e-3  # 200 K in aluminium, whose constants change by then
 
-# Of the inertia of a box of uniform density. Three times is all mass at the corners, the largest
-# value; a third is all mass within 0.58 of each side.
+# Of the inertia of a box of uniform density. Three times, the largest value: all mass at the
+# corners. A third: all mass within 0.58 of each side.
 _LEAST, _MOST = 1.0 / 3.0, 3.0
 # ratio of the compliance of a free end of a rail to that of its widest gap between two mounts
 _SOFTER = 8.0
 
 
 def warnings(scene) -> list[str]:
-    """Messages that name the fields and the plausible range."""
+    """Messages with the names of the fields and the plausible range."""
     found = []
     material = scene.rail.material
     speed = math.sqrt(material.youngs_modulus / material.density)
@@ -51,7 +51,7 @@ def warnings(scene) -> list[str]:
 
 
 def of_all_conditions(scene) -> list[str]:
-    """Messages on a scene, and those on its conditions that name other keys."""
+    """Messages on a scene, and those on its conditions with other keys."""
     found: dict[str, str] = {}
     for name in (None, *scene.conditions):
         for words in scene.warnings if name is None else scene.condition(name).warnings:
@@ -62,11 +62,12 @@ def of_all_conditions(scene) -> list[str]:
 
 
 def _of_inertia(scene) -> list[str]:
-    """Moments of inertia that are impossible or implausible for a body of this mass in a box of
+    """Moments of inertia that are impossible or implausible for a body of this mass in a box with
     sides a, b and c.
 
     A body of uniform density has I_xx = m (b^2 + c^2) / 12, and no body has more than three times
-    that: the mean of (y - y_c)^2 over mass between two planes b apart is at most b^2 / 4
+    this value: the mean of (y - y_c)^2 over mass between two planes b apart is at most b^2 / 4
+    (Popoviciu). Without ``payload.size`` the box is that of the pads, and may be longer along X.
     (Popoviciu). Without ``payload.size`` the box is that of the pads, and may be longer along X.
     """
     payload, wrong = scene.payload, []
@@ -122,8 +123,9 @@ def _of_mounts(rail) -> list[str]:
 
 
 def _of_joints(table) -> list[str]:
-    """Joints under the mounts that seem to be in a wrong unit, or are stiffer in shear than along
-    their normal. No contact of asperities is (``scenes.effects.mount_stiffness``)."""
+    """Joints under the mounts that seem to have a wrong unit, or are stiffer in shear than along
+    their normal. No contact of asperities is stiffer in shear
+    (``scenes.effects.mount_stiffness``)."""
     if table is None:
         return []
     keys, joint = "rail.mount_stiffness.normal, rail.mount_stiffness.shear", table.record()
@@ -134,8 +136,8 @@ def _of_joints(table) -> list[str]:
 
 
 def _of_interface(contact) -> list[str]:
-    """A stiffness that no contact of asperities has. It costs the reference steps, whose number grows
-    with its square root. ``sinking`` has the soft ones."""
+    """A stiffness above that of any contact of asperities. The number of steps of the reference
+    grows with its square root. ``sinking`` warns of soft ones."""
     if (found := contact.interface_stiffness) <= _JOINT[1]:
         return []
     return [

@@ -1,5 +1,5 @@
-"""Ranges of single values outside which one is probably wrong, for example in its unit, and how far the
-walls let a payload turn.
+"""Plausible ranges of single values (a value outside is probably wrong, for example in its unit),
+and of the angle by which a payload can turn between the walls.
 
 Sources: Marks' Standard Handbook for Mechanical Engineers, section 3.2 (coefficients of friction);
 Newmark and Hall, Earthquake Spectra and Design, EERI 1982 (damping of structures); CRC Handbook of
@@ -16,11 +16,11 @@ from tipoff.scenes.rounding import at_most, below
 
 
 class Range(NamedTuple):
-    """Least and largest plausible value, both in the SI ``unit``."""
+    """Range of plausible values."""
 
     least: float
     most: float
-    unit: str
+    unit: str  # SI, of both
 
 
 # Dry aluminium on aluminium slides at 1.4, the largest coefficient of the handbook's table.
@@ -28,8 +28,8 @@ _FRICTION = Range(0.0, 1.5, "")
 RANGES = {
     "friction.static": _FRICTION,
     "friction.dynamic": _FRICTION,
-    # A body that meets its wall at v rebounds at the share 1 - 2 a v / 3. Metals have a below
-    # 0.5 s/m; this one takes two thirds of the speed at 10 mm/s.
+    # A body that meets its wall at v rebounds with the share 1 - 2 a v / 3. Metals have a below 0.5
+    # s/m; this value takes two thirds of the speed at 10 mm/s.
     "contact.dissipation": Range(0.0, 100.0, "s/m"),
     # bolted steel just below yield; half of that at working stress
     "rail.damping.ratios": Range(0.0, 0.15, ""),
@@ -47,7 +47,8 @@ TURN = math.radians(0.5)  # five times the tilt of the thrust in the catalogue
 
 
 def warnings(scene) -> list[str]:
-    """A message for each value of a scene outside its range, and for walls that let it turn."""
+    """A message for each value of a scene outside its range, and for walls that let the payload
+    turn."""
     found = [
         f"{key}: {value:.4g}{_unit(own)}, plausible {own.least:g} to {own.most:g}{_unit(own)}"
         for key, own in RANGES.items()
@@ -62,7 +63,7 @@ def _unit(own: Range) -> str:
 
 
 def _values(scene, key: str) -> Iterator[float]:
-    """The value or values of a dotted key; none where a table is absent or has another law."""
+    """The value or values of a dotted key; none if a table is absent or has another law."""
     found: Any = scene
     for name in key.split("."):
         found = getattr(found, name, None)
@@ -71,7 +72,7 @@ def _values(scene, key: str) -> Iterator[float]:
 
 
 def _of_clearance(scene) -> list[str]:
-    """Clearances that are large beside a pad. The widest of both axes counts."""
+    """Clearances that are large relative to a pad; the larger one of both axes is taken."""
     widest = max(scene.contact.gaps()[1:])
     most = CLEARANCE * min(min(pad.length, pad.width) for pad in scene.pads)
     if at_most(widest, most):
@@ -83,10 +84,10 @@ def _of_clearance(scene) -> list[str]:
 
 
 def _of_turning(scene) -> list[str]:
-    """Pads that stand too close together along X to hold a payload straight.
+    """Pads that are too close together along X to hold a payload straight.
 
-    A body between two walls that is ``reach`` long and has the clearance c on both sides turns by
-    2 c / reach. An axis without pads on both sides is not held by design.
+    A body of length ``reach`` between two walls with the clearance c on both sides turns by 2 c /
+    reach. An axis without pads on both sides is not held by design.
     """
     found = []
     for axis, clearance in zip("yz", scene.contact.gaps()[1:]):

@@ -1,8 +1,8 @@
-"""Provenance of values: free text under dotted keys. The text of a key is its own, else that of the
+"""Provenance of values: free text under dotted keys. A key without text has the text of the
 innermost table around it.
 
-An overridden key gets the text "user", unless a new provenance is given. The table around it passes
-its text on to its other keys, and its own text then ends with ", in part user".
+An overridden key gets the text "user", unless a new provenance is given. The other keys of its
+table then get the text of the table, and the text of the table ends with ", in part user".
 """
 
 from collections.abc import Iterable, Mapping
@@ -21,8 +21,8 @@ def overridden(
     changes: Mapping[str, bool],
     given: Mapping[str, str],
 ) -> dict[str, str]:
-    """Provenance by dotted key of a scene written as ``raw`` after ``changes``: which dotted keys
-    were set, and True for those that were dropped. ``stated`` is the provenance before, ``given``
+    """Provenance by dotted key of a scene written as ``raw`` after ``changes``: dotted keys that
+    were set, and True for keys that were dropped. ``stated`` is the provenance before, ``given``
     that of the changes."""
     found = {**stated, **given}
     for key, dropped in changes.items():
@@ -36,14 +36,14 @@ def overridden(
             _pass_on(found, raw, key)
             if not dropped:
                 found[key] = USER
-        # a table inside had a text of its own
+        # an inner table had its own text
         elif of(found, key) != text:
             found[key] = text
     return found
 
 
 def of(texts: Mapping[str, str], key: str) -> str | None:
-    """The text of a dotted key or of the innermost table around it; None without."""
+    """The text of a dotted key or of the innermost table around it; None without a text."""
     parts = key.split(".")
     return next(
         (

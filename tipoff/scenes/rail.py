@@ -4,9 +4,9 @@ The key ``mesh`` or ``geometry`` selects a file. It is in scene axes (m, origin 
 centre at ignition, +X to the open end), with the walls one ``clearance`` off the pads. The
 surrogate does not use the file: ``start`` and ``end`` give the ends of the walls, pads and
 clearance their distance. The reference refuses a file that differs from them (``highfi.rail.fit``).
-Any kind of rail may have a ``damping`` (``scenes.effects.structural_damping``), which acts in the
-reference and on the modes of compliant contact, and a ``mount_stiffness``
-(``scenes.effects.mount_stiffness``), without which its mounts are rigid.
+Any kind of rail may have a ``damping`` (``scenes.effects.structural_damping``), for the reference
+and the modes of compliant contact, and a ``mount_stiffness`` (``scenes.effects.mount_stiffness``);
+without it the mounts are rigid.
 """
 
 import hashlib
@@ -104,11 +104,12 @@ class _RailTable(Table):
         return {}
 
     def libraries(self) -> tuple[str, ...]:
-        """Names of the libraries, beside ``sources.LIBRARIES``, that its mesh depends on."""
+        """Names of the libraries, in addition to ``sources.LIBRARIES``, that its mesh depends
+        on."""
         return ()
 
     def joint(self) -> MountStiffness | None:
-        """Plain record of the joints under the mounts; None where these are rigid."""
+        """Plain record of the joints under the mounts; None if these are rigid."""
         return self.mount_stiffness.record() if self.mount_stiffness else None
 
     def gap(self, clearance: float) -> float:
@@ -155,10 +156,10 @@ class SectionTable(_RailTable):
 class _FileTable(_RailTable):
     """A rail given by a file.
 
-    ``clearance`` (m) is the one of the file; a scene with another one has shims of the difference
+    ``clearance`` (m) is that of the file; a scene with another one has shims of the difference
     under its pads. ``thickness`` (m) of the walls and ``leg`` (m), their unsupported width, scale
-    the bounds of a calibration and bound the walls for a pad that comes from behind or from the
-    side (``mechanics.model.Plate``).
+    the bounds of a calibration. They also bound the walls for a pad that comes from behind or from
+    the side (``mechanics.model.Plate``).
     """
 
     #: Clearance for which the file is drawn; a scene with another one has shims of the
@@ -180,7 +181,7 @@ class _FileTable(_RailTable):
             return hashlib.file_digest(stream, "sha256").hexdigest()
 
     def is_as_found(self) -> bool:
-        """Whether the file is the same as when the scene was read."""
+        """Whether the file has not changed since the scene was read."""
         return self._digest_now() == self._digest
 
     def path(self) -> Path:
@@ -188,12 +189,11 @@ class _FileTable(_RailTable):
         return Path(getattr(self, self.GIVEN_BY))
 
     def contents(self) -> dict[str, str]:
-        """The digest of the file when the scene was read."""
+        """The digest of the file at the time the scene was read."""
         return {self.GIVEN_BY: self._digest}
 
     def gap(self, clearance: float) -> float:
-        """Distance (m) of the walls from the pads in the file, whatever the clearance of the
-        scene."""
+        """Distance (m) of the walls from the pads in the file, for any clearance of the scene."""
         return clearance if self.clearance is None else self.clearance
 
 
@@ -216,7 +216,7 @@ class MeshTable(_FileTable):
 
 
 class BoxTable(Table):
-    """A box between two corners in scene axes (m); it is flat where they are equal."""
+    """A box between two corners in scene axes (m); it is flat if two coordinates are equal."""
 
     #: Corner with the smallest coordinates, in scene axes.
     low: tuple[Length, Length, Length]

@@ -2,8 +2,8 @@
 it.
 
 In such a file, a table set to ``"absent"`` drops the inherited one. A ``[thrust]`` of another kind,
-a ``[contact]`` of another law and a ``[rail]`` given by a file replace the inherited table. The
-provenance of what the file sets is "user" (``scenes.provenance``), unless its own ``[provenance]``
+a ``[contact]`` with another law and a ``[rail]`` from a file replace the inherited table. The
+provenance of values in the file is "user" (``scenes.provenance``), unless its own ``[provenance]``
 differs.
 """
 
@@ -17,7 +17,7 @@ from tipoff.scenes.faults import Fault, SceneError, close, kind_of
 
 CATALOG = Path(__file__).resolve().parent / "catalog"
 _CHOICE = {"thrust": "kind", "contact": "law"}
-# written relative to the scene file; with a suffix where a name of the catalogue may stand there too
+# relative to the scene file; with a suffix if the value may also be a name of the catalogue
 _FILES = (
     ("thrust", "file"),
     *(("rail", key) for key in rail.FILES),
@@ -54,7 +54,7 @@ def _known() -> str:
 
 def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
     """``path`` merged over the file that it extends. A fault of an inherited file names this file
-    and the one the user gave."""
+    and the file that the user gave."""
     key = "file" if not chain else "extends"
     if absolute(path) in chain:
         raise SceneError(
@@ -78,7 +78,7 @@ def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
         raise SceneError([Fault(user_file, "extends", repr(base), f"{_known()}{meant}")])
     base_path = path.parent / base if base.endswith(".toml") else CATALOG / f"{base}.toml"
     inherited = _inherit(base_path, user_file, (*chain, absolute(path)))
-    # results are filed by name: a variation needs a name of its own
+    # results are filed by name, so a variation needs its own name
     inherited.pop("name", None)
     merged = _without_dropped(inherited, raw, _merged(inherited, raw))
     stated, given = (overrides.texts(table.get("provenance")) for table in (inherited, raw))
@@ -90,8 +90,8 @@ def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
 
 
 def replaced_by_conditions(name_or_path: str | Path) -> list[str]:
-    """Warnings: values of a file that extends another, which the conditions that it inherits
-    replace. ``name_or_path`` is that of a scene that can be read."""
+    """Warnings: values of a file that extends another, if inherited conditions replace them.
+    ``name_or_path``: of a scene that can be read."""
     path = Path(name_or_path)
     if path.suffix != ".toml":
         return []
@@ -120,7 +120,7 @@ def replaced_by_conditions(name_or_path: str | Path) -> list[str]:
 
 
 def toml(path: Path, user_file: str, key: str = "file") -> dict:
-    """Content of a TOML file. Raises SceneError, filed under ``key`` of the file the user gave."""
+    """Content of a TOML file. Raises SceneError under ``key`` of the file that the user gave."""
     inherited = "" if key == "file" else f"{path}: "
     try:
         # Editors may put a byte-order mark in front of UTF-8. "utf-8-sig" removes it.
@@ -131,7 +131,7 @@ def toml(path: Path, user_file: str, key: str = "file") -> dict:
         ) from error
     except RecursionError:
         raise SceneError([overrides.too_deep(user_file)]) from None
-    # bad TOML, bytes that are no UTF-8, or an integer of thousands of digits
+    # bad TOML, bytes that are not UTF-8, or an integer of thousands of digits
     except ValueError as error:
         raise SceneError([Fault(user_file, key, f"{inherited}{error}", "valid TOML")]) from error
     overrides.require_shallow(found, user_file)
@@ -140,7 +140,7 @@ def toml(path: Path, user_file: str, key: str = "file") -> dict:
 
 def absolute(path: Path) -> Path:
     """``path`` from the root. Links are followed, except in a name that the file system refuses and
-    in links in a circle: reading such a file gives the reason."""
+    in circular links: reading such a file gives the reason."""
     try:
         return path.resolve()
     except (OSError, RuntimeError, ValueError):
@@ -148,8 +148,8 @@ def absolute(path: Path) -> Path:
 
 
 def _without_dropped(base: dict, extra: dict, merged: dict) -> dict:
-    """``merged`` without the inherited conditions that ``extra`` sets to "absent". Roles that are
-    inherited too lose their names."""
+    """``merged`` without the inherited conditions that ``extra`` sets to "absent". Inherited roles
+    lose these names too."""
     inherited, stated = (_table(table.get("conditions")) for table in (base, extra))
     dropped = {name for name, value in stated.items() if value == "absent" and name in inherited}
     if not dropped:
@@ -188,7 +188,7 @@ def _merged(base: dict, extra: dict) -> dict:
 
 
 def _changes(base: dict, extra: dict, prefix: str = "") -> Iterator[tuple[str, bool]]:
-    """Dotted keys that ``_merged`` sets or, marked True, drops."""
+    """Dotted keys that ``_merged`` sets or, with True, drops."""
     for key, value in extra.items():
         if isinstance(value, dict) and value:
             inherited = table if isinstance(table := base.get(key), dict) else {}

@@ -1,4 +1,4 @@
-"""Checks of the tables beside the physics: names of conditions, roles of conditions, keys of
+"""Checks of the tables outside the physics: names of conditions, roles of conditions, keys of
 provenance."""
 
 from typing import Any
@@ -11,11 +11,11 @@ from tipoff.scenes.table import MOST
 
 def faults(raw: dict[str, Any], scene_type: type) -> list[tuple[str, str, str]]:
     """Faults (key, given, expected) of the names in ``[conditions]``, and of ``[agreement]`` and
-    ``[provenance]`` of a scene of ``scene_type``."""
+    ``[provenance]`` in a scene of ``scene_type``."""
     conditions, roles, provenance = (
         _table(raw.get(name)) for name in ("conditions", "agreement", "provenance")
     )
-    # what is no text, and too many of them, are faults of the table
+    # values that are no text, and too many of them, are faults of the table
     lists = {
         role: [name for name in members[:MOST] if isinstance(name, str)]
         for role, members in roles.items()

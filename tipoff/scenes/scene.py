@@ -1,5 +1,5 @@
-"""The scene: an immutable, validated description of an ejection for both solvers. An effect is on
-where its table is present.
+"""The scene: an immutable, validated description of an ejection for both solvers. The presence of
+its table switches an effect on.
 
 >>> scene = load("reference")
 >>> scene.replace({"thrust_offset.misalignment.axial": "0.3 deg"}).condition("phi35")
@@ -144,7 +144,8 @@ class Scene(shown.Shown, ends.Timed, Table):
     def replace(self, overrides: Mapping[str, Any]) -> "Scene":
         """A new scene with dotted keys set.
 
-        What is set has the provenance "user", unless ``overrides`` give another under ``provenance.<key>``.
+        Changed values get the provenance "user", unless ``overrides`` has another under
+        ``provenance.<key>``.
 
         Args:
             overrides: values by dotted key. Text carries units, a bare number is SI, None or "absent"
@@ -154,7 +155,7 @@ class Scene(shown.Shown, ends.Timed, Table):
             Scene: the new scene; this one stays as it is.
 
         Raises:
-            SceneError: every fault listed, or a file that changed after this scene was read.
+            SceneError: every fault, or a file that changed after this scene was read.
 
         Example:
             >>> scene = tipoff.load("tiny").replace({"payload.mass": "12 kg", "friction": None})
@@ -175,7 +176,7 @@ class Scene(shown.Shown, ends.Timed, Table):
         return scene
 
     def condition(self, name: str) -> "Scene":
-        """The scene of one named condition, or itself as "nominal".
+        """The scene of one named condition; "nominal" is the scene itself.
 
         Args:
             name: one of ``conditions``.
@@ -200,15 +201,14 @@ class Scene(shown.Shown, ends.Timed, Table):
         return self.replace(self.conditions[name])
 
     def given(self, key: str) -> Any:
-        """The input under a dotted ``key`` as it was written, with its unit; None where there is
-        none."""
+        """The input under a dotted ``key`` as it was written, with its unit; None without one."""
         found: Any = self._raw
         for part in key.split("."):
             found = found.get(part) if isinstance(found, dict) else None
         return found
 
     def physics(self) -> dict:
-        """The physical inputs in SI that a result depends on, without names and roles."""
+        """The physical inputs in SI that determine a result, without names and roles."""
         found = self.model_dump(mode="json", exclude=_NOT_PHYSICS)
         if self.thermal is None:
             found["rail"]["material"].pop("expansion", None)
@@ -229,14 +229,14 @@ class Scene(shown.Shown, ends.Timed, Table):
 
     @property
     def origin(self) -> str:
-        """The name in the catalogue, or the path of the file, from which it was read."""
+        """The name in the catalogue, or the path of the file of the scene."""
         path = Path(self._source)
         return path.stem if path.parent == CATALOG else self._source
 
     @property  # a copy of the scene, and one that ``Variations`` overwrites, must not keep it
     def hash(self) -> str:
-        """SHA-256 of the physical inputs. A file counts by its content and a measured thrust by its
-        points, not by its path."""
+        """SHA-256 of the physical inputs. A file counts by its content, and a measured thrust by
+        its points, not by their paths."""
         physics = self.physics()
         physics["rail"] |= self.rail.contents()
         points: list[list[float]] = []
@@ -251,8 +251,8 @@ class Scene(shown.Shown, ends.Timed, Table):
         return plausibility.warnings(self)
 
     def agrees(self) -> bool:
-        """Whether tables that are each valid fit each other: rails have an expansion where there is
-        a temperature, and the sampling interval fits the duration."""
+        """Whether valid tables fit each other: rails have an expansion if there is a temperature,
+        and the sampling interval fits the duration."""
         expands = self.thermal is None or self.rail.material.expansion is not None
         return expands and ends.fits(self)
 
@@ -272,7 +272,7 @@ class Scene(shown.Shown, ends.Timed, Table):
 def parse(
     raw: Mapping[str, Any], source: str = "scene", bare_numbers_are_si: bool = False
 ) -> Scene:
-    """Validate a nested mapping, all its conditions included.
+    """Validate a nested mapping, including all its conditions.
 
     Args:
         raw: tables by name, as TOML has them.
@@ -306,8 +306,8 @@ def parse(
 
 
 def load(name_or_path: str | Path) -> Scene:
-    """Read a scene by its name in the catalogue or from a TOML file. Raises SceneError, every fault
-    with file, key, given and expected.
+    """Read a scene by its name in the catalogue or from a TOML file. Raises SceneError with every
+    fault: file, key, given and expected.
 
     ``tipoff.load`` also warns of values that inherited conditions replace.
     """
@@ -331,8 +331,8 @@ _Faults = list[tuple[str, str, str]]
 
 
 def _validated(raw: Any, bare_numbers_are_si: bool) -> tuple[Scene | None, _Faults]:
-    """The scene, or None with its faults as (key, given, expected). Puts conditions and provenance
-    under dotted keys."""
+    """The scene, or None with its faults as (key, given, expected). Converts conditions and
+    provenance to dotted keys."""
     if isinstance(raw, dict):
         if isinstance(raw.get("provenance"), dict):
             raw["provenance"] = dict(keys.dotted(raw["provenance"]))
@@ -345,7 +345,7 @@ def _validated(raw: Any, bare_numbers_are_si: bool) -> tuple[Scene | None, _Faul
 
 
 def _reported(source: str, faults: _Faults) -> list[Fault]:
-    """The faults with the keys that were probably meant and with examples."""
+    """The faults, with the keys that were probably meant and with examples."""
     return [
         Fault(source, key, given, suggestions.expected(Scene, key, words))
         for key, given, words in faults
@@ -353,8 +353,7 @@ def _reported(source: str, faults: _Faults) -> list[Fault]:
 
 
 def _mark(raw: dict, overrides: Mapping[str, Any]) -> None:
-    """Bring the provenance in ``raw``, to which ``overrides`` were applied, up to date with
-    them."""
+    """Update the provenance in ``raw``, to which ``overrides`` were applied."""
     stated = keys.texts(raw.get("provenance"))
     if stated is None:
         return
@@ -380,10 +379,10 @@ def _tables(raw: Any) -> list[tuple[str, dict]]:
 
 
 def _beside_faults(raw: dict, bare_numbers_are_si: bool, reported: _Faults) -> _Faults:
-    """Faults in conditions, agreement and provenance, without those in ``reported``, the faults of
-    the scene itself."""
+    """Faults in conditions, agreement and provenance, without ``reported`` ones, which are faults
+    of the scene."""
     found = []
-    for name, table in _tables(raw.get("conditions"))[:MOST]:  # more of them are a fault
+    for name, table in _tables(raw.get("conditions"))[:MOST]:  # more conditions are a fault
         varied = keys.plain({key: item for key, item in raw.items() if key not in _BESIDE})
         faults = keys.apply_all(varied, table, Scene) + _validated(varied, bare_numbers_are_si)[1]
         found += [
@@ -391,7 +390,8 @@ def _beside_faults(raw: dict, bare_numbers_are_si: bool, reported: _Faults) -> _
             for key, given, expected in faults
             if (key, given, expected) not in reported
         ]
-    # A misspelt key that was set is reported already, and not again for its provenance.
+    # A misspelt key that was set is already reported, so it is not reported again for its
+    # provenance.
     return found + [
         fault
         for fault in roles.faults(raw, Scene)

@@ -1,8 +1,8 @@
-"""JSON schema of scene files, with which an editor completes and checks them.
+"""JSON schema of scene files, for completion and checks in an editor.
 
-It describes the text of a file: a quantity is a string with a unit, a table that a file inherits can
-be "absent", and a file that ``extends`` another states what it changes. Whether tables fit each
-other is found when the scene is read.
+It describes the text of a file: a quantity is a string with a unit, an inherited table can be
+"absent", and a file that ``extends`` another states its changes. Whether tables fit each other is
+checked when the scene is read.
 """
 
 import re
@@ -50,8 +50,8 @@ def schema() -> dict:
 
 
 def _of_file(node: Any, name: str = "") -> Any:
-    """A part of pydantic's schema of SI values as the schema of the text of a file; ``name`` is the
-    key that it describes."""
+    """A part of pydantic's schema of SI values, converted to the schema of the text of a file;
+    ``name`` is its key."""
     if isinstance(node, list):
         return [_of_file(item, name) for item in node]
     if not isinstance(node, dict):
@@ -64,9 +64,9 @@ def _of_file(node: Any, name: str = "") -> Any:
     for key, value in node.items():
         if key in ("properties", "$defs"):
             found[key] = {inner: _of_file(item, inner) for inner, item in value.items()}
-        elif key == "prefixItems":  # three alike
+        elif key == "prefixItems":  # three equal ones
             found["items"] = _of_file(value[0], name)
-        elif key == "oneOf":  # without the keys that are required, several can fit
+        elif key == "oneOf":  # without required keys, several can fit
             found["anyOf"] = _of_file(value, name)
         elif key not in ("required", "default", "discriminator", "title"):
             found[key] = _of_file(value, name)
@@ -91,7 +91,7 @@ def _quantity(node: dict, name: str) -> dict:
 
 
 def _written(name: str) -> list[str]:
-    """What scenes of the catalogue write under keys of this ``name``."""
+    """Texts in scenes of the catalogue under keys of this ``name``."""
     return list(
         dict.fromkeys(
             text

@@ -1,4 +1,4 @@
-"""What people see of a scene: one line, a summary, a card, a plot."""
+"""A scene for people: one line, a summary, a card, a plot."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -33,7 +33,7 @@ class Shown(Carded):
         """Draw the thrust (N) over the time after ignition (ms).
 
         Args:
-            axes: matplotlib axes to draw in; a new figure without them.
+            axes: matplotlib axes to draw in; a new figure by default.
 
         Returns:
             Figure: the figure. pyplot does not know a new one; a notebook shows it.
@@ -52,7 +52,7 @@ class Shown(Carded):
 
 
 def facts(scene: "Scene") -> dict[str, str]:
-    """Words with units by their title; implausible values are among them."""
+    """Text with units by title, including implausible values."""
     rail, contact = scene.rail, scene.contact
     found = {"name": scene.name}
     if scene.description:
@@ -102,5 +102,5 @@ def _names(names: list[str]) -> str:
 
 
 def _mm(*lengths: float) -> str:
-    """Lengths (m) in mm."""
+    """Text of lengths (m) in mm."""
     return " x ".join(f"{1e3 * length:g}" for length in lengths) + " mm"

@@ -1,18 +1,18 @@
-"""How far a pad sinks into its wall under the static load of a scene. A large sink shows a
-stiffness in the wrong unit.
+"""Sink of a pad into its wall under the static load of a scene. A large sink shows a stiffness in
+the wrong unit.
 
 The load is the largest static load of one face: the peak of the thrust across the axis and the
-weight, both on this face alone, and the force of the couple that balances the thrust's moment M
-about the mass centre over the distance L of the outermost pads::
+weight, both on this face alone, plus the force of the couple over the distance L of the outermost
+pads that balances the thrust's moment M about the mass centre::
 
     F = P sin t + m |g_yz| + M / L
 
     springs     p = (F / k)^(1 / e)          finite elements and compliant contact     p = F / (k_i A)
 
-A is the area of the smallest face. Springs stand for rail and contact together, and may sink up to
-the clearance. Where the clearance is smaller, the limit is 1 % of the shortest side of a pad, a
-strain at which any metal yields. The interface stiffness stands for asperities and coating alone,
-beside a rail that bends: a tenth of that."""
+A is the area of the smallest face. Springs represent rail and contact together. Their limit
+is the larger one of the clearance and 1 % of the shortest side of a pad, a strain at which any
+metal yields. The interface stiffness represents only asperities and coating, and the rail bends
+too, so its limit is a tenth of that."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -32,10 +32,10 @@ class _Spring(NamedTuple):
 
     key: str
     value: float  # SI
-    exponent: float  # of the sink in the force
-    lengths: float  # power of the length in its unit
-    area: float  # m2 that it acts on, 1 where the unit has none
-    share: float  # of the clearance, up to which a sink is plausible
+    exponent: float  # of the sink in the law of the force
+    lengths: float  # power of the length in the unit
+    area: float  # m2, 1 if the unit contains no area
+    share: float  # of the clearance: largest plausible sink
     share_in_words: str
 
     def sink(self, load: float, factor: float = 1.0) -> float:
@@ -55,7 +55,7 @@ def load(scene) -> float:
 
 
 def warnings(scene) -> list[str]:
-    """A message for each stiffness of ``[contact]`` under which a pad sinks implausibly far."""
+    """A message for each stiffness of ``[contact]`` with an implausible sink of a pad."""
     contact, force = scene.contact, load(scene)
     side = min(min(pad.length, pad.width) for pad in scene.pads)
     base, in_words = max(
@@ -63,7 +63,15 @@ def warnings(scene) -> list[str]:
     )
     area = min(pad.length * pad.width for pad in scene.pads)
     springs = (
-        _Spring("stiffness", contact.stiffness, contact.exponent, contact.exponent, 1.0, 1.0, ""),
+        _Spring(
+            key="stiffness",
+            value=contact.stiffness,
+            exponent=contact.exponent,
+            lengths=contact.exponent,
+            area=1.0,
+            share=1.0,
+            share_in_words="",
+        ),
         *_layers(contact, area),
     )
     found = []
@@ -88,24 +96,38 @@ def warnings(scene) -> list[str]:
 
 
 def _layers(contact, area: float) -> Iterator[_Spring]:
-    """The interface; and with the layer of the pad, which is soft, what both are in series, up to
-    the whole base."""
+    """The interface, up to a tenth of the limit. If the pad has a soft layer, also both in series,
+    up to the whole limit."""
     yield _Spring(
-        "interface_stiffness", contact.interface_stiffness, 1.0, 3.0, area, 0.1, "a tenth of "
+        key="interface_stiffness",
+        value=contact.interface_stiffness,
+        exponent=1.0,
+        lengths=3.0,
+        area=area,
+        share=0.1,
+        share_in_words="a tenth of ",
     )
     if contact.pad_layer is not None:
-        yield _Spring(_LAYER, contact.series_stiffness(), 1.0, 3.0, area, 1.0, "")
+        yield _Spring(
+            key=_LAYER,
+            value=contact.series_stiffness(),
+            exponent=1.0,
+            lengths=3.0,
+            area=area,
+            share=1.0,
+            share_in_words="",
+        )
 
 
 def _given(scene, spring: _Spring) -> str:
-    """The stiffness as the scene was given it, else in SI."""
+    """The stiffness as given in the scene, else in SI."""
     given = scene.given(f"contact.{spring.key}")
     return given if isinstance(given, str) else f"{spring.value:.4g} N/m**{spring.lengths:g}"
 
 
 def _units_meant(text: str, spring: _Spring) -> Iterator[tuple[str, float]]:
-    """Units that the number may have been meant in, in words, and how much stiffer each is than the
-    one it was given in; none for a layer, which is given by its thickness and modulus."""
+    """Units that the user may have meant, in words, and their stiffness over that of the given
+    unit; none for a layer, which is given by thickness and modulus."""
     if spring.key == _LAYER:
         return
     lengths = spring.lengths

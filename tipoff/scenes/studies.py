@@ -1,6 +1,6 @@
-"""``[studies]``: what the studies of a scene use unless an option of a command or an argument replaces
-it. A solver does not read it, so it is no physics of the scene, and it is inherited like any other
-table."""
+"""``[studies]``: settings of the studies of a scene; options of commands and arguments replace
+them. Solvers do not read this table, so it is not part of the physics. It is inherited like other
+tables."""
 
 from typing import Annotated
 
@@ -9,14 +9,14 @@ from pydantic import Field, field_validator
 from tipoff.scenes.table import Table, limited
 from tipoff.scenes.units import Dimension, PositiveNumber
 
-ELEMENT_SIZE = 2e-3  # m, of scenes that state none
+ELEMENT_SIZE = 2e-3  # m, default
 _Count = Annotated[int, Field(strict=True, ge=1, le=10_000)]
 _Neighbours = Annotated[int, Field(strict=True, ge=5, le=10_000)]
 
 
 class StudiesTable(Table):
-    """``[studies]``: element size (m) of the reference and of the rail compliance, the random errors of
-    a launch, and what makes the studies of a small scene short."""
+    """``[studies]``: element size (m) of the reference and of the rail compliance, random errors of
+    a launch, and numbers that make the studies of a small scene short."""
 
     #: Element size of the reference and of the rail compliance; 2 mm where absent.
     element_size: Dimension | None = None
@@ -44,6 +44,6 @@ class StudiesTable(Table):
 
 
 def element_size(table: StudiesTable | None) -> float:
-    """Element size (m) of the reference and of the rail compliance of a scene with this ``table``, where
-    no option or argument gives another."""
+    """Element size (m) of the reference and of the rail compliance of a scene with this ``table``,
+    unless an option or argument gives another."""
     return (table and table.element_size) or ELEMENT_SIZE

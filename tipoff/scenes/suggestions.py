@@ -1,7 +1,7 @@
 """Help with faults of a scene: the names that a user probably meant, and examples of a value.
 
-A key is compared with all dotted keys that a scene can have; the example of a key is what a scene of
-the catalogue has there, so that it comes in the unit in which people write it.
+A key is compared with all dotted keys that a scene can have. The example of a key is its text in a
+scene of the catalogue, in a common unit.
 """
 
 import functools
@@ -15,13 +15,13 @@ from tipoff.scenes.faults import MOST_NAMES, NO_SUCH_KEY, close
 from tipoff.scenes.table import Table
 
 _EXAMPLE = re.compile('for example "[^"]*"')
-# for keys that no scene of the catalogue has
+# for keys that are in no scene of the catalogue
 _WRITTEN = {"m": "1 mm", "rad": "0.1 deg", "rad/s": "5 deg/s", "s": "1 ms", "Pa": "70 GPa"}
 
 
 def expected(annotation: Any, key: str, words: str) -> str:
-    """What was ``expected`` under a dotted ``key`` of a table of type ``annotation``, with the keys
-    that were probably meant, or with an example in the unit in which the key is written."""
+    """Text of the value ``expected`` under a dotted ``key`` of a table of type ``annotation``, with
+    the keys that were probably meant, or with an example in the common unit of the key."""
     if words == NO_SUCH_KEY:
         return words + _meant(annotation, key)
     if _EXAMPLE.search(words) and (example := _example(annotation, key)):
@@ -30,7 +30,7 @@ def expected(annotation: Any, key: str, words: str) -> str:
 
 
 def _meant(annotation: Any, key: str) -> str:
-    """The keys with the same last part, such as payload.mass for mass; else those that are alike."""
+    """The keys with the same last part, such as payload.mass for mass; else similar keys."""
     key = _bare(key)
     known = list(dict.fromkeys(keys(annotation)))
     if key in known:
@@ -42,8 +42,8 @@ def _meant(annotation: Any, key: str) -> str:
 
 
 def keys(annotation: Any, prefix: str = "") -> Iterator[str]:
-    """Dotted keys, those of tables included, that a table of type ``annotation`` can hold; ``0``
-    stands for the items of a list."""
+    """Dotted keys, including those of tables, that a table of type ``annotation`` can have; ``0``
+    represents the items of a list."""
     if isinstance(annotation, type) and issubclass(annotation, Table):
         for name, field in annotation.model_fields.items():
             yield f"{prefix}{name}"
@@ -58,7 +58,7 @@ def keys(annotation: Any, prefix: str = "") -> Iterator[str]:
 
 
 def _bare(key: str) -> str:
-    """``key`` without the condition that it stands in, and with 0 for every place in a list."""
+    """``key`` without its condition, and with 0 for every place in a list."""
     parts = key.split(".")
     if parts[0] == "conditions" and len(parts) > 2:
         parts = parts[2:]
@@ -74,7 +74,7 @@ def _example(annotation: Any, key: str) -> str | None:
 
 @functools.cache
 def written() -> dict[str, str]:
-    """Texts of quantities by dotted key, as the scenes of the catalogue have them."""
+    """Texts of quantities by dotted key, from the scenes of the catalogue."""
     found: dict[str, str] = {}
     paths = sorted(reading.CATALOG.glob("*.toml"), key=lambda path: path.stem != "reference")
     for path in paths:

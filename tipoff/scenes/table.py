@@ -6,7 +6,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, model_validator
 
 MOST = 5000  # of a list or of named tables: pads, mounts, conditions
-limited: Any = Field(max_length=MOST)  # of a field that holds as many as a user likes
+limited: Any = Field(max_length=MOST)  # of a field with any number of items
 
 
 class Table(BaseModel):
@@ -20,7 +20,7 @@ class Table(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _not_empty(cls, data: Any, info: ValidationInfo) -> Any:
-        # Input has a context, a default has none. A table with required keys reports those.
+        # Input has a context, a default has none. A table with required keys reports their absence.
         optional = not any(field.is_required() for field in cls.model_fields.values())
         if data == {} and optional and info.context is not None:
             raise ValueError("at least one key, or no such table")
@@ -28,13 +28,13 @@ class Table(BaseModel):
 
 
 def is_absent(value: Any) -> bool:
-    """For ``exclude_if`` of a new key: scenes that do not use it keep their hash."""
+    """Value of ``exclude_if`` for new keys: scenes without them keep their hash."""
     return value is None
 
 
 def at_least_one(items: Sized) -> Sized:
-    """Pydantic validator of a list that may not be empty. Its own min_length would also
-    report lists whose items are refused."""
+    """Pydantic validator of a list that may not be empty. Pydantic's min_length would also report
+    lists with refused items."""
     if len(items) == 0:
         raise ValueError("at least one of them")
     return items

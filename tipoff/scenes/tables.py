@@ -25,8 +25,8 @@ Normal = Literal["+y", "-y", "+z", "-z"]
 
 
 class PayloadTable(Table):
-    """``[payload]``: mass, inertia about the actual mass centre, and (for plausibility) outer
-    size."""
+    """``[payload]``: mass, inertia about the actual mass centre, and outer size (for
+    plausibility)."""
 
     #: Mass of the payload.
     mass: Mass
@@ -41,8 +41,8 @@ class PadTable(Table):
     """``[[pads]]``: a pad on the payload; each normal is one flat face, crowned by ``relief`` at
     its edges.
 
-    ``position`` is the pad's corner measured from the nominal mass centre. A face with normal along
-    y is centred ``inset`` towards the payload's axis along z (and the other way round).
+    ``position`` is the pad's corner relative to the nominal mass centre. A face with normal along y
+    is centred ``inset`` towards the payload's axis along z, a face with normal along z, along y.
     """
 
     #: Corner of the pad, from the nominal mass centre.
@@ -73,13 +73,13 @@ class OutputTable(Table):
     interval: PositiveTime = 5e-5
 
     def fits(self, duration: float) -> bool:
-        """Whether a scene that lasts ``duration`` (s) has at least one sample after ignition, and
-        no more than MOST_SAMPLES."""
+        """Whether a scene of ``duration`` (s) has at least one sample after ignition, and at most
+        MOST_SAMPLES."""
         return 1 <= duration / self.interval * (1.0 + ROUNDING) < MOST_SAMPLES + 1
 
     def last(self, duration: float) -> int:
-        """Number of the last sample of a scene that lasts ``duration`` (s), the one at ignition
-        being number 0."""
+        """Number of the last sample of a scene of ``duration`` (s); the sample at ignition has
+        number 0."""
         return int(duration / self.interval * (1.0 + ROUNDING))
 
 

@@ -1,11 +1,12 @@
-"""Warnings about a thrust that is probably in a wrong unit, or whose record is no thrust at its ends.
+"""Warnings about a thrust that is probably in a wrong unit, or whose record is not zero at its
+ends.
 
     v = J g,     a = F g,     g = 1/m (+ 1/M of a platform that takes the reaction)
 
-v is the speed by the whole impulse J, a the acceleration at the peak F. Bounds: satellites leave their
-dispensers at 0.3 to 3 m/s, and rockets their rails at 15 to 60 m/s with 5 to 100 g. After the exit a rocket
-gains much more speed, so its v is not judged. A load cell reads zero before ignition and after burn-out;
-what it reads else is added to the impulse.
+v is the speed from the whole impulse J, a the acceleration at the peak F. Bounds: satellites leave
+their dispensers at 0.3 to 3 m/s, and rockets their rails at 15 to 60 m/s with 5 to 100 g. After the
+exit a rocket gains much more speed, so its v is not judged. A load cell reads zero before ignition
+and after burn-out; any other reading adds to the impulse.
 """
 
 import math
@@ -21,7 +22,7 @@ from tipoff.scenes.rounding import at_most, below
 _GRAVITY = 9.80665
 FASTEST, SLOWEST = 100.0, 0.05  # m/s
 HARDEST, HARDEST_ROCKET = 1000.0 * _GRAVITY, 100.0 * _GRAVITY  # m/s2
-_USUAL = (0.1, 60.0)  # m/s, of a speed that a unit must explain
+_USUAL = (0.1, 60.0)  # m/s: speed with a unit that explains an implausible one
 _UNITS = (
     (1e-3 * _GRAVITY, "gf"),
     (1e-3, "mN"),
@@ -29,13 +30,13 @@ _UNITS = (
     (_GRAVITY, "kgf"),
     (1e3, "kN"),
 )
-_SAID = 0.005  # of the impulse: an offset that is said
-_BURNS = 0.05  # of the peak: thrust
-_PLATEAU = 0.2  # of the peak: a level above it is thrust, which the record cuts
+_SAID = 0.005  # of the impulse: offset that is reported
+_BURNS = 0.05  # of the peak: above it there is thrust
+_PLATEAU = 0.2  # of the peak: a higher level is thrust that the record cuts
 _FEWEST = 5  # samples of a level
-_AGREE = 0.2  # relative: two points that are one level
-_CUT = 0.01  # of the peak, with which a record begins or ends
-_RESIDUAL = 0.1  # of a fit that acts
+_AGREE = 0.2  # relative difference of two points on one level
+_CUT = 0.01  # of the peak: largest value at the ends of a record
+_RESIDUAL = 0.1  # of a fit that is used
 
 
 def warnings(scene) -> list[str]:
@@ -76,7 +77,7 @@ def _of_size(scene) -> list[str]:
 
 
 def _meant(scene, speed: float, strongest: float, weaker: bool) -> str:
-    """The units that the forces may have been meant in, as the end of a message."""
+    """Units of the forces that the user may have meant, as the end of a message."""
     units = [
         (factor, name)
         for factor, name in _UNITS
@@ -112,7 +113,7 @@ def _of_record(table) -> list[str]:
 
 
 def _level(curve: MeasuredCurve, peak: float) -> _Level | None:
-    """The level of the first samples, where they are no thrust: at least ``_FEWEST`` within 5 % of the
+    """The level of the first samples, if they are no thrust: at least ``_FEWEST`` within 5 % of the
     ``peak`` about their median. None for a record that begins with thrust."""
     force = curve.force
     noise = 1.4826 * float(np.median(np.abs(np.diff(force)))) / math.sqrt(2.0)
@@ -128,9 +129,9 @@ def _level(curve: MeasuredCurve, peak: float) -> _Level | None:
 
 
 def _mean(calm: np.ndarray) -> tuple[float, float]:
-    """Level (N) at the beginning of samples (n,) without thrust, and its standard error: of a zero that
-    drifts along a straight line, else their median. Thrust that begins or fades slowly is neither; there
-    the first samples count."""
+    """Level (N) at the beginning of samples (n,) without thrust, and its standard error. A zero
+    that drifts along a straight line gives the start of the line, else it is the median. Thrust
+    that begins or fades slowly has no straight line; the first samples are then used."""
     place = np.linspace(0.0, 1.0, calm.size)
     slope, end = np.polyfit(place, calm, 1)
     left = float(np.std(calm - slope * place - end))
@@ -139,13 +140,14 @@ def _mean(calm: np.ndarray) -> tuple[float, float]:
     if left > 2.0 * scatter + 1e-9 * abs(end):
         few = calm[: max(_FEWEST, calm.size // 5)]
         return float(np.median(few)), 1.2533 * float(np.std(few)) / math.sqrt(few.size)
-    if abs(slope) > 4.0 * math.sqrt(12.0) * error:  # whose end has twice the error of the mean
+    # The end of the line has twice the error of the mean.
+    if abs(slope) > 4.0 * math.sqrt(12.0) * error:
         return float(end), 2.0 * error
     return float(np.median(calm)), error
 
 
 def _of_few_points(curve: MeasuredCurve, peak: float) -> _Level | None:
-    """The level of a record with too few points for one at either end, where its first and its last
+    """The level of a record with too few points for a level at each end, if its first and last
     point agree and are no thrust."""
     first, last = float(curve.force[0]), float(curve.force[-1])
     agree = first * last > 0.0 and abs(first - last) <= _AGREE * abs(last)
@@ -155,7 +157,7 @@ def _of_few_points(curve: MeasuredCurve, peak: float) -> _Level | None:
 
 
 def _of_offset(table, before: _Level | None, after: _Level | None) -> list[str]:
-    """Readings before ignition and after burn-out that are not zero, and the impulse they add."""
+    """Readings before ignition and after burn-out that are not zero, and their impulse."""
     seen = [item for item in (before, after) if item is not None and item.is_seen]
     if not seen:
         return []
@@ -185,7 +187,7 @@ def _of_offset(table, before: _Level | None, after: _Level | None) -> list[str]:
 def _of_ends(
     curve: MeasuredCurve, peak: float, before: _Level | None, after: _Level | None
 ) -> list[str]:
-    """A record that begins or ends with thrust, which is cut there."""
+    """A record that begins or ends with thrust."""
     found = []
     first, last = float(curve.force[0]), float(curve.force[-1])
     if before is None and curve.time[0] > 0.0 and abs(first) > _CUT * peak:
@@ -205,7 +207,7 @@ def _of_ends(
 
 
 def _of_fit(table) -> list[str]:
-    """A fit that acts and is poor in shape, or in impulse beyond the limit without a key."""
+    """A used fit with a large residual, or with an error of impulse above the default limit."""
     fit = table.fit() if table.use == "fit" else None
     if fit is None:
         return []

@@ -41,13 +41,12 @@ class _File(Table):
 
 
 class Uncertainty(NamedTuple):
-    """``cases`` to be drawn with ``seed`` by ``sampling``: the numbers under the dotted keys of
-    ``vary``, each by its distribution."""
+    """Inputs of an ensemble."""
 
-    cases: int
+    cases: int  # to be drawn
     seed: int
     sampling: str
-    vary: dict[str, Distribution]
+    vary: dict[str, Distribution]  # by dotted key
 
     def resolved(self) -> dict:
         """The inputs of the sampling in SI, as written into result files."""
@@ -60,17 +59,17 @@ class Uncertainty(NamedTuple):
 
 
 def of_scene(scene: Scene, **changed: Any) -> Uncertainty | None:
-    """The random errors that ``scene`` states under ``studies.errors``, read as ``load`` does; None where
-    it states none. Raises SceneError listing every fault."""
+    """The random errors of ``scene`` under ``studies.errors``, read as ``load`` does; None without
+    errors. Raises SceneError with every fault."""
     stated = scene.studies and scene.studies.errors
     return load(stated, scene, **changed) if stated else None
 
 
 def load(name_or_path: str | Path, scene: Scene, **changed: Any) -> Uncertainty:
-    """Read what varies in ``scene`` from a TOML file, or from the catalogue by name; ``changed``
-    replaces cases, seed or sampling.
+    """Read the uncertain inputs of ``scene`` from a TOML file, or from the catalogue by name;
+    ``changed`` replaces cases, seed or sampling.
 
-    Raises SceneError listing every fault.
+    Raises SceneError with every fault.
     """
     path = Path(name_or_path)
     if path.suffix != ".toml":
@@ -94,8 +93,8 @@ def load(name_or_path: str | Path, scene: Scene, **changed: Any) -> Uncertainty:
 def parse(
     raw: Mapping[str, Any], scene: Scene, source: str = "vary", bare_numbers_are_si: bool = False
 ) -> Uncertainty:
-    """Validate a mapping as a file holds it. Raises SceneError listing every fault with file, key,
-    given and expected."""
+    """Validate the mapping of a file. Raises SceneError with every fault: file, key, given and
+    expected."""
     faults: list[Fault] = []
     try:
         file = _File.model_validate(raw, context={})
@@ -110,7 +109,7 @@ def parse(
         raise SceneError(faults)
     varied = {key: item for key, item in found.items() if item is not None}
     try:
-        # A scene of the medians shows faults that no single key does, such as a pad that is absent.
+        # A scene of the medians shows faults that no single key shows, such as an absent pad.
         scene.replace({key: float(item.ppf(np.array(0.5))) for key, item in varied.items()})
     except SceneError as error:
         raise SceneError(
@@ -120,7 +119,7 @@ def parse(
 
 
 def _tables(vary: Any) -> dict[str, dict[str, Any]]:
-    """Tables of distributions by dotted key, whether the file quotes the key or nests it."""
+    """Tables of distributions by dotted key, for quoted and nested keys of a file."""
     found: dict[str, dict[str, Any]] = {}
     for dotted, value in keys.dotted(vary if isinstance(vary, dict) else {}):
         key, _, name = dotted.rpartition(".")

@@ -1,5 +1,5 @@
-"""Files of a scene that changed after it was read: a variation would have another curve or rail than the
-scene that it varies, without a word."""
+"""Check for files of a scene that changed after it was read: a variation would silently have
+another curve or rail than its scene."""
 
 import numpy as np
 
@@ -11,8 +11,8 @@ Tables = tuple[ThrustTable, RailTable]
 
 
 def require(before: Tables, after: Tables, source: str) -> None:
-    """Raises SceneError, naming ``source``, where a file that the tables of both scenes name has another
-    content in those ``after``, which were read later."""
+    """Raise SceneError, naming ``source``, if a file in the tables of both scenes has another
+    content in ``after``, which was read later."""
     changed = []
     (old, rail), (new, later) = before, after
     if isinstance(old, MeasuredTable) and isinstance(new, MeasuredTable) and old.file == new.file:

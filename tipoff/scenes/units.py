@@ -1,8 +1,8 @@
-"""Quantities with units: text such as ``"0.05 mm"`` becomes an SI float, or a fault that names what
-was expected.
+"""Quantities with units: text such as ``"0.05 mm"`` becomes an SI float, or a fault with the
+expected value.
 
-Inside the program everything is SI and radians. Files must write units; a bare number is taken as
-SI only where the caller says so (overrides made by a program, resolved scenes read back).
+Inside the program everything is in SI and radians. Files must write units; a bare number is taken
+as SI only if the caller allows it (overrides from a program, resolved scenes).
 """
 
 import math
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 _QUANTITY = re.compile(
     r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf(?:inity)?)\b)\s*(.*?)\s*", re.I
 )
-# What pint may read: names, each to a small power, and 1, multiplied and divided. It evaluates
-# arithmetic, and would take hours and all memory for "kg*9**9**9".
+# Text that pint may read: names, each to a small power, and 1, multiplied and divided. pint
+# evaluates arithmetic, and "kg*9**9**9" would take hours and all memory.
 _LONGEST = 100  # characters of a unit
 _NUMBER = r"[+-]?\d{1,2}(?:[./]\d{1,12})?"
 _POWER = rf"(?:\*\*|\^)\s*(?:{_NUMBER}(?![\w.])|\(\s*{_NUMBER}\s*\))"
 _UNIT = re.compile(rf"(?:{_POWER}(?!\s*(?:\*\*|\^))|[^\W\d]\w*|1(?![\w.])|[%°()/·⁻]|\*(?!\*)|\s)*")
-# Magnitudes (SI) beyond these are typing errors. Products of quantities would leave the range of
-# floating-point numbers, and a rail would be lost in the rounding of its place.
+# Magnitudes (SI) beyond these are typing errors. Products of quantities would overflow, and the
+# place of a rail would be lost in rounding.
 _LARGEST, _LARGEST_LENGTH = 1e200, 1e9
 
 
@@ -39,8 +39,8 @@ _LOADING = threading.Lock()
 
 
 def registry() -> "pint.UnitRegistry":
-    """All units of pint, which loads when the first unit is read: it takes 0.3 s, and the scenes that
-    worker processes get are in SI."""
+    """All units of pint. It loads when the first unit is read, because this takes 0.3 s, and the
+    scenes of worker processes are in SI."""
     with _LOADING:  # threads share one registry
         return _registry()
 
@@ -53,7 +53,7 @@ def _registry() -> "pint.UnitRegistry":
 
 
 def named(unit: str) -> str:
-    """Text of what a field in ``unit`` should hold."""
+    """Text of the expected value of a field in ``unit``."""
     return (
         "a number" if unit == "dimensionless" else f'a quantity in {unit}, for example "1 {unit}"'
     )
@@ -62,7 +62,7 @@ def named(unit: str) -> str:
 @lru_cache(maxsize=4096)
 def to_si(text: str, unit: str, absolute: bool = False) -> float:
     """Value of ``text`` in ``unit`` (an SI unit). Raises ValueError for a wrong dimension, bad
-    text, NaN and inf, and, unless it is ``absolute``, for a unit whose zero is elsewhere."""
+    text, NaN and inf, and, unless it is ``absolute``, for a unit with an offset zero."""
     match = _QUANTITY.fullmatch(text)
     if match is None:
         raise ValueError(named(unit))
@@ -76,7 +76,7 @@ def to_si(text: str, unit: str, absolute: bool = False) -> float:
     units = registry()
     try:
         quantity = units.Quantity(number, units.parse_units(given_unit))
-    except Exception as error:  # pint raises a wide family of exceptions on malformed text
+    except Exception as error:  # pint raises many classes on malformed text
         raise ValueError(f"{named(unit)} ({given_unit!r} is no unit)") from error
     if not quantity.is_compatible_with(unit):
         raise ValueError(f"{named(unit)} (given dimension {quantity.dimensionality})")
@@ -88,13 +88,13 @@ def to_si(text: str, unit: str, absolute: bool = False) -> float:
 
 def _converted(quantity: "pint.Quantity", unit: str, absolute: bool, given: str) -> float:
     """Magnitude in ``unit``. Raises ValueError for another power of the radian, and, unless it is
-    ``absolute``, for a unit whose zero is elsewhere."""
+    ``absolute``, for a unit with an offset zero."""
     if not absolute and registry().Quantity(0.0, quantity.units).to(unit).magnitude != 0.0:
         raise ValueError(
             f"{named(unit)} ({given!r} is not a difference: give it in K or delta_degC)"
         )
-    # An angle has no dimension, so "0.1" would pass for 0.1 rad and "5 Hz" for 5 rad/s: ask for the
-    # unit itself.
+    # An angle has no dimension, so "0.1" would be taken as 0.1 rad and "5 Hz" as 5 rad/s: the unit
+    # itself is compared.
     if _radians(quantity) != _radians(registry().Quantity(1.0, unit)):
         raise ValueError(f"{named(unit)} (given unit {quantity.units})")
     return float(quantity.to(unit).magnitude)
@@ -107,21 +107,21 @@ def _finite(value: float, unit: str) -> float:
 
 
 def _radians(quantity: "pint.Quantity") -> object:
-    """Power of the radian in the unit of ``quantity``, of whatever type pint has it in."""
+    """Power of the radian in the unit of ``quantity``, of the type that pint uses."""
     return dict(quantity.to_root_units().unit_items()).get("radian", 0)
 
 
 def are_units(cells: Iterable[str]) -> bool:
-    """Whether a line of a table names units: no cell is a value, and not all are empty."""
+    """Whether a line of a table has units: no cell is a value, and not all are empty."""
     texts = [text.strip() for text in cells if text.strip()]
     return bool(texts) and not any(text[0] in "+-.0123456789" or text == "absent" for text in texts)
 
 
 def parse(value: Any, unit: str, bare_numbers_are_si: bool) -> float:
-    """SI value of a field that should carry ``unit``; ``value`` is text with a unit, or a number
-    where that is allowed.
+    """SI value of a field with ``unit``; ``value`` is text with a unit, or a number if that is
+    allowed.
 
-    Raises ValueError that says what was expected.
+    Raises ValueError with the expected value.
     """
     if isinstance(value, str):
         return to_si(value, unit)
@@ -141,17 +141,17 @@ def parse(value: Any, unit: str, bare_numbers_are_si: bool) -> float:
 
 
 def is_number(value: Any) -> bool:
-    """Whether a value is a real number, of Python or numpy; text and True are none."""
+    """Whether a value is a real number of Python or numpy; text and True are not."""
     return isinstance(value, Real) and not isinstance(value, bool)
 
 
 def single(value: Any) -> Any:
-    """The number in an array without dimensions, as Python has it; anything else as it is."""
+    """The number in an array without dimensions, as a Python value; anything else unchanged."""
     return value.item() if getattr(value, "shape", None) == () else value
 
 
 def sized(value: float, unit: str, is_positive: bool = False) -> float:
-    """``value``, if its magnitude in ``unit`` is one that a scene may have. Raises ValueError."""
+    """``value``, if a scene may have its magnitude in ``unit``. Raises ValueError."""
     largest = _LARGEST_LENGTH if unit == "m" else _LARGEST
     if abs(value) > largest:
         raise ValueError(f"{named(unit)}, {largest:g} at most")
@@ -170,8 +170,8 @@ class Bounds(TypedDict, total=False):
 
 
 def quantity(unit: str, **bounds: Unpack[Bounds]) -> Any:
-    """Pydantic type of a quantity held in ``unit``, with bounds as in ``pydantic.Field`` (gt, ge,
-    lt, le) in that unit. A value that is on a bound up to rounding becomes the bound."""
+    """Pydantic type of a quantity in ``unit``, with bounds as in ``pydantic.Field`` (gt, ge, lt,
+    le) in that unit. A value that equals a bound up to rounding becomes the bound."""
 
     limits = tuple(limit for limit in bounds.values() if isinstance(limit, float) and limit)
 
@@ -191,7 +191,7 @@ ContactExponent = quantity("dimensionless", ge=0.5, le=10.0)  # 1.5 of Hertz, 1 
 Length = quantity("m")
 NonNegativeLength = quantity("m", ge=0.0)
 PositiveLength = quantity("m", gt=0.0)
-SMALLEST_DIMENSION = 1e-6  # m, of a rail: above the rounding of its place, below what is made
+SMALLEST_DIMENSION = 1e-6  # m, of a rail: above the rounding of its place, below any real one
 Dimension = quantity("m", ge=SMALLEST_DIMENSION)
 Angle = quantity("rad")
 Time = quantity("s")
@@ -210,7 +210,7 @@ PositiveVelocity = quantity("m/s", gt=0.0)
 Rate = quantity("rad/s")
 PositiveRate = quantity("rad/s", gt=0.0)
 PointingLimit = quantity("rad", gt=0.0, lt=math.pi)
-# at lower speeds, which in a launch are rounding, no face would ever be found at rest
+# lower speeds are rounding in a launch, and no face would ever be at rest
 CaptureSpeed = quantity("m/s", ge=1e-9)
 Acceleration = quantity("m/s**2")
 Inertia = quantity("kg*m**2")

@@ -1,9 +1,9 @@
-"""Many variations of one scene, fast: only what a row of overrides changes is validated again.
+"""Fast variations of one scene: only the changes of a row of overrides are validated again.
 
 ``Variations.of`` returns the same tables as ``Scene.replace``. The first row with certain keys is
-validated by tables. The next rows with the same keys are validated by single numbers, where no rule
-of a table depends on several of them. A row with a fault goes through ``replace``, so that the
-faults are the same too.
+validated by tables. Later rows with the same keys are validated by single numbers, unless a rule of
+a table depends on several of them. A row with a fault goes through ``replace``, so that the faults
+are the same too.
 """
 
 from collections.abc import Mapping
@@ -30,13 +30,12 @@ _CONTEXT = {"bare_numbers_are_si": True}
 
 
 class _Leaf(NamedTuple):
-    """A number of a scene that is overwritten: its table, the same table as it was written, its name,
-    its validator."""
+    """A number of a scene that is overwritten."""
 
-    values: dict
-    raw: dict
+    values: dict  # its table
+    raw: dict  # the same table as written
     name: str
-    adapter: TypeAdapter
+    adapter: TypeAdapter  # its validator
 
 
 class Variations:
@@ -73,8 +72,8 @@ class Variations:
         return self._copy(row) or self.scene.replace(row)
 
     def _copy(self, row: Mapping[str, Any]) -> Scene | None:
-        """A copy of the scene with the tables that ``row`` changes; None where ``replace`` has to
-        validate all of it."""
+        """A copy of the scene with the tables that ``row`` changes; None if ``replace`` must
+        validate the whole scene."""
         changed = dict.fromkeys(key.partition(".")[0] for key in row)
         if not changed.keys() <= _TABLES:
             return None
@@ -113,8 +112,8 @@ class Variations:
         return self._adapters[key]
 
     def _leaves(self, names: tuple[str, ...], scene: Scene) -> tuple[Scene, list[_Leaf]] | None:
-        """``scene``, a copy to be overwritten, and its numbers under ``names``; None where one of
-        them is not a free number."""
+        """``scene``, a copy to be overwritten, and its numbers under ``names``; None if one of them
+        is not a free number."""
         leaves = []
         for name in names:
             *path, last = name.split(".")
@@ -147,6 +146,6 @@ class Variations:
 
 
 def _free(kind: type[Table], whole: bool = False) -> bool:
-    """Whether a table of this kind has no rule on its values, except that it may not be empty."""
+    """Whether a table of this kind has no rule on its values, except that it must not be empty."""
     rules = kind.__pydantic_decorators__
     return whole or (not rules.field_validators and set(rules.model_validators) <= {"_not_empty"})

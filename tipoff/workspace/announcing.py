@@ -1,4 +1,4 @@
-"""What many runs of the reference cost, said before they begin."""
+"""Announce the cost of many runs of the reference before they begin."""
 
 from collections.abc import Sequence
 
@@ -11,7 +11,7 @@ from tipoff.workspace.words import counted
 
 
 def announce(study: Study, runs: Sequence[Run]) -> None:
-    """Print how many of the ``runs`` of the reference are missing, and the time and memory that they
+    """Print the number of missing ``runs`` of the reference, and the time and memory that they
     take."""
     from tipoff import highfi
 

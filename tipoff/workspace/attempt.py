@@ -1,5 +1,5 @@
-"""One part of a larger result, such as a section of a page: a part that fails does not take the others
-with it. Its reason is a sentence of the result, and an error of the program prints its traceback."""
+"""One part of a larger result, such as a section of a page: other parts continue if it fails. The
+reason is a sentence of the result; an error of the program prints its traceback."""
 
 import errno
 import traceback
@@ -17,7 +17,7 @@ _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)  # nothing else could be wr
 def attempt(
     name: str, work: Callable[[], _T], passing: type[Exception] | tuple[type[Exception], ...] = ()
 ) -> tuple[_T | None, str]:
-    """What ``work`` returns, and an empty reason; None and the reason where it raises an exception.
+    """The result of ``work`` and an empty reason; or None and the reason of an exception.
 
     The part ``name`` and the reason are printed, with the traceback of an error of the program. The
     exceptions ``passing``, KeyboardInterrupt and a disk that cannot be written are raised.

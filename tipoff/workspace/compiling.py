@@ -1,7 +1,7 @@
-"""Kernels compiled before the runs that need them, side by side in processes.
+"""Compile kernels in parallel processes, before the runs that need them.
 
-Numba compiles one kernel at a time in a process, so that threads which make runs with different
-effects would wait for each other.
+In one process Numba compiles one kernel at a time, so threads that make runs with different effects
+would wait for each other.
 """
 
 from collections.abc import Sequence
@@ -16,8 +16,9 @@ from tipoff.workspace.run import Run, execute, prepare
 
 
 def warm_up(run: Run) -> None:
-    """Compile or load the kernels of ``run`` by its first milliseconds. A run that chooses its modes of
-    the rails begins without any; kernels with modes are compiled when it needs them."""
+    """Compile or load the kernels of ``run`` by its first milliseconds. A run that chooses its
+    modes of the rails begins without modes; kernels with modes are compiled when they are
+    needed."""
     prepare(run)
     scene = run.scene
     first = min(scene.time_limit, max(scene.output.interval, 1e-3))
@@ -25,11 +26,11 @@ def warm_up(run: Run) -> None:
 
 
 def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
-    """Compile the kernels of ``runs`` that no earlier call has compiled, ``workers`` at a time, with
-    progress under ``title`` on standard error.
+    """Compile the kernels of ``runs`` that no earlier call has compiled, ``workers`` at a time,
+    with progress under ``title`` on standard error.
 
-    Runs with the same model and the same effects count as one. With one worker, or one kernel to
-    compile, this does nothing, and the run compiles its own.
+    Runs with the same model and the same effects count as one. With one worker, or one kernel, this
+    does nothing: the run compiles its kernel itself.
     """
     named = {kernel_marks.mark(run): run for run in reversed(runs)}
     missing = {mark: run for mark, run in named.items() if not kernel_marks.are_there(run)}

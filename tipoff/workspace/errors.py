@@ -1,4 +1,4 @@
-"""Failures of studies, told apart from bad input and from errors of the program."""
+"""Failures of studies, distinct from bad input and from errors of the program."""
 
 
 class StudyError(RuntimeError):

@@ -1,8 +1,8 @@
-"""Which kernels runs have compiled: a mark in the cache for each, so that a user is told before the first
-run that has to wait for them.
+"""Marks in the cache of the kernels that runs have compiled, so that a user is told before the
+first run that must wait for compilation.
 
-A surrogate run that chooses its modes of the rails begins with kernels without modes. Those with modes
-are others; they are compiled only where the run turns out to need them, and have a mark of their own.
+A surrogate run that chooses its modes of the rails begins with kernels without modes. The kernels
+with modes are separate: they are compiled only if the run needs them, and have their own mark.
 """
 
 from collections.abc import Callable, Iterator
@@ -27,8 +27,8 @@ _MARKS: cache.Cache[dict] = cache.documents(dict, dict, cache.Held)
 
 @contextmanager
 def first_use(run: Run, many: bool = False) -> Iterator[None]:
-    """Announce the kernels of ``run``, or of ``many`` cases like it, and note that they are there
-    once the block has used them."""
+    """Announce the kernels of ``run``, or of ``many`` cases like it, and mark them after the block
+    has used them."""
     announce(run, many=many)
     yield
     remember(run, many=many)
@@ -36,8 +36,8 @@ def first_use(run: Run, many: bool = False) -> Iterator[None]:
 
 @contextmanager
 def chosen_modes(run: Run) -> Iterator[Callable[[int], None]]:
-    """The argument ``vibrates`` of ``lowfi.run`` for ``run``: it announces the kernels with modes once
-    the run has chosen some. They are noted when the block has used them."""
+    """The argument ``vibrates`` of ``lowfi.run`` for ``run``: it announces the kernels with modes
+    when the run has chosen modes. They are marked after the block has used them."""
     chosen: list[int] = []
 
     def vibrates(modes: int) -> None:
@@ -51,9 +51,9 @@ def chosen_modes(run: Run) -> Iterator[Callable[[int], None]]:
 
 
 def announce(run: Run, chosen: bool = False, many: bool = False) -> None:
-    """Print, once in a process, that the kernels of ``run``, or of ``many`` cases like it, have to be
-    compiled, where no run has compiled them: those that it begins with, or where modes were ``chosen``
-    in it those with modes."""
+    """Print, once per process, that the kernels of ``run``, or of ``many`` cases like it, must be
+    compiled, unless a run has compiled them. ``chosen``: kernels with rail modes, else those with
+    which the run begins."""
     path, _ = mark(run, chosen, many)
     if path in _SAID or are_there(run, chosen, many):
         return
@@ -69,47 +69,46 @@ def announce(run: Run, chosen: bool = False, many: bool = False) -> None:
 
 
 def remember(run: Run, chosen: bool = False, many: bool = False) -> None:
-    """Note in the cache that ``run``, or ``many`` cases like it, compiled its kernels, or where modes
-    were ``chosen`` those with modes."""
-    with suppress(OSError):  # they are announced again
+    """Mark in the cache that ``run``, or ``many`` cases like it, compiled its kernels. ``chosen``:
+    kernels with rail modes."""
+    with suppress(OSError):  # they will be announced again
         _MARKS.get_or_make(*mark(run, chosen, many), _AGAIN, dict)
 
 
 def are_there(run: Run, chosen: bool = False, many: bool = False) -> bool:
-    """Whether ``remember`` noted these kernels."""
+    """Whether ``remember`` has marked these kernels."""
     return _MARKS.get(*mark(run, chosen, many), _AGAIN) is not None
 
 
 def mark(run: Run, chosen: bool = False, many: bool = False) -> tuple[Path, str]:
-    """The file in the cache of kernels that says that those of ``run``, or of ``many`` cases like it,
-    are there, and its key."""
+    """The file of the mark of the kernels of ``run``, or of ``many`` cases like it, and its key."""
     key = content_hash(
         kernel_digest(f"tipoff.{run.fidelity}"),
         run.model,
         _not_compiled(run.scene),
         _vibrates(run, chosen),
         many,
-        # many cases that choose their modes need the kernels without modes and those with
+        # many cases that choose their modes need the kernels without and with modes
         many and not chosen and _modes(run) == AUTO,
     )
     return cache.file(sources.cache_folder() / "kernels", "compiled", key, ".json"), key
 
 
 def _not_compiled(scene: Scene) -> list[str]:
-    """Effects without code in the kernels of ``scene``: those that it lacks, and body forces where a
-    free platform falls with the payload (``mechanics.comoving``)."""
+    """Effects without code in the kernels of ``scene``: absent ones, and body forces if a free
+    platform falls with the payload (``mechanics.comoving``)."""
     falls = scene.platform is not None
     absent = scene.absent_effects()
     return [item.key for item in EFFECTS if item.key in absent or (falls and item.is_body_force)]
 
 
 def _vibrates(run: Run, chosen: bool) -> bool:
-    """Whether the run needs the kernels with modes of the rails: it asks for some, or has ``chosen``
-    some."""
+    """Whether the run needs the kernels with modes of the rails: it requests or has ``chosen``
+    modes."""
     return chosen or _modes(run) not in (AUTO, 0)
 
 
 def _modes(run: Run) -> str | int:
-    """Modes of the rails that ``run`` asks for, zero where nothing presses a rail."""
+    """Modes of the rails that ``run`` requests, zero if nothing presses a rail."""
     pressed = run.model == COMPLIANT and run.compliance is not None
     return getattr(run.numerics, "modes", 0) if pressed else 0

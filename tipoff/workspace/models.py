@@ -1,5 +1,5 @@
-"""Choice of the model by options: compliant contact by default. An option of one model given with
-another model is bad input."""
+"""Choice of the model by options; compliant contact is the default. An option of another model is
+bad input."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -16,17 +16,15 @@ _OWNERS = {
 
 
 class Options(NamedTuple):
-    """Options of a model: its ``name``, None for the default; the file of a ``calibration`` of a
-    surrogate; the number of ``modes`` of each rail on compliant contact, or
-    ``"auto"``, the default."""
+    """Options of a model."""
 
-    name: str | None = None
-    calibration: Path | None = None
-    modes: int | str | None = None
+    name: str | None = None  # None: the default
+    calibration: Path | None = None  # file, of a surrogate
+    modes: int | str | None = None  # of each rail on compliant contact; None: "auto"
 
     @property
     def asked(self) -> int | str:
-        """The modes in numerics."""
+        """The modes for the numerics."""
         return AUTO if self.modes is None else self.modes
 
     @property
@@ -36,9 +34,8 @@ class Options(NamedTuple):
 
 
 def require(options: Options, **others: object) -> None:
-    """Raises SceneError, every fault listed, for an unknown name of a model and for options of
-    another model. ``others`` are further options by the name of their parameter, None where they
-    were not given."""
+    """Raise SceneError with every fault: an unknown name of a model, and options of another model.
+    ``others`` are further options by the name of their parameter, None if not given."""
     if options.model not in MODELS:
         raise SceneError([Fault("--model", "name", options.model, f"one of {', '.join(MODELS)}")])
     given: dict[str, object] = {"--calibration": options.calibration, "--modes": options.modes}

@@ -4,8 +4,8 @@
     class Options:
         cases: Annotated[int, between(100), typer.Option(metavar="N", help="Number of cases.")] = 1000
 
-The command has an option ``--cases``, the result file has ``cases``, and ``require`` checks the rule. A
-field whose type is such a dataclass has further options of the same command.
+The command has an option ``--cases``, the result file has ``cases``, and ``require`` checks the
+rule. A field with such a dataclass as its type has further options of the same command.
 """
 
 import dataclasses
@@ -17,10 +17,10 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Rule:
-    """Which numbers an option may have: ``holds``, and the same in ``words``. None is what is not given."""
+    """Allowed numbers of an option. None means not given."""
 
     holds: Callable[[float], bool]
-    words: str
+    words: str  # the same as text
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Callable[[Any], Any]) -> Any:
         from pydantic_core import core_schema  # slow to load
@@ -39,8 +39,8 @@ def between(
     below: float | None = None,
     noun: str = "",
 ) -> Rule:
-    """Rule for the number of an option: ``least`` to ``most``, or less than ``below``; ``noun`` says what
-    it counts."""
+    """Rule for the number of an option: ``least`` to ``most``, or less than ``below``; ``noun``
+    names what it counts."""
     words = "" if least is None else f"{least:,g} or more"
     if most is not None:
         words = f"at most {most:,g}" if least is None else f"{least:,g} to {most:,g}"
@@ -58,7 +58,7 @@ def between(
 
 
 def require(options: Any) -> None:
-    """Raises SceneError with a fault for each of the ``options`` that breaks its rule."""
+    """Raise SceneError with a fault for each of the ``options`` that breaks its rule."""
     from pydantic import TypeAdapter, ValidationError  # slow to load, as the scenes are
 
     from tipoff.scenes.faults import SceneError, faults_of
@@ -89,7 +89,7 @@ def flag(name: str, hint: Any) -> str:
     """The flag of the option ``name`` with the type ``hint``."""
     notes = [note for note in getattr(hint, "__metadata__", ()) if hasattr(note, "param_decls")]
     for note in notes:
-        # the first argument of typer.Option, which is a default outside of Annotated
+        # the first argument of typer.Option is a default if it is not in Annotated
         for declared in (note.default, *(note.param_decls or ())):
             if isinstance(declared, str) and declared.startswith("--"):
                 return declared.partition("/")[0]

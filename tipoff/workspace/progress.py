@@ -1,5 +1,5 @@
-"""Progress of several runs: bars with the time left on a terminal, else one line for each finished
-run."""
+"""Progress of several runs: bars with the remaining time on a terminal, else one line for each
+finished run."""
 
 import threading
 import time
@@ -60,7 +60,7 @@ class Board:
         self._stop.set()
 
     def callback(self, label: str) -> Callable[[float], None]:
-        """Progress callback of one run; its argument is the fraction done, 0 to 1."""
+        """Progress callback of one run; its argument is the completed fraction, 0 to 1."""
 
         def report(fraction: float) -> None:
             if self._stop.is_set():
@@ -72,7 +72,7 @@ class Board:
         return report
 
     def finished(self, label: str, note: str) -> None:
-        """Count a run as done and print its line."""
+        """Count a run as finished and print its line."""
         with self._lock:
             self._done += 1
             self._fractions.pop(label, None)
@@ -99,8 +99,8 @@ class Board:
 def team(board: Board, workers: int) -> Iterator[ThreadPoolExecutor]:
     """Threads for the runs of ``board``.
 
-    An exception in the block, such as Ctrl-C, cancels the runs that have not begun and stops each
-    other one at its next progress report. It does not wait for the threads, since one may be
+    An exception in the block, such as Ctrl-C, cancels the runs that have not begun and stops the
+    others at their next progress report. It does not wait for the threads, because one may be
     compiling a kernel.
     """
     pool = ThreadPoolExecutor(workers)
@@ -116,6 +116,6 @@ def team(board: Board, workers: int) -> Iterator[ThreadPoolExecutor]:
 
 
 def say(text: str) -> None:
-    """One line to the user on standard error."""
+    """Print one line for the user on standard error."""
     # Markup off: a condition may be called [x]. Soft wrap: a log file has no width.
     console.print(text, markup=False, soft_wrap=True)

@@ -1,4 +1,4 @@
-"""A request for one run, and how it is made."""
+"""A request for one run, and its execution."""
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
@@ -18,15 +18,14 @@ _SAID: set[str] = set()  # warnings about meshes that this process has printed
 
 @dataclass(frozen=True)
 class Run:
-    """A request for a run: a fidelity, a label that is unique for the scene, the scene of one
-    condition, numerics, and for a surrogate the calibration or the rail compliance."""
+    """A request for a run."""
 
     fidelity: str
-    label: str
-    scene: Scene
+    label: str  # unique in the study of the scene
+    scene: Scene  # of one condition
     numerics: Any
-    calibration: Calibration | None = None
-    compliance: RailCompliance | None = None
+    calibration: Calibration | None = None  # of a surrogate
+    compliance: RailCompliance | None = None  # of a surrogate
 
     @property
     def model(self) -> str:
@@ -37,7 +36,7 @@ class Run:
 
     @property
     def key(self) -> str:
-        """Hexadecimal digest of everything the result depends on."""
+        """Hexadecimal digest of everything that determines the result."""
         used = self.calibration.applied if self.calibration else None
         libraries = self.scene.rail.libraries() if self.fidelity == "highfi" else ()
         return content_hash(
@@ -51,8 +50,8 @@ class Run:
 
 
 def with_modes_of(nominal: Trajectory, run: Run) -> Run:
-    """``run`` with the rail modes that the ``nominal`` run chose. Two runs that are compared have the
-    same equations, or a change of modes would show as a change by what differs between them."""
+    """``run`` with the rail modes that the ``nominal`` run chose. Two compared runs must have the
+    same equations; otherwise a change of modes would appear as the effect of their difference."""
     if "modes_why" not in nominal.numerics:
         return run
     return replace(run, numerics=replace(run.numerics, modes=nominal.numerics["modes"]))
@@ -87,8 +86,8 @@ def execute(
 
 
 def prepare(run: Run) -> None:
-    """The part of a run that needs the main thread; call it before ``execute`` in another thread.
-    Prints each warning about its mesh once."""
+    """Do the part of a run that needs the main thread; call it before ``execute`` in another
+    thread. Prints each warning about its mesh once."""
     if run.fidelity == "highfi":
         from tipoff import highfi
 

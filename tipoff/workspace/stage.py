@@ -16,10 +16,10 @@ A stage of a study is written like this:
 
     STAGE = Stage("heavier", __name__, Options, result=Heavier)
 
-``run`` returns the content of the result file, and ``STAGE.read`` makes the ``Heavier`` of it. Each field
-whose values are dataclasses is a CSV file too. ``STAGE.stored(study)`` finds a result of the present
-scene, code and settings, with any options. ``studies/ablation`` is an example, ``studies/limits`` one
-with further ``inputs``.
+``run`` returns the content of the result file, and ``STAGE.read`` converts it to ``Heavier``. Each
+field with dataclasses as values is also written as a CSV file. ``STAGE.stored(study)`` finds a
+result of the present scene, code and settings, with any options. ``studies/ablation`` is an
+example, ``studies/limits`` one with further ``inputs``.
 """
 
 import csv
@@ -48,40 +48,35 @@ def _nothing(study: Study, options: Any) -> None:
 
 @dataclass(frozen=True)
 class Stage:
-    """One stage.
+    """One stage."""
 
-    ``name``: of the result file. ``module``: the module (``__name__``) whose code, with all that it
-    imports, makes the result. ``options``: their type, a frozen dataclass of JSON values, paths,
-    tuples and other such dataclasses; None without options. ``inputs``: makes the further inputs of
-    the result, as JSON values; it may raise SceneError, OSError, KeyError, TypeError or ValueError
-    where there are none. ``field``: the key of the options in the result. ``result``: its type, a
-    frozen dataclass; None for JSON values without one. ``of_scene``: whether it depends on the scene
-    and the settings.
-    """
-
-    name: str
-    module: str
+    name: str  # of the result file
+    module: str  # ``__name__`` of the module whose code and imports make the result
+    # type: a frozen dataclass of JSON values, paths, tuples and other such dataclasses; None
+    # without options
     options: Any = None
+    # Returns the further inputs of the result as JSON values. It may raise SceneError, OSError,
+    # KeyError, TypeError or ValueError if there are none.
     inputs: Callable[[Study, Any], Any] = _nothing
-    field: str = "asked"
-    result: Any = None
-    of_scene: bool = True
+    field: str = "asked"  # key of the options in the result
+    result: Any = None  # type: a frozen dataclass; None for JSON values without one
+    of_scene: bool = True  # whether the result depends on the scene and the settings
 
     def plain(self, options: Any) -> Any:
         """``options`` as JSON values."""
         return _adapter(self.options).dump_python(options, mode="json")
 
     def key(self, study: Study, options: Any) -> str:
-        """Digest of everything that the result depends on."""
+        """Digest of everything that determines the result."""
         if not self.of_scene:
             return content_hash(self.name, self.plain(options), sources.digest(self.module))
         inputs = self.inputs(study, options)
         return study.key(self.module, self.name, self.plain(options), inputs)
 
     def run(self, study: Study, options: Any, make: Callable[[], tuple[Any, list[Path]]]) -> dict:
-        """The content of the result file: the stored one where nothing changed, else that of ``make``,
-        which returns the result with the files that it wrote. A result without a type must contain
-        ``plain(options)`` under ``field``. Raises SceneError where an option breaks its rule."""
+        """The content of the result file: the stored one if nothing changed, else that of ``make``,
+        which returns the result and the files that it wrote. A result without a type must contain
+        ``plain(options)`` under ``field``. Raises SceneError if an option breaks its rule."""
         if dataclasses.is_dataclass(options):
             rules.require(options)
 
@@ -96,11 +91,11 @@ class Stage:
         return study.stage(self.name, self.key(study, options), document)
 
     def read(self, found: dict) -> Any:
-        """The ``result`` in the content of a result file. Raises ValueError where it lacks one."""
+        """The ``result`` in the content of a result file. Raises ValueError if it is missing."""
         return found if self.result is None else _adapter(self.result).validate_python(found)
 
     def asked(self, found: dict) -> Any:
-        """The options of a stored result. Raises ValueError where they are invalid now."""
+        """The options of a stored result. Raises ValueError if they are not valid now."""
         return _adapter(self.options).validate_python(found.get(self.field))
 
     def stored(self, study: Study) -> dict | None:
@@ -126,8 +121,8 @@ class Stage:
 
 
 def csv_of(rows: list[dict]) -> str:
-    """JSON ``rows`` as CSV: the keys as heads, several numbers in several columns, a list of words in one,
-    nothing where a value is missing."""
+    """JSON ``rows`` as CSV: keys as heads, several numbers in several columns, a list of words in
+    one column, an empty cell for a missing value."""
     wide = {
         name: max((len(_numbers(row[name])) for row in rows), default=0)
         for name in dict.fromkeys(key for row in rows for key in row)

@@ -4,12 +4,13 @@
                   code and versions of libraries that the fidelity depends on)
 
 A run is loaded if its file exists and matches its digest; otherwise it is made and written
-atomically (``tipoff.cache``). So an interrupted study continues with the missing runs, and a change of
-inputs, code or libraries or a damaged file never gives an old result. A run of the reference in
-progress has a checkpoint ``<label>-<key>.checkpoint``, which is removed after the result is written.
+atomically (``tipoff.cache``). So an interrupted study continues with the missing runs, and an old
+result is never used after a change of inputs, code or libraries, or from a damaged file. A run of
+the reference in progress has a checkpoint ``<label>-<key>.checkpoint``, which is removed after the
+result is written.
 
-Runs are parallel in threads: the kernels release the interpreter. The mesh generator needs the main
-thread, so it is called before.
+Runs are parallel in threads: the kernels release the interpreter lock. The mesh generator needs the
+main thread, so it is called first.
 """
 
 import functools
@@ -27,7 +28,7 @@ from tipoff.workspace.errors import StudyError
 from tipoff.workspace.progress import Board, Interrupted, say, team
 from tipoff.workspace.run import Run, execute, prepare
 
-# what stops all runs: bad input, Ctrl-C, and what this machine refuses
+# stop all runs: bad input, Ctrl-C, and refusals of this machine
 _STOPPING = (InputError, StudyError, Interrupted, OSError, MemoryError)
 RUNS: cache.Cache[Trajectory] = cache.binary(lambda run: netcdf(run.to_xarray()), Trajectory.load)
 
@@ -35,7 +36,7 @@ RUNS: cache.Cache[Trajectory] = cache.binary(lambda run: netcdf(run.to_xarray())
 def _surrogate(
     run: Run, progress: Callable[[float], None], threads: int | None = None
 ) -> Trajectory:
-    """Run the surrogate. Kernels with modes of the rails are announced once it has chosen some."""
+    """Run the surrogate. Kernels with modes of the rails are announced when it has chosen modes."""
     with kernel_marks.chosen_modes(run) as vibrates:
         return execute(run, progress, threads, vibrates=vibrates)
 
@@ -67,11 +68,11 @@ class Store:
         return self.fill(run.fidelity, [run])[0]
 
     def fill(self, title: str, runs: Sequence[Run]) -> list[Trajectory]:
-        """Results of ``runs`` in their order; those missing are run, ``workers`` at a time, with
+        """Results of ``runs`` in their order; missing ones are run, ``workers`` at a time, with
         progress on standard error.
 
-        Ctrl-C stops the runs in progress and raises KeyboardInterrupt; finished results stay. An
-        error of the program in one run leaves the others; then StudyError is raised.
+        Ctrl-C stops the runs in progress and raises KeyboardInterrupt; finished results stay. After
+        an error of the program in one run the others continue; then StudyError is raised.
         """
         found = {run.key: trajectory for run in runs if (trajectory := self.load(run)) is not None}
         missing = list({run.key: run for run in runs if run.key not in found}.values())
@@ -83,7 +84,8 @@ class Store:
         for run in runs:
             prepare(run)
         made: dict[str, Trajectory] = {}
-        # Parallel runs are fastest with one thread each: threads of one run wait for each other.
+        # Parallel runs are fastest with one thread each: threads of one run would wait for each
+        # other.
         threads = None if min(self.workers, len(runs)) == 1 else 1
         with Board(title, len(runs)) as board, team(board, self.workers) as pool:
             pending = {pool.submit(self._one, run, board, threads): run for run in runs}

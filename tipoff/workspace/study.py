@@ -1,10 +1,10 @@
-"""One scene under study: its conditions, folder, stored runs, and stages that are skipped when
+"""One scene under study: its conditions, folder, stored runs, and stages that are skipped if
 nothing changed.
 
-A stage writes ``out/<scene>/<stage>.json`` with the ``key`` of everything it depends on, the
-digests of the ``files`` it wrote, and the warnings of the scene as ``implausible``. It is made again
-if the key differs, if one of its files is missing or changed, or if the result does not match its own
-digest. Readers verify all files, so a stage never uses a damaged one.
+A stage writes ``out/<scene>/<stage>.json`` with the ``key`` of everything on which it depends, the
+digests of the ``files`` that it wrote, and the warnings of the scene as ``implausible``. It is made
+again if the key differs, if one of its files is missing or changed, or if the result does not match
+its digest. Readers verify all files, so a stage never uses a damaged one.
 """
 
 import hashlib
@@ -37,18 +37,17 @@ _RESULTS: cache.Cache[dict] = cache.documents(dict, dict)
 
 @dataclass(frozen=True)
 class Study:
-    """``folder`` is out/<scene>; ``only`` restricts the conditions that highfi and lowfi run."""
+    """A scene and its results."""
 
     scene: Scene
-    folder: Path
+    folder: Path  # out/<scene>
     settings: Settings
-    only: tuple[str, ...] = ()
-    _announced: set = field(
-        default_factory=set, repr=False, compare=False
-    )  # stages already announced
+    only: tuple[str, ...] = ()  # restricts the conditions that highfi and lowfi run
+    # stages that were announced
+    _announced: set = field(default_factory=set, repr=False, compare=False)
 
     def unrestricted(self) -> "Study":
-        """The same study of all its conditions."""
+        """The same study with all its conditions."""
         return replace(self, only=()) if self.only else self
 
     @cached_property
@@ -60,7 +59,7 @@ class Study:
 
     @cached_property
     def conditions(self) -> dict[str, Scene]:
-        """Scene of every condition by name: fitted and held out, else every named one, else the
+        """Scene of every condition by name: fitted and held out, else all named ones, else the
         scene itself."""
         roles = self.scene.agreement
         names = (
@@ -71,11 +70,11 @@ class Study:
         return {name: self.condition(name) for name in names} or {NOMINAL: self.scene}
 
     def condition(self, name: str) -> Scene:
-        """The scene of one condition. Raises SceneError for a name the scene does not have."""
+        """The scene of one condition. Raises SceneError for an unknown name."""
         return self.scene.condition(name)
 
     def fitted(self) -> list[str]:
-        """Names of the fitted conditions. Raises SceneError when the scene names none."""
+        """Names of the fitted conditions. Raises SceneError if there are none."""
         if not self.scene.agreement.fitted:
             raise SceneError(
                 [
@@ -111,7 +110,7 @@ class Study:
     def coarse(
         self, name: str, overrides: dict | None = None, tag: str = "", **numerics: Any
     ) -> Run:
-        """The same on the coarse mesh, for differences of runs."""
+        """``highfi`` on the coarse mesh, for differences of runs."""
         return self.highfi(name, overrides, f"{tag}-coarse", self.settings.coarse_size, **numerics)
 
     def lowfi(
@@ -123,8 +122,8 @@ class Study:
         compliance: RailCompliance | None = None,
         **numerics: Any,
     ) -> Run:
-        """A surrogate run of condition ``name``: compliant where its rail ``compliance`` is
-        given, else on springs, with the scene's own constants unless calibrated."""
+        """A surrogate run of condition ``name``: compliant if its rail ``compliance`` is given,
+        else on springs, with the scene's constants unless calibrated."""
         from tipoff import lowfi
 
         label = (
@@ -133,12 +132,12 @@ class Study:
         numbers = _numerics(lowfi.Numerics, **numerics)
         scene = self.condition(name).replace(overrides or {})
         return Run(
-            "lowfi",
-            label,
-            scene,
-            numbers,
-            calibration,
-            compliance or self.rigid_rails(scene),
+            fidelity="lowfi",
+            label=label,
+            scene=scene,
+            numerics=numbers,
+            calibration=calibration,
+            compliance=compliance or self.rigid_rails(scene),
         )
 
     def rail_compliance(
@@ -157,13 +156,13 @@ class Study:
     def rail_compliances(
         self, names: Iterable[str], element_size: float | None = None
     ) -> dict[str, RailCompliance | None]:
-        """The same for each condition by name."""
+        """``rail_compliance`` of each condition by name."""
         return self.compliances_of({name: self.condition(name) for name in names}, element_size)
 
     def compliances_of(
         self, scenes: Mapping[str, Scene], element_size: float | None = None
     ) -> dict[str, RailCompliance | None]:
-        """The same for each of ``scenes``; those from which the same is computed share it."""
+        """``rail_compliance`` of each of ``scenes``; scenes with the same inputs share it."""
         from tipoff.calibration.rail_compliance import made_from  # slow to load
 
         found: dict[str, RailCompliance | None] = {"": None}
@@ -194,8 +193,8 @@ class Study:
         return path.relative_to(self.folder).as_posix()
 
     def key(self, module: str, *inputs: Any) -> str:
-        """Digest of the scene with its conditions and roles, settings, the code and libraries that the
-        stage's ``module`` depends on, and further inputs."""
+        """Digest of the scene with its conditions and roles, settings, the code and libraries on
+        which the stage's ``module`` depends, and further inputs."""
         described = self.scene.model_dump(
             mode="json", include={"name", "conditions", "agreement", "provenance"}
         )
@@ -236,8 +235,8 @@ class Study:
         )
 
     def stored(self, name: str, key: Callable[[dict], str]) -> dict | None:
-        """The stored result of a stage if it has the ``key`` of a new result with its options.
-        None otherwise, also where the options are invalid now or one of their files is missing."""
+        """The stored result of a stage if it has the ``key`` of a new result with its options. None
+        otherwise, also if the options are not valid now or one of its files is missing."""
         found = read(self.path(f"{name}.json"))
         try:
             return found if found and found["key"] == key(found) else None
@@ -260,7 +259,7 @@ class Study:
             try:
                 if not path.is_file():
                     return False
-            except ValueError:  # a name that no file has
+            except ValueError:  # an impossible file name
                 return False
             if _digest(path) != expected:
                 say(f"  {path} has changed since it was written: {remedy}")
@@ -269,15 +268,14 @@ class Study:
 
 
 def read(path: Path, remedy: str = "repeat the command that wrote it") -> dict | None:
-    """The content of a result file of any key; None if it is missing or does not match its digest.
-    Prints the latter with the ``remedy``."""
+    """The content of a result file with any key; None if it is missing or does not match its
+    digest. Prints the latter with the ``remedy``."""
     return cache.whole(path, remedy, lambda: read_json(path))
 
 
 def picked(path: Path, pick: Callable[[dict], _T]) -> _T | None:
-    """What ``pick`` takes from a result file whose key is not compared, such as one that another
-    version of the program wrote; None where the file is missing, damaged, or lacks it. Prints the
-    latter two."""
+    """The value that ``pick`` takes from a result file with any key, for example of another version
+    of the program; None if the file is missing, damaged, or lacks it. Prints the latter two."""
     found = read(path)
     if found is None:
         return None

@@ -38,7 +38,7 @@ def speedups(
     lowfi_repeats: int,
     progress: Callable[[float], None] = lambda fraction: None,
 ) -> dict[str, dict]:
-    """Speed of the reference and of each surrogate on one case; ``lowfi_repeats`` runs of each
+    """Speed of the reference and of each surrogate for one case; ``lowfi_repeats`` runs of each
     surrogate follow each of the ``highfi_repeats`` reference runs."""
     for run in (highfi, *surrogates.values()):
         warm_up(run)

@@ -55,13 +55,13 @@ def load(compliance, friction, platform, faces, face, body, base):
     closing = rotation.dot(u, n)
     slip = (u[0] - closing * n[0], u[1] - closing * n[1], u[2] - closing * n[2])
     return Load(
-        point,
-        (-force[0] * n[0], -force[0] * n[1], -force[0] * n[2]),
-        friction_force(friction, force[0], slip),
-        slip,
-        closing,
-        force[0],
-        force[0],
+        point=point,
+        normal=(-force[0] * n[0], -force[0] * n[1], -force[0] * n[2]),
+        drag=friction_force(friction, force[0], slip),
+        slip=slip,
+        closing=closing,
+        elastic=force[0],
+        raw=force[0],
     )
 
 

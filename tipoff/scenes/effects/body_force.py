@@ -1,6 +1,6 @@
 """A force per mass that acts on every body and is uniform in space and time: ``F = m a``.
 
-Solvers know this record only, and not the effects that it comes from.
+Solvers know only this record, not the effects from which it comes.
 """
 
 from typing import NamedTuple
@@ -9,16 +9,16 @@ from tipoff.kernels.jit import njit
 
 
 class BodyForce(NamedTuple):
-    """Kernel record: force per mass, which is an acceleration, in inertial axes (m/s2)."""
+    """Kernel record: acceleration in inertial axes."""
 
-    x: float
-    y: float
-    z: float
+    x: float  # m/s2
+    y: float  # m/s2
+    z: float  # m/s2
 
 
 @njit
 def acceleration(force):
-    """Acceleration (m/s2) as a tuple; zero where ``force`` is None."""
+    """Acceleration (m/s2) as a tuple; zero if ``force`` is None."""
     if force is not None:
         return (force.x, force.y, force.z)
     return (0.0, 0.0, 0.0)

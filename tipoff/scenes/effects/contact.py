@@ -1,7 +1,7 @@
 """Clearance and contact between pad faces and rail walls. Absent table: nothing touches.
 
-``clearance_y`` and ``clearance_z`` replace the ``clearance`` of the faces along that axis. The walls
-stay one ``clearance`` off the pads as drawn; shims on the faces make up the difference.
+``clearance_y`` and ``clearance_z`` replace the ``clearance`` of the faces along that axis. The
+walls stay one ``clearance`` off the pads as drawn; shims on the faces give the difference.
 
 With penetration p > 0 and closing speed q = dp/dt the normal force is F = max(0, raw), where raw
 is::
@@ -10,10 +10,10 @@ is::
     Hunt-Crossley   k p^e (1 + a q)                                                     (Hunt and Crossley 1975)
     linear          k p + c q
 
-Stored energy is k p^(e+1) / (e+1) in each law. These laws are those of springs. The finite
-elements and compliant contact have a pressure over approach k_i (N/m3) on the crowned pads, without
-damping: the interface stiffness of asperities and coating, in series with the material of the pad,
-if the scene states its layer of thickness t::
+Stored energy is k p^(e+1) / (e+1) in each law. These are the laws of springs. The finite elements
+and compliant contact have a pressure over approach k_i (N/m3) on the crowned pads, without damping:
+the interface stiffness of asperities and coating, in series with the material of the pad, if the
+scene states the thickness t of its layer::
 
     1 / k_i = 1 / interface_stiffness + t / M
     M = E                                       a layer that is free to bulge sideways
@@ -105,8 +105,8 @@ class _ContactTable(Table):
         return found if len(found) == 2 else {"contact.clearance": self.clearance + change} | found
 
     def either_way(self, change: float) -> dict[str, dict[str, float]]:
-        """Overrides (SI) of a scene for ``change`` (m) more clearance, "plus", and for less,
-        "minus"; without the latter where none would be left."""
+        """Overrides (SI) of a scene for ``change`` (m) more clearance, "plus", and less clearance,
+        "minus"; without "minus" if no clearance would remain."""
         return {
             name: {key: max(gap, 0.0) for key, gap in self.widened(step).items()}
             for name, step in (("plus", change), ("minus", -change))
@@ -131,7 +131,7 @@ class _ContactTable(Table):
     @classmethod
     def _stiffness_matches_exponent(cls, value: Any, info: ValidationInfo) -> float:
         if "exponent" not in info.data:
-            return 1.0  # the exponent is refused, so the unit to expect is unknown
+            return 1.0  # the exponent is refused, so the expected unit is unknown
         bare = bool(info.context and info.context.get("bare_numbers_are_si"))
         unit = f"N/m**{info.data['exponent']:.12g}"
         stiffness = sized(parse(value, unit, bare), unit, is_positive=True)
@@ -187,32 +187,31 @@ ContactTable = Annotated[ImpactTable | HuntCrossleyTable | LinearTable, Field(di
 
 
 class Impact(NamedTuple):
-    """Kernel record: stiffness (N/m^e), exponent e, damping (N s/m) and the depth of its full
-    effect (m)."""
+    """Kernel record of IMPACT."""
 
-    stiffness: float
+    stiffness: float  # N/m^e
     exponent: float
-    damping: float
-    damping_depth: float
+    damping: float  # N s/m
+    damping_depth: float  # m, depth of full damping
 
 
 class HuntCrossley(NamedTuple):
-    """Kernel record: stiffness (N/m^e), exponent e, dissipation (s/m)."""
+    """Kernel record of Hunt and Crossley's law."""
 
-    stiffness: float
+    stiffness: float  # N/m^e
     exponent: float
-    dissipation: float
+    dissipation: float  # s/m
 
 
 class Linear(NamedTuple):
-    """Kernel record: stiffness (N/m), damping (N s/m)."""
+    """Kernel record of the linear spring and damper."""
 
-    stiffness: float
-    damping: float
+    stiffness: float  # N/m
+    damping: float  # N s/m
 
 
 class Laws(NamedTuple):
-    """The one law a scene uses; the others are None, so only it is compiled."""
+    """The law of a scene; the other laws are None, so only this one is compiled."""
 
     impact: Impact | None
     hunt_crossley: HuntCrossley | None
@@ -261,7 +260,7 @@ def linear(law, penetration, closing):
 
 @njit
 def parts(impact_law, hunt_crossley_law, linear_law, penetration, closing):
-    """(elastic, damping) in N for penetration > 0 (m) and closing speed (m/s) of whichever law is
+    """(elastic, damping) in N for penetration > 0 (m) and closing speed (m/s), by the law that is
     not None."""
     force = (0.0, 0.0)
     if impact_law is not None:

@@ -1,4 +1,4 @@
-"""What the program has to know of an effect besides its table and its law."""
+"""Data of an effect besides its table and its law."""
 
 from typing import Any, NamedTuple
 
@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 class Effect(NamedTuple):
     """An entry of ``registry.EFFECTS``.
 
-    ``key`` is the dotted key of the effect's table in a scene. ``example`` holds small overrides
-    that add the effect to a scene; None where the values depend on the scene. The table of
-    an effect that ``is_body_force`` has a method ``body_force`` (``effects.body_force``).
+    ``key`` is the dotted key of the effect's table in a scene. ``example`` has small overrides that
+    add the effect to a scene, None if the values depend on the scene. An effect with
+    ``is_body_force`` has a table with the method ``body_force`` (``effects.body_force``).
     """
 
     key: str

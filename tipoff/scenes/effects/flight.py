@@ -1,5 +1,5 @@
-"""The flight after separation: a circular orbit, where the launch axis points there, and a target.
-Absent table: no flight.
+"""The flight after separation: a circular orbit, the direction of the launch axis in it, and a
+target. Absent table: no flight.
 
 Orbit axes are R radially outwards, S along the flight, W along the orbit's normal. At zero angles
 scene +X is S, +Y is W and +Z is R; azimuth turns X from S towards W, elevation then raises it
@@ -7,7 +7,7 @@ towards R, roll turns Y towards Z::
 
     n = sqrt(mu / (R_e + h)^3)
 
-The target lies ``range`` along the launch axis from the payload's nominal mass centre, at rest in
+The target is ``range`` along the launch axis from the payload's nominal mass centre, at rest in
 orbit axes at exit, and then falls freely like everything else. Constants: WGS 84 (NIMA TR8350.2),
 equatorial radius. The ejection does not depend on this table.
 """
@@ -30,10 +30,10 @@ _ORBIT_FROM_LEVEL = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
 
 class FlightTable(Table):
     """``[flight]``: orbit by altitude (m) or mean_motion (rad/s); azimuth, elevation and roll of
-    the launch axis (rad); range of the target (m); duration (s) of the flight, one orbit where
-    absent; pointing_limit (rad), a pointing error whose time is found. ``body`` is the size (m)
-    of the payload without its pads, ``payload.size`` where absent; ``envelope`` lists boxes that the
-    platform lies in, in scene axes at ignition, to which built-in rails are added."""
+    the launch axis (rad); range of the target (m); duration (s) of the flight, default one orbit;
+    pointing_limit (rad), a pointing error whose time is found. ``body`` is the size (m) of the
+    payload without its pads, default ``payload.size``; ``envelope`` lists boxes that contain the
+    platform, in scene axes at ignition; built-in rails are added to them."""
 
     #: Altitude of the circular orbit; either this or mean_motion.
     altitude: PositiveLength | None = None
@@ -66,7 +66,7 @@ class FlightTable(Table):
         """Plain record."""
         motion = self.mean_motion
         if motion is None:
-            assert self.altitude is not None  # one of the two is there
+            assert self.altitude is not None  # one of the two is given
             motion = math.sqrt(GRAVITATION / (EARTH_RADIUS + self.altitude) ** 3)
         return Flight(
             motion,
@@ -78,18 +78,17 @@ class FlightTable(Table):
 
 
 class Flight(NamedTuple):
-    """Mean motion (rad/s); ``axes`` (3,3), R, S and W components of scene vectors; range (m);
-    duration (s); pointing limit (rad) or None."""
+    """Plain record of the flight."""
 
-    mean_motion: float
-    axes: np.ndarray
-    range: float
-    duration: float
-    pointing_limit: float | None
+    mean_motion: float  # rad/s
+    axes: np.ndarray  # (3,3) R, S and W components of scene vectors
+    range: float  # m
+    duration: float  # s
+    pointing_limit: float | None  # rad
 
 
 def _turned(azimuth: float, elevation: float, roll: float) -> np.ndarray:
-    """Scene axes, as columns, in those of the scene at zero angles."""
+    """Scene axes, as columns, in the axes of the scene at zero angles."""
     (ca, ce, cr), (sa, se, sr) = (
         np.cos([azimuth, elevation, roll]),
         np.sin([azimuth, elevation, roll]),

@@ -8,8 +8,8 @@ With s = |v| the sliding speed, v_s the static and v_d the dynamic transition sp
     mu(s) = mu_d                                                    s >= v_d
 
 The first branch is the cubic step from -mu_s at -v_s to mu_s at v_s. The force is ``-mu(s) N v/s``.
-Absent table: none. The other law is ``law = "sticking"`` (``scenes.effects.sticking``), which does
-not creep.
+Absent table: none. The other law is ``law = "sticking"`` (``scenes.effects.sticking``), without
+creep.
 """
 
 from typing import Annotated, Any, Literal, NamedTuple
@@ -55,7 +55,7 @@ class TwoStepTable(Table):
 
 
 def require_two_step(scene) -> None:
-    """For a solver that has no other law. Raises SceneError where ``scene`` has one."""
+    """Check for a solver without other laws. Raises SceneError if ``scene`` has one."""
     if scene.friction is not None and scene.friction.law != "two-step":
         raise SceneError(
             [
@@ -79,18 +79,18 @@ FrictionTable = Annotated[
 
 
 class Friction(NamedTuple):
-    """Kernel record of the two-step Coulomb law: coefficients, and transition speeds (m/s)."""
+    """Kernel record of the two-step Coulomb law."""
 
-    static: float
-    dynamic: float
-    static_speed: float
-    dynamic_speed: float
+    static: float  # coefficient
+    dynamic: float  # coefficient
+    static_speed: float  # m/s
+    dynamic_speed: float  # m/s
 
 
 @njit
 def coefficient_over_speed(friction, speed):
-    """mu(s)/s (s/m) at sliding speed ``speed`` >= 0 (m/s): finite at rest, where the slip
-    has no direction."""
+    """mu(s)/s (s/m) at sliding speed ``speed`` >= 0 (m/s); finite at rest, where the slip has no
+    direction."""
     if speed <= friction.static_speed:
         ratio = speed / friction.static_speed
         return 0.5 * friction.static * (3.0 - ratio * ratio) / friction.static_speed

@@ -91,11 +91,11 @@ def _triple(part: Table) -> tuple:
 
 
 class Initial(NamedTuple):
-    """Plain record of the initial state: six triples, SI."""
+    """Plain record of the initial state."""
 
-    position: tuple = (0.0, 0.0, 0.0)
-    attitude: tuple = (0.0, 0.0, 0.0)
-    velocity: tuple = (0.0, 0.0, 0.0)
-    rate: tuple = (0.0, 0.0, 0.0)
-    platform_velocity: tuple = (0.0, 0.0, 0.0)
-    platform_rate: tuple = (0.0, 0.0, 0.0)
+    position: tuple = (0.0, 0.0, 0.0)  # m
+    attitude: tuple = (0.0, 0.0, 0.0)  # rad, rotation vector
+    velocity: tuple = (0.0, 0.0, 0.0)  # m/s
+    rate: tuple = (0.0, 0.0, 0.0)  # rad/s
+    platform_velocity: tuple = (0.0, 0.0, 0.0)  # m/s
+    platform_rate: tuple = (0.0, 0.0, 0.0)  # rad/s

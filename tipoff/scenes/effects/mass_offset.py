@@ -2,7 +2,7 @@
 ``l_z = r1 cos b``.
 
 Pads and thrust keep their places relative to the nominal centre, so their arms about the actual
-mass centre change by ``-l``. The inertia is given about the actual mass centre and does not change.
+mass centre change by ``-l``. The inertia is about the actual mass centre and does not change.
 Absent table: the centres coincide.
 """
 
@@ -35,7 +35,7 @@ class Eccentricity(Table):
 
 
 class MassOffsetTable(Table):
-    """``[mass_offset]``: where the mass centre lies, measured from the nominal centre."""
+    """``[mass_offset]``: place of the mass centre relative to the nominal centre."""
 
     #: Offset of the actual mass centre from the nominal one.
     eccentricity: Eccentricity = Eccentricity()

@@ -7,37 +7,36 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import scipy  # its parts load when they are first used
+import scipy  # its submodules load at their first use
 
 from tipoff.scenes import csv_file
 from tipoff.scenes.faults import SceneError
 
 _HEADER = ["time_s", "force_N"]
-FIT_IMPULSE = 0.02  # of the impulse of a curve: a larger error of its fit is refused
+FIT_IMPULSE = 0.02  # of the impulse of a curve: largest error of its fit by default
 
 
 class MeasuredCurve(NamedTuple):
-    """Times (s, >= 0) and forces (N), each (n,) with n >= 2. Times increase; one that stands twice is
-    a jump, from the first force to the second."""
+    """A measured curve of n >= 2 points. A repeated time is a jump, from the first force to the
+    second."""
 
-    time: np.ndarray
-    force: np.ndarray
+    time: np.ndarray  # (n,) s, >= 0, increasing
+    force: np.ndarray  # (n,) N
 
 
 class GaussianFit(NamedTuple):
-    """Peak (N), centre and width (s), relative L2 residual, impulse of the fit and of the curve (N
-    s)."""
+    """Least-squares Gaussian of a measured curve."""
 
-    peak: float
-    centre: float
-    width: float
-    relative_residual: float
-    impulse: float
-    curve_impulse: float
+    peak: float  # N
+    centre: float  # s
+    width: float  # s
+    relative_residual: float  # L2
+    impulse: float  # N s, of the fit
+    curve_impulse: float  # N s
 
     @property
     def impulse_error(self) -> float:
-        """Relative error of the impulse that acts: of the Gaussian after ignition, where a scene
+        """Relative error of the effective impulse: of the Gaussian after ignition, where a scene
         begins."""
         before = 0.5 * math.erfc(self.centre / (math.sqrt(2.0) * self.width))
         return self.impulse * (1.0 - before) / self.curve_impulse - 1.0
@@ -45,7 +44,7 @@ class GaussianFit(NamedTuple):
 
 def read_curve(path: str | Path) -> MeasuredCurve:
     """Read a CSV with header ``time_s,force_N``. A time in two rows is a jump. Raises ValueError
-    naming everything that is wrong with the table."""
+    with every fault of the table."""
     try:
         table = csv_file.listed(path)
     except SceneError as error:
@@ -73,7 +72,7 @@ def read_curve(path: str | Path) -> MeasuredCurve:
 
 
 def without_baseline(curve: MeasuredCurve, baseline: tuple[float, float] | None) -> MeasuredCurve:
-    """The curve less the straight line from the first to the last of the ``baseline`` (N), which are
+    """The curve minus the straight line from the first to the last value of the ``baseline`` (N),
     readings without thrust at the first and at the last time."""
     if baseline is None:
         return curve
@@ -83,15 +82,15 @@ def without_baseline(curve: MeasuredCurve, baseline: tuple[float, float] | None)
 
 
 def fit_gaussian(curve: MeasuredCurve) -> GaussianFit:
-    """Least-squares Gaussian through a measured curve, started from its moments. Raises ValueError
-    where none fits."""
+    """Least-squares Gaussian of a measured curve, started from its moments. Raises ValueError if
+    there is none."""
     found = _fitted(*(np.asarray(values, dtype=float).tobytes() for values in curve))
     if isinstance(found, str):
         raise ValueError(found)
     return found
 
 
-# A search that does not converge takes a second, and each condition of a scene asks for its fit.
+# A search that does not converge takes a second, and each condition of a scene needs the fit.
 @lru_cache(maxsize=32)
 def _fitted(times: bytes, forces: bytes) -> GaussianFit | str:
     """The fit of a curve by its bytes, or the reason why there is none."""
@@ -113,7 +112,7 @@ def _fitted(times: bytes, forces: bytes) -> GaussianFit | str:
     start = (total / (width * math.sqrt(2.0 * math.pi)), centre, width)
     try:
         with warnings.catch_warnings():
-            # Of the covariance, which is not used; the curves without one are told apart below.
+            # Warnings are about the covariance, which is not used; failed fits are found below.
             warnings.simplefilter("ignore", scipy.optimize.OptimizeWarning)
             (peak, centre, width), _ = scipy.optimize.curve_fit(
                 gaussian, time, force, p0=start, maxfev=20000
@@ -121,7 +120,7 @@ def _fitted(times: bytes, forces: bytes) -> GaussianFit | str:
     except RuntimeError:
         return "a curve that a Gaussian fits (least squares did not converge)"
     peak, centre, width = float(peak), float(centre), abs(float(width))
-    # The best fit of a flat curve is an endless Gaussian, with thrust long after the burn.
+    # The best fit of a flat curve is a very wide Gaussian, with thrust long after the burn.
     if not time[0] <= centre <= time[-1] or width > 0.5 * (time[-1] - time[0]):
         return (
             f"a curve that a Gaussian fits (found centre {centre:.4g} s, width {width:.4g} s, "
@@ -129,5 +128,10 @@ def _fitted(times: bytes, forces: bytes) -> GaussianFit | str:
         )
     residual = np.linalg.norm(force - gaussian(time, peak, centre, width)) / np.linalg.norm(force)
     return GaussianFit(
-        peak, centre, width, float(residual), peak * width * math.sqrt(2.0 * math.pi), total
+        peak=peak,
+        centre=centre,
+        width=width,
+        relative_residual=float(residual),
+        impulse=peak * width * math.sqrt(2.0 * math.pi),
+        curve_impulse=total,
     )

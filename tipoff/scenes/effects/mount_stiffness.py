@@ -29,10 +29,10 @@ EFFECT = Effect(
 
 
 class MountStiffness(NamedTuple):
-    """Plain record: ``normal`` and ``shear`` stiffness per area (N/m3)."""
+    """Plain record of the stiffness."""
 
-    normal: float
-    shear: float
+    normal: float  # N/m3
+    shear: float  # N/m3
 
 
 class MountStiffnessTable(Table):

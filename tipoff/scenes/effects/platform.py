@@ -1,7 +1,7 @@
 """A free platform that recoils: a second rigid body that carries the rails. Absent table: the rails
 are fixed in space.
 
-Its mass, inertia and mass centre are those of the whole platform *with* its undeformed rails.
+Mass, inertia and mass centre are those of the whole platform *with* its undeformed rails.
 """
 
 from typing import NamedTuple
@@ -36,9 +36,9 @@ class PlatformTable(Table):
 
 
 class Platform(NamedTuple):
-    """Kernel record: mass (kg), inertia and its inverse (3,3), mass centre at ignition (m)."""
+    """Kernel record of the platform."""
 
-    mass: float
-    inertia: np.ndarray
-    inverse_inertia: np.ndarray
-    mass_centre: tuple
+    mass: float  # kg
+    inertia: np.ndarray  # (3,3) kg m2
+    inverse_inertia: np.ndarray  # (3,3) 1/(kg m2)
+    mass_centre: tuple  # (3,) m, at ignition

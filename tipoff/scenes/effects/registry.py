@@ -1,4 +1,4 @@
-"""The effects a scene can have or lack, in the order in which results list them.
+"""The effects that a scene may have, in the order of result lists.
 
 A new effect is one file in this folder, an entry here and a field of ``Scene``.
 """
@@ -41,6 +41,6 @@ def body_forces(scene) -> dict[str, BodyForce]:
 
 
 def body_force(scene) -> BodyForce | None:
-    """The sum of the body forces of ``scene``, None where it has none."""
+    """The sum of the body forces of ``scene``, None without any."""
     forces = body_forces(scene)
     return BodyForce(*map(sum, zip(*forces.values()))) if forces else None

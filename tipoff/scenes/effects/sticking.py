@@ -5,10 +5,9 @@ slides under mu_d N.
     sliding   F = -mu_d N u/|u|       until |u| <= the capture speed
 
 ``lowfi.contact.stick_slip`` has the transitions. The spring is the tangential compliance of one pad
-face: a held face moves by F/k but does not creep. A damping of 2 sqrt(k m), m the mass per face, is
-critical. Sources: Cundall and Strack,
-Geotechnique 29 (1979) 47 (spring and slider); Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100
-(a band about rest).
+face: a held face moves by F/k but does not creep. A damping of 2 sqrt(k m), with the mass m per
+face, is critical. Sources: Cundall and Strack, Geotechnique 29 (1979) 47 (spring and slider);
+Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100 (a band about rest).
 """
 
 from typing import Literal, NamedTuple
@@ -50,11 +49,10 @@ class StickingTable(Table):
 
 
 class Sticking(NamedTuple):
-    """Kernel record: coefficients, stiffness (N/m) and damping (N s/m) of a held face, capture
-    speed (m/s)."""
+    """Kernel record of friction with sticking."""
 
-    static: float
-    dynamic: float
-    stiffness: float
-    damping: float
-    capture_speed: float
+    static: float  # coefficient
+    dynamic: float  # coefficient
+    stiffness: float  # N/m, of a held face
+    damping: float  # N s/m, of a held face
+    capture_speed: float  # m/s

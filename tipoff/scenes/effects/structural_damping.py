@@ -1,9 +1,9 @@
 """Structural (Rayleigh) damping of the rails, ``C = alpha M + beta K``, of the reference and of its
 modes in the surrogate. Absent table: none.
 
-A mode of angular frequency w then has the damping ratio ``alpha / 2w + beta w / 2`` (Clough and
-Penzien, Dynamics of Structures, section 12-5), which meets the two ratios given at the two
-frequencies given, is less between them and more outside.
+A mode of angular frequency w has the damping ratio ``alpha / 2w + beta w / 2`` (Clough and Penzien,
+Dynamics of Structures, section 12-5). It equals the two given ratios at the two given frequencies,
+is smaller between them and larger outside.
 """
 
 import math
@@ -26,17 +26,17 @@ EFFECT = Effect(
 
 
 class Damping(NamedTuple):
-    """Kernel record: alpha, ``mass_rate`` (1/s), and beta, ``stiffness_time`` (s)."""
+    """Kernel record of Rayleigh damping."""
 
-    mass_rate: float
-    stiffness_time: float
+    mass_rate: float  # 1/s, alpha
+    stiffness_time: float  # s, beta
 
 
 class DampingTable(Table):
     """``[rail.damping]``: two frequencies (Hz), ascending, and the damping ratio at each.
 
-    Neither alpha nor beta may be negative, or a mode would gain energy. With q = f2 / f1 this
-    requires z1 / q <= z2 <= q z1.
+    Neither alpha nor beta may be negative, because a mode would then gain energy. With q = f2 / f1
+    this requires z1 / q <= z2 <= q z1.
     """
 
     #: Two frequencies, the lower one first.
@@ -75,5 +75,5 @@ class DampingTable(Table):
             scale * first * second * (one * second - two * first),
             scale * (two * second - one * first),
         )
-        # On the bound of what is possible one of the two is zero, but for rounding.
+        # At the limit of the possible ratios one of the two is zero, except for rounding.
         return Damping(max(0.0, mass_rate), max(0.0, stiffness_time))

@@ -19,8 +19,8 @@ from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import Number, TemperatureChange, TemperatureGradient
 
-# every [thermal] is a sum of these: a free strain, its gradients along x, y and z, and the strain
-# of the platform
+# every [thermal] is a sum of these fields: a free strain, its gradients along x, y and z, and the
+# strain of the platform
 FIELDS = 5
 
 
@@ -57,11 +57,12 @@ class ThermalTable(Table):
 
 
 class Thermal(NamedTuple):
-    """Plain record: amounts (FIELDS,) of each of the fields: free strain at X_m
-    (1), its gradients (1/m), strain of the platform (1); ``middle``, X_m in scene axes (m)."""
+    """Plain record of the temperature."""
 
+    # (FIELDS,) amount of each field: free strain at X_m (1), its gradients (1/m), strain of the
+    # platform (1)
     amounts: np.ndarray
-    middle: float
+    middle: float  # m, X_m in scene axes
 
 
 def fields(points: np.ndarray, middle: float) -> np.ndarray:

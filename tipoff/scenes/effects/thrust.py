@@ -3,9 +3,9 @@
     F(t) = sum_i P_i exp(-(t - t_i)^2 / (2 s_i^2))   begin <= t <= end,        impulse of one pulse J = P s sqrt(2 pi)
 
 A pulse cut at ``n`` widths keeps erf(n / sqrt 2) of its impulse; ``rescale`` restores it. A
-measured curve is used point by point, or through its least-squares Gaussian fit; ``describe`` says
-which, with the fit, its residual and both impulses. The law is in ``thrust_law``; its names are
-exported here too.
+measured curve is used point by point, or through its least-squares Gaussian fit; ``describe``
+states which, with the fit, its residual and both impulses. The law is in ``thrust_law``; its names
+are exported here too.
 """
 
 import math
@@ -103,15 +103,15 @@ class Pulse(Table):
 
 
 class _ThrustTable(Table):
-    """What every kind has: ``arm`` (m), distance of the point of application behind the nominal
-    mass centre; ``reaction``."""
+    """Keys of every kind: ``arm`` (m), distance of the point of application behind the nominal mass
+    centre; ``reaction``."""
 
     #: Distance of the point of application behind the nominal mass centre.
     arm: PositiveLength = 0.1
     #: "platform": the reaction acts on the platform; "exhaust": it leaves with the gas.
     reaction: Literal["platform", "exhaust"] = "platform"
     if TYPE_CHECKING:
-        kind: str  # a literal in each kind, whose place among the keys is theirs
+        kind: str  # a literal in each kind, at the place of its key
 
     def record(self) -> Thrust:
         """Kernel record."""
@@ -147,7 +147,7 @@ class _ThrustTable(Table):
         return "used as given"
 
     def details(self) -> dict[str, float | str]:
-        """What ``describe`` adds for this kind."""
+        """Additions of this kind to ``describe``."""
         return {}
 
 
@@ -155,7 +155,7 @@ class _PulsedTable(_ThrustTable):
     """Gaussians, cut at ``cutoff`` widths before the first begins and after the last ends (absent:
     not cut).
 
-    ``rescale`` raises each pulse by the share that the cut removes, so that the impulse stays.
+    ``rescale`` increases each pulse by the share that the cut removes, so that the impulse is kept.
     """
 
     #: Number of widths beyond which pulses are cut; not cut where absent.
@@ -171,7 +171,7 @@ class _PulsedTable(_ThrustTable):
         return rescale
 
     def pulses(self) -> tuple[Pulse, ...]:
-        """The Gaussians, one at least."""
+        """The Gaussians, at least one."""
         raise NotImplementedError
 
     def record(self) -> Thrust:
@@ -204,7 +204,7 @@ class _PulsedTable(_ThrustTable):
         return f"cut at {self.cutoff:g} widths and {'rescaled' if self.rescale else 'not rescaled'}"
 
     def details(self) -> dict[str, float | str]:
-        """Where the pulses are cut (widths) and whether they are rescaled."""
+        """Cut of the pulses (widths), and whether they are rescaled."""
         return {"cutoff_widths": self.cutoff or "none", "rescaled": "yes" if self.rescale else "no"}
 
 
@@ -215,7 +215,7 @@ class GaussianTable(Pulse, _PulsedTable):
     kind: Literal["gaussian"]
 
     def pulses(self) -> tuple[Pulse, ...]:
-        """The one pulse, which is the table itself."""
+        """The only pulse, which is the table itself."""
         return (self,)
 
 
@@ -296,14 +296,15 @@ class MeasuredTable(_ThrustTable):
         return self
 
     def fit(self) -> GaussianFit | None:
-        """Least-squares Gaussian of the curve, with residual and impulses; None where none fits."""
+        """Least-squares Gaussian of the curve, with residual and impulses; None if there is
+        none."""
         try:
             return fit_gaussian(self._curve)
         except ValueError:
             return None
 
     def curve(self) -> MeasuredCurve:
-        """Times (s) and forces (N) that were measured, without the baseline."""
+        """Measured times (s) and forces (N), without the baseline."""
         return self._curve
 
     def points(self) -> list[list[float]]:
@@ -329,7 +330,7 @@ class MeasuredTable(_ThrustTable):
         return float(np.trapezoid(self._curve.force, self._curve.time))
 
     def usage(self) -> str:
-        """Whether the points or the fit act, and how well the two agree."""
+        """Whether the points or the fit act, and their agreement."""
         acting = "the points act" if self.use == "curve" else "the Gaussian fit acts"
         fit = self.fit()
         if fit is None:

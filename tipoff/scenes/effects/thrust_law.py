@@ -1,4 +1,4 @@
-"""The law of the thrust: kernel records, F(t), and the data of it that an integrator needs.
+"""The law of the thrust: kernel records, F(t), and data for an integrator.
 
 F(t) = sum_i P_i exp(-(t - t_i)^2 / (2 s_i^2))   begin <= t <= end,   or a piecewise linear curve
 """
@@ -12,28 +12,27 @@ from tipoff.kernels.jit import njit
 from tipoff.kernels.reference import by_reference
 
 ROOT_TWO_PI = math.sqrt(2.0 * math.pi)
-# Widths around a pulse at which the thrust is looked at: of one alone, of one among others.
+# Widths around a pulse in which the thrust is evaluated: for one pulse, and for one of several.
 _COARSE, _FINE = np.linspace(-8.0, 8.0, 17), np.linspace(-8.0, 8.0, 801)
 
 
 @by_reference
 class Pulses(NamedTuple):
-    """Gaussians: peaks (N), centres (s), widths (s), each (n,), zero outside begin..end (s)."""
+    """Gaussians, zero outside begin..end."""
 
-    peaks: np.ndarray
-    centres: np.ndarray
-    widths: np.ndarray
-    begin: float
-    end: float
+    peaks: np.ndarray  # (n,) N
+    centres: np.ndarray  # (n,) s
+    widths: np.ndarray  # (n,) s
+    begin: float  # s
+    end: float  # s
 
 
 @by_reference
 class Curve(NamedTuple):
-    """Piecewise linear curve: times (s, not decreasing; a repeated time is a jump) and forces
-    (N)."""
+    """Piecewise linear curve."""
 
-    times: np.ndarray
-    forces: np.ndarray
+    times: np.ndarray  # (n,) s, not decreasing; a repeated time is a jump
+    forces: np.ndarray  # (n,) N
 
 
 @by_reference
@@ -74,7 +73,7 @@ def _interpolated(curve, time):
 
 @njit
 def magnitude(pulses, curve, time):
-    """Thrust (N) at ``time`` (s). At a jump of a curve the value after the jump is taken."""
+    """Thrust (N) at ``time`` (s). At a jump of a curve it is the value after the jump."""
     force = 0.0
     if pulses is not None:
         force = _pulsed(pulses, time)
@@ -116,8 +115,8 @@ def shortest_feature(thrust: Thrust) -> float:
 
 @njit
 def _bisected(pulses, curve, level, above, below):
-    """Time (s) where the size of the thrust falls to ``level`` (N), between one that is above it
-    and one below."""
+    """Time (s) at which the magnitude of the thrust falls to ``level`` (N), between a time
+    ``above`` and a time ``below``."""
     while True:
         middle = 0.5 * (above + below)
         if not above < middle < below:
@@ -129,13 +128,13 @@ def _bisected(pulses, curve, level, above, below):
 
 
 def _grid(thrust: Thrust, duration: float) -> tuple[np.ndarray, np.ndarray]:
-    """Times (s) in 0..duration that miss no pulse and no point of a curve, and the size of the
-    thrust (N) there."""
+    """Times (s) in 0..duration that include every pulse and every point of a curve, and the
+    magnitude of the thrust (N) there."""
     if thrust.pulses is None:
         times = _curve(thrust).times
         near = np.append(times, np.nextafter(times, -np.inf))  # both sides of a jump
     else:
-        # one alone rises once and falls once
+        # a single pulse rises once and falls once
         widths = _COARSE if thrust.pulses.centres.size == 1 else _FINE
         around = thrust.pulses.centres[:, None] + widths * thrust.pulses.widths[:, None]
         near = np.append(around, (thrust.pulses.begin, thrust.pulses.end))
@@ -144,13 +143,13 @@ def _grid(thrust: Thrust, duration: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def peak(thrust: Thrust, duration: float) -> float:
-    """Largest size of the thrust (N) in 0..duration: exact for one pulse and for a curve, else
-    within 1e-4 of itself."""
+    """Largest magnitude of the thrust (N) in 0..duration: exact for one pulse and for a curve, else
+    within a relative error of 1e-4."""
     return float(_grid(thrust, duration)[1].max())
 
 
 def burnouts(thrust: Thrust, fractions: tuple[float, ...], duration: float) -> tuple[float, ...]:
-    """For each fraction the earliest time (s) after which thrust stays below this share of its
+    """For each fraction, the earliest time (s) after which thrust stays below this share of its
     peak; ``duration`` if that is later.
 
     The last grid point above is found first, then the crossing after it, by bisection to the last
@@ -179,7 +178,7 @@ def _last_above(
 
 
 def kept(begin: float, end: float, centre: float, width: float) -> float:
-    """Share of a Gaussian's integral that lies in begin..end (s)."""
+    """Share of a Gaussian's integral in begin..end (s)."""
     if end <= begin:
         return 0.0
     root = math.sqrt(2.0) * width

@@ -46,14 +46,14 @@ class ThrustOffsetTable(Table):
 
 
 class ThrustOffset(NamedTuple):
-    """Kernel record: unit direction, and arm from the actual mass centre (m), both in body axes."""
+    """Kernel record, in body axes."""
 
-    direction: tuple
-    arm: tuple
+    direction: tuple  # unit vector
+    arm: tuple  # m, from the actual mass centre
 
 
 def record(thrust_offset, mass_offset, arm: float) -> ThrustOffset | None:
-    """Line of action about the actual mass centre, or None when thrust is axial through the mass
+    """Line of action about the actual mass centre, or None for an axial thrust through the mass
     centre.
 
     ``arm`` is the distance (m) of the point of application behind the nominal centre.

@@ -6,9 +6,9 @@
     u                uniform between -d and d, independent;  d = 1 um
     r_x, r_y, r_z    distance of the farthest pad from that axis
 
-No single draw moves a pad by more than d. Nobody builds or places a launcher as exactly as that, so
-all neighbours are the same launch to its user. A seed that never changes draws them, and every model
-runs the same ones: case n is the same however many cases are drawn.
+No single draw moves a pad by more than d. These differences are below assembly accuracy, so all
+neighbours are the same launch for a user. They are drawn with a fixed seed, and every model runs
+the same ones: case n does not depend on the number of cases.
 """
 
 import math

@@ -85,13 +85,12 @@ def distances(points: np.ndarray) -> np.ndarray:
 
 
 def _inverse(covariance: np.ndarray) -> np.ndarray:
-    """Of a component that never changes nothing can be asked: the inverse leaves it out."""
+    """Inverse of a ``covariance`` (k,k). A component without variance is left out."""
     return np.linalg.pinv(covariance, hermitian=True)
 
 
 def combined(p: list[float]) -> float:
-    """Fisher's p that tests together are further out than the model has it; that they share n cases
-    matters by 1/n."""
+    """Fisher's combined p of all tests. They share n cases, which changes it by about 1/n."""
     return float(scipy.stats.combine_pvalues(p, method="fisher").pvalue)
 
 

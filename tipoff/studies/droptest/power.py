@@ -10,9 +10,9 @@ whatever the distribution is. A model c times as wide as the truth passes with P
 L))^k], L and U being the smallest and largest of n standard draws: here for a normal F, by Monte
 Carlo over L and U alone, whose joint law is known.
 
-Beside it the test that asks for the right spread: sum of squared distances of k tests with m
-components, chi^2 of k m degrees of freedom under the right model, c^-2 times that under one c times
-as wide.
+A second test compares the spread: the sum of squared distances of k tests with m components is
+chi^2 distributed with k m degrees of freedom under the right model, and c^-2 times that under a
+model c times as wide.
 
 Simulated clouds are not normal, so both are also asked of the cloud itself, for a truth that is the
 cloud shrunk by c.
@@ -72,9 +72,9 @@ def in_cloud(simulated: np.ndarray, tests: int, factor: float) -> tuple[float, f
 
 
 def table(simulated: np.ndarray, tests: int) -> list[dict]:
-    """One row for each of FACTORS: passing on one axis, on three independent ones, being flagged by
-    the spread of all components; then passing on all axes and being flagged in the cloud (n,3)
-    itself, of which the first is no news for a right model: None."""
+    """One row for each of FACTORS. Probabilities to pass on one axis and on three independent ones,
+    and to be flagged by the spread of all components; then to pass on all axes and to be flagged in
+    the cloud (n,3) itself. ``passes_in_cloud`` is None for factor 1, where the value is exact."""
     rows = []
     for factor in FACTORS:
         one = (

@@ -1,5 +1,5 @@
-"""The sheet of a log: a small TOML file beside the CSV file that says what the columns are and how
-sure the sensor is::
+"""The sheet of a log: a small TOML file beside the CSV file. It states the columns and the
+uncertainty of the sensor::
 
     file = "drop1.csv"
     channel_class = 60                         # CFC of SAE J211 and ISO 6487
@@ -158,7 +158,7 @@ class Windows(Table):
 
 
 class Sheet(Table):
-    """All of it."""
+    """A sheet: columns, units, calibration, windows."""
 
     file: str
     channel_class: Literal[60, 180, 600, 1000]

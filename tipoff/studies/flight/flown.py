@@ -1,5 +1,4 @@
-"""Where a payload goes after its exit: what it misses its target by, where it points, and how far
-it keeps from the platform.
+"""Flight of a payload after its exit: miss distance, pointing, and distance from the platform.
 
 From the exit on, all bodies fall freely. The settled velocity and rate are taken to hold from
 there, so thrust that is left at the exit counts as delivered. Moments by the gradient of the
@@ -104,7 +103,7 @@ def pair(flight: Flight, bodies: Bodies, start: Start) -> Pair:
 
 
 def found(both: Pair) -> Flown:
-    """What becomes of every pair."""
+    """Fly each pair."""
     flight, cases = both.flight, len(both.payload)
     target = np.zeros((cases, 6))  # at rest in orbit axes
     target[:, :3] = (np.array([flight.range, 0.0, 0.0]) - both.bodies.origin) @ flight.axes.T
