@@ -211,21 +211,21 @@ def test_the_search_its_margin_and_its_check_are_of_one_model(study, watch, monk
         lambda *_: limits.constants.Margin(dict.fromkeys(("x", "y", "z", "total"), 1.0), "assumed"),
     )
     runs = watch(chosen)
-    found = limits.run(study, CERTIFY)
-    first = len(found["rows"][-1]["nominal"]["trials"])
+    found = limits.STAGE.read(limits.run(study, CERTIFY))
+    first = len(found.rows[-1].nominal.trials)
     searches = 1 if chosen == 0 else 2
-    assert runs.pilots == searches * pilot.PILOT and found["modes"] == chosen
+    assert runs.pilots == searches * pilot.PILOT and found.modes == chosen
     assert set(runs.modes[:first]) == {0} and set(runs.modes[first:]) == {chosen}
-    assert found["certificate"]["cases"] == 1200 and len(runs.modes) > 3 * first
+    assert found.certificate.cases == 1200 and len(runs.modes) > 3 * first
     limit = math.radians(8.0) / (MODAL if chosen else 1.0)
     for name in ("thrust_eccentricity", "mass_eccentricity"):
         cases = within.source(REFERENCE, {name: 1.0}, 120, CERTIFY.seed).rows(0, 120)
         key = f"{within.ERRORS[name].key}.axial"
         sizes = sorted(abs(PER_METRE * drawn[key]) for drawn in cases)
-        exact = limit / sizes[-1 - found["allowed"]]
-        row = next(each for each in found["rows"] if each["name"] == name)
-        assert 1.0 / 1.013 < 1e-3 * row["nominal"]["tolerance"] / exact < 1.0 + 1e-9
-        assert 1.0 / 1.03 < 1e-3 * row["model"]["tolerance"] / (exact * 7.0 / 8.0) < 1.0 + 1e-9
+        exact = limit / sizes[-1 - found.allowed]
+        row = next(each for each in found.rows if each.name == name)
+        assert 1.0 / 1.013 < 1e-3 * row.nominal.tolerance / exact < 1.0 + 1e-9
+        assert 1.0 / 1.03 < 1e-3 * row.model.tolerance / (exact * 7.0 / 8.0) < 1.0 + 1e-9
     words = "no modes" if chosen == 0 else "3 modes"
     shown = " ".join(terminal(limits_page.terminal(found)).split())
     assert f"model compliant with {words} of each rail (enough for" in shown
@@ -235,9 +235,9 @@ def test_the_search_is_repeated_until_its_own_result_needs_no_more_modes(study, 
     """Pilots within four results choose 2, 5, 4: the number does not fall back, or the search might
     not end."""
     runs = watch(2, 5, 4)
-    found = limits.run(study, Limits(("8 deg/s",), probability=0.9, cases=120))
-    assert runs.pilots == 3 * pilot.PILOT and found["modes"] == 5
-    assert found["modes_why"].startswith("5: ") and list(dict.fromkeys(runs.modes)) == [0, 2, 5]
+    found = limits.STAGE.read(limits.run(study, Limits(("8 deg/s",), probability=0.9, cases=120)))
+    assert runs.pilots == 3 * pilot.PILOT and found.modes == 5
+    assert found.modes_why.startswith("5: ") and list(dict.fromkeys(runs.modes)) == [0, 2, 5]
 
 
 def test_no_modes_chosen_is_no_modes_asked_for(study, watch):

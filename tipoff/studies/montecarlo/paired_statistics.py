@@ -198,7 +198,7 @@ def tail(limit: exceedance.Limit, reference: Columns, population_: Columns) -> d
     )
     return {
         "limit": limit.words,
-        **limit._asdict(),
+        **vars(limit),
         "above": int(event.sum()),
         "missed": int((event & ~first).sum()),
         "false": int((first & ~event).sum()),

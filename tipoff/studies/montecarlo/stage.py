@@ -114,8 +114,8 @@ def quantity_row(quantity: answers.Quantity, found: Population) -> dict:
         "label": quantity.label,
         "unit": quantity.unit,
         **spread.moments(values),
-        "quantiles": spread.quantiles(values),
-        "first": spread.quantiles(first) if first.size else None,
+        "quantiles": list(map(vars, spread.quantiles(values))),
+        "first": list(map(vars, spread.quantiles(first))) if first.size else None,
         "histogram": spread.histograms(first, values),
     }
 
@@ -127,7 +127,7 @@ def _tail(limit: exceedance.Limit, rates: np.ndarray) -> dict:
     low, high = exceedance.bounds(count, len(rates), spread.CONFIDENCE)
     return {
         "limit": limit.words,
-        **limit._asdict(),
+        **vars(limit),
         "above": count,
         "cases": len(rates),
         "share": count / len(rates),
@@ -169,7 +169,11 @@ def _apart(here: list[np.ndarray], values: list[np.ndarray]) -> dict:
         "distance": distance,
         "chance": chance,
         "rates": [
-            {"name": item.name, **spread.moments(each), "quantiles": spread.quantiles(each)}
+            {
+                "name": item.name,
+                **spread.moments(each),
+                "quantiles": list(map(vars, spread.quantiles(each))),
+            }
             for item, each in zip(_RATES, values)
         ]
         if enough
@@ -209,10 +213,10 @@ def compared(study: Study, options: Options, found: Population) -> dict | None:
                 "label": item.label,
                 "unit": item.unit,
                 "root_mean_square": float(np.sqrt((apart**2).mean())),
-                "quantiles": spread.quantiles(apart, (0.5, 0.95, 0.99)),
+                "quantiles": list(map(vars, spread.quantiles(apart, (0.5, 0.95, 0.99)))),
                 "most": float(apart.max()),
                 **{
-                    name: spread.quantiles(values, (0.5, 0.95, 0.99))
+                    name: list(map(vars, spread.quantiles(values, (0.5, 0.95, 0.99))))
                     for name, values in zip(names, (one, two))
                 },
             }

@@ -146,7 +146,7 @@ def _facts(study: Study, drawn: Draws, whole: Population, model: Surrogate) -> d
         "draws": len(drawn.reference.exit_time),
         "counts": columns.counts(drawn.reference.status),
         "paired": int(both_settled(drawn, whole).sum()),
-        "lost": drawn.lost,
+        "lost": list(map(vars, drawn.lost)),
         "confidence": spread.CONFIDENCE,
         "element_size_m": study.settings.coarse_size,
         "elements": drawn.elements,

@@ -3,6 +3,7 @@ the convergence with the number of cases."""
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import ks_2samp
@@ -14,18 +15,25 @@ CONFIDENCE = 0.95
 _BINS = 80
 
 
-def quantiles(values: np.ndarray, shares: Sequence[float] = SHARES) -> list[dict]:
-    """The quantile of each of ``shares`` with two-sided bounds; a bound is None where there are too
-    few values (n,)."""
+@dataclass(frozen=True)
+class Quantile:
+    """The ``value`` that a ``share`` of all values is below, with two-sided bounds; a bound is None where
+    there are too few values."""
+
+    share: float
+    value: float
+    low: float | None
+    high: float | None
+
+
+def quantiles(values: np.ndarray, shares: Sequence[float] = SHARES) -> list[Quantile]:
+    """The quantile of each of ``shares`` of values (n,)."""
     found = zip(
         shares,
         np.quantile(values, shares),
         (order_statistics.bounds(values, share, CONFIDENCE) for share in shares),
     )
-    return [
-        {"share": share, "value": float(value), "low": low, "high": high}
-        for share, value, (low, high) in found
-    ]
+    return [Quantile(share, float(value), *bounds) for share, value, bounds in found]
 
 
 def moments(values: np.ndarray) -> dict:
@@ -68,7 +76,7 @@ def convergence(values: np.ndarray, shares: Sequence[float]) -> list[dict]:
     ] + [values.size]
     parts = [(count, part[np.isfinite(part)]) for count in counts for part in (values[:count],)]
     return [
-        {"cases": count, **row}
+        {"cases": count, **vars(row)}
         for count, part in parts
         if part.size
         for row in quantiles(part, shares)
