@@ -6,6 +6,7 @@ from tipoff.studies.limits.certificate import Certificate
 from tipoff.studies.limits.constants import Margin
 from tipoff.studies.limits.options import Options
 from tipoff.studies.limits.search import Found
+from tipoff.studies.populations.answers import Named
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.population import Answering
 from tipoff.studies.populations.spread import Quantile
@@ -24,12 +25,8 @@ class Advised:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Magnitude(Quantile):
+class Magnitude(Named, Quantile):
     """The magnitude that a quantity of ``answers.ALL`` stays below."""
-
-    name: str
-    label: str
-    unit: str
 
 
 @dataclass(frozen=True, kw_only=True)

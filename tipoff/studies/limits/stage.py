@@ -269,7 +269,7 @@ class Search:
             spread.quantiles(column, (self.options.probability,))[0] for column in settled.T
         )
         return tuple(
-            Magnitude(**vars(quantile), name=item.name, label=item.label, unit=item.unit)
+            Magnitude(**vars(quantile), **item.named)
             for item, quantile in zip(answers.ALL, quantiles)
         )
 
