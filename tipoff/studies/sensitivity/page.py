@@ -77,6 +77,17 @@ _SHOWN = 3  # inputs in the table of indices
 _HEADS = ("condition", "changed", *_MOVED, replace(_MOVED[0], title="paper: rates"), *_MOVED[1:])
 
 
+_BAR_LOOKS: tuple[tuple[float, str, str, dict[str, Any]], ...] = (
+    (0.2, "total", "total", {"color": NAVY}),
+    (
+        -0.2,
+        "first",
+        "first order",
+        {"color": "#d5dae0", "hatch": "//", "edgecolor": GREY, "linewidth": 0.5},
+    ),
+)
+
+
 def name_of(key: str) -> str:
     """The name of a dotted key for a reader."""
     head, _, last = key.rpartition(".")
@@ -259,46 +270,25 @@ def _bars(sobol: Sobol, rates: _Indexed) -> Picture:
         values = {name: np.array(values) for name, values in vars(own).items()}
         order = np.argsort(values["total"])[::-1][:_DRAWN][::-1]
         place = np.arange(len(order))
-        axes.barh(
-            place + 0.2,
-            values["total"][order],
-            0.38,
-            xerr=values["total_half_width"][order],
-            color=NAVY,
-            label="total",
-            ecolor=GREY,
-            capsize=2,
-        )
-        axes.barh(
-            place - 0.2,
-            values["first"][order],
-            0.38,
-            xerr=values["first_half_width"][order],
-            color="#d5dae0",
-            hatch="//",
-            edgecolor=GREY,
-            linewidth=0.5,
-            label="first order",
-            ecolor=GREY,
-            capsize=2,
-        )
+        for shift, name, label, look in _BAR_LOOKS:
+            axes.barh(
+                place + shift,
+                values[name][order],
+                0.38,
+                xerr=values[f"{name}_half_width"][order],
+                label=label,
+                **(look | {"ecolor": GREY, "capsize": 2}),
+            )
         axes.set_yticks(place, [name_of(sobol.inputs[n].key) for n in order], fontsize=8.5)
         axes.set_title(f"{item.label}, sd {item.sd:.3g} {item.unit}", fontsize=10.5)
         axes.set_xlabel("Sobol' index", fontsize=9.5)
-        axes.set_xlim(
-            1.08 * min(0.0, float((values["first"] - values["first_half_width"])[order].min())),
-            None,
-        )
+        least = float((values["first"] - values["first_half_width"])[order].min())
+        axes.set_xlim(1.08 * min(0.0, least), None)
         axes.grid(axis="x", color="#e3e6ea")
         axes.set_axisbelow(True)
         axes.spines[["top", "right"]].set_visible(False)
-    figure.legend(
-        *axes.get_legend_handles_labels(),
-        loc="outside lower center",
-        ncols=2,
-        frameon=False,
-        fontsize=9,
-    )
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False, fontsize=9)
     return Picture("sensitivity-indices", figure)
 
 
@@ -311,15 +301,8 @@ def _map(sobol: Sobol, shown: _Indexed) -> Picture:
     axes = figure.subplots()
     image = axes.imshow(totals[order], cmap="Greys", vmin=0.0, vmax=1.0, aspect="auto")
     for (row, column), value in np.ndenumerate(totals[order]):
-        axes.text(
-            column,
-            row,
-            f"{value:.2f}",
-            ha="center",
-            va="center",
-            fontsize=8,
-            color="white" if value > 0.55 else "black",
-        )
+        colour, text = "white" if value > 0.55 else "black", f"{value:.2f}"
+        axes.text(column, row, text, ha="center", va="center", fontsize=8, color=colour)
     axes.set_yticks(range(len(order)), [name_of(sobol.inputs[n].key) for n in order], fontsize=8.5)
     axes.set_xticks(
         range(len(shown)), [item.label for item, _ in shown], rotation=30, ha="right", fontsize=8.5
@@ -334,15 +317,11 @@ def _convergence(sobol: Sobol, rates: _Indexed) -> Chart:
     panels = []
     for item, _ in rates:
         steps = [(step.base_points, step.total) for step in item.convergence if step.total]
+        points = [count for count, _ in steps]
+        names = [name_of(each.key) for each in sobol.inputs]
         lines = [
             Line(
-                [points for points, _ in steps],
-                [total[n] for _, total in steps],
-                name_of(sobol.inputs[n].key),
-                colour,
-                1.6,
-                dash,
-                marker=marker,
+                points, [total[n] for _, total in steps], names[n], colour, 1.6, dash, marker=marker
             )
             for n, (colour, dash, marker) in zip(order, _LINES)
         ]

@@ -80,18 +80,8 @@ def _scatter(factor: Swept) -> Chart:
             (over_angle, angle, 180.0 / len(angles)),
         ):
             shifted = x.ravel()[settled] + (place - 1) * _APART * step
-            lines.append(
-                Line(
-                    shifted,
-                    rates[settled],
-                    f"rate about {axis}",
-                    AXIS_COLOURS[axis],
-                    dash="",
-                    marker=marker,
-                    size=3.5,
-                    opacity=0.65,
-                )
-            )
+            line = shifted, rates[settled], f"rate about {axis}", AXIS_COLOURS[axis]
+            lines.append(Line(*line, dash="", opacity=0.65, marker=marker, size=3.5))
     direction = f"direction {_ANGLE[factor.name].split(',')[0]} (deg)"
     panels = [
         Panel("", label, "settled rate (deg/s)", lines)
@@ -110,18 +100,8 @@ def _grown(launch: Launch, factor: Swept) -> Panel:
     for name, (axis, marker, dash) in _LOOKS.items():
         values = [np.nan if value is None else value for value in factor.largest[name]]
         top = max(top, np.nanmax(values, initial=0.0))
-        lines.append(
-            Line(
-                sizes,
-                values,
-                f"about {axis}",
-                AXIS_COLOURS[axis],
-                1.4,
-                dash,
-                marker=marker,
-                size=6.0,
-            )
-        )
+        look = f"about {axis}", AXIS_COLOURS[axis], 1.4, dash
+        lines.append(Line(sizes, values, *look, marker=marker, size=6.0))
         bent = factor.growth[name]
         if axis == "x" or bent is None or bent.verdict != "plateau":
             continue
@@ -131,26 +111,12 @@ def _grown(launch: Launch, factor: Swept) -> Panel:
         free = np.array(factor.free[name])
         # a free payload may turn much faster, and would flatten the other lines
         shown = free <= 1.15 * top
-        lines.append(
-            Line(
-                np.array(sizes)[shown],
-                free[shown],
-                "free payload",
-                GREY,
-                0.9,
-                dash,
-                legend=axis == "y",
-            )
-        )
+        place, named = (np.array(sizes)[shown], free[shown]), axis == "y"
+        lines.append(Line(*place, "free payload", GREY, 0.9, dash, legend=named))
     lines.append(Line([factor.paper] * 2, [0.0, top], "the paper's plateau", GREY, 1.6, ":"))
     how = "as given" if launch.stretch == 1.0 else f"thrust x {launch.stretch:g} as long"
-    return Panel(
-        f"{factor.label}, {how}",
-        f"size ({factor.unit})",
-        "largest rate (deg/s)",
-        lines,
-        spans=tuple(spans),
-    )
+    title, size = f"{factor.label}, {how}", f"size ({factor.unit})"
+    return Panel(title, size, "largest rate (deg/s)", lines, spans=tuple(spans))
 
 
 def _map(factor: Swept, sides: Sides, faces: Sequence[str]) -> Picture:
