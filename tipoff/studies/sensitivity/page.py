@@ -17,7 +17,7 @@ from tipoff.studies.render.table import Column, Table, span
 from tipoff.studies.render.uncertain import Measured
 from tipoff.studies.sensitivity.contact_table import Axes, Row
 from tipoff.studies.sensitivity.indices import Indices
-from tipoff.studies.sensitivity.stage import Constants, Paper, Sensitivity, Shares, Sobol
+from tipoff.studies.sensitivity.results import Constants, Paper, Sensitivity, Shares, Sobol
 from tipoff.workspace.words import counted
 
 _Indexed = list[tuple[Shares, Indices]]
