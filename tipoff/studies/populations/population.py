@@ -168,11 +168,15 @@ def answering(study: Study, model: Surrogate, condition: str | None = None) -> d
 def model_words(found: Answering | dict) -> str:
     """The model of a result, with its modes and why."""
     found = _typed(found)
-    if not found.modes_why:
-        return found.model
-    number = counted(int(found.modes), "mode") if found.modes else "no modes"
-    _, _, reason = found.modes_why.partition(": ")
-    return f"{found.model} with {number} of each rail ({reason})"
+    return with_modes(found.model, found.modes, found.modes_why)
+
+
+def with_modes(model: str, modes: int | str, why: str) -> str:
+    """The words of a ``model``, with the number of its ``modes`` and why."""
+    if not why:
+        return model
+    number = counted(int(modes), "mode") if modes else "no modes"
+    return f"{model} with {number} of each rail ({why.partition(': ')[2]})"
 
 
 def model_line(found: Answering | dict) -> str:

@@ -98,6 +98,11 @@ def estimate(row: Any, form: str = ".3g") -> Any:
     rounded to half the width between both bounds."""
     names = ("value", "low", "high")
     value, low, high = itemgetter(*names)(row) if isinstance(row, dict) else attrgetter(*names)(row)
+    return bounded(value, low, high, form)
+
+
+def bounded(value: float, low: float | None, high: float | None, form: str = ".3g") -> Any:
+    """A value with its bounds, as ``estimate`` shows them."""
     if low is None and high is None:
         return value
     if low is None or high is None or high <= low:
