@@ -31,7 +31,7 @@ from tipoff.files import (
 )
 from tipoff.kernels.cached import KernelCache
 from tipoff.lowfi.ensemble import store as ensembles
-from tipoff.studies.limits import results
+from tipoff.studies.limits import within
 from tipoff.studies.populations import answers
 from tipoff.workspace import kernel_marks
 from tipoff.workspace import store as store_module
@@ -117,7 +117,7 @@ def searched(folder, monkeypatch) -> Kept:
             made.append(name)
             return np.random.default_rng(len(name)).random((50, len(answers.ALL)))
 
-        files = results.kept(0.5, {"misalignment": 0.1})
+        files = within.kept(0.5, {"misalignment": 0.1})
         return files.get_or_make(folder / name, content_hash(name), again, make).tobytes()
 
     return Kept(ask, lambda name: folder / name, made, again)

@@ -84,7 +84,7 @@ class Stage:
             found, files = make()
             if self.result is None:
                 return found, files
-            plain = _adapter(self.result).dump_python(found, mode="json")
+            plain = _adapter(self.result).dump_python(found, mode="json", by_alias=True)
             asked = {} if self.options is None else {self.field: self.plain(options)}
             return asked | plain, [*files, *self._tables(study, plain)]
 

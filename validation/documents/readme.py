@@ -16,7 +16,9 @@ from tipoff.studies.agreement.other_rails import beside
 from tipoff.studies.agreement.page import by_factor
 from tipoff.studies.cost import stage as cost_study
 from tipoff.studies.cost.results import Cost
+from tipoff.studies.montecarlo import tails as checked
 from tipoff.studies.montecarlo import tails_page
+from tipoff.studies.montecarlo.results import Tails
 from tipoff.studies.render.document import Part, markdown
 from tipoff.studies.render.table import Cells, Column, Table, number, percent
 from tipoff.studies.render.uncertain import STEPS
@@ -50,10 +52,10 @@ def main(folder: Path) -> None:
     for name in ("figure6.png", "cost.png"):
         shutil.copyfile(folder / "figures" / name, _ROOT / "docs" / name)
     if (found := read(folder / "tails.json")) is not None:
-        tails(found, folder)
+        tails(checked.STAGE.read(found), folder)
 
 
-def tails(found: dict, folder: Path) -> None:
+def tails(found: Tails, folder: Path) -> None:
     """Write the page of random errors that the reference has checked, with its picture, and what
     README says of it."""
     _into_readme(
@@ -66,7 +68,7 @@ def tails(found: dict, folder: Path) -> None:
         ),
     )
     text = markdown(tails_page.document(found))
-    write_text(_ROOT / "docs" / "tails.md", f"{_TAILS.format(**found)}\n\n{text}\n")
+    write_text(_ROOT / "docs" / "tails.md", f"{_TAILS.format(**vars(found))}\n\n{text}\n")
     shutil.copyfile(folder / "figures" / "tails.png", _ROOT / "docs" / "tails.png")
 
 

@@ -1,10 +1,10 @@
 """Values of sets of tolerances that are not written: writing takes longer than finding them."""
 
 from tests.in_memory import memory
-from tipoff.studies.limits import results
+from tipoff.studies.limits import within
 
 
 def keep(patch, written: int = 0) -> None:
     """Keep the values of all sets in memory. The first ``written`` of them become files too."""
-    kept, files = {}, results.kept
-    patch.setattr(results, "kept", lambda *of: memory(kept, files(*of), written))
+    kept, files = {}, within.kept
+    patch.setattr(within, "kept", lambda *of: memory(kept, files(*of), written))

@@ -10,9 +10,12 @@ from scipy import stats
 
 from tests.studies import free_flight
 from tipoff.scenes.faults import SceneError
-from tipoff.studies.limits import certificate, certificate_page, inputs
+from tipoff.studies.limits import certificate, page, stage
 from tipoff.studies.limits.certificate import Within
+from tipoff.studies.limits.constants import Margin
 from tipoff.studies.limits.options import Options
+from tipoff.studies.limits.results import Drawn, Limits, Row
+from tipoff.studies.limits.search import Found
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.populations.stratified import Runs
@@ -51,28 +54,40 @@ def truth(arm: float) -> float:
 
 
 def test_both_models_agree_and_the_bound_is_above_the_closed_form(study, found):
-    strata = {each["name"]: each for each in found["strata"]}
-    assert found["cases"] == sum(each["cases"] for each in strata.values()) == 2000
-    assert strata["near"]["runs"] + strata["far"]["runs"] == 20
-    assert strata["near"]["events"] == strata["far"]["events"] == 0
-    exact, share = truth(1.0), strata["above"]["cases"] / 2000
+    strata = {each.name: each for each in found.strata}
+    assert found.cases == sum(each.cases for each in strata.values()) == 2000
+    assert strata["near"].runs + strata["far"].runs == 20
+    assert strata["near"].events == strata["far"].events == 0
+    exact, share = truth(1.0), strata["above"].cases / 2000
     assert share == pytest.approx(exact, abs=4.0 * math.sqrt(exact / 2000))
-    assert found["estimate"] == share and exact < found["upper"] < exact + 0.25
-    assert found["certified"] and found["needed"] <= 20 and found["lost"] == []
-    shown = {"asked": {"certify": 20}, "certificate": found, "confidence": 0.95, "probability": 0.7}
-    shown["rows"] = [{"name": "together", "nominal": {"tolerance": 1.0}}]
-    said = " ".join(certificate_page.lines(shown))
-    assert "20 runs at 1 times the set" in said and said.count("certified") == 1
-    assert "at least 90% of a limit" in terminal(certificate_page.tables(found))
+    assert found.estimate == share and exact < found.upper < exact + 0.25
+    assert found.certified and found.needed <= 20 and found.lost == ()
+    said = shown(found)
+    assert "20 runs at 1 times the set" in said and "not certified" not in said
+    assert "at least 90% of a limit" in said
+
+
+def shown(found: certificate.Certificate) -> str:
+    """The text of a result with this certificate."""
+    row = Row(
+        name="together", words="set", unit="1", most=1.0, nominal=Found("found", 1.0), advised=None
+    )
+    made = Limits(
+        **dict(model="", modes=0, modes_why="", agreement=""),
+        **dict(asked=OPTIONS, limits=(LIMIT,), probability=0.7, confidence=0.95, cases=200),
+        **dict(allowed=40, constants=Drawn(0, ()), margin=Margin(None, ""), rows=(row,)),
+        **dict(map=None, certificate=found, evaluations=1),
+    )
+    return terminal(page.terminal(made))
 
 
 def test_a_reference_that_is_worse_is_seen(study, found):
     """The control: a third more arm puts every case near the limit above it."""
     worse = certificate.made(study, OPTIONS, [LIMIT], 200, within(study, 4.0 / 3.0))
-    strata = {each["name"]: each for each in worse["strata"]}
-    assert strata["near"]["events"] == strata["near"]["runs"] > 0
-    assert worse["upper"] > max(found["upper"], truth(4.0 / 3.0))
-    assert worse["estimate"] > found["estimate"]
+    strata = {each.name: each for each in worse.strata}
+    assert strata["near"].events == strata["near"].runs > 0
+    assert worse.upper > max(found.upper, truth(4.0 / 3.0))
+    assert worse.estimate > found.estimate and "not certified" in shown(worse)
 
 
 def test_runs_are_kept(study, found, monkeypatch):
@@ -107,4 +122,4 @@ def test_number_of_runs_that_would_certify():
 
 def test_too_few_runs_are_refused():
     with pytest.raises(SceneError, match="--certify.*19.*20 or more"):
-        inputs.checked(replace(OPTIONS, certify=19))
+        stage.checked(replace(OPTIONS, certify=19))

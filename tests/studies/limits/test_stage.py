@@ -67,11 +67,16 @@ def found(study):
             lambda *_: constants.Margin(dict.fromkeys(("x", "y", "z", "total"), 1.0), "assumed"),
         )
         patch.setattr(limits, "RAYS", 3)
-        return limits.run(study, QUICK)
+        return of(study, QUICK)
+
+
+def of(study, options):
+    """The result of a study."""
+    return limits.STAGE.read(limits.run(study, options))
 
 
 def row_of(found, name):
-    return next(row for row in found["rows"] if row["name"] == name)
+    return next(row for row in found.rows if row.name == name)
 
 
 def certified(study, name, cases, limit=LIMIT):
@@ -105,72 +110,57 @@ def combined(study, tolerances, cases):
 
 @pytest.mark.parametrize("name", sorted(PER_UNIT))
 def test_one_factor_alone_is_the_closed_form(study, found, name):
-    row, exact = row_of(found, name)["nominal"], certified(study, name, found["cases"])
+    row, exact = row_of(found, name).nominal, certified(study, name, found.cases)
     # The search stops within 1.1 %; the rates themselves carry the step error of 1e-2 settings, a
     # thousandth.
-    assert 1.0 / 1.013 < row["tolerance"] / exact < 1.002 and not row["falls"] and not row["again"]
-    beside = {item["name"]: item for item in row_of(found, name)["beside"]}
-    assert beside["rate_deg_s"]["value"] < LIMIT
+    assert 1.0 / 1.013 < row.tolerance / exact < 1.002 and not row.falls and not row.again
+    beside = {item.name: item for item in row_of(found, name).beside}
+    assert beside["rate_deg_s"].value < LIMIT
     # The law itself: the share that is truly above at the certified size is no more than allowed,
     # and no less than the rank of the draw that lies on the limit lets it be, beta distributed (one
     # chance in a thousand).
-    above = stats.truncnorm(0.0, 3.0).sf(3.0 * LIMIT / (PER_UNIT[name] * row["tolerance"]))
-    assert (
-        stats.beta(found["allowed"] + 1, found["cases"] - found["allowed"]).ppf(1e-3)
-        < above
-        < 1.0 - PROBABILITY
-    )
+    above = stats.truncnorm(0.0, 3.0).sf(3.0 * LIMIT / (PER_UNIT[name] * row.tolerance))
+    least = stats.beta(found.allowed + 1, found.cases - found.allowed).ppf(1e-3)
+    assert least < above < 1.0 - PROBABILITY
 
 
 def test_constants_and_the_model_error_scale_the_tolerance_as_in_the_equation(study, found):
     """Rate = J l t / I: the tolerance is inverse to the arm, and a margin of 1 of 6 deg/s reduces
     it by a sixth. Searches from a start are within 2.8 %."""
     row = row_of(found, "misalignment")
-    nominal = certified(study, "misalignment", found["cases"])
+    nominal = certified(study, "misalignment", found.cases)
     for answer, expected in (
-        (row["constants"][0], nominal / 0.9),
-        (row["constants"][1], nominal / 1.1),
-        (row["model"], nominal * 5.0 / 6.0),
-        (row["both"], nominal / 1.1 * 5.0 / 6.0),
+        (row.constants[0], nominal / 0.9),
+        (row.constants[1], nominal / 1.1),
+        (row.model, nominal * 5.0 / 6.0),
+        (row.both, nominal / 1.1 * 5.0 / 6.0),
     ):
-        assert 1.0 / 1.03 < answer["tolerance"] / expected < 1.002
+        assert 1.0 / 1.03 < answer.tolerance / expected < 1.002
     straight = row_of(found, "mass_eccentricity")  # which no arm touches
-    assert len({item["tolerance"] for item in straight["constants"]}) == 1
+    assert len({item.tolerance for item in straight.constants}) == 1
 
 
 def test_a_set_is_certified_by_its_rates(study, found):
     """The multiple of the set, recomputed from the rate of each case in closed form."""
-    row, cases = row_of(found, "together"), found["cases"]
+    row, cases = row_of(found, "together"), found.cases
     rates = combined(study, ADVISED, cases)
     assert (
         1.0 / 1.013
-        < row["nominal"]["tolerance"] / (LIMIT / np.sort(rates)[cases - 1 - found["allowed"]])
+        < row.nominal.tolerance / (LIMIT / np.sort(rates)[cases - 1 - found.allowed])
         < 1.002
     )
-    assert (
-        row["advised"]["above"] == int((rates > LIMIT).sum()) and row["advised"]["tolerance"] == 1.0
-    )
+    assert row.advised.above == int((rates > LIMIT).sum()) and row.advised.tolerance == 1.0
 
 
 def test_the_map_agrees_with_the_rates_of_its_pairs(study, found):
     """Each pair in closed form: certified there, and not 2.8 % beyond; on the axes one error is
     zero."""
-    for x, y in (point["tolerances"] for point in found["map"]["points"]):
-        exact = (
-            LIMIT
-            / np.sort(
-                combined(
-                    study,
-                    {"misalignment": np.radians(x), "mass_eccentricity": 1e-3 * y},
-                    found["cases"],
-                )
-            )[found["cases"] - 1 - found["allowed"]]
-        )
-        assert 0.998 < exact < 1.03
-    points = np.array([point["tolerances"] for point in found["map"]["points"]])
-    assert points[0, 1] == points[-1, 0] == 0.0 and found["map"]["advised"] == pytest.approx(
-        [0.2, 0.2]
-    )
+    for x, y in (point.tolerances for point in found.map.points):
+        sizes = {"misalignment": np.radians(x), "mass_eccentricity": 1e-3 * y}
+        rates = np.sort(combined(study, sizes, found.cases))
+        assert 0.998 < LIMIT / rates[found.cases - 1 - found.allowed] < 1.03
+    points = np.array([point.tolerances for point in found.map.points])
+    assert points[0, 1] == points[-1, 0] == 0.0 and found.map.advised == pytest.approx([0.2, 0.2])
     assert (np.diff(points[:, 0]) < 0.0).all() and (np.diff(points[:, 1]) > 0.0).all()
 
 
@@ -186,13 +176,13 @@ def test_limits_that_no_tolerance_or_every_tolerance_keeps_are_reported(study, m
         study.settings,
     )
     for others, state in (("scene", "none"), ("zero", "found")):
-        found = limits.run(
+        found = of(
             offset, Options(limits=("2 deg/s",), probability=PROBABILITY, cases=30, others=others)
         )
-        assert row_of(found, "misalignment")["nominal"]["state"] == state and (
-            found["map"] is None
-        ) == (state == "none")
-        assert row_of(found, "thrust_eccentricity")["nominal"]["state"] == "found"
+        assert row_of(found, "misalignment").nominal.state == state and (found.map is None) == (
+            state == "none"
+        )
+        assert row_of(found, "thrust_eccentricity").nominal.state == "found"
         shown = document.markdown(pictures.terminal(found))
         assert ("exceeded even at zero" in shown) == (state == "none")
     monkeypatch.setattr(
@@ -200,10 +190,10 @@ def test_limits_that_no_tolerance_or_every_tolerance_keeps_are_reported(study, m
         "margin",
         lambda *_: constants.Margin(dict.fromkeys(("x", "y", "z", "total"), 1.0), ""),
     )
-    far = limits.run(offset, Options(limits=("x=1 deg/s",), probability=PROBABILITY, cases=30))
+    far = of(offset, Options(limits=("x=1 deg/s",), probability=PROBABILITY, cases=30))
     row = row_of(far, "misalignment")
-    assert row["nominal"]["state"] == "all" and row["model"]["state"] == "lost"
-    assert "all" in pictures.value(row["nominal"]) and "model error" in pictures.value(row["model"])
+    assert row.nominal.state == "all" and row.model.state == "lost"
+    assert "all" in pictures.value(row.nominal) and "model error" in pictures.value(row.model)
 
 
 def test_values_are_kept_with_names_units_and_scale(study, found, monkeypatch):
@@ -229,8 +219,8 @@ def test_values_are_kept_with_names_units_and_scale(study, found, monkeypatch):
     assert np.array_equal(values_again(), values, equal_nan=True)
     monkeypatch.setattr(within, "completed", lambda *_: pytest.fail("ran again"))
     assert np.array_equal(values_again(), values, equal_nan=True)
-    for row in found["rows"]:
-        assert [item["name"] for item in row["beside"]] == [item.name for item in answers.ALL]
+    for row in found.rows:
+        assert [item.name for item in row.beside] == [item.name for item in answers.ALL]
 
 
 @pytest.mark.parametrize("tolerances, advised", [("advised", 1.0), ("table3", None)])
@@ -248,13 +238,13 @@ def test_the_paper_advises_one_set_alone(study, monkeypatch, tolerances, advised
     monkeypatch.setattr(within.Cases, "values", lambda *_: np.zeros((30, len(answers.ALL))))
     monkeypatch.setattr(limits.Search, "pairs", lambda *_: None)
     row = row_of(found := searches.all(), "together")
-    assert (row["advised"] and row["advised"]["tolerance"]) == advised
-    assert row_of(found, "misalignment")["advised"]["tolerance"] == pytest.approx(0.2)
+    assert (row.advised and row.advised.tolerance) == advised
+    assert row_of(found, "misalignment").advised.tolerance == pytest.approx(0.2)
     advice = pictures.table_of(found).heads.index("the paper advises")
     assert pictures.table_of(found).rows[-1][advice] == advised
 
 
-def test_section_of_the_page(found):
+def test_section_of_the_page(study, found):
     shown = html(pictures.draw(found))
     assert (
         "limits-curves" in shown
@@ -263,9 +253,9 @@ def test_section_of_the_page(found):
         and "thrust misalignment" in shown
     )
     assert tables.terminal(pictures.table_of(found)) in document.terminal(pictures.terminal(found))
-    assert {
-        f"figures/limits-{name}.{kind}" for name in ("curves", "map") for kind in ("png", "svg")
-    } == set(found["files"])
+    assert {f"limits-{name}.{kind}" for name in ("curves", "map") for kind in ("png", "svg")} == {
+        path.name for path in study.path("figures").iterdir()
+    }
 
 
 @pytest.mark.case("O49")
@@ -360,7 +350,7 @@ def test_the_model_error_is_the_largest_of_the_held_out_conditions(tmp_path, mon
     study = Study(load("reference"), tmp_path, Settings())
     assert (
         constants.margin(study, "springs").deg_s is None
-        and "tipoff compare" in constants.margin(study, "springs").source
+        and "tipoff compare" in constants.margin(study, "springs").said
     )
     rows = [
         {
@@ -389,7 +379,7 @@ def test_the_model_error_is_the_largest_of_the_held_out_conditions(tmp_path, mon
     assert constants.margin(study, "springs").deg_s == pytest.approx(
         {"x": 0.3, "y": 0.4, "z": 0.2, "total": 0.5}
     )
-    assert constants.margin(study, "springs").source == (
+    assert constants.margin(study, "springs").said == (
         "largest of 2 held-out conditions; not judged as curves: 2; not settled: 1"
     )
     assert constants.margin(study, "compliant").deg_s == pytest.approx(

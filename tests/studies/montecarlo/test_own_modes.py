@@ -12,7 +12,7 @@ from tests.studies.shown import html
 from tipoff import lowfi
 from tipoff.lowfi import Numerics
 from tipoff.scenes import load
-from tipoff.studies.montecarlo import own_modes_page, paired_statistics
+from tipoff.studies.montecarlo import paired_statistics, tails_page
 from tipoff.studies.populations import draws, own_modes
 from tipoff.studies.populations.own_modes import OwnModes, Series
 from tipoff.studies.populations.population import Surrogate
@@ -150,41 +150,42 @@ def test_what_the_modes_of_a_draw_change():
     reference[3:] = [[0, -0.25, 0], [0, 0, 0.25]]
     none = drawn(reference, np.zeros((5, 3)), np.ones(5))
     found = paired_statistics.by_modes(synthetic(), none, GATE)
-    assert (found["held"], found["choosing"], found["choosing_all"]) == (20, 3, 2)
-    assert found["moved_deg_s"] == pytest.approx(0.2)
-    assert found["moved_by_clearance_deg_s"] == pytest.approx(0.15)
-    assert found["more_by_clearance"] == 2
-    assert [row["modes"] for row in found["rows"]] == [0, 20, "auto"]
-    assert [row["within_gate"] for row in found["rows"]] == pytest.approx([0.6, 0.6, 1.0])
-    assert [row["most"] for row in found["rows"]] == pytest.approx([0.25, 0.3, 0.1])
+    assert (found.held, found.choosing, found.choosing_all) == (20, 3, 2)
+    assert found.moved_deg_s == pytest.approx(0.2)
+    assert found.moved_by_clearance_deg_s == pytest.approx(0.15)
+    assert found.more_by_clearance == 2
+    assert [row.modes for row in found.rows] == [0, 20, "auto"]
+    assert [row.within_gate for row in found.rows] == pytest.approx([0.6, 0.6, 1.0])
+    assert [row.most for row in found.rows] == pytest.approx([0.25, 0.3, 0.1])
     (*_, everything) = paired_statistics.by_contacts(none, GATE)
-    assert everything.items() - found["rows"][0].items() == {("contacts", "all")}
+    assert vars(everything).items() - vars(found.rows[0]).items() == {("contacts", "all")}
 
     lost = synthetic()
     lost.own.results.rate[4] = np.nan
     found = paired_statistics.by_modes(lost, none, GATE)
-    assert found["choosing"] == 3 and found["rows"][-1]["settled"] == 4
-    assert found["moved_deg_s"] == pytest.approx(0.2)  # of 0.1 and 0.3
-    assert found["moved_by_clearance_deg_s"] == pytest.approx(0.1)  # of 0.15 and 0.05
+    assert found.choosing == 3 and found.rows[-1].settled == 4
+    assert found.moved_deg_s == pytest.approx(0.2)  # of 0.1 and 0.3
+    assert found.moved_by_clearance_deg_s == pytest.approx(0.1)  # of 0.15 and 0.05
 
 
 def test_what_is_said_of_them():
     reference = drawn(np.zeros((5, 3)), np.zeros((5, 3)), np.ones(5))
     own = paired_statistics.by_modes(synthetic(), reference, GATE)
-    page = {"own_modes": own, "draws": 5, "modes": 0, "gate_deg_s": GATE}
-    (said,) = own_modes_page.sentences(page)
+    page = SimpleNamespace(own_modes=own, draws=5, modes=0, gate_deg_s=GATE)
+    (said,) = tails_page.sentences_of_modes(page)
     assert said == (
         "3 of 5 draws choose rail modes for themselves, 2 of them all 20. In the median, these modes "
         "change a rate of such a draw by 0.2 deg/s, and 1 µm more of every clearance changes it by "
         "0.15 deg/s. In 2 of the 3 the clearance changes it more"
     )
-    assert "case by case" in terminal(own_modes_page.table(page))
+    assert "case by case" in terminal(tails_page.by_modes(page))
     assert all(
-        f">{cell}<" in html(own_modes_page.table(page))
+        f">{cell}<" in html(tails_page.by_modes(page))
         for cell in ("none, as the population", "all 20", "case by case")
     )
-    assert ">all 20, as the population<" in html(own_modes_page.table(page | {"modes": 20}))
-    none = page | {"own_modes": own | {"choosing": 0}}
-    assert own_modes_page.sentences(none) == ["none of 5 draws chooses rail modes for itself"]
-    without = {key: value for key, value in page.items() if key != "own_modes"}
-    assert own_modes_page.sentences(without) == own_modes_page.table(without) == []
+    page.modes = 20
+    assert ">all 20, as the population<" in html(tails_page.by_modes(page))
+    page.own_modes = replace(own, choosing=0)
+    assert tails_page.sentences_of_modes(page) == ["none of 5 draws chooses rail modes for itself"]
+    page.own_modes = None
+    assert tails_page.sentences_of_modes(page) == tails_page.by_modes(page) == []

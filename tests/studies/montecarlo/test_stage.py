@@ -2,6 +2,7 @@
 rates is known."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from tipoff.scenes import load
 from tipoff.studies.cli import app
 from tipoff.studies.montecarlo import page as pictures
 from tipoff.studies.montecarlo import stage as montecarlo
-from tipoff.studies.montecarlo.stage import Options
+from tipoff.studies.montecarlo.options import Cases as Options
 from tipoff.studies.populations import answers, population, spread
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render import chart
@@ -25,6 +26,8 @@ from tipoff.studies.render.document import terminal
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study, StudyError
 
+OPTIONS = Options(cases=1500, limits=("y=6 deg/s", "8 deg/s"))
+
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
@@ -32,38 +35,43 @@ def study(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def found(study):
-    return montecarlo.run(study, Options(cases=1500, limits=("y=6 deg/s", "8 deg/s")))
+def kept(study):
+    return montecarlo.run(study, OPTIONS)
 
 
-def test_what_is_written_is_whole_and_not_made_again(study, found, monkeypatch):
-    assert found["counts"] == {"asked": 1500, "ok": 1500, "refused": 0, "failed": 0}
-    assert found["model"] == "compliant, without contact"
-    assert [item["name"] for item in found["quantities"]] == [item.name for item in answers.ALL]
-    assert {
+@pytest.fixture(scope="module")
+def found(kept):
+    return montecarlo.STAGE.read(kept)
+
+
+def test_what_is_written_is_whole_and_not_made_again(study, kept, found, monkeypatch):
+    assert found.counts == {"asked": 1500, "ok": 1500, "refused": 0, "failed": 0}
+    assert found.model == "compliant, without contact"
+    assert [item.name for item in found.quantities] == [item.name for item in answers.ALL]
+    figures = [
         f"figures/montecarlo-{name}.{kind}"
         for name in ("histograms", "convergence")
         for kind in ("png", "svg")
-    } == set(found["files"])
+    ]
+    tables = [
+        f"montecarlo_{name}.csv" for name in ("quantities", "tails", "convergence", "readings")
+    ]
+    assert set(kept["files"]) == {*figures, *tables}
     # no springs and no clearance without contact
-    assert found["models"] is None and len(found["readings"]) == 7
-    assert found["models_missing"] in terminal(pictures.summary(found))
+    assert found.models is None and len(found.readings) == 7
+    assert found.models_missing in terminal(pictures.summary(found))
     monkeypatch.setattr(
         "tipoff.studies.populations.population.run", lambda *_: pytest.fail("made again")
     )
-    assert (
-        montecarlo.run(study, Options(cases=1500, limits=("y=6 deg/s", "8 deg/s")))
-        == found
-        == montecarlo.STAGE.stored(study)
-    )
-    assert json.loads(study.path("montecarlo.json").read_text()) == found
+    assert montecarlo.run(study, OPTIONS) == kept == montecarlo.STAGE.stored(study)
+    assert json.loads(study.path("montecarlo.json").read_text()) == kept
 
 
 def test_the_first_thousand_are_the_paper_s_and_bounds_shrink_with_the_root_of_the_number(found):
-    item = found["quantities"][1]
-    first, whole = item["first"][2], item["quantiles"][2]
-    assert first["low"] < first["value"] < first["high"] and first != whole
-    assert {row["name"] for row in found["convergence"]} == {
+    item = found.quantities[1]
+    first, whole = item.first[2], item.quantiles[2]
+    assert first.low < first.value < first.high and first != whole
+    assert {row.name for row in found.convergence} == {
         "rate_x_deg_s",
         "rate_y_deg_s",
         "rate_z_deg_s",
@@ -71,12 +79,12 @@ def test_the_first_thousand_are_the_paper_s_and_bounds_shrink_with_the_root_of_t
     }
     # nothing turns this payload about x
     for name in ("rate_y_deg_s", "rate_z_deg_s", "rate_deg_s"):
-        rows = [row for row in found["convergence"] if row["share"] == 0.5 and row["name"] == name]
-        assert [row["cases"] for row in rows] == [100, 200, 500, 1000, 1500]
-        halves = [0.5 * (row["high"] - row["low"]) for row in rows]
+        rows = [row for row in found.convergence if row.share == 0.5 and row.name == name]
+        assert [row.cases for row in rows] == [100, 200, 500, 1000, 1500]
+        halves = [0.5 * (row.high - row.low) for row in rows]
         # The slope is -1/2; ranks are whole numbers and densities estimated, so single widths
         # scatter by some 20 %.
-        assert np.polyfit(np.log([row["cases"] for row in rows]), np.log(halves), 1)[
+        assert np.polyfit(np.log([row.cases for row in rows]), np.log(halves), 1)[
             0
         ] == pytest.approx(-0.5, abs=0.15)
 
@@ -99,14 +107,14 @@ def counted(cases, lost):
 def test_a_part_of_the_cases_is_their_first_whether_they_settled_or_not():
     """Case 1,000 is not among the first thousand because an earlier one did not settle."""
     found = counted(1200, slice(0, 300))
-    item = montecarlo.quantity_row(answers.RATES[0], found)
-    assert item["first"][2]["value"] == pytest.approx(649.5) and item["quantiles"][2][
-        "value"
-    ] == pytest.approx(749.5)
-    assert sum(item["histogram"]["first"]) > 0.0
-    assert montecarlo.quantity_row(answers.RATES[0], counted(1200, slice(0, 1000)))["first"] is None
+    item = montecarlo.distribution(answers.RATES[0], found)
+    assert item.first[2].value == pytest.approx(649.5) and item.quantiles[2].value == pytest.approx(
+        749.5
+    )
+    assert sum(item.histogram.first) > 0.0
+    assert montecarlo.distribution(answers.RATES[0], counted(1200, slice(0, 1000))).first is None
     rows = spread.convergence(answers.RATES[0].of(found.results), (0.5,))
-    assert [(row["cases"], round(row["value"], 6)) for row in rows] == [
+    assert [(cases, round(row.value, 6)) for cases, row in rows] == [
         (500, 399.5),
         (1000, 649.5),
         (1200, 749.5),
@@ -131,16 +139,14 @@ def test_cases_that_do_not_settle_elsewhere_are_reported_and_stop_nothing(
         return run(*arguments)
 
     monkeypatch.setattr(population, "run", spoilt)
-    found = montecarlo.run(study, Options(cases=120, limits=("8 deg/s",)))
-    row = found["readings"][2]
+    found = montecarlo.STAGE.read(montecarlo.run(study, Options(cases=120, limits=("8 deg/s",))))
+    row = found.readings[2]
     assert (
-        row["settled"] == 1
-        and row["rates"] is row["distance"] is None
-        and found["readings"][0]["distance"] is not None
+        row.settled == 1
+        and row.rates is row.distance is None
+        and found.readings[0].distance is not None
     )
-    assert f"too few settled cases to compare: {row['reading']}\n" in terminal(
-        pictures.summary(found)
-    )
+    assert f"too few settled cases to compare: {row.reading}\n" in terminal(pictures.summary(found))
     assert "1 settled" in html(pictures.draw(found))
     monkeypatch.setattr(population, "run", lambda *_: counted(120, slice(None)))
     with pytest.raises(StudyError, match="no case settled"):
@@ -151,8 +157,8 @@ def test_cases_that_do_not_settle_elsewhere_are_reported_and_stop_nothing(
     assert montecarlo.compared(touching, Options(cases=120), counted(120, slice(0, 9))) is None
     monkeypatch.setattr(montecarlo.calibrate, "stored", lambda _: {"key": "k"})
     models = montecarlo.compared(touching, Options(cases=120), counted(120, slice(0, 9)))
-    assert models["both_settled"] == 0 and models["quantities"] == []
-    both = found | {"models": models}
+    assert models.both_settled == 0 and models.quantities == ()
+    both = replace(found, models=models)
     assert "No case of 120 settled in both models" in html(pictures.draw(both))
     assert len(pictures.figures(both)) == 2
     assert "no case settled in both models" in terminal(pictures.summary(both))
@@ -177,20 +183,20 @@ def test_tails_hold_the_probability_by_independent_quadrature(found):
     above = 1.0 - 2.0 / np.pi * np.trapezoid(
         transform * np.sin(6.0 * frequency) / frequency, frequency
     )
-    tail = found["tails"][0]
-    assert tail["limit"] == "rate about y 6 deg/s" and tail["low"] < above < tail["high"]
+    tail = found.tails[0]
+    assert tail.limit == "rate about y 6 deg/s" and tail.low < above < tail.high
     # the bounds are narrow enough to say something
-    assert not tail["low"] < 1.5 * above < tail["high"]
+    assert not tail.low < 1.5 * above < tail.high
 
 
 def test_readings_with_equal_distributions_have_no_significant_distance(found):
-    rows = {row["reading"]: row for row in found["readings"]}
+    rows = {row.reading: row for row in found.readings}
     same, half = (
         rows[f"{kind} normal, three angles, redrawn beyond 3 sigma"] for kind in ("signed", "half")
     )
-    assert same["same"] and not half["same"] and min(same["chance"], half["chance"]) > 0.01
-    assert rows["two normal components, redrawn beyond 3 sigma"]["chance"] < 1e-6
-    assert rows["half normal, one angle, redrawn beyond 3 sigma"]["chance"] < 0.01
+    assert same.same and not half.same and min(same.chance, half.chance) > 0.01
+    assert rows["two normal components, redrawn beyond 3 sigma"].chance < 1e-6
+    assert rows["half normal, one angle, redrawn beyond 3 sigma"].chance < 0.01
 
 
 def test_distance_and_probability_of_two_samples():

@@ -15,10 +15,10 @@ from tipoff.scenes import load
 from tipoff.scenes.faults import SceneError
 from tipoff.studies.cli import app
 from tipoff.studies.montecarlo import paired_statistics, tails, tails_page
-from tipoff.studies.montecarlo.stage import Options as Cases
+from tipoff.studies.montecarlo.options import Cases, Options
 from tipoff.studies.populations import answers, draws, exceedance, random_factors
 from tipoff.studies.populations.population import Population, Surrogate
-from tipoff.studies.populations.random_factors import Reading
+from tipoff.studies.populations.reading import Reading
 from tipoff.studies.render import chart
 from tipoff.studies.render.document import terminal
 from tipoff.workspace import store
@@ -26,7 +26,7 @@ from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
 
 DRAWS = 10
-OPTIONS = tails.Options(DRAWS, None, Cases(cases=120, limits=("y=6 deg/s", "8 deg/s")))
+OPTIONS = Options(Cases(cases=120, limits=("y=6 deg/s", "8 deg/s")), DRAWS)
 # of this solver's and that one's steps, deg/s of some ten
 ROUNDING = 1e-6
 
@@ -41,15 +41,20 @@ def study(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def found(study):
+def kept(study):
     return tails.run(study, OPTIONS)
+
+
+@pytest.fixture(scope="module")
+def found(kept):
+    return tails.STAGE.read(kept)
 
 
 def test_both_models_run_the_same_case(study, found):
     """Where nothing touches, both have the rates of the closed form. Control: each draw beside the
     next one."""
     rows = random_factors.source(study.scene, Reading(), DRAWS, 1).rows(0, DRAWS)
-    rates = found["pairs"]["rates"]
+    rates = found.pairs.rates
     for axis, sign, tilts, arms in (
         ("y", 1.0, math.sin, math.cos),
         ("z", -1.0, math.cos, math.sin),
@@ -62,9 +67,9 @@ def test_both_models_run_the_same_case(study, found):
         np.array([rates[f"rate_{axis}_deg_s"][model] for axis in "xyz"])
         for model in ("reference", "surrogate")
     )
-    *_, everything = found["contacts"]
-    assert everything["draws"] == DRAWS and everything["most"] < ROUNDING
-    assert found["contacts"][0]["draws"] == DRAWS
+    *_, everything = found.contacts
+    assert everything.draws == DRAWS and everything.most < ROUNDING
+    assert found.contacts[0].draws == DRAWS
     assert np.abs(reference - np.roll(surrogate, 1, axis=1))[1:].max(axis=0).min() > 0.01
 
 
@@ -79,24 +84,23 @@ def free_rate(row, tilts, arms) -> float:
     return free_flight.RATE_PER_METRE * sum(moments)
 
 
-def test_an_interrupted_study_makes_no_run_twice(study, found, monkeypatch):
+def test_an_interrupted_study_makes_no_run_twice(study, kept, found, monkeypatch):
     """Without its result file the stage is made again from the stored runs."""
     monkeypatch.setattr(store, "execute", lambda *_, **__: pytest.fail("made again"))
-    assert tails.run(study, OPTIONS) == found == tails.STAGE.stored(study)
+    assert tails.run(study, OPTIONS) == kept == tails.STAGE.stored(study)
     study.path("tails.json").unlink()
     monkeypatch.setattr(chart, "to_files", lambda *_: [])  # drawn above
-    again = tails.run(study, OPTIONS)
-    assert {key: again[key] for key in ("errors", "statistics", "tails", "pairs", "lost")} == {
-        key: found[key] for key in ("errors", "statistics", "tails", "pairs", "lost")
-    }
+    again = tails.STAGE.read(tails.run(study, OPTIONS))
+    assert replace(again, cost=found.cost) == found
     more = replace(OPTIONS, draws=DRAWS + 1)
     with pytest.raises(pytest.fail.Exception, match="made again"):
         tails.run(study, more)
 
 
-def test_what_is_printed(study, found):
-    assert set(found["files"]) == {"figures/tails.png", "figures/tails.svg"}
-    assert found["fine"] == 4 and found["element_size_m"] == 2.0 * found["fine_element_size_m"]
+def test_what_is_printed(kept, found):
+    tables = {f"tails_{name}.csv" for name in ("errors", "contacts", "statistics", "tails", "lost")}
+    assert set(kept["files"]) == {"figures/tails.png", "figures/tails.svg", *tables}
+    assert found.fine == 4 and found.element_size_m == 2.0 * found.fine_element_size_m
     shown = terminal(tails_page.summary(found))
     assert "in 100 % of 10 draws" in shown and "total rate 8 deg/s" in shown
     assert "deg/s" in html(tails_page.draw(found))
@@ -140,12 +144,12 @@ def test_errors_by_number_of_contacts():
     reference = np.zeros((6, 3))
     errors = [(0.01, 0, 0), (0, -0.05, 0), (0, 0, 0.3), (0.02, 0, 0), (0, 2, 1), (np.nan,) * 3]
     rows = paired_statistics.by_contacts(drawn(reference, errors, [0, 1, 1, 3, 5, 7]), 0.1)
-    assert [(row["contacts"], row["draws"], row["settled"]) for row in rows] == [
+    assert [(row.contacts, row.draws, row.settled) for row in rows] == [
         ("0", 1, 1), ("1", 2, 2), ("2", 0, 0), ("3", 1, 1), ("4 or more", 2, 1), ("all", 6, 5),
     ]  # fmt: skip
-    assert [row["most"] for row in rows] == pytest.approx([0.01, 0.3, None, 0.02, 2.0, 2.0])
-    assert rows[1]["within_gate"] == 0.5 and rows[-1]["within_gate"] == pytest.approx(0.6)
-    assert rows[-1]["low"] < 0.6 < rows[-1]["high"]
+    assert [row.most for row in rows] == pytest.approx([0.01, 0.3, None, 0.02, 2.0, 2.0])
+    assert rows[1].within_gate == 0.5 and rows[-1].within_gate == pytest.approx(0.6)
+    assert rows[-1].low < 0.6 < rows[-1].high
 
 
 def test_a_biased_surrogate_is_corrected_and_a_case_that_does_not_settle_is_above():
@@ -158,23 +162,23 @@ def test_a_biased_surrogate_is_corrected_and_a_case_that_does_not_settle_is_abov
     whole = Population(
         {}, results(surrogate), "store", {}, Surrogate(free_flight.scene(), None, None, 0)
     )
-    rows = {row["statistic"]: row for row in paired_statistics.of(answers.RATES[1], both, whole)}
-    assert rows["mean"]["value"] == pytest.approx(truth[:, 1].mean(), abs=0.02)
-    assert rows["mean"]["surrogate"] == pytest.approx(truth[:, 1].mean() * 1.2 + 0.5)
-    assert rows["standard deviation"]["value"] == pytest.approx(truth[:, 1].std(), rel=0.01)
-    assert rows["mean"]["equivalent_runs"] > 1000
+    rows = {row.statistic: row for row in paired_statistics.of(answers.RATES[1], both, whole)}
+    assert rows["mean"].value == pytest.approx(truth[:, 1].mean(), abs=0.02)
+    assert rows["mean"].surrogate == pytest.approx(truth[:, 1].mean() * 1.2 + 0.5)
+    assert rows["standard deviation"].value == pytest.approx(truth[:, 1].std(), rel=0.01)
+    assert rows["mean"].equivalent_runs > 1000
     best = paired_statistics.optimal(answers.RATES[1], both, whole, 1e4)
-    assert best["correlation"] > 0.9999 and best["variance_ratio"] < 0.01
+    assert best.correlation > 0.9999 and best.variance_ratio < 0.01
     limit = exceedance.Limit("y", 5.0)
     found = paired_statistics.tail(limit, both.reference, whole.results)
     above = np.abs(reference[:, 1]) > 5.0
-    assert found["above"] == above.sum() + 1
-    assert found["missed"] == 1 + (above & (np.abs(surrogate[:50, 1]) <= 5.0)).sum()
-    assert found["low"] < (np.abs(truth[:, 1]) > 5.0).mean() < found["high"]
+    assert found.above == above.sum() + 1
+    assert found.missed == 1 + (above & (np.abs(surrogate[:50, 1]) <= 5.0)).sum()
+    assert found.low < (np.abs(truth[:, 1]) > 5.0).mean() < found.high
 
 
 def test_every_fault_is_listed(study):
-    wrong = tails.Options(200, 300, Cases(cases=120, limits=("w=6 deg/s",)))
+    wrong = Options(Cases(cases=120, limits=("w=6 deg/s",)), 200, 300)
     with pytest.raises(SceneError) as fault:
         tails.run(study, wrong)
     assert [item.key for item in fault.value.faults] == ["w", "value", "value"]

@@ -8,6 +8,7 @@ from scipy import stats
 
 from tests.studies.populations.synthetic_pairs import Exponential, Normal, covered, repetitions
 from tipoff.studies.populations import allocation, control_variate
+from tipoff.studies.populations.allocation import Allocation
 from tipoff.studies.populations.control_variate import Pairs
 
 REPETITIONS = 400
@@ -61,7 +62,7 @@ def test_one_draw_that_differs_gives_no_interval_and_no_number_that_is_none():
         for reference, surrogate in ((values, population[:20]), (population[:20], values)):
             found = control_variate.standard_deviation(Pairs(reference, surrogate, population))
             assert (found.high is not None) == has_bounds
-            assert np.isfinite([each for each in found if each is not None]).all()
+            assert np.isfinite([each for each in vars(found).values() if each is not None]).all()
 
 
 @pytest.mark.parametrize("law", [Normal, Exponential])
@@ -117,5 +118,5 @@ def test_no_other_allocation_has_a_smaller_variance_at_the_same_cost(correlation
 
 
 def test_a_surrogate_that_saves_nothing_is_not_run():
-    assert allocation.optimal(0.3, 2.0) == allocation.optimal(0.0, 1e6) == (1.0, 1.0)
-    assert allocation.optimal(1.0, 100.0) == (None, pytest.approx(0.01))
+    assert allocation.optimal(0.3, 2.0) == allocation.optimal(0.0, 1e6) == Allocation(1.0, 1.0)
+    assert allocation.optimal(1.0, 100.0) == Allocation(None, pytest.approx(0.01))

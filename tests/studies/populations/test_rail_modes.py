@@ -24,6 +24,7 @@ from tipoff.studies.limits import within
 from tipoff.studies.limits.options import Options as Limits
 from tipoff.studies.montecarlo import page, tails, tails_page
 from tipoff.studies.montecarlo import stage as montecarlo
+from tipoff.studies.montecarlo.options import Cases, Options
 from tipoff.studies.populations import draws, own_modes, population
 from tipoff.studies.populations.draws import Kept
 from tipoff.studies.populations.population import Surrogate
@@ -41,7 +42,7 @@ VIBRATING = replace(
 )
 MODAL = 1.3  # times the rate without modes
 PER_RADIAN, PER_METRE = math.radians(20.0) / math.radians(0.2), math.radians(20.0) / 0.4e-3
-OPTIONS = montecarlo.Options(cases=120, limits=("8 deg/s",))
+OPTIONS = Cases(cases=120, limits=("8 deg/s",))
 CERTIFY = Limits(("8 deg/s",), probability=0.9, cases=120, certify=20)
 
 
@@ -132,12 +133,17 @@ def watch(monkeypatch):
     return watched
 
 
+def read(stage, study, options):
+    """The result of a stage."""
+    return stage.STAGE.read(stage.run(study, options))
+
+
 def test_one_pilot_serves_all_readings_of_a_population(study, watch):
     """Control: the second pilot would choose other modes. Nothing but the store is needed to go on."""
     runs = watch(3, 7)
-    found = montecarlo.run(study, OPTIONS)
-    assert runs.pilots == pilot.PILOT and found["modes"] == 3
-    assert set(runs.modes) == {3} and len(runs.modes) == 1 + len(found["readings"])
+    found = read(montecarlo, study, OPTIONS)
+    assert runs.pilots == pilot.PILOT and found.modes == 3
+    assert set(runs.modes) == {3} and len(runs.modes) == 1 + len(found.readings)
     described = [store.described(path) for path in study.folder.glob("montecarlo*-*")]
     assert len(described) == len(runs.modes)
     assert {each["identity"]["numerics"]["modes"] for each in described} == {3}
@@ -146,21 +152,21 @@ def test_one_pilot_serves_all_readings_of_a_population(study, watch):
     assert "with 3 modes of each rail" in html(page.draw(found))
 
     study.path("montecarlo.json").unlink()
-    again = montecarlo.run(study, OPTIONS)
-    assert runs.pilots == pilot.PILOT and again["modes_why"] == found["modes_why"]
-    assert again["quantities"] == found["quantities"] and again["readings"] == found["readings"]
+    again = read(montecarlo, study, OPTIONS)
+    assert runs.pilots == pilot.PILOT and again.modes_why == found.modes_why
+    assert again.quantities == found.quantities and again.readings == found.readings
 
 
 def test_pairs_and_their_cost_have_the_modes_of_the_population(study, watch):
     runs = watch(3, 7)
     montecarlo.run(study, OPTIONS)
     runs.modes.clear()
-    found = tails.run(study, tails.Options(10, None, OPTIONS))
+    found = read(tails, study, Options(OPTIONS, 10))
     assert runs.pilots == pilot.PILOT, "the choice is in the store of the population"
     assert runs.single == [3] * 10 and set(runs.modes) == {3}, "pairs, and cases that are timed"
-    assert found["modes"] == 3 and found["modes_why"].startswith("3: ")
+    assert found.modes == 3 and found.modes_why.startswith("3: ")
     assert "with 3 modes of each rail" in " ".join(terminal(tails_page.summary(found)).split())
-    assert "own_modes" not in found, "these rails have none"
+    assert found.own_modes is None, "these rails have none"
 
 
 def test_each_draw_chooses_its_own_modes_beside_those_of_the_population(study, watch, monkeypatch):
@@ -173,16 +179,14 @@ def test_each_draw_chooses_its_own_modes_beside_those_of_the_population(study, w
     )
     runs = watch(3)
     montecarlo.run(study, OPTIONS)
-    found = tails.run(study, tails.Options(10, None, OPTIONS))
+    found = read(tails, study, Options(OPTIONS, 10))
     beside, *further = (runs.single[begin : begin + 10] for begin in range(0, 60, 10))
     assert beside == [3] * 10 and [set(each) for each in further] == [{AUTO}, {0}, {3}, {5}, {5}]
-    own = found["own_modes"]
-    assert (own["held"], own["choosing"], own["choosing_all"]) == (HELD, 10, 10)
-    assert [row["modes"] for row in own["rows"]] == [0, 3, HELD, AUTO]
-    assert [row["cpu_s"] for row in own["rows"]] == pytest.approx([1e-3, 2e-3, 3e-3, 4e-3])
-    assert own["rows"][-1]["case_s"] is None and all(
-        row["case_s"] > 0.0 for row in own["rows"][:-1]
-    )
+    own = found.own_modes
+    assert (own.held, own.choosing, own.choosing_all) == (HELD, 10, 10)
+    assert [row.modes for row in own.rows] == [0, 3, HELD, AUTO]
+    assert [row.cpu_s for row in own.rows] == pytest.approx([1e-3, 2e-3, 3e-3, 4e-3])
+    assert own.rows[-1].case_s is None and all(row.case_s > 0.0 for row in own.rows[:-1])
     assert {0, 3, HELD} <= set(runs.modes), "timed"
     for shown in (tails_page.summary, tails_page.draw, tails_page.document):
         text = " ".join(html(shown(found)).split())
@@ -211,21 +215,21 @@ def test_the_search_its_margin_and_its_check_are_of_one_model(study, watch, monk
         lambda *_: limits.constants.Margin(dict.fromkeys(("x", "y", "z", "total"), 1.0), "assumed"),
     )
     runs = watch(chosen)
-    found = limits.run(study, CERTIFY)
-    first = len(found["rows"][-1]["nominal"]["trials"])
+    found = read(limits, study, CERTIFY)
+    first = len(found.rows[-1].nominal.trials)
     searches = 1 if chosen == 0 else 2
-    assert runs.pilots == searches * pilot.PILOT and found["modes"] == chosen
+    assert runs.pilots == searches * pilot.PILOT and found.modes == chosen
     assert set(runs.modes[:first]) == {0} and set(runs.modes[first:]) == {chosen}
-    assert found["certificate"]["cases"] == 1200 and len(runs.modes) > 3 * first
+    assert found.certificate.cases == 1200 and len(runs.modes) > 3 * first
     limit = math.radians(8.0) / (MODAL if chosen else 1.0)
     for name in ("thrust_eccentricity", "mass_eccentricity"):
         cases = within.source(REFERENCE, {name: 1.0}, 120, CERTIFY.seed).rows(0, 120)
         key = f"{within.ERRORS[name].key}.axial"
         sizes = sorted(abs(PER_METRE * drawn[key]) for drawn in cases)
-        exact = limit / sizes[-1 - found["allowed"]]
-        row = next(each for each in found["rows"] if each["name"] == name)
-        assert 1.0 / 1.013 < 1e-3 * row["nominal"]["tolerance"] / exact < 1.0 + 1e-9
-        assert 1.0 / 1.03 < 1e-3 * row["model"]["tolerance"] / (exact * 7.0 / 8.0) < 1.0 + 1e-9
+        exact = limit / sizes[-1 - found.allowed]
+        row = next(each for each in found.rows if each.name == name)
+        assert 1.0 / 1.013 < 1e-3 * row.nominal.tolerance / exact < 1.0 + 1e-9
+        assert 1.0 / 1.03 < 1e-3 * row.model.tolerance / (exact * 7.0 / 8.0) < 1.0 + 1e-9
     words = "no modes" if chosen == 0 else "3 modes"
     shown = " ".join(terminal(limits_page.terminal(found)).split())
     assert f"model compliant with {words} of each rail (enough for" in shown
@@ -235,9 +239,9 @@ def test_the_search_is_repeated_until_its_own_result_needs_no_more_modes(study, 
     """Pilots within four results choose 2, 5, 4: the number does not fall back, or the search might
     not end."""
     runs = watch(2, 5, 4)
-    found = limits.run(study, Limits(("8 deg/s",), probability=0.9, cases=120))
-    assert runs.pilots == 3 * pilot.PILOT and found["modes"] == 5
-    assert found["modes_why"].startswith("5: ") and list(dict.fromkeys(runs.modes)) == [0, 2, 5]
+    found = limits.STAGE.read(limits.run(study, Limits(("8 deg/s",), probability=0.9, cases=120)))
+    assert runs.pilots == 3 * pilot.PILOT and found.modes == 5
+    assert found.modes_why.startswith("5: ") and list(dict.fromkeys(runs.modes)) == [0, 2, 5]
 
 
 def test_no_modes_chosen_is_no_modes_asked_for(study, watch):

@@ -10,7 +10,8 @@ from tipoff.lowfi.ensemble.rows import numbers
 from tipoff.scenes import load
 from tipoff.scenes.faults import SceneError
 from tipoff.studies.populations import answers, population, random_factors, spread
-from tipoff.studies.populations.random_factors import ERRORS, READINGS, Reading
+from tipoff.studies.populations.random_factors import ERRORS, READINGS
+from tipoff.studies.populations.reading import Reading
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
 
@@ -172,6 +173,6 @@ def test_linear_tip_off_on_a_launch_without_contact(tmp_path, cases):
         for quantity in answers.RATES[1:]:
             moments = spread.moments(quantity.of(found.results))
             assert (
-                abs(moments["sd"] - expected) < 3.0 * moments["sd_error"] < 0.2
-                and abs(moments["mean"]) < 3.0 * moments["mean_error"]
+                abs(moments.sd - expected) < 3.0 * moments.sd_error < 0.2
+                and abs(moments.mean) < 3.0 * moments.mean_error
             )

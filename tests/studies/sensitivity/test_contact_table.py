@@ -8,29 +8,26 @@ from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.scenes import load
 from tipoff.studies import published
 from tipoff.studies.sensitivity import contact_table
+from tipoff.studies.sensitivity.contact_table import Deviations
 
 
 def test_largest_deviations_of_the_paper():
     """By hand from Table 2: x, condition 2, d 0.25; y, condition 4, d 0.25; z, condition 4, c 50.
     The text of the paper gives 0.26 % for z, which is that of d 0.35."""
     table = contact_table.of_paper()
-    assert len(table) == 21 and [row["condition"] for row in table[::7]] == list(
-        published.CONDITIONS
-    )
+    assert len(table) == 21 and [row.condition for row in table[::7]] == list(published.CONDITIONS)
     found = contact_table.largest(table)
-    assert found["relative"] == pytest.approx(
+    assert found.relative == pytest.approx(
         [(2.421 - 2.355) / 2.421, (1.633 - 1.609) / 1.633, (2.663 - 2.644) / 2.663], rel=1e-9
     )
-    assert [round(100.0 * share, 2) for share in found["relative"]] == [2.73, 1.47, 0.71]
-    assert found["absolute_deg_s"] == pytest.approx(
+    assert [round(100.0 * share, 2) for share in found.relative] == [2.73, 1.47, 0.71]
+    assert found.absolute_deg_s == pytest.approx(
         [5.341 - 5.254, 2.588 - 2.554, 2.663 - 2.644], rel=1e-9
     )
     in_text = next(
-        row
-        for row in table
-        if (row["condition"], row["symbol"], row["raised"]) == ("phi60", "d", True)
+        row for row in table if (row.condition, row.symbol, row.raised) == ("phi60", "d", True)
     )
-    assert round(100.0 * in_text["relative"][2], 2) == 0.26
+    assert round(100.0 * in_text.relative[2], 2) == 0.26
 
 
 def test_a_rate_that_is_nearly_zero_has_no_relative_deviation():
@@ -38,17 +35,16 @@ def test_a_rate_that_is_nearly_zero_has_no_relative_deviation():
     row = next(
         row
         for row in contact_table.of_paper()
-        if (row["condition"], row["symbol"], row["raised"]) == ("phi35", "c", False)
+        if (row.condition, row.symbol, row.raised) == ("phi35", "c", False)
     )
     assert (
-        row["relative"][2] is None
-        and row["relative"][0] is not None
-        and row["absolute_deg_s"][2] == pytest.approx(0.003)
+        row.relative[2] is None
+        and row.relative[0] is not None
+        and row.absolute_deg_s[2] == pytest.approx(0.003)
     )
-    assert contact_table.deviations([0.0] * 3, [0.0, 0.1, 0.0]) == {
-        "absolute_deg_s": [0.0, 0.1, 0.0],
-        "relative": [None] * 3,
-    }
+    assert contact_table.deviations([0.0] * 3, [0.0, 0.1, 0.0]) == Deviations(
+        absolute_deg_s=(0.0, 0.1, 0.0), relative=(None, None, None)
+    )
 
 
 @pytest.mark.parametrize(
@@ -105,7 +101,7 @@ def test_a_case_that_did_not_settle_is_not_counted():
     changed = contact_table.changes(scene, COMPLIANT)
     rates = np.array([[1.0, 1.0, 1.0], [1.1, 1.0, 1.0], [np.nan] * 3, [1.0, 1.0, 0.9]])
     table = contact_table.rows("phi15", changed, rates)
-    assert table[2]["rate_deg_s"] is None and contact_table.largest(table)[
-        "absolute_deg_s"
-    ] == pytest.approx([0.1, 0.0, 0.0])
-    assert contact_table.largest(table, ["clearance"])["relative"] == pytest.approx([0.0, 0.0, 0.1])
+    assert table[2].rate_deg_s is None and contact_table.largest(
+        table
+    ).absolute_deg_s == pytest.approx([0.1, 0.0, 0.0])
+    assert contact_table.largest(table, ["clearance"]).relative == pytest.approx([0.0, 0.0, 0.1])

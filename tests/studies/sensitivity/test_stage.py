@@ -74,45 +74,45 @@ def call(arguments):
 def test_the_command(tiny, tmp_path, monkeypatch):
     result = call(tiny)
     assert result.exit_code == 0 and "320 cases of 3 inputs, 0 did not settle" in result.stdout
-    found = read(tmp_path / "out" / "tiny" / "sensitivity.json")
-    (table,) = found["tables"]  # nothing was calibrated, so no second one
-    assert [row["condition"] for row in table["rows"][::8]] == ["phi15", "phi35", "phi60"] and len(
-        table["rows"]
+    kept = read(tmp_path / "out" / "tiny" / "sensitivity.json")
+    found = sensitivity.STAGE.read(kept)
+    (table,) = found.tables  # nothing was calibrated, so no second one
+    assert [row.condition for row in table.rows[::8]] == ["phi15", "phi35", "phi60"] and len(
+        table.rows
     ) == 24
     assert (
-        max(table["largest"]["absolute_deg_s"]) > 0.0
-        and max(table["largest_clearance"]["absolute_deg_s"]) > 0.0
+        max(table.largest.absolute_deg_s) > 0.0
+        and max(table.largest_clearance.absolute_deg_s) > 0.0
     )
-    for row in table["rows"]:
-        assert list(row["values"]) == list(row["moved"]) == [item.name for item in answers.ALL]
-        assert [row["values"][f"rate_{axis}_deg_s"] for axis in "xyz"] == row["rate_deg_s"]
+    for row in table.rows:
+        assert list(row.values) == list(row.moved) == [item.name for item in answers.ALL]
+        assert [row.values[f"rate_{axis}_deg_s"] for axis in "xyz"] == list(row.rate_deg_s)
     # the first condition, without the clearance
-    attitude = [row["values"]["attitude_y_deg"] for row in table["rows"][:7]]
+    attitude = [row.values["attitude_y_deg"] for row in table.rows[:7]]
     assert (
-        table["most_moved"]["attitude_y_deg"]
+        table.most_moved["attitude_y_deg"]
         >= max(abs(value - attitude[0]) for value in attitude)
         > 0.0
     )
     for shown in (
-        section.table_of_largest(table, found["paper"]),
-        section.table_of_indices(found["sobol"]),
+        section.table_of_largest(table, found.paper),
+        section.table_of_indices(found.sobol),
     ):
         assert tables.terminal(shown) in result.stdout
-    sobol = found["sobol"]
-    assert [item["name"] for item in sobol["quantities"]] == [item.name for item in answers.ALL]
-    assert [item["key"] for item in sobol["inputs"]] == [
+    sobol = found.sobol
+    assert [item.name for item in sobol.quantities] == [item.name for item in answers.ALL]
+    assert [item.key for item in sobol.inputs] == [
         "thrust_offset.misalignment.y",
         "thrust_offset.misalignment.z",
         "friction.dynamic",
     ]
     assert (
-        sobol["inputs"][0]["provenance"] == "a guess"
-        and "zero" in sobol["left_out"]["payload.inertia.yz"]
+        sobol.inputs[0].provenance == "a guess" and "zero" in sobol.left_out["payload.inertia.yz"]
     )
-    about_z = next(item for item in sobol["quantities"] if item["name"] == "rate_z_deg_s")
-    assert np.argmax(about_z["indices"]["total"]) == 0 and about_z["indices"]["total"][1] < 0.1
-    assert [step["base_points"] for step in about_z["convergence"]] == [8, 16, 32, 64]
-    assert about_z["convergence"][-1]["total"] == about_z["indices"]["total"]
+    about_z = next(item for item in sobol.quantities if item.name == "rate_z_deg_s")
+    assert np.argmax(about_z.indices.total) == 0 and about_z.indices.total[1] < 0.1
+    assert [step.base_points for step in about_z.convergence] == [8, 16, 32, 64]
+    assert about_z.convergence[-1].total == about_z.indices.total
     assert {
         f"sensitivity-{name}.{kind}"
         for name in ("indices", "map", "convergence")
@@ -122,10 +122,10 @@ def test_the_command(tiny, tmp_path, monkeypatch):
     assert "misalignment y" in drawn and "-2.355, -2.554, 2.502" in drawn and "0.71 %" in drawn
     assert (
         sensitivity.STAGE.stored(Study(load("tiny"), tmp_path / "out" / "tiny", defaults("tiny")))
-        == found
+        == kept
     )
     monkeypatch.setattr(population, "surrogate", lambda *_: pytest.fail("made again"))
-    assert json.loads(call([*tiny, "--json"]).stdout) == found
+    assert json.loads(call([*tiny, "--json"]).stdout) == kept
     (tmp_path / "mine.toml").unlink()
     assert (
         sensitivity.STAGE.stored(Study(load("tiny"), tmp_path / "out" / "tiny", defaults("tiny")))
@@ -152,15 +152,15 @@ def test_tables_of_warm_rails_have_the_walls_of_the_model(tmp_path, monkeypatch)
     )
     rigid = SimpleNamespace(flexibility=None)
     model = Surrogate(study.scene.replace({"contact.stiffness": 1e9}), None, rigid)
-    made = sensitivity.tables(study, model, sensitivity.Options())
+    made = sensitivity.tables(study, model)
     assert [found.compliance for found in models] == [rigid] * 2 and len(made) == 2
     assert models[1].scene.contact == study.scene.contact
     for table in made:
-        assert {row["symbol"] for row in table["rows"]} == {"baseline", "k", "c", "d", "clearance"}
+        assert {row.symbol for row in table.rows} == {"baseline", "k", "c", "d", "clearance"}
     (compliant,) = sensitivity.tables(
-        study, model._replace(compliance=SimpleNamespace(flexibility=1.0)), sensitivity.Options()
+        study, model._replace(compliance=SimpleNamespace(flexibility=1.0))
     )
-    assert {row["symbol"] for row in compliant["rows"]} == {
+    assert {row.symbol for row in compliant.rows} == {
         "baseline",
         "interface stiffness",
         "clearance",

@@ -54,15 +54,15 @@ def test_without_contact_rates_are_the_moment_impulse_over_the_inertia(tmp_path,
         tmp_path / "reference",
         Settings(workers=1),
     )
-    found = sweeps.run(study, sweeps.Options(angles=8))
-    for launch in found["launches"]:
-        assert launch["cases"] == {"asked": 240, "ok": 240, "refused": 0, "failed": 0}
-        assert launch["not_settled"] == 0
-        for factor in launch["factors"]:
-            assert factor["departs_from_free_at"] is None and factor.get("sides") is None
+    found = sweeps.STAGE.read(sweeps.run(study, sweeps.Options(angles=8)))
+    for launch in found.launches:
+        assert launch.cases == {"asked": 240, "ok": 240, "refused": 0, "failed": 0}
+        assert launch.not_settled == 0
+        for factor in launch.factors:
+            assert factor.departs_from_free_at is None and factor.sides is None
             exact = np.array(
                 [
-                    [by_hand(factor["name"], size, angle) for angle in factors.angles(8)]
+                    [by_hand(factor.name, size, angle) for angle in factors.angles(8)]
                     for size in factors.SIZES
                 ]
             )
@@ -70,29 +70,26 @@ def test_without_contact_rates_are_the_moment_impulse_over_the_inertia(tmp_path,
             speeding = np.linalg.solve(TENSOR, np.cross(turning, turning @ TENSOR)[..., None])[
                 ..., 0
             ]
-            gyroscopic = np.degrees(speeding) * (launch["exit_s"] + 3e-3)
+            gyroscopic = np.degrees(speeding) * (launch.exit_s + 3e-3)
             for axis, name in enumerate(item.name for item in answers.RATES):
                 within = 2e-3 * np.linalg.norm(exact, axis=2) + abs(gyroscopic[..., axis])
-                assert (abs(np.array(factor["values"][name]) - exact[..., axis]) <= within).all()
+                assert (abs(np.array(factor.values[name]) - exact[..., axis]) <= within).all()
                 allowed = within.max()
                 assert allowed < 0.02 * abs(exact).max()
-                assert factor["free"][name] == pytest.approx(
+                assert factor.free[name] == pytest.approx(
                     abs(exact[..., axis]).max(axis=1), rel=1e-5
                 )
-                bent = factor["growth"][name]
+                bent = factor.growth[name]
                 # Roll has a gyroscopic share that grows with the square of the size: 1.5 % of it,
                 # so it may bend a little.
-                assert bent["verdict"].startswith(
+                assert bent.verdict.startswith(
                     "no plateau" if axis == 0 else "no plateau, in proportion"
                 )
-                assert bent["plateau_share"] == 0.0
-                assert bent["slope_before"] == pytest.approx(
+                assert bent.plateau_share == 0.0
+                assert bent.slope_before == pytest.approx(
                     abs(exact[-1, :, axis]).max(), abs=allowed
                 )
-    assert (
-        found["launches"][0]["share_after_exit"] == 0.0
-        and found["launches"][1]["share_after_exit"] > 0.15
-    )
+    assert found.launches[0].share_after_exit == 0.0 and found.launches[1].share_after_exit > 0.15
 
 
 @pytest.mark.parametrize(
@@ -223,23 +220,23 @@ def test_the_command_with_contact(tmp_path, monkeypatch):
     ]
     result = CliRunner().invoke(app, arguments, catch_exceptions=False)
     assert result.exit_code == 0
-    found = read(tmp_path / "tiny" / "sweeps.json")
-    for launch in found["launches"]:
+    kept = read(tmp_path / "tiny" / "sweeps.json")
+    found = sweeps.STAGE.read(kept)
+    for launch in found.launches:
         for table in (sections.table_of_verdicts(launch), sections.table_of_largest(launch)):
             assert tables.terminal(table) in result.stdout
-    given = found["launches"][0]
+    given = found.launches[0]
     assert (
-        given["faces"][:2] == ["rear -y", "rear -z"]
-        and given["faces"][-1] == "front +z"
-        and len(given["faces"]) == 16
+        given.faces[:2] == ("rear -y", "rear -z")
+        and given.faces[-1] == "front +z"
+        and len(given.faces) == 16
     )
-    (factor,) = given["factors"]
-    assert factor["departs_from_free_at"] is not None and factor["growth"]["rate_deg_s"]["verdict"]
+    (factor,) = given.factors
+    assert factor.departs_from_free_at is not None and factor.growth["rate_deg_s"].verdict
     for item in answers.ALL:
-        cases = np.array(factor["values"][item.name], dtype=float)
-        assert (
-            cases.shape == (10, 8)
-            and factor["largest"][item.name] == np.nanmax(abs(cases), axis=1).tolist()
+        cases = np.array(factor.values[item.name], dtype=float)
+        assert cases.shape == (10, 8) and factor.largest[item.name] == tuple(
+            np.nanmax(abs(cases), axis=1)
         )
         row = next(
             row
@@ -251,8 +248,8 @@ def test_the_command_with_contact(tmp_path, monkeypatch):
     assert all(f"{item.label} ({item.unit})" in page for item in answers.ALL)
     # Thrust above the mass centre turns the front down and the rear up; at 90 deg, alpha from +z
     # towards +y, it does so towards +y.
-    seen = factor["sides"]["first"]
-    assert given["faces"][seen[4][0]] in ("rear +z", "front -z") and given["faces"][seen[4][2]] in (
+    seen = factor.sides.first
+    assert given.faces[seen[4][0]] in ("rear +z", "front -z") and given.faces[seen[4][2]] in (
         "rear +y",
         "front -y",
     )
@@ -264,7 +261,7 @@ def test_the_command_with_contact(tmp_path, monkeypatch):
     }
     monkeypatch.setattr(population, "surrogate", lambda *_: pytest.fail("made again"))
     again = CliRunner().invoke(app, [*arguments, "--json"], catch_exceptions=False)
-    assert json.loads(again.stdout) == found
+    assert json.loads(again.stdout) == kept
     too_few = CliRunner().invoke(app, [*arguments[:-1], str(tmp_path / "none"), "--angles", "4"])
     assert (
         too_few.exit_code == 2 and "--angles" in too_few.stderr and not (tmp_path / "none").exists()

@@ -114,4 +114,4 @@ def quantiles(results: Columns, settled: np.ndarray, independent: bool) -> dict[
     with bounds where draws are ``independent``."""
     found = {item.name: spread.quantiles(item.of(results)[settled]) for item in answers.ALL}
     nothing = {} if independent else {"low": None, "high": None}
-    return {name: [row | nothing for row in rows] for name, rows in found.items()}
+    return {name: [vars(row) | nothing for row in rows] for name, rows in found.items()}

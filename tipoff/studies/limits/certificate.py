@@ -8,6 +8,7 @@ the tolerances by them.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -17,9 +18,10 @@ from tipoff.scenes.scene import NOMINAL, Scene
 from tipoff.studies.limits.options import Options
 from tipoff.studies.limits.within import Cases
 from tipoff.studies.populations import draws, exceedance, stratified
+from tipoff.studies.populations.draws import Lost
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.population import Surrogate
-from tipoff.studies.populations.stratified import Runs
+from tipoff.studies.populations.stratified import Bound, Runs
 from tipoff.workspace.study import Study
 
 TIMES = 10  # cases for each case of the search, so that the weights are known well
@@ -36,11 +38,38 @@ class Within(NamedTuple):
     tolerances: dict[str, float]
 
 
+@dataclass(frozen=True, kw_only=True)
+class Stratum(Runs):
+    """The ``runs`` of the reference among the ``cases`` of a stratum."""
+
+    name: str
+    cases: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Certificate(Bound):
+    """The bound from the ``strata`` of all ``cases`` within the ``tolerances`` (SI); ``near``: of a limit,
+    where the second one begins; ``plain``: the bound of as many runs without strata, none above;
+    ``needed``: the number of runs that would certify, None where none does; ``lost``: runs that did not
+    settle."""
+
+    model: str
+    element_size_m: float
+    tolerances: dict[str, float]
+    cases: int
+    near: float
+    strata: tuple[Stratum, ...]
+    certified: bool
+    plain: float
+    needed: int | None
+    lost: tuple[Lost, ...]
+
+
 def made(
     study: Study, options: Options, limits: Sequence[Limit], cases: int, within: Within
-) -> dict:
-    """The bound with its ``strata`` from ``options.certify`` runs of the reference, among ten times
-    the ``cases`` of the search."""
+) -> Certificate:
+    """The bound from ``options.certify`` runs of the reference, among ten times the ``cases`` of the
+    search."""
     assert options.certify is not None
     tried = Cases(study, "limits", within.model, within.tolerances, TIMES * cases, options.seed + 1)
     above, *places = strata(tried.rates(1.0), limits)
@@ -62,22 +91,22 @@ def made(
     events = exceedance.any_above(np.degrees(draws.results(kept).rate), limits)
     near, far = (Runs(len(part), int(part.sum())) for part in np.split(events, [len(chosen[0])]))
     bound = stratified.upper_bound(counts, near, far, options.confidence)
-    return {
-        "model": FINITE_ELEMENTS,
-        "element_size_m": study.settings.coarse_size,
-        "tolerances": within.tolerances,
-        "cases": sum(counts),
-        "near": NEAR,
-        "strata": [
-            {"name": name, "cases": count, **runs._asdict()}
+    return Certificate(
+        **vars(bound),
+        model=FINITE_ELEMENTS,
+        element_size_m=study.settings.coarse_size,
+        tolerances=within.tolerances,
+        cases=sum(counts),
+        near=NEAR,
+        strata=tuple(
+            Stratum(**vars(runs), name=name, cases=count)
             for name, count, runs in zip(STRATA, counts, (Runs(0, 0), near, far))
-        ],
-        **bound._asdict(),
-        "certified": bound.upper <= 1.0 - options.probability,
-        "plain": exceedance.at_most(0, len(events), options.confidence),
-        "needed": needed(counts, near, far, options),
-        "lost": draws.lost(requested, kept),
-    }
+        ),
+        certified=bound.upper <= 1.0 - options.probability,
+        plain=exceedance.at_most(0, len(events), options.confidence),
+        needed=needed(counts, near, far, options),
+        lost=tuple(draws.lost(requested, kept)),
+    )
 
 
 def strata(rates: np.ndarray, limits: Sequence[Limit]) -> tuple[np.ndarray, ...]:

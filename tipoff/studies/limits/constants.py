@@ -1,6 +1,6 @@
 """The uncertainty of the calibrated constants, and the error of the surrogate."""
 
-from typing import NamedTuple
+from dataclasses import dataclass
 
 from tipoff.lowfi.ensemble.derived import law
 from tipoff.lowfi.ensemble.sampling import Points
@@ -46,12 +46,13 @@ def draws(
     ], list(laws)
 
 
-class Margin(NamedTuple):
+@dataclass(frozen=True)
+class Margin:
     """The largest error of the surrogate's settled rates, deg/s, by axis x, y, z and in ``total``;
-    None where nothing is measured. ``source`` names the measured conditions."""
+    None where nothing is measured. ``said`` names the measured conditions."""
 
     deg_s: dict[str, float] | None
-    source: str
+    said: str
 
 
 def _residuals(found: dict) -> list[float]:

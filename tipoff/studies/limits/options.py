@@ -27,17 +27,16 @@ class Options:
     probability: Annotated[
         float,
         between(0.5, below=1.0),
-        typer.Option("--probability", metavar="P", help="Share of launches that keep all limits."),
+        typer.Option(metavar="P", help="Share of launches that keep all limits."),
     ] = 0.99
     confidence: Annotated[
         float,
         between(0.5, below=1.0),
-        typer.Option("--confidence", metavar="C", help="Confidence level of the probability."),
+        typer.Option(metavar="C", help="Confidence level of the probability."),
     ] = 0.95
     cases: Annotated[
         int | None,
         typer.Option(
-            "--cases",
             metavar="N",
             min=1,
             help="Cases of each set of tolerances; default: ten times the smallest possible number.",
@@ -46,20 +45,18 @@ class Options:
     tolerances: Annotated[
         Literal["advised", "table3"],
         typer.Option(
-            "--tolerances",
             help="Tolerances that are scaled together: those that the paper advises, or the ranges of its "
-            "Table 3.",
+            "Table 3."
         ),
     ] = "advised"
     others: Annotated[
         Literal["scene", "zero"],
-        typer.Option("--others", help="Errors that do not vary: values of the scene, or zero."),
+        typer.Option(help="Errors that do not vary: values of the scene, or zero."),
     ] = "scene"
     draws: Annotated[
         int | None,
         between(0, 1000),
         typer.Option(
-            "--draws",
             metavar="N",
             help="Draws of the calibrated constants from their intervals, with --model springs; "
             "default: 8.",
@@ -68,7 +65,6 @@ class Options:
     condition: Annotated[
         str | None,
         typer.Option(
-            "--condition",
             metavar="NAME",
             autocompletion=condition_names,
             help="Named condition; default: the scene.",
@@ -78,7 +74,6 @@ class Options:
         int | None,
         between(20, noun="runs"),  # with fewer, a bound says nothing
         typer.Option(
-            "--certify",
             metavar="N",
             help="Check the tolerances that are scaled together with N runs of the finite-element "
             "reference. The result is an upper bound of the probability above a limit.",

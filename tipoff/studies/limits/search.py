@@ -1,4 +1,4 @@
-"""The largest certified scale of a set of tolerances, with the same draws at every scale.
+"""The largest certified tolerance, as a scale of a set of tolerances, with the same draws at every scale.
 
 ``above(s)`` counts the cases above a limit at scale s; s is certified if the count is at most
 ``allowed``. The search first tries all scales halved from ``most``, which shows whether the count
@@ -6,8 +6,10 @@ grows with the scale. It then bisects between the smallest scale that fails and 
 Certified scales beyond the first failure are reported and not used.
 """
 
+import itertools
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import NamedTuple
 
 FOUND, ALL, SMALL, NONE, LOST = "found", "all", "small", "none", "lost"
@@ -16,40 +18,36 @@ _STEP, _CLOSER = 1.25, 3  # from a start near the result: factors of 1.25, then 
 
 
 class Trial(NamedTuple):
-    """A scale and its count."""
+    """A tolerance and its number of cases above a limit."""
 
-    scale: float
+    tolerance: float
     above: int
 
 
-class Found(NamedTuple):
-    """``scale`` is the largest certified one below ``fails``, the first that fails. ``state``:
-    FOUND; ALL, no searched scale fails; SMALL, all searched scales fail except zero; NONE, zero
-    fails too; LOST, no search, because the model error exceeds a limit."""
+@dataclass(frozen=True)
+class Found:
+    """``tolerance`` is the largest certified one below ``fails``, the first that fails. ``state``:
+    FOUND; ALL, none of the ``trials`` fails; SMALL, all fail except zero; NONE, zero fails too; LOST, no
+    search, because the model error exceeds a limit. ``again``: certified beyond the first that fails;
+    ``falls``: neighbouring trials of which the larger has fewer cases above a limit."""
 
     state: str
-    scale: float | None
-    fails: float | None
-    trials: list[Trial]
-    allowed: int
+    tolerance: float | None = None
+    fails: float | None = None
+    again: tuple[float, ...] = ()
+    falls: tuple[tuple[float, float], ...] = ()
+    trials: tuple[Trial, ...] = ()
 
-    @property
-    def again(self) -> list[float]:
-        """Certified scales beyond the first that fails."""
-        return [
-            trial.scale
-            for trial in self.trials
-            if self.fails is not None and trial.scale > self.fails and trial.above <= self.allowed
-        ]
-
-    @property
-    def falls(self) -> list[tuple[float, float]]:
-        """Neighbouring scales of which the larger has fewer cases above a limit."""
-        return [
-            (one.scale, two.scale)
-            for one, two in zip(self.trials, self.trials[1:])
-            if two.above < one.above
-        ]
+    def times(self, size: float) -> "Found":
+        """The same with tolerances in another unit, of which scale one is ``size``."""
+        return Found(
+            self.state,
+            None if self.tolerance is None else size * self.tolerance,
+            None if self.fails is None else size * self.fails,
+            tuple(size * scale for scale in self.again),
+            tuple((size * one, size * two) for one, two in self.falls),
+            tuple(Trial(size * trial.tolerance, trial.above) for trial in self.trials),
+        )
 
 
 def largest(above: Callable[[float], int], allowed: int, most: float = 1.0) -> Found:
@@ -108,4 +106,12 @@ def _bisected(
 def _found(
     state: str, scale: float | None, fails: float | None, counts: dict[float, int], allowed: int
 ) -> Found:
-    return Found(state, scale, fails, [Trial(*pair) for pair in sorted(counts.items())], allowed)
+    trials = tuple(Trial(*pair) for pair in sorted(counts.items()))
+    fine = (trial.tolerance for trial in trials if trial.above <= allowed)
+    falls = (
+        (one.tolerance, two.tolerance)
+        for one, two in itertools.pairwise(trials)
+        if two.above < one.above
+    )
+    again = tuple(each for each in fine if fails is not None and each > fails)
+    return Found(state, scale, fails, again, tuple(falls), trials)

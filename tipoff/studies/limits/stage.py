@@ -14,58 +14,100 @@ which pilot cases within the certified multiple of the whole set choose.
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from tipoff.mechanics.models import COMPLIANT
-from tipoff.scenes.faults import together
+from tipoff.comparison import order_statistics
+from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.scenes.faults import Fault, SceneError, together
 from tipoff.studies.limits import certificate, constants, search, within
-from tipoff.studies.limits.inputs import DRAWS, checked
+from tipoff.studies.limits.certificate import Certificate
 from tipoff.studies.limits.options import Options
+from tipoff.studies.limits.results import Advised, Drawn, Limits, Magnitude, Map, Pair, Row
 from tipoff.studies.limits.search import Found
 from tipoff.studies.limits.within import ADVISED, SETS, TOGETHER, Cases, Factor
 from tipoff.studies.populations import answers, exceedance, population, spread
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.population import Surrogate
+from tipoff.workspace.options import require
 from tipoff.workspace.progress import Board
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study
 
 NAME = "limits"
+TIMES_NEEDED = 10  # times the fewest cases: some cases may then be above a limit
+DRAWS = 8
 PAIR = ("misalignment", "mass_eccentricity")
 RAYS = 5  # rays between the axes of the map of two tolerances
 _REACH = 5.0  # largest multiple of a whole set
 
 
 def run(study: Study, options: Options = Options()) -> dict:
-    """``rows`` for each factor and for all together, and the ``map`` of two. Raises SceneError for
-    bad input, every fault listed, and StudyError where the payload does not leave without errors
-    either."""
+    """The content of ``Limits``. Raises SceneError for bad input, every fault listed, and StudyError where
+    the payload does not leave without errors either."""
     (limits, cases), _ = together(
         lambda: checked(options), lambda: options.condition and study.condition(options.condition)
     )
     model = population.surrogate(study, options.model, options.condition)
-    margin = _margin(study, options)
+    margin = constants.margin(study, options.model or COMPLIANT)
 
-    def make() -> tuple[dict, list[Path]]:
+    def make() -> tuple[Limits, list[Path]]:
         from tipoff.studies.limits import page
         from tipoff.studies.render.document import with_figures
 
         population.require_settling(model, within.without_errors(model))
         with Board(NAME, 1) as board:
             found = Search(study, options, limits, cases, model, margin, board.callback(NAME)).all()
-            board.finished(NAME, f"{found['evaluations']:,} sets of {cases:,} cases")
+            board.finished(NAME, f"{found.evaluations:,} sets of {cases:,} cases")
         return with_figures(found, page.figures, study.path("figures"))
 
     return STAGE.run(study, options, make)
 
 
-def _margin(study: Study, options: Options) -> constants.Margin:
-    return constants.margin(study, options.model or COMPLIANT)
+def _inputs(study: Study, options: Options) -> dict:
+    return vars(constants.margin(study, options.model or COMPLIANT))
 
 
-STAGE = Stage(NAME, __name__, Options, _margin)
+STAGE = Stage(NAME, __name__, Options, _inputs, result=Limits)
+
+
+def checked(options: Options) -> tuple[list[Limit], int]:
+    """Limits and number of cases. Raises SceneError listing every fault."""
+    return tuple(together(lambda: _limits(options.limits), lambda: _cases(options)))
+
+
+def _limits(texts: tuple[str, ...]) -> list[Limit]:
+    found = exceedance.limits(texts)
+    axes = [limit.axis for limit in found]
+    if twice := sorted({axis for axis in axes if axes.count(axis) > 1}):
+        raise SceneError(
+            [Fault("--limit", axis, "two limits", "one limit for a rate") for axis in twice]
+        )
+    return found
+
+
+def _cases(options: Options) -> int:
+    together(lambda: require(options), lambda: _draws(options))
+    needed = order_statistics.runs_needed(options.probability, options.confidence)
+    if options.cases is None:
+        return TIMES_NEEDED * needed
+    if options.cases >= needed:
+        return options.cases
+    expected = (
+        f"{needed:,} or more, to show a probability of {options.probability:g} at a confidence of "
+        f"{options.confidence:g}"
+    )
+    raise SceneError([Fault("--cases", "value", f"{options.cases:,}", expected)])
+
+
+def _draws(options: Options) -> None:
+    if options.draws is not None and options.draws >= 0 and options.model != SPRINGS:
+        expected = (
+            f"used only with --model {SPRINGS}; the constants of compliant contact are not drawn"
+        )
+        raise SceneError([Fault("--draws", "option", str(options.draws), expected)])
 
 
 class Search:
@@ -81,13 +123,8 @@ class Search:
         margin: constants.Margin,
         report: Callable[[float], None],
     ):
-        self.study, self.options, self.limits, self.cases, self.margin = (
-            study,
-            options,
-            limits,
-            cases,
-            margin,
-        )
+        self.study, self.options, self.limits, self.cases = study, options, limits, cases
+        self.margin = margin
         self.model = model if options.others == "scene" else within.without_errors(model)
         self.factors = within.factors(self.model.scene)
         allowed = exceedance.allowed(cases, options.probability, options.confidence)
@@ -109,7 +146,7 @@ class Search:
         # that starts near its result.
         self.expected = (len(self.factors) + 1) * (14 + 5 * (len(self.overrides) + 2)) + 9 * RAYS
 
-    def all(self) -> dict:
+    def all(self) -> Limits:
         """The whole result."""
         full = {name: {name: factor.most} for name, factor in self.factors.items()}
         full[TOGETHER] = {
@@ -121,25 +158,21 @@ class Search:
             name: together if name == TOGETHER else self._search(tolerances)
             for name, tolerances in full.items()
         }
-        rows = [self._row(name, tolerances, searched[name]) for name, tolerances in full.items()]
-        shown = {
-            "probability": self.options.probability,
-            "confidence": self.options.confidence,
-            "cases": self.cases,
-            "allowed": self.allowed,
+        return Limits(
             **population.answering(self.study, self.model, self.options.condition),
-            "constants": {"draws": len(self.others), "drawn": self.drawn},
-            "margin": {"deg_s": self.margin.deg_s, "said": self.margin.source},
-        }
-        return {
-            "asked": STAGE.plain(self.options),
-            "limits": [limit._asdict() for limit in self.limits],
-            **shown,
-            "rows": rows,
-            "map": self.pairs(searched[PAIR[0]].scale or 0.1),
-            "certificate": self.certified(full[TOGETHER], searched[TOGETHER]),
-            "evaluations": self.evaluations,
-        }
+            asked=self.options,
+            limits=tuple(self.limits),
+            probability=self.options.probability,
+            confidence=self.options.confidence,
+            cases=self.cases,
+            allowed=self.allowed,
+            constants=Drawn(len(self.others), tuple(self.drawn)),
+            margin=self.margin,
+            rows=tuple(self._row(name, full[name], searched[name]) for name in full),
+            map=self.pairs(searched[PAIR[0]].tolerance or 0.1),
+            certificate=self.certified(full[TOGETHER], together),
+            evaluations=self.evaluations,
+        )
 
     def _choose_modes(self, tolerances: dict[str, float]) -> Found:
         """Give the model its number of rail modes, and return the search of the whole set with it. The
@@ -149,7 +182,7 @@ class Search:
         choosing, self.model = self.model, self.model._replace(modes=0)
         while True:
             found = self._search(tolerances)
-            scale = found.fails if found.scale is None else found.scale
+            scale = found.fails if found.tolerance is None else found.tolerance
             assert scale is not None  # a search fails somewhere or certifies a scale
             sizes = {name: scale * size for name, size in tolerances.items()}
             chosen = within.with_modes(choosing, sizes, self.cases, self.options.seed)
@@ -160,18 +193,22 @@ class Search:
                 self.model = chosen  # with the reason from its own result
             return found
 
-    def certified(self, tolerances: dict[str, float], found: Found) -> dict | None:
+    def certified(self, tolerances: dict[str, float], found: Found) -> Certificate | None:
         """The set of ``tolerances`` at the ``found`` scale, checked by the reference; None where that was
         not asked for, or where there is no such scale."""
-        if self.options.certify is None or found.scale is None:
+        if self.options.certify is None or found.tolerance is None:
             return None
         name = self.options.condition
         reference = Surrogate(self.study.condition(name) if name else self.study.scene, None, None)
         if self.options.others != "scene":
             reference = within.without_errors(reference)
-        sizes = {key: found.scale * size for key, size in tolerances.items()}
+        sizes = {key: found.tolerance * size for key, size in tolerances.items()}
         checked_within = certificate.Within(self.model, reference.scene, sizes)
         return certificate.made(self.study, self.options, self.limits, self.cases, checked_within)
+
+    def _of(self, tolerances: dict[str, float], model: Surrogate | None = None) -> Cases:
+        seed = self.options.seed
+        return Cases(self.study, NAME, model or self.model, tolerances, self.cases, seed)
 
     def _above(self, cases: Cases, limits: list[Limit]) -> Callable[[float], int]:
         def count(scale: float) -> int:
@@ -181,77 +218,60 @@ class Search:
 
         return count
 
-    def _of(self, tolerances: dict[str, float], model: Surrogate | None = None) -> Cases:
-        return Cases(
-            self.study, NAME, model or self.model, tolerances, self.cases, self.options.seed
-        )
-
     def _search(self, tolerances: dict[str, float]) -> Found:
         return search.largest(self._above(self._of(tolerances), self.limits), self.allowed)
 
-    def _row(self, name: str, tolerances: dict[str, float], found: Found) -> dict:
+    def _near(self, cases: Cases, limits: list[Limit], start: float, most: float = 1.0) -> Found:
+        if any(limit.deg_s <= 0.0 for limit in limits):
+            return Found(search.LOST)
+        return search.near(self._above(cases, limits), self.allowed, start, most)
+
+    def _row(self, name: str, tolerances: dict[str, float], found: Found) -> Row:
         # The paper advises one of the sets; it advises no multiple of its Table 3.
         advised = 1.0 / _REACH if self.options.tolerances == "advised" else None
         factor = self.factors.get(name) or Factor(
             "all together, multiple of the set", "1", 1.0 / _REACH, 1.0, advised
         )
         size = factor.most / factor.scale
-        row = {
-            "name": name,
-            "words": factor.words,
-            "unit": factor.unit,
-            "most": size,
-            "nominal": _plain(found, size),
-            "advised": self._advised(tolerances, factor),
-            **dict.fromkeys(("constants", "model", "both", "beside")),
-        }
-        if found.scale is None:
+        row = Row(
+            name=name,
+            words=factor.words,
+            unit=factor.unit,
+            most=size,
+            nominal=found.times(size),
+            advised=self._advised(tolerances, factor),
+        )
+        if found.tolerance is None:
             return row
-        cases = self._of(tolerances)
-        row["beside"] = self._beside(cases.values(found.scale))
-        near = [self._near(tolerances, other, self.limits, found.scale) for other in self.others]
-        if near:
-            row["constants"] = [_plain(item, size) for item in near]
-        shrunk = self._shrunk()
+        cases, start = self._of(tolerances), found.tolerance
+        others = [self._of(tolerances, other) for other in self.others]
+        near = [self._near(other, self.limits, start) for other in others]
+        shrunk, model, both = self._shrunk(), None, None
         if shrunk is not None:
-            row["model"] = _plain(self._near(tolerances, None, shrunk, found.scale), size)
+            model = self._near(cases, shrunk, start).times(size)
             if near:
-                worst = min(range(len(near)), key=lambda place: near[place].scale or 0.0)
-                row["both"] = _plain(
-                    self._near(
-                        tolerances, self.others[worst], shrunk, near[worst].scale or found.scale
-                    ),
-                    size,
-                )
-        return row
+                worst = min(range(len(near)), key=lambda place: near[place].tolerance or 0.0)
+                begin = near[worst].tolerance or start
+                both = self._near(others[worst], shrunk, begin).times(size)
+        return replace(
+            row,
+            constants=tuple(item.times(size) for item in near) or None,
+            model=model,
+            both=both,
+            beside=self._beside(cases.values(start)),
+        )
 
-    def _beside(self, values: np.ndarray) -> list[dict]:
+    def _beside(self, values: np.ndarray) -> tuple[Magnitude, ...]:
         """The magnitude that each quantity stays below with the given probability, from ``values``
         (n,k) of ``answers.ALL``."""
-        settled, share = (
-            np.abs(values[np.isfinite(values).all(axis=1)]),
-            (self.options.probability,),
+        settled = np.abs(values[np.isfinite(values).all(axis=1)])
+        quantiles = (
+            spread.quantiles(column, (self.options.probability,))[0] for column in settled.T
         )
-        return [
-            {
-                "name": item.name,
-                "label": item.label,
-                "unit": item.unit,
-                **spread.quantiles(column, share)[0],
-            }
-            for item, column in zip(answers.ALL, settled.T)
-        ]
-
-    def _near(
-        self,
-        tolerances: dict[str, float],
-        model: Surrogate | None,
-        limits: list[Limit],
-        start: float,
-    ) -> Found:
-        if any(limit.deg_s <= 0.0 for limit in limits):
-            return Found(search.LOST, None, None, [], self.allowed)
-        return search.near(self._above(self._of(tolerances, model), limits), self.allowed, start)
+        return tuple(
+            Magnitude(**vars(quantile), **item.named)
+            for item, quantile in zip(answers.ALL, quantiles)
+        )
 
     def _shrunk(self) -> list[Limit] | None:
         """The limits less the error of the model; None where that error is not known or zero."""
@@ -260,62 +280,47 @@ class Search:
             return None
         return [Limit(limit.axis, limit.deg_s - error[limit.axis]) for limit in self.limits]
 
-    def _advised(self, tolerances: dict[str, float], factor: Factor) -> dict | None:
-        """Probability of a rate above its limit at the tolerance that the paper advises."""
+    def _advised(self, tolerances: dict[str, float], factor: Factor) -> Advised | None:
+        """Cases above a limit at the tolerance that the paper advises."""
         if factor.advised is None:
             return None
         count = self._above(self._of(tolerances), self.limits)(factor.advised / factor.most)
         low, high = exceedance.bounds(count, self.cases, self.options.confidence)
-        return {
-            "tolerance": factor.advised / factor.scale,
-            "above": count,
-            "share": count / self.cases,
-            "low": low,
-            "high": high,
-            "certified": count <= self.allowed,
-        }
+        return Advised(
+            tolerance=factor.advised / factor.scale,
+            above=count,
+            share=count / self.cases,
+            low=low,
+            high=high,
+            certified=count <= self.allowed,
+        )
 
-    def pairs(self, start: float) -> dict | None:
+    def pairs(self, start: float) -> Map | None:
         """Certified pairs of two tolerances on rays from one axis to the other; each search starts
         at the last result. None where there is no such pair."""
-        pair, points = [self.factors[name] for name in PAIR], []
+        one, two = (self.factors[name] for name in PAIR)
+        points = []
         for number in range(RAYS + 2):
             angle = 0.5 * math.pi * number / (RAYS + 1)
             shares = [round(part, 12) for part in (math.cos(angle), math.sin(angle))]
             edge = 1.0 / max(shares)  # there one of both reaches its largest searched tolerance
-            ray = {name: share * factor.most for name, share, factor in zip(PAIR, shares, pair)}
-            found = search.near(
-                self._above(self._of(ray), self.limits), self.allowed, min(start, edge), edge
-            )
-            if found.scale is not None:
-                start = found.scale
-                points.append(
-                    {
-                        "tolerances": [
-                            start * share * factor.most / factor.scale
-                            for share, factor in zip(shares, pair)
-                        ],
-                        "state": found.state,
-                    }
+            ray = {
+                name: share * factor.most for name, share, factor in zip(PAIR, shares, (one, two))
+            }
+            found = self._near(self._of(ray), self.limits, min(start, edge), edge)
+            if found.tolerance is not None:
+                start = found.tolerance
+                x, y = (
+                    start * share * factor.most / factor.scale
+                    for share, factor in zip(shares, (one, two))
                 )
+                points.append(Pair((x, y), found.state))
         if not points:
             return None
-        return {
-            "names": list(PAIR),
-            "words": [factor.words for factor in pair],
-            "units": [factor.unit for factor in pair],
-            "advised": [ADVISED[name] / factor.scale for name, factor in zip(PAIR, pair)],
-            "points": points,
-        }
-
-
-def _plain(found: Found, size: float) -> dict:
-    """A search as JSON values in the unit of its factor; scale one is ``size``."""
-    return {
-        "state": found.state,
-        "tolerance": None if found.scale is None else size * found.scale,
-        "fails": None if found.fails is None else size * found.fails,
-        "again": [size * scale for scale in found.again],
-        "falls": [[size * one, size * two] for one, two in found.falls],
-        "trials": [[size * trial.scale, trial.above] for trial in found.trials],
-    }
+        return Map(
+            names=PAIR,
+            words=(one.words, two.words),
+            units=(one.unit, two.unit),
+            advised=(ADVISED[PAIR[0]] / one.scale, ADVISED[PAIR[1]] / two.scale),
+            points=tuple(points),
+        )

@@ -5,19 +5,22 @@ An error of thrust or mass has a uniform direction around the axis.
 A case has the same draws for all sets of tolerances, so that two sets do not differ by chance.
 """
 
+import json
 import math
+from collections.abc import Mapping
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from tipoff import sources
-from tipoff.files import content_hash
+from tipoff.cache import Cache, binary
+from tipoff.files import content_hash, netcdf
 from tipoff.lowfi.ensemble import columns, pilot
 from tipoff.lowfi.ensemble.derived import Derived, Numbers, around_zero, friction, law
 from tipoff.lowfi.ensemble.threads import PIECE, completed
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
-from tipoff.studies.limits import results
 from tipoff.studies.populations import answers
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.populations.random_factors import ERRORS, pointing
@@ -153,4 +156,40 @@ class Cases:
             return np.column_stack([quantity.of(found) for quantity in answers.ALL])
 
         sizes = {name: scale * size for name, size in self._tolerances.items()}
-        return results.kept(scale, sizes).get_or_make(path, key, "its cases are run again", make)
+        return kept(scale, sizes).get_or_make(path, key, "its cases are run again", make)
+
+
+def kept(scale: float, tolerances: Mapping[str, float]) -> Cache[np.ndarray]:
+    """Cache of values (n,k) of ``answers.ALL``, with ``scale`` and the ``tolerances`` (SI) at that
+    scale as attributes of each file."""
+    return binary(lambda values: _content(values, scale, tolerances), _load)
+
+
+def _content(
+    values: np.ndarray, scale: float, tolerances: Mapping[str, float]
+) -> bytes | memoryview:
+    import xarray
+
+    found = xarray.Dataset(
+        {
+            "value": (
+                ("case", "quantity"),
+                values,
+                {"long_name": "quantity of a case after the exit, NaN where it did not settle"},
+            )
+        },
+        {
+            "case": np.arange(len(values)),
+            "quantity": [item.name for item in answers.ALL],
+            "units": ("quantity", [item.unit for item in answers.ALL]),
+        },
+        {"scale": scale, "tolerances_si": json.dumps(dict(tolerances))},
+    )
+    return netcdf(found)
+
+
+def _load(path: Path) -> np.ndarray:
+    import xarray
+
+    with xarray.open_dataset(path, engine="h5netcdf") as found:
+        return found["value"].transpose("case", "quantity").values

@@ -1,13 +1,23 @@
 """Random errors on the page and for the terminal: distributions, probabilities above limits,
 convergence, the readings of the paper's Table 3, and both surrogates."""
 
+from collections.abc import Sequence
+from functools import partial
+
 import numpy as np
 
+from tipoff.studies.montecarlo.results import (
+    Compared,
+    Converging,
+    Distribution,
+    MonteCarlo,
+    ReadingRow,
+)
 from tipoff.studies.populations import population
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
-from tipoff.studies.render.table import Cells, Column, Table, estimate, percent, span
+from tipoff.studies.render.table import Column, Table, estimate, percent, span
 from tipoff.studies.render.uncertain import LEAST, number, uncertain
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
@@ -41,19 +51,19 @@ _PAPER = (
 _DIFFERENT = 0.01  # probability by chance, below which two readings are called different
 
 
-def figures(found: dict) -> list[Figure]:
+def figures(found: MonteCarlo) -> list[Figure]:
     """Each figure with its caption."""
     made = [
-        Figure(_histograms(found), _HISTOGRAMS.format(paper_cases=found["paper_cases"])),
+        Figure(_histograms(found), _HISTOGRAMS.format(paper_cases=found.paper_cases)),
         Figure(_convergence(found), _CONVERGENCE),
     ]
-    models = found["models"]
-    if models and models["quantities"]:
-        made.append(Figure(_models(models), _MODELS.format(cases=models["cases"])))
+    models = found.models
+    if models and models.quantities:
+        made.append(Figure(_models(models), _MODELS.format(cases=models.cases)))
     return made
 
 
-def draw(found: dict) -> list[Part]:
+def draw(found: MonteCarlo) -> list[Part]:
     """The section."""
     histograms, convergence, *models = figures(found)
     return [
@@ -71,31 +81,31 @@ def draw(found: dict) -> list[Part]:
     ]
 
 
-def summary(found: dict) -> list[Part]:
+def summary(found: MonteCarlo) -> list[Part]:
     """Quantiles and probabilities above limits, for the terminal."""
-    lines = [*_run(found), *_different(found["readings"]), *_model_error(found)]
+    lines = [*_run(found), *_different(found.readings), *_model_error(found)]
     return [Bullets(lines), table_of_quantities(found), table_of_tails(found)]
 
 
-def _run(found: dict) -> list[str]:
+def _run(found: MonteCarlo) -> list[str]:
     """What was run."""
-    counts = found["counts"]
+    counts = found.counts
     return [
         f"{counts['asked']:,} cases = {counts['ok']:,} ok + {counts['refused']:,} refused + "
-        f"{counts['failed']:,} failed; {found['settled']:,} settled; seed {found['asked']['seed']}",
+        f"{counts['failed']:,} failed; {found.settled:,} settled; seed {found.asked.seed}",
         population.model_line(found),
-        f"random errors: {found['reading']}",
+        f"random errors: {found.reading}",
     ]
 
 
-def _different(readings: list[dict]) -> list[str]:
+def _different(readings: Sequence[ReadingRow]) -> list[str]:
     """Readings whose rates differ from those of the study, and those with too few cases to tell."""
-    others = [row for row in readings if not row["same"]]
-    few = [row["reading"] for row in others if row["distance"] is None]
+    others = [row for row in readings if not row.same]
+    few = [row.reading for row in others if row.distance is None]
     different = [
-        f"{row['reading']} (distance {row['distance']:.3f})"
+        f"{row.reading} (distance {row.distance:.3f})"
         for row in others
-        if row["distance"] is not None and row["chance"] < _DIFFERENT
+        if row.distance is not None and row.chance is not None and row.chance < _DIFFERENT
     ]
     lines = [f"readings with too few settled cases to compare: {'; '.join(few)}"] if few else []
     return [
@@ -104,200 +114,169 @@ def _different(readings: list[dict]) -> list[str]:
     ]
 
 
-def _model_error(found: dict) -> list[str]:
+def _model_error(found: MonteCarlo) -> list[str]:
     """The difference between springs and compliant contact in the rates, or why it is not known."""
-    if not (models := found["models"]):
-        return [f"springs against compliant contact: not compared, {found['models_missing']}"]
-    compliant = population.model_words(models | {"model": "compliant contact"})
-    what = f"springs against {compliant}, the same {models['cases']:,} cases"
-    if not models["quantities"]:
+    if not (models := found.models):
+        return [f"springs against compliant contact: not compared, {found.models_missing}"]
+    compliant = population.with_modes("compliant contact", models.modes, models.modes_why)
+    what = f"springs against {compliant}, the same {models.cases:,} cases"
+    if not models.quantities:
         return [f"{what}: no case settled in both models"]
     rates = ", ".join(
-        f"{row['label']} {row['root_mean_square']:.3g} {row['unit']}"
-        for row in models["quantities"]
-        if row["unit"] == "deg/s"
+        f"{row.label} {row.root_mean_square:.3g} {row.unit}"
+        for row in models.quantities
+        if row.unit == "deg/s"
     )
     return [f"{what}: root mean square difference {rates}"]
 
 
-def _histograms(found: dict) -> Chart:
+def _histograms(found: MonteCarlo) -> Chart:
     panels = []
-    for item in found["quantities"]:
-        if item["name"] not in (*_RATES, "rate_deg_s"):
+    for item in found.quantities:
+        if item.name not in (*_RATES, "rate_deg_s"):
             continue
-        edges, bars = np.repeat(item["histogram"]["edges"], 2), item["histogram"]
-        outline = {name: np.pad(np.repeat(bars[name], 2), 1) for name in ("first", "all")}
-        lines = [
-            Line(
-                edges,
-                outline["first"],
-                f"first {found['paper_cases']:,} cases",
-                AMBER,
-                4.0,
-                opacity=0.55,
-            ),
-            Line(edges, outline["all"], f"all {found['counts']['asked']:,} cases", NAVY, 1.4),
-        ]
-        panels.append(
-            Panel(
-                item["label"],
-                f"{item['label']} ({item['unit']})",
-                f"density (1/({item['unit']}))",
-                lines,
-            )
+        edges = np.repeat(item.histogram.edges, 2)
+        first, whole = (
+            np.pad(np.repeat(bars, 2), 1) for bars in (item.histogram.first, item.histogram.all)
         )
+        lines = [
+            Line(edges, first, f"first {found.paper_cases:,} cases", AMBER, 4.0, opacity=0.55),
+            Line(edges, whole, f"all {found.counts['asked']:,} cases", NAVY, 1.4),
+        ]
+        panels.append(Panel(item.label, item.title, f"density (1/({item.unit}))", lines))
     return Chart("montecarlo-histograms", panels, columns=2, height=280)
 
 
-def _convergence(found: dict) -> Chart:
-    labels = {item["name"]: item["label"] for item in found["quantities"]}
+def _convergence(found: MonteCarlo) -> Chart:
+    labels = {item.name: item.label for item in found.quantities}
     panels = [
         panel
-        for name in dict.fromkeys(row["name"] for row in found["convergence"])
+        for name in dict.fromkeys(row.name for row in found.convergence)
         for panel in _converging(
-            labels[name], [row for row in found["convergence"] if row["name"] == name]
+            labels[name], [row for row in found.convergence if row.name == name]
         )
     ]
     return Chart("montecarlo-convergence", panels, columns=2, height=320)
 
 
-def _converging(label: str, found: list[dict]) -> list[Panel]:
+def _converging(label: str, found: list[Converging]) -> list[Panel]:
     """Quantiles of a rate over the number of cases, and half the widths of their bounds."""
     values, widths = [], []
     for share, (colour, dash, marker) in _LOOKS.items():
-        rows = [row for row in found if row["share"] == share]
-        cases = [row["cases"] for row in rows]
-        values.append(
-            Line(
-                cases,
-                [row["value"] for row in rows],
-                f"{share:.0%} below",
-                colour,
-                1.8,
-                dash,
-                marker=marker,
-                size=6.0,
-            )
+        rows = [row for row in found if row.share == share]
+        line = partial(
+            Line,
+            name=f"{share:.0%} below",
+            colour=colour,
+            width=1.8,
+            dash=dash,
+            marker=marker,
+            size=6.0,
         )
-        bounded = [row for row in rows if None not in (row["low"], row["high"])]
-        counts = [row["cases"] for row in bounded]
-        values += [
-            Line(counts, [row[side] for row in bounded], "", colour, 1.0, ":", legend=False)
-            for side in ("low", "high")
+        shown = np.array([row.value for row in rows], dtype=float)
+        values.append(line([row.cases for row in rows], shown))
+        bounded = [
+            (row.cases, row.low, row.high)
+            for row in rows
+            if row.low is not None and row.high is not None
         ]
-        halves = [0.5 * (row["high"] - row["low"]) for row in bounded]
-        widths.append(
-            Line(counts, halves, f"{share:.0%} below", colour, 1.8, dash, marker=marker, size=6.0)
-        )
+        counts = [count for count, _, _ in bounded]
+        values += [
+            Line(counts, ends, "", colour, 1.0, ":", legend=False)
+            for ends in ([low for _, low, _ in bounded], [high for _, _, high in bounded])
+        ]
+        halves = [0.5 * (high - low) for _, low, high in bounded]
+        widths.append(line(counts, halves))
         if halves:
             ends = [counts[0], counts[-1]]
-            widths.append(
-                Line(
-                    ends,
-                    [halves[-1] * (counts[-1] / count) ** 0.5 for count in ends],
-                    "falling as 1/√n",
-                    GREY,
-                    1.0,
-                )
-            )
+            falling = [halves[-1] * (counts[-1] / count) ** 0.5 for count in ends]
+            widths.append(Line(ends, falling, "falling as 1/√n", GREY, 1.0))
     return [
         Panel(f"Quantiles of the {label}", "cases", f"{label} (deg/s)", values, log_x=True),
         Panel("Half the width of the bounds", "cases", "half width (deg/s)", widths, log=True),
     ]
 
 
-def _models(models: dict) -> Chart:
+def _models(models: Compared) -> Chart:
     panels = []
     for name in _RATES:
-        pair, label = (
-            models["pairs"][name],
-            next(row["label"] for row in models["quantities"] if row["name"] == name),
-        )
+        pair = models.pairs[name]
+        label = next(row.label for row in models.quantities if row.name == name)
         low, high = min(map(min, pair.values())), max(map(max, pair.values()))
-        cases = Line(
-            pair["springs"],
-            pair["compliant"],
-            "a case",
-            NAVY,
-            dash="",
-            marker="o",
-            size=3.5,
-            opacity=0.45,
-        )
-        panels.append(
-            Panel(
-                label,
-                "springs (deg/s)",
-                "compliant (deg/s)",
-                [Line([low, high], [low, high], "both agree", GREY, 1.2), cases],
-            )
-        )
+        both = pair["springs"], pair["compliant"]
+        lines = [
+            Line([low, high], [low, high], "both agree", GREY, 1.2),
+            Line(*both, "a case", NAVY, dash="", marker="o", size=3.5, opacity=0.45),
+        ]
+        panels.append(Panel(label, "springs (deg/s)", "compliant (deg/s)", lines))
     return Chart("montecarlo-models", panels, columns=3, height=300)
 
 
-def table_of_quantities(found: dict) -> Table:
+def table_of_quantities(found: MonteCarlo) -> Table:
     """Standard deviation and quantiles of each quantity."""
     rows = []
-    for item in found["quantities"]:
-        quantiles = {row["share"]: row for row in item["quantiles"]}
+    for item in found.quantities:
+        quantiles = {row.share: row for row in item.quantiles}
         shown = [estimate(quantiles[share]) for share in _LOOKS]
         rows.append((*_name_and_sd(item), *shown))
     below = [f"{percent(share, 'g')} % below" for share in _LOOKS]
     return Table(["quantity", "sd", *below], rows, (_BOUNDS,))
 
 
-def _name_and_sd(item: dict) -> tuple[str, str]:
-    return f"{item['label']} ({item['unit']})", uncertain(item["sd"], item["sd_error"])
+def _name_and_sd(item: Distribution) -> tuple[str, str]:
+    return item.title, uncertain(item.sd, item.sd_error)
 
 
-def _quantiles(found: dict) -> Table:
+def _quantiles(found: MonteCarlo) -> Table:
     """Of all cases, and in a second row of the paper's number of cases."""
-    shares = [row["share"] for row in found["quantities"][0]["quantiles"][1:]]
+    shares = [row.share for row in found.quantities[0].quantiles[1:]]
     rows = []
-    for item in found["quantities"]:
+    for item in found.quantities:
         first = (
-            map(estimate, item["first"][1:])
-            if item["first"]
+            map(estimate, item.first[1:])
+            if item.first
             else ["none settled", *[""] * (len(shares) - 1)]
         )
         name, sd = _name_and_sd(item)
         rows += [
-            (name, found["counts"]["asked"], sd, *map(estimate, item["quantiles"][1:])),
-            ("", found["paper_cases"], "", *first),
+            (name, found.counts["asked"], sd, *map(estimate, item.quantiles[1:])),
+            ("", found.paper_cases, "", *first),
         ]
     below = [f"{percent(share, 'g')} % below" for share in shares]
     return Table(["quantity", "cases", "sd", *below], rows, (_BOUNDS,), dense=True)
 
 
-def table_of_tails(found: dict) -> Table:
+def table_of_tails(found: MonteCarlo) -> Table:
     """Probability above each limit, with bounds."""
-    columns: Cells = (
-        ("limit", "limit"),
-        ("cases above", lambda row: f"{row['above']:,} of {row['cases']:,}"),
-        ("probability above", "share"),
-        ("95 % bounds (Clopper and Pearson)", lambda row: span(row["low"], row["high"])),
-    )
     note = "The magnitude of a rate is compared. A case that did not settle counts as above."
-    return Table.of(found["tails"], columns, notes=(note,))
+    return Table.of_records(
+        found.tails,
+        "limit",
+        ("cases above", lambda row: f"{row.above:,} of {row.cases:,}"),
+        "share",
+        ("95 % bounds (Clopper and Pearson)", lambda row: span(row.low, row.high)),
+        notes=(note,),
+    )
 
 
-def _readings(found: dict) -> Table:
-    shares, rows = (0.5, 0.95, 0.99, 0.9973), []
-    for item in found["readings"]:
-        name = item["reading"] + (" (that of the study, drawn again)" if item["same"] else "")
-        if item["rates"] is None:
-            settled = f"{item['settled'] or 'none'} settled"
+def _readings(found: MonteCarlo) -> Table:
+    shares = (0.5, 0.95, 0.99, 0.9973)
+    rows: list[tuple] = []
+    for item in found.readings:
+        name = item.reading + (" (that of the study, drawn again)" if item.same else "")
+        if item.rates is None:
+            settled = f"{item.settled or 'none'} settled"
             rows.append((name, settled, *[""] * (4 + len(shares))))
             continue
-        *axes, total = item["rates"]
-        quantiles = {row["share"]: row for row in total["quantiles"]}
+        *axes, total = item.rates
+        quantiles = {row.share: row for row in total.quantiles}
         rows.append(
             (
                 name,
-                *(rate["sd"] for rate in axes),
+                *(rate.sd for rate in axes),
                 *(estimate(quantiles[share]) for share in shares),
-                item["distance"],
-                number(item["chance"], ".2g", LEAST),
+                item.distance,
+                number(item.chance, ".2g", LEAST),
             )
         )
     heads: tuple[Column | str, ...] = (
@@ -307,15 +286,15 @@ def _readings(found: dict) -> Table:
         "distance",
         "by chance",
     )
-    note = _READINGS.format(cases=found["readings"][0]["cases"])
+    note = _READINGS.format(cases=found.readings[0].cases)
     return Table(heads, rows, (note,), dense=True)
 
 
-def _apart(found: dict) -> list[Part]:
-    if not (models := found["models"]):
-        return [f"Springs and compliant contact are not compared: {found['models_missing']}."]
-    if not models["quantities"]:
-        return [f"No case of {models['cases']:,} settled in both models."]
+def _apart(found: MonteCarlo) -> list[Part]:
+    if not (models := found.models):
+        return [f"Springs and compliant contact are not compared: {found.models_missing}."]
+    if not models.quantities:
+        return [f"No case of {models.cases:,} settled in both models."]
     heads: tuple[Column | str, ...] = (
         "quantity",
         "difference, root mean square",
@@ -330,12 +309,12 @@ def _apart(found: dict) -> list[Part]:
     )
     rows = [
         (
-            f"{row['label']} ({row['unit']})",
-            row["root_mean_square"],
-            *map(estimate, row["quantiles"]),
-            row["most"],
-            *(estimate(row[name][place]) for place in (1, 2) for name in ("springs", "compliant")),
+            row.title,
+            row.root_mean_square,
+            *map(estimate, row.quantiles),
+            row.most,
+            *(estimate(each[place]) for place in (1, 2) for each in (row.springs, row.compliant)),
         )
-        for row in models["quantities"]
+        for row in models.quantities
     ]
     return [Fold("Both surrogates on the same cases", [Table(heads, rows, dense=True)])]

@@ -7,17 +7,29 @@ import numpy as np
 
 from tipoff.lowfi.ensemble import twins
 from tipoff.lowfi.ensemble.columns import Columns
+from tipoff.studies.montecarlo.results import (
+    Agreement,
+    Apart,
+    ByContacts,
+    ByModes,
+    CorrectedTail,
+    DrawnPairs,
+    Errors,
+    Optimal,
+    OwnModes,
+    Statistic,
+)
 from tipoff.studies.populations import (
     allocation,
     answers,
     control_variate,
     exceedance,
+    own_modes,
     poststratified,
     spread,
 )
 from tipoff.studies.populations.control_variate import Estimate, Pairs
 from tipoff.studies.populations.draws import Draws
-from tipoff.studies.populations.own_modes import OwnModes
 from tipoff.studies.populations.population import Population
 
 RATES = (*answers.RATES, answers.TOTAL_RATE)
@@ -35,51 +47,49 @@ def _part(found: Columns, which: slice | np.ndarray) -> Columns:
     return Columns(*[values[which] for values in found])
 
 
-def _apart(quantity: answers.Quantity, one: Columns, other: Columns) -> dict | None:
-    """Quantiles of the magnitude of the difference, its mean, and the correlation, over cases that
-    settled in both; None without one."""
+def _apart(quantity: answers.Quantity, one: Columns, other: Columns) -> Apart | None:
+    """The difference over cases that settled in both; None without one."""
     values, others = quantity.of(one), quantity.of(other)
     both = np.isfinite(values) & np.isfinite(others)
     if not both.any():
         return None
     apart = (values - others)[both]
     size = np.abs(apart)
-    return {
-        "draws": int(both.sum()),
-        "mean": float(apart.mean()),
-        "median": float(np.median(size)),
-        "95": float(np.quantile(size, 0.95)),
-        "most": float(size.max()),
-        "correlation": control_variate.correlation(values[both], others[both]),
-    }
+    return Apart(
+        draws=int(both.sum()),
+        mean=float(apart.mean()),
+        median=float(np.median(size)),
+        most_95=float(np.quantile(size, 0.95)),
+        most=float(size.max()),
+        correlation=control_variate.correlation(values[both], others[both]),
+    )
 
 
-def errors(quantity: answers.Quantity, drawn: Draws, whole: Population) -> dict:
-    """Differences from the reference: of the surrogate on the ``same_mesh``, of the ``population``
-    that is studied, of the reference on the finer mesh, ``mesh``, and of the population from that,
-    ``finer``."""
+def errors(quantity: answers.Quantity, drawn: Draws, whole: Population) -> Errors:
+    """Differences from the reference."""
     count, fine = len(drawn.reference.exit_time), len(drawn.fine.exit_time)
     cases = _part(whole.results, slice(count))
-    return {
-        "name": quantity.name,
-        "label": quantity.label,
-        "unit": quantity.unit,
-        "same_mesh": _apart(quantity, drawn.surrogate, drawn.reference),
-        "population": _apart(quantity, cases, drawn.reference),
-        "mesh": _apart(quantity, _part(drawn.reference, slice(fine)), drawn.fine),
-        "finer": _apart(quantity, _part(cases, slice(fine)), drawn.fine),
-    }
+    return Errors(
+        **quantity.named,
+        same_mesh=_apart(quantity, drawn.surrogate, drawn.reference),
+        population=_apart(quantity, cases, drawn.reference),
+        mesh=_apart(quantity, _part(drawn.reference, slice(fine)), drawn.fine),
+        finer=_apart(quantity, _part(cases, slice(fine)), drawn.fine),
+    )
 
 
-def by_contacts(drawn: Draws, gate: float) -> list[dict]:
-    """The largest error (deg/s) of any rate of a draw on the same mesh, by the number of contacts,
-    and the share of draws within the ``gate`` (deg/s); the last row has all draws."""
+def by_contacts(drawn: Draws, gate: float) -> list[ByContacts]:
+    """The largest error (deg/s) of any rate of a draw on the same mesh, by the number of contacts;
+    the last row has all draws."""
     error = _largest(drawn.surrogate, drawn.reference)
     number = np.minimum(drawn.contacts, _MOST_CONTACTS)
     groups = [(str(count), number == count) for count in range(_MOST_CONTACTS)]
     groups += [(f"{_MOST_CONTACTS} or more", number == _MOST_CONTACTS)]
     groups += [("all", np.ones_like(error, dtype=bool))]
-    return [{"contacts": name, **_agreement(error[inside], gate)} for name, inside in groups]
+    return [
+        ByContacts(**vars(_agreement(error[inside], gate)), contacts=name)
+        for name, inside in groups
+    ]
 
 
 def _largest(one: Columns, other: Columns) -> np.ndarray:
@@ -87,55 +97,45 @@ def _largest(one: Columns, other: Columns) -> np.ndarray:
     return np.degrees(twins.change(one.rate, other.rate))
 
 
-def _agreement(error: np.ndarray, gate: float) -> dict:
-    """Median and largest ``error`` (deg/s) of draws that settled, and their share within the ``gate``
-    (deg/s) with its bounds."""
+def _agreement(error: np.ndarray, gate: float) -> Agreement:
+    """That of draws with an ``error`` (deg/s), NaN where one did not settle."""
     found = error[np.isfinite(error)]
-    low, high = (
-        exceedance.bounds(int((found <= gate).sum()), found.size, spread.CONFIDENCE)
-        if found.size
-        else (None, None)
+    within, some = int((found <= gate).sum()), bool(found.size)
+    low, high = exceedance.bounds(within, found.size, spread.CONFIDENCE) if some else (None, None)
+    return Agreement(
+        draws=int(error.size),
+        settled=int(found.size),
+        median=float(np.median(found)) if some else None,
+        most=float(found.max()) if some else None,
+        within_gate=float((found <= gate).mean()) if some else None,
+        low=low,
+        high=high,
     )
-    return {
-        "draws": int(error.size),
-        "settled": int(found.size),
-        "median": float(np.median(found)) if found.size else None,
-        "most": float(found.max()) if found.size else None,
-        "within_gate": float((found <= gate).mean()) if found.size else None,
-        "low": low,
-        "high": high,
-    }
 
 
-def by_modes(own: OwnModes, drawn: Draws, gate: float) -> dict:
-    """The draws by rail modes. ``rows``: agreement as in ``by_contacts``, ``modes`` and processor
-    seconds of a single run and of a case of a population, with one number in every draw and, last,
-    with those that each draw chooses.
-    ``choosing``: how many draws choose some modes, ``choosing_all`` those that the rails have.
-    ``moved_deg_s``: largest change of a rate by the chosen modes, median over the draws that choose
-    some; ``moved_by_clearance_deg_s``: the same by ``clearance_change_m``; ``more_by_clearance``:
-    how many of these draws the clearance moves more."""
+def by_modes(own: own_modes.OwnModes, drawn: Draws, gate: float) -> OwnModes:
+    """The draws by rail modes, with agreement as in ``by_contacts``."""
     chose = own.chosen > 0
     with_modes, without = (_part(series.results, chose) for series in (own.own, own.same[0]))
     by_choice, by_clearance = (_largest(with_modes, other) for other in (without, own.wider))
-    return {
-        "held": own.held,
-        "choosing": int(chose.sum()),
-        "choosing_all": int((own.chosen == own.held).sum()),
-        "moved_deg_s": _median(by_choice),
-        "clearance_change_m": own.clearance_change,
-        "moved_by_clearance_deg_s": _median(by_clearance),
-        "more_by_clearance": int((by_clearance > by_choice).sum()),
-        "rows": [
-            {
-                "modes": series.modes,
-                "cpu_s": series.cpu_s,
-                "case_s": series.case_s,
-                **_agreement(_largest(series.results, drawn.reference), gate),
-            }
+    return OwnModes(
+        held=own.held,
+        choosing=int(chose.sum()),
+        choosing_all=int((own.chosen == own.held).sum()),
+        moved_deg_s=_median(by_choice),
+        clearance_change_m=own.clearance_change,
+        moved_by_clearance_deg_s=_median(by_clearance),
+        more_by_clearance=int((by_clearance > by_choice).sum()),
+        rows=tuple(
+            ByModes(
+                **vars(_agreement(_largest(series.results, drawn.reference), gate)),
+                modes=series.modes,
+                cpu_s=series.cpu_s,
+                case_s=series.case_s,
+            )
             for series in (*own.same, own.own)
-        ],
-    }
+        ),
+    )
 
 
 def _median(values: np.ndarray) -> float | None:
@@ -144,14 +144,12 @@ def _median(values: np.ndarray) -> float | None:
     return float(np.median(found)) if found.size else None
 
 
-def of(quantity: answers.Quantity, drawn: Draws, whole: Population) -> list[dict]:
+def of(quantity: answers.Quantity, drawn: Draws, whole: Population) -> list[Statistic]:
     """Mean, standard deviation and quantiles of ``quantity``, corrected."""
     both = both_settled(drawn, whole)
     values = quantity.of(whole.results)
     paired = Pairs(
-        quantity.of(drawn.reference)[both],
-        values[: both.size][both],
-        values[whole.settled],
+        quantity.of(drawn.reference)[both], values[: both.size][both], values[whole.settled]
     )
     shares = {f"{100.0 * share:g} % below": share for share in _QUANTILES}
     made: dict[str, Callable[[Pairs, float], Estimate]] = {
@@ -159,20 +157,22 @@ def of(quantity: answers.Quantity, drawn: Draws, whole: Population) -> list[dict
         "standard deviation": control_variate.standard_deviation,
         **{words: _quantile(share) for words, share in shares.items()},
     }
+    found = {words: estimate(paired, spread.CONFIDENCE) for words, estimate in made.items()}
     return [
-        {
-            "name": quantity.name,
-            "label": quantity.label,
-            "unit": quantity.unit,
-            "statistic": words,
-            "share": shares.get(words),
-            **_row(estimate(paired, spread.CONFIDENCE), paired.reference.size),
-        }
-        for words, estimate in made.items()
+        Statistic(
+            **vars(each),
+            **quantity.named,
+            statistic=words,
+            share=shares.get(words),
+            equivalent_runs=control_variate.equivalent_runs(each, paired.reference.size),
+        )
+        for words, each in found.items()
     ]
 
 
-def optimal(quantity: answers.Quantity, drawn: Draws, whole: Population, cost_ratio: float) -> dict:
+def optimal(
+    quantity: answers.Quantity, drawn: Draws, whole: Population, cost_ratio: float
+) -> Optimal:
     """The correlation of both models in ``quantity``, and the optimal allocation of runs for its mean
     at a ``cost_ratio`` of the reference to the surrogate."""
     both = both_settled(drawn, whole)
@@ -180,14 +180,14 @@ def optimal(quantity: answers.Quantity, drawn: Draws, whole: Population, cost_ra
         quantity.of(drawn.reference)[both], quantity.of(whole.results)[: both.size][both]
     )
     best = allocation.optimal(found or 0.0, cost_ratio)
-    return {"name": quantity.name, "correlation": found, **best._asdict()}
+    return Optimal(**vars(best), name=quantity.name, correlation=found)
 
 
 def _quantile(share: float) -> Callable[[Pairs, float], Estimate]:
     return lambda pairs, confidence: poststratified.quantile(pairs, share, confidence)
 
 
-def tail(limit: exceedance.Limit, reference: Columns, population_: Columns) -> dict:
+def tail(limit: exceedance.Limit, reference: Columns, population_: Columns) -> CorrectedTail:
     """Probability of a rate above ``limit``, corrected; a case that did not settle counts as
     above."""
     above = exceedance.above(np.degrees(population_.rate), limit)
@@ -196,28 +196,25 @@ def tail(limit: exceedance.Limit, reference: Columns, population_: Columns) -> d
     found = poststratified.probability(
         event, first, float(above.mean()), above.size, spread.CONFIDENCE
     )
-    return {
-        "limit": limit.words,
-        **limit._asdict(),
-        "above": int(event.sum()),
-        "missed": int((event & ~first).sum()),
-        "false": int((first & ~event).sum()),
-        **_row(found, event.size),
-    }
+    return CorrectedTail(
+        **vars(limit),
+        **vars(found),
+        limit=limit.words,
+        above=int(event.sum()),
+        missed=int((event & ~first).sum()),
+        false=int((first & ~event).sum()),
+        equivalent_runs=control_variate.equivalent_runs(found, event.size),
+    )
 
 
-def _row(found: Estimate, runs: int) -> dict:
-    return {**found._asdict(), "equivalent_runs": control_variate.equivalent_runs(found, runs)}
-
-
-def pairs(drawn: Draws, whole: Population) -> dict:
-    """Rates of both models (deg/s) and the contacts of every draw that settled in both."""
+def pairs(drawn: Draws, whole: Population) -> DrawnPairs:
+    """Rates of both models and the contacts of every draw that settled in both."""
     both = both_settled(drawn, whole)
     rates = {
         item.name: {
-            "reference": item.of(drawn.reference)[both].tolist(),
-            "surrogate": item.of(whole.results)[: both.size][both].tolist(),
+            "reference": tuple(item.of(drawn.reference)[both].tolist()),
+            "surrogate": tuple(item.of(whole.results)[: both.size][both].tolist()),
         }
         for item in RATES
     }
-    return {"contacts": drawn.contacts[both].tolist(), "rates": rates}
+    return DrawnPairs(contacts=tuple(drawn.contacts[both].tolist()), rates=rates)

@@ -1,14 +1,20 @@
 """The random errors checked by the reference, on the page and for the terminal."""
 
+from collections.abc import Sequence
+from operator import attrgetter
+
 from tipoff.highfi.rail.step_cost import in_words
-from tipoff.studies.montecarlo import own_modes_page
+from tipoff.lowfi.numerics import AUTO
+from tipoff.studies.montecarlo.results import ByModes, Tails
 from tipoff.studies.populations import population
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
-from tipoff.studies.render.table import Cells, Column, Table, estimate, number, percent, span
+from tipoff.studies.render.table import Column, Table, bounded, estimate, number, percent, span
+from tipoff.workspace.words import counted
 
 _NAMES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
+_Rate = tuple[str, dict[str, tuple[float, ...]], tuple[int, ...]]  # name, rates by model, contacts
 _TOTAL, _MEDIAN = "rate_deg_s", 0.5
 # draws with these numbers of contacts: name, colour, marker
 _GROUPS = (
@@ -42,151 +48,163 @@ _TAILS = (
     "A case that did not settle counts as above. Missed: draws above the limit in the reference and "
     "not in the surrogate; false: the other way round."
 )
+_MODES = (
+    "Errors are those of single runs on the mesh of the reference, and the largest of the three "
+    "axes. Times are means over the draws, of one core. Single run: case by case, it includes "
+    "the runs that choose the modes. Case of a population: all its cases have this number of "
+    "modes, and their steps are longer."
+)
 
 
-def figure(found: dict) -> Figure:
+def figure(found: Tails) -> Figure:
     """Draws of both models, case by case and as quantiles."""
     panels = [*map(_scatter, _rates(found)), *map(_quantiles, _rates(found))]
-    return Figure(Chart("tails", panels, columns=3, height=300), _CAPTION.format(**found))
+    return Figure(Chart("tails", panels, columns=3, height=300), _CAPTION.format(**vars(found)))
 
 
-def draw(found: dict) -> list[Part]:
+def draw(found: Tails) -> list[Part]:
     """The section."""
-    return [
-        Bullets([*sentences(found), *_run(found)]),
-        figure(found),
-        by_contacts(found),
-        *own_modes_page.table(found),
-        statistics(found),
-        *_tails(found),
-        Fold("Differences of every quantity, and the finer mesh", [_errors(found)]),
-    ]
+    lines, *tables = summary(found)
+    differences = [_errors(found)]
+    fold = Fold("Differences of every quantity, and the finer mesh", differences)
+    return [lines, figure(found), *tables, fold]
 
 
-def summary(found: dict) -> list[Part]:
+def summary(found: Tails) -> list[Part]:
     """The same for the terminal."""
     return [
         Bullets([*sentences(found), *_run(found)]),
         by_contacts(found),
-        *own_modes_page.table(found),
+        *by_modes(found),
         statistics(found),
-        *_tails(found),
+        _tails(found),
     ]
 
 
-def document(found: dict) -> list[Part]:
+def document(found: Tails) -> list[Part]:
     """A page of its own."""
     return [
         Bullets(sentences(found)),
         "![Settled rates of both models, and their quantiles](tails.png)",
         by_contacts(found),
-        *own_modes_page.table(found),
+        *by_modes(found),
         Bullets(_run(found)),
     ]
 
 
-def sentences(found: dict) -> list[str]:
+def sentences(found: Tails) -> list[str]:
     """Agreement, corrected rates, cost."""
     return [_agreement(found), _corrected(found), _cost(found)]
 
 
-def _agreement(found: dict) -> str:
-    *_, everything = found["contacts"]
-    gate, worst = found["gate_deg_s"], number(everything["most"], ".2g")
-    few = [row["most"] for row in found["contacts"][:3] if row["most"] is not None]
+def _agreement(found: Tails) -> str:
+    *_, everything = found.contacts
+    gate, worst = found.gate_deg_s, number(everything.most, ".2g")
+    few = [row.most for row in found.contacts[:3] if row.most is not None]
     limit = (
         f". With at most 2 contacts the largest is {number(max(few), '.2g')} deg/s" if few else ""
     )
     return (
         f"the settled rates of both models, on the same mesh, differ by at most {gate:g} deg/s in "
-        f"{percent(everything['within_gate'], '.0f')} % of {everything['settled']} draws. The median "
-        f"difference is {number(everything['median'], '.2g')} deg/s, the largest {worst} deg/s{limit}"
+        f"{percent(everything.within_gate, '.0f')} % of {everything.settled} draws. The median "
+        f"difference is {number(everything.median, '.2g')} deg/s, the largest {worst} deg/s{limit}"
     )
 
 
-def _corrected(found: dict) -> str:
+def _corrected(found: Tails) -> str:
     """The highest quantile of the total rate that has both bounds."""
     *_, row = [
         row
-        for row in found["statistics"]
-        if row["name"] == _TOTAL
-        and row["share"]
-        and (None not in (row["low"], row["high"]) or row["share"] == _MEDIAN)
+        for row in found.statistics
+        if row.name == _TOTAL
+        and row.share
+        and (None not in (row.low, row.high) or row.share == _MEDIAN)
     ]
     return (
-        f"the {percent(row['share'])} % quantile of the total rate, corrected by the reference, is "
-        f"{number(row['value'])} deg/s ({percent(found['confidence'], '.0f')} % interval "
-        f"{span(row['low'], row['high'])}). The surrogate alone gives {number(row['surrogate'])} deg/s"
+        f"the {percent(row.share)} % quantile of the total rate, corrected by the reference, is "
+        f"{number(row.value)} deg/s ({percent(found.confidence, '.0f')} % interval "
+        f"{span(row.low, row.high)}). The surrogate alone gives {number(row.surrogate)} deg/s"
     )
 
 
-def _cost(found: dict) -> str:
-    row, cost = _statistic(found, _TOTAL, "mean"), found["cost"]
-    took = found["draws"] * cost["reference_cpu_s"] + found["cases"] * cost["surrogate_cpu_s"]
-    alone = row["equivalent_runs"]
+def _cost(found: Tails) -> str:
+    cost = found.cost
+    row = next(row for row in found.statistics if (row.name, row.statistic) == (_TOTAL, "mean"))
+    took = found.draws * cost.reference_cpu_s + found.cases * cost.surrogate_cpu_s
+    alone = row.equivalent_runs
     if alone is None:
         return "the mean total rate has no interval to compare"
     return (
         f"both models together give the mean total rate in {in_words(took)} of one core. For an "
         f"interval as narrow, the reference alone needs {alone:,.0f} runs, "
-        f"{in_words(alone * cost['reference_cpu_s'])}"
+        f"{in_words(alone * cost.reference_cpu_s)}"
     )
 
 
-def _run(found: dict) -> list[str]:
-    counts, cost = found["counts"], found["cost"]
-    best = next(row for row in cost["optimal"] if row["name"] == _TOTAL)
-    cases = best["cases_per_run"]
-    lost = "; ".join(f"{row['run']}: {row['status']} {row['message']}" for row in found["lost"])
+def _run(found: Tails) -> list[str]:
+    counts, cost = found.counts, found.cost
+    best = next(row for row in cost.optimal if row.name == _TOTAL)
+    cases = best.cases_per_run
+    lost = "; ".join(f"{row.words}" for row in found.lost)
     return [
-        f"{counts['asked']} draws on elements of {1e3 * found['element_size_m']:g} mm = "
+        f"{counts['asked']} draws on elements of {1e3 * found.element_size_m:g} mm = "
         f"{counts['ok']} ok + {counts['refused']} refused + {counts['failed']} failed; "
-        f"{found['paired']} settled in both models; {found['fine']} draws also on "
-        f"{1e3 * found['fine_element_size_m']:g} mm",
+        f"{found.paired} settled in both models; {found.fine} draws also on "
+        f"{1e3 * found.fine_element_size_m:g} mm",
         *([f"not settled in the reference: {lost}"] if lost else []),
         population.model_line(found),
-        *own_modes_page.sentences(found),
-        f"random errors: {found['reading']}; {found['cases']:,} cases",
+        *sentences_of_modes(found),
+        f"random errors: {found.reading}; {found.cases:,} cases",
         *_mesh(found),
-        f"a run of the reference takes {cost['reference_cpu_s']:.3g} s of one core, on the finer mesh "
-        f"{cost['fine_cpu_s']:.3g} s, a case of the surrogate {1e3 * cost['surrogate_cpu_s']:.2g} ms",
+        f"a run of the reference takes {cost.reference_cpu_s:.3g} s of one core, on the finer mesh "
+        f"{cost.fine_cpu_s:.3g} s, a case of the surrogate {1e3 * cost.surrogate_cpu_s:.2g} ms",
         f"optimal for the mean total rate: "
         f"{'no case too many' if cases is None else f'{cases:,.0f} cases'} of the surrogate per run "
-        f"of the reference, {number(best['variance_ratio'], '.2g')} of the variance of the reference "
+        f"of the reference, {number(best.variance_ratio, '.2g')} of the variance of the reference "
         "alone at the same cost",
     ]
 
 
-def _mesh(found: dict) -> list[str]:
+def sentences_of_modes(found: Tails) -> list[str]:
+    """How many draws choose modes, and what these change; nothing where the rails have none."""
+    if (own := found.own_modes) is None:
+        return []
+    draws, choosing = counted(found.draws, "draw"), own.choosing
+    if not choosing:
+        return [f"none of {draws} chooses rail modes for itself"]
+    return [
+        f"{choosing} of {draws} choose rail modes for themselves, {own.choosing_all} of them "
+        f"all {own.held}. In the median, these modes change a rate of such a draw by "
+        f"{number(own.moved_deg_s, '.2g')} deg/s, and {1e6 * own.clearance_change_m:g} µm "
+        f"more of every clearance changes it by {number(own.moved_by_clearance_deg_s, '.2g')} "
+        f"deg/s. In {own.more_by_clearance} of the {choosing} the clearance changes it more"
+    ]
+
+
+def _mesh(found: Tails) -> list[str]:
     """The change by a finer mesh, and the difference of the surrogate from that."""
-    rows = [row for row in found["errors"] if row["name"] in (*_NAMES, _TOTAL)]
-    changes, differences = ([row[name] for row in rows if row[name]] for name in ("mesh", "finer"))
+    rows = [row for row in found.errors if row.name in (*_NAMES, _TOTAL)]
+    changes = [row.mesh for row in rows if row.mesh]
     if not changes:
         return []
     sizes = (
-        max(row[key] for row in part)
-        for part in (changes, differences)
-        for key in ("median", "most")
+        max(size)
+        for part in (changes, [row.finer for row in rows if row.finer])
+        for size in ([each.median for each in part], [each.most for each in part])
     )
     change, worst, difference, largest = (number(size, ".2g") for size in sizes)
     return [
-        f"on {found['fine']} draws the finer mesh changes a rate of the reference by {change} deg/s "
+        f"on {found.fine} draws the finer mesh changes a rate of the reference by {change} deg/s "
         f"(median of the axis that changes most) and at most {worst} deg/s; the population differs "
         f"from the finer mesh by {difference} and at most {largest} deg/s"
     ]
 
 
-def _statistic(found: dict, name: str, words: str) -> dict:
-    return next(
-        row for row in found["statistics"] if (row["name"], row["statistic"]) == (name, words)
-    )
+def _rates(found: Tails) -> list[_Rate]:
+    return [(name, found.pairs.rates[name], found.pairs.contacts) for name in _NAMES]
 
 
-def _rates(found: dict) -> list[tuple[str, dict, list[int]]]:
-    return [(name, found["pairs"]["rates"][name], found["pairs"]["contacts"]) for name in _NAMES]
-
-
-def _scatter(rate: tuple[str, dict, list[int]]) -> Panel:
+def _scatter(rate: _Rate) -> Panel:
     name, pair, contacts = rate
     lines = [_diagonal(pair["surrogate"], pair["reference"])]
     for numbers, words, colour, marker in _GROUPS:
@@ -198,7 +216,7 @@ def _scatter(rate: tuple[str, dict, list[int]]) -> Panel:
     return Panel(f"Rate about {axis}", "surrogate (deg/s)", "reference (deg/s)", lines)
 
 
-def _quantiles(rate: tuple[str, dict, list[int]]) -> Panel:
+def _quantiles(rate: _Rate) -> Panel:
     name, pair, _ = rate
     x, y = sorted(pair["surrogate"]), sorted(pair["reference"])
     lines = [
@@ -208,74 +226,84 @@ def _quantiles(rate: tuple[str, dict, list[int]]) -> Panel:
     return Panel(f"Quantiles about {name[5]}", "surrogate (deg/s)", "reference (deg/s)", lines)
 
 
-def _diagonal(x: list[float], y: list[float]) -> Line:
+def _diagonal(x: Sequence[float], y: Sequence[float]) -> Line:
     ends = [min(*x, *y), max(*x, *y)]
     return Line(ends, ends, "equal", GREY, 1.2)
 
 
-def by_contacts(found: dict) -> Table:
+def by_contacts(found: Tails) -> Table:
     """Errors by the number of contacts."""
-    columns: Cells = (
-        ("contacts", "contacts"),
-        ("draws", "draws"),
-        (Column("median error", "deg/s", ".2g"), "median"),
-        (Column("largest", "deg/s", ".2g"), "most"),
-        (
-            f"within {found['gate_deg_s']:g} deg/s (%)",
-            lambda row: percent(row["within_gate"], ".0f"),
-        ),
-        ("95 % bounds", lambda row: _percents(row["low"], row["high"])),
+    return Table.of_records(
+        found.contacts,
+        "contacts",
+        "draws",
+        "median",
+        "most",
+        (f"within {found.gate_deg_s:g} deg/s (%)", lambda row: percent(row.within_gate, ".0f")),
+        ("95 % bounds", lambda row: _percents(row.low, row.high)),
+        notes=(_CONTACTS,),
     )
-    return Table.of(found["contacts"], columns, notes=(_CONTACTS,))
+
+
+def by_modes(found: Tails) -> list[Part]:
+    """Agreement and cost by rail modes; nothing where the rails have none."""
+    if (own := found.own_modes) is None:
+        return []
+
+    def words(row: ByModes) -> str:
+        if row.modes == AUTO:
+            return "case by case"
+        shown = {0: "none", own.held: f"all {own.held}"}.get(int(row.modes), str(row.modes))
+        return f"{shown}, as the population" if row.modes == found.modes else shown
+
+    gate = f"within {found.gate_deg_s:g} deg/s (%)"
+    table = Table.of_records(
+        own.rows,
+        ("modes of each rail", words),
+        (gate, lambda row: percent(row.within_gate, ".1f")),
+        *("median", "most", "cpu_s", "case_s"),
+        notes=(_MODES,),
+    )
+    return [table]
 
 
 def _percents(low: float | None, high: float | None) -> str:
     return "" if low is None or high is None else span(100.0 * low, 100.0 * high, ".0f")
 
 
-def statistics(found: dict) -> Table:
+def statistics(found: Tails) -> Table:
     """Statistics of the population, corrected, beside those of each model alone."""
-    rows = [
-        (
-            f"{row['label']} ({row['unit']}), {row['statistic']}",
-            row["surrogate"],
-            estimate(row),
-            estimate({"value": row["plain"], "low": row["plain_low"], "high": row["plain_high"]}),
-            number(row["equivalent_runs"], ",.0f"),
-        )
-        for row in found["statistics"]
-    ]
-    heads = ("quantity", "surrogate", "corrected", "reference alone", "equivalent runs")
-    return Table(heads, rows, (_INTERVALS.format(**found),))
+    return Table.of_records(
+        found.statistics,
+        ("quantity", lambda row: f"{row.label} ({row.unit}), {row.statistic}"),
+        *_ESTIMATES,
+        ("equivalent runs", lambda row: number(row.equivalent_runs, ",.0f")),
+        notes=(_INTERVALS.format(**vars(found)),),
+    )
 
 
-def _tails(found: dict) -> list[Part]:
-    rows = [
-        (
-            row["limit"],
-            row["surrogate"],
-            estimate(row),
-            estimate({"value": row["plain"], "low": row["plain_low"], "high": row["plain_high"]}),
-            row["missed"],
-            row["false"],
-        )
-        for row in found["tails"]
-    ]
-    heads = ("limit", "surrogate", "corrected", "reference alone", "missed", "false")
-    return [Table(heads, rows, (_TAILS,), title="Probability above each limit")]
+def _tails(found: Tails) -> Table:
+    title = "Probability above each limit"
+    names = ("limit", *_ESTIMATES, "missed", "false")
+    return Table.of_records(found.tails, *names, notes=(_TAILS,), title=title)
 
 
-def _errors(found: dict) -> Table:
+_ESTIMATES = (
+    ("surrogate", attrgetter("surrogate")),
+    ("corrected", estimate),
+    ("reference alone", lambda row: bounded(row.plain, row.plain_low, row.plain_high)),
+)
+
+
+def _errors(found: Tails) -> Table:
     rows = []
-    for row in found["errors"]:
-        cells: list = [f"{row['label']} ({row['unit']})"]
-        for name in ("same_mesh", "population"):
-            item = row[name] or {}
-            cells += [item.get("median"), item.get("95"), item.get("most")]
-            cells.append(number(item.get("correlation"), ".5f"))
-        for name in ("mesh", "finer"):
-            item = row[name] or {}
-            cells += [item.get("median"), item.get("most")]
+    for row in found.errors:
+        cells: list = [row.title]
+        for item in (row.same_mesh, row.population):
+            cells += [item.median, item.most_95, item.most] if item else [None] * 3
+            cells.append(number(item.correlation if item else None, ".5f"))
+        for item in (row.mesh, row.finer):
+            cells += [item.median, item.most] if item else [None] * 2
         rows.append(cells)
     heads: list[Column | str] = ["quantity"]
     for words in ("same mesh", "population"):
@@ -283,8 +311,6 @@ def _errors(found: dict) -> Table:
     for words in ("finer mesh, reference", "population"):
         heads += [f"{words}, median", "largest"]
     note = _ERRORS.format(
-        fine=1e3 * found["fine_element_size_m"],
-        coarse=1e3 * found["element_size_m"],
-        count=found["fine"],
+        fine=1e3 * found.fine_element_size_m, coarse=1e3 * found.element_size_m, count=found.fine
     )
     return Table(heads, rows, (note,), dense=True)

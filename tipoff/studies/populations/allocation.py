@@ -8,10 +8,11 @@ surrogate (Peherstorfer, Willcox and Gunzburger, SIAM J. Sci. Comput. 38 (2016) 
 """
 
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
 
 
-class Allocation(NamedTuple):
+@dataclass(frozen=True)
+class Allocation:
     """``cases_per_run`` of the surrogate for a run of the reference, at least one, None where no
     number is too large; and the ``variance_ratio``."""
 

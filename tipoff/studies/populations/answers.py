@@ -8,7 +8,8 @@ attitude.
 """
 
 from collections.abc import Callable
-from typing import NamedTuple, Protocol
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -27,6 +28,20 @@ class Left(Protocol):
     def exit_attitude(self) -> np.ndarray: ...
 
 
+@dataclass(frozen=True, kw_only=True)
+class Named:
+    """The quantity of a row of a result: ``name``, ``label`` and ``unit`` as in ``Quantity``."""
+
+    name: str
+    label: str
+    unit: str
+
+    @property
+    def title(self) -> str:
+        """Label with unit."""
+        return f"{self.label} ({self.unit})"
+
+
 class Quantity(NamedTuple):
     """A quantity: ``name`` with its unit, as in result files; ``label`` and ``unit`` in figures and
     tables; ``of``, its values (n,) in that unit from columns."""
@@ -35,6 +50,16 @@ class Quantity(NamedTuple):
     label: str
     unit: str
     of: Callable[[Left], np.ndarray]
+
+    @property
+    def named(self) -> dict[str, Any]:
+        """The fields of ``Named``."""
+        return {"name": self.name, "label": self.label, "unit": self.unit}
+
+    @property
+    def title(self) -> str:
+        """Label with unit."""
+        return f"{self.label} ({self.unit})"
 
 
 def _rate(axis: int) -> Callable[[Left], np.ndarray]:

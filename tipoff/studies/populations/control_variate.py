@@ -14,6 +14,7 @@ includes the error of b, that of the N draws by the delta method, and Student's 
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -31,7 +32,8 @@ class Pairs(NamedTuple):
     population: np.ndarray
 
 
-class Estimate(NamedTuple):
+@dataclass(frozen=True)
+class Estimate:
     """The corrected ``value`` with its bounds ``low`` and ``high``; the same from the reference
     alone, ``plain`` with ``plain_low`` and ``plain_high``; ``surrogate``, the uncorrected value of
     the population. None where there is none."""

@@ -9,7 +9,7 @@ mesh, the rail modes of the population, and the step of single runs.
 import statistics
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -47,7 +47,7 @@ class Draws(NamedTuple):
     surrogate: Columns
     fine: Columns
     contacts: np.ndarray
-    lost: list[dict]
+    lost: list["Lost"]
     reference_cpu_s: float
     fine_cpu_s: float
     elements: int
@@ -147,10 +147,24 @@ def results(runs: Sequence[Kept]) -> Columns:
     return columns.of([each.case for each in runs])
 
 
-def lost(requested: Sequence[Run], runs: Sequence[Kept]) -> list[dict]:
-    """Label, status and message of each run that did not settle."""
+@dataclass(frozen=True)
+class Lost:
+    """Label, status and message of a run that did not settle."""
+
+    run: str
+    status: str
+    message: str
+
+    @property
+    def words(self) -> str:
+        """All three as text."""
+        return f"{self.run}: {self.status} {self.message}"
+
+
+def lost(requested: Sequence[Run], runs: Sequence[Kept]) -> list[Lost]:
+    """Each run that did not settle."""
     return [
-        {"run": request.label, "status": each.case.status, "message": each.case.message}
+        Lost(request.label, each.case.status, each.case.message)
         for request, each in zip(requested, runs)
         if each.case.outcome.rate is None
     ]

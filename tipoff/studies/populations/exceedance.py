@@ -7,7 +7,7 @@ not settle counts as above every limit.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import betaincinv
@@ -19,7 +19,8 @@ TOTAL = "total"
 _AXES = ("x", "y", "z", TOTAL)
 
 
-class Limit(NamedTuple):
+@dataclass(frozen=True)
+class Limit:
     """A limit (deg/s) of the rate about the axis x, y or z, or of its magnitude, ``TOTAL``."""
 
     axis: str

@@ -12,7 +12,6 @@ line, and their signs decide whether they add or cancel.
 """
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -22,16 +21,10 @@ from tipoff.scenes.distributions import Distribution
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
+from tipoff.studies.populations.reading import INTERFACE_FACTOR, Reading
 
-# Known to this factor either way: ground metal under light pressure, docs/interface_stiffness.md.
-INTERFACE_FACTOR = 4.0
 _INTERFACE = "contact.interface_stiffness"
 _SCENE_KEYS = ("initial.", _INTERFACE)  # of draws that are overrides as they are
-VALUES, ANGLES, RULES = (
-    ("signed", "half", "components"),
-    ("independent", "shared"),
-    ("redraw", "clip", "none"),
-)
 
 
 class Error(NamedTuple):
@@ -59,46 +52,6 @@ ERRORS = {
     ),
     "mass_eccentricity": Error("mass_offset.eccentricity", "mass eccentricity", 0.4e-3, "mm", 1e-3),
 }
-
-
-@dataclass(frozen=True)
-class Reading:
-    """A reading of Table 3: ``values`` and ``angles`` as above, the ``rule`` of truncation; whether
-    the ``initial`` position inside the clearance is random too, and the ``interface`` stiffness, its
-    logarithm uniform within a factor of ``INTERFACE_FACTOR``."""
-
-    values: str = "signed"
-    angles: str = "independent"
-    rule: str = "redraw"
-    initial: bool = False
-    interface: bool = False
-
-    @property
-    def words(self) -> str:
-        """The reading as text."""
-        what = {
-            "signed": "signed normal",
-            "half": "half normal",
-            "components": "two normal components",
-        }[self.values]
-        where = (
-            ""
-            if self.values == "components"
-            else {"independent": ", three angles", "shared": ", one angle"}[self.angles]
-        )
-        cut = {
-            "redraw": "redrawn beyond 3 sigma",
-            "clip": "clipped at 3 sigma",
-            "none": "not truncated",
-        }[self.rule]
-        place = ", anywhere in the clearance" if self.initial else ""
-        interface = ", any interface stiffness" if self.interface else ""
-        return f"{what}{where}, {cut}{place}{interface}"
-
-    @property
-    def needs_contact(self) -> bool:
-        """Whether a scene without contact has not what is drawn."""
-        return self.initial or self.interface
 
 
 # The readings that are compared, the default first.

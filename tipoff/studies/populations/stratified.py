@@ -18,7 +18,7 @@ of both models near the limit counts with the small weight of the cases there.
 """
 
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
 
 from tipoff.studies.populations import exceedance
 
@@ -27,14 +27,16 @@ from tipoff.studies.populations import exceedance
 _OF_WEIGHTS, _OF_NEAR, _OF_FAR = 0.1, 0.2, 0.7
 
 
-class Runs(NamedTuple):
+@dataclass(frozen=True)
+class Runs:
     """Number of runs of the reference in a stratum, and of ``events`` among them."""
 
     runs: int
     events: int
 
 
-class Bound(NamedTuple):
+@dataclass(frozen=True)
+class Bound:
     """``upper`` bound of the probability in the reference, its ``estimate``, and the bounds of the
     probability in the near and the far stratum."""
 

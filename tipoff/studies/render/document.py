@@ -3,8 +3,9 @@ Markdown and for the terminal."""
 
 import base64
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TypeVar
 
 from markupsafe import Markup
 
@@ -167,9 +168,12 @@ def _data(path: Path) -> str:
     return f"data:{_MIME[path.suffix]};base64,{base64.b64encode(path.read_bytes()).decode()}"
 
 
+_Result = TypeVar("_Result")
+
+
 def with_figures(
-    found: dict, figures: Callable[[dict], Iterable[Figure]], folder: Path
-) -> tuple[dict, list[Path]]:
+    found: _Result, figures: Callable[[_Result], Iterable[Figure]], folder: Path
+) -> tuple[_Result, list[Path]]:
     """The result ``found`` of a stage, and the PNG and SVG files of its ``figures`` in ``folder``.
     Where they cannot be drawn, ``failed`` of the result says why: hours of runs are not lost."""
 
@@ -178,7 +182,10 @@ def with_figures(
 
     paths, reason = attempt("drawing the figures", drawn)
     if paths is None:
-        return found | {"failed": [*found.get("failed", ()), f"figures: {reason}"]}, []
+        line = f"figures: {reason}"
+        if isinstance(found, dict):
+            return found | {"failed": [*found.get("failed", ()), line]}, []  # type: ignore[return-value]
+        return replace(found, failed=(*found.failed, line)), []  # type: ignore[type-var, attr-defined]
     return found, paths
 
 

@@ -7,6 +7,7 @@ added for comparison: it is the floor of every agreement.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -65,16 +66,40 @@ def conditions(scene: Scene) -> list[str]:
     )
 
 
-def deviations(baseline: Sequence[float], rates: Sequence[float]) -> dict:
-    """Absolute (deg/s) and relative deviations by axis; a relative one is None where the rate of
-    the ``baseline`` is below a twentieth of its total rate."""
+Axes = tuple[float | None, float | None, float | None]  # about x, y, z
+
+
+@dataclass(frozen=True, kw_only=True)
+class Deviations:
+    """Deviations by axis; None where a case did not settle. A relative one is None where the rate of the
+    baseline is below a twentieth of its total rate."""
+
+    absolute_deg_s: Axes | None = None
+    relative: Axes | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row(Deviations):
+    """A ``Change`` of a ``condition``: the changed value, rates, and ``values`` of further quantities by
+    name, with the change of each. None where a case did not settle, and where the paper has none."""
+
+    condition: str
+    symbol: str
+    raised: bool | None
+    share: float | None = None
+    value_si: float | None = None
+    rate_deg_s: tuple[float, float, float] | None
+    values: dict[str, float] | None = None
+    moved: dict[str, float] | None = None
+
+
+def deviations(baseline: Sequence[float], rates: Sequence[float]) -> Deviations:
+    """Those of ``rates`` (3,) from the ``baseline`` (3,), deg/s."""
     nominal = np.asarray(baseline, dtype=float)
     moved = np.asarray(rates, dtype=float) - nominal
     meaningful = (abs(nominal) >= _NEARLY_ZERO * np.linalg.norm(nominal)) & (nominal != 0.0)
-    return {
-        "absolute_deg_s": moved.tolist(),
-        "relative": [float(d / w) if ok else None for d, w, ok in zip(moved, nominal, meaningful)],
-    }
+    x, y, z = (float(d / w) if ok else None for d, w, ok in zip(moved, nominal, meaningful))
+    return Deviations(absolute_deg_s=tuple(moved.tolist()), relative=(x, y, z))
 
 
 def rows(
@@ -82,36 +107,33 @@ def rows(
     changed: Sequence[Change],
     rates: np.ndarray,
     others: Mapping[str, np.ndarray] | None = None,
-) -> list[dict]:
+) -> list[Row]:
     """Rows of the table for one condition; ``rates`` (n,3) in deg/s, NaN where a case did not
-    settle. For ``others`` (n,) by name: their ``values``, and the change ``moved`` of each."""
+    settle; ``others`` (n,), further quantities by name."""
     found, columns = [], others or {}
     for place, (change, rate) in enumerate(zip(changed, rates)):
-        settled = bool(np.isfinite(rate).all() and np.isfinite(rates[0]).all())
-        values = {name: float(column[place]) for name, column in columns.items()}
-        found.append(
-            {
-                "condition": condition,
-                "symbol": change.symbol,
-                "raised": change.raised,
-                "share": change.share,
-                "value_si": next(iter(change.overrides.values()), None),
-                "rate_deg_s": rate.tolist() if settled else None,
-                **(
-                    deviations(rates[0], rate)
-                    if settled
-                    else {"absolute_deg_s": None, "relative": None}
-                ),
-                "values": values if settled else None,
-                "moved": {name: value - float(columns[name][0]) for name, value in values.items()}
-                if settled
-                else None,
-            }
+        row = Row(
+            condition=condition,
+            symbol=change.symbol,
+            raised=change.raised,
+            share=change.share,
+            value_si=next(iter(change.overrides.values()), None),
+            rate_deg_s=None,
         )
+        if np.isfinite(rate).all() and np.isfinite(rates[0]).all():
+            values = {name: float(column[place]) for name, column in columns.items()}
+            row = replace(
+                row,
+                rate_deg_s=tuple(rate.tolist()),
+                **vars(deviations(rates[0], rate)),
+                values=values,
+                moved={name: value - float(columns[name][0]) for name, value in values.items()},
+            )
+        found.append(row)
     return found
 
 
-def of_paper() -> list[dict]:
+def of_paper() -> list[Row]:
     """Table 2 of the paper with the deviations that follow from its rates."""
     names = {number: name for name, number in published.CONDITIONS.items()}
     found = []
@@ -120,44 +142,46 @@ def of_paper() -> list[dict]:
         baseline = row.rates if row.raised is None else baseline
         assert baseline is not None  # the first row of each condition
         found.append(
-            {
-                "condition": names[row.condition],
-                "symbol": row.symbol,
-                "raised": row.raised,
-                "rate_deg_s": list(row.rates),
-                **deviations(baseline, row.rates),
-            }
+            Row(
+                condition=names[row.condition],
+                symbol=row.symbol,
+                raised=row.raised,
+                rate_deg_s=row.rates,
+                **vars(deviations(baseline, row.rates)),
+            )
         )
     return found
 
 
-def largest(table: Sequence[dict], symbols: Sequence[str] | None = None) -> dict:
-    """Largest deviations by axis over the rows of a table, or over those of ``symbols``: absolute
-    (deg/s) and relative."""
+def largest(table: Sequence[Row], symbols: Sequence[str] | None = None) -> Deviations:
+    """Largest deviations by axis over the rows of a table, or over those of ``symbols``."""
     moved = [
         row
         for row in table
-        if row["raised"] is not None
-        and row["rate_deg_s"] is not None
-        and (row["symbol"] in symbols if symbols else row["symbol"] != "clearance")
+        if row.raised is not None
+        and (row.symbol in symbols if symbols else row.symbol != "clearance")
     ]
 
-    def most(name: str) -> list[float | None]:
-        columns = [
-            [abs(row[name][axis]) for row in moved if row[name][axis] is not None]
+    def most(found: Sequence[Axes | None]) -> Axes:
+        known = [row for row in found if row]
+        x, y, z = (
+            max((abs(each) for row in known if (each := row[axis]) is not None), default=None)
             for axis in range(3)
-        ]
-        return [max(column, default=None) for column in columns]
+        )
+        return x, y, z
 
-    return {"absolute_deg_s": most("absolute_deg_s"), "relative": most("relative")}
+    return Deviations(
+        absolute_deg_s=most([row.absolute_deg_s for row in moved]),
+        relative=most([row.relative for row in moved]),
+    )
 
 
-def most_moved(table: Sequence[dict]) -> dict[str, float]:
+def most_moved(table: Sequence[Row]) -> dict[str, float]:
     """The largest change of each quantity over the rows of a table, without the clearance; empty
     where no row settled."""
     moved = [
-        row["moved"]
+        row.moved
         for row in table
-        if row["moved"] and row["raised"] is not None and row["symbol"] != "clearance"
+        if row.moved and row.raised is not None and row.symbol != "clearance"
     ]
     return {name: max(abs(row[name]) for row in moved) for name in (moved[0] if moved else ())}

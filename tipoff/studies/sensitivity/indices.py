@@ -12,7 +12,8 @@ Phys. Commun. 181, 2010); their intervals come from a bootstrap over base points
 scrambled Sobol' sequence, whose first half is such a sequence too.
 """
 
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -21,14 +22,15 @@ RESAMPLES = 200
 _EDGE = 2.0**-53  # a normal distribution has no finite quantile at 0 and 1
 
 
-class Indices(NamedTuple):
+@dataclass(frozen=True, kw_only=True)
+class Indices:
     """First-order and total indices (d,) with half widths of their 95 % intervals (d,), and the
     number of base points used."""
 
-    first: np.ndarray
-    first_half_width: np.ndarray
-    total: np.ndarray
-    total_half_width: np.ndarray
+    first: tuple[float, ...]
+    first_half_width: tuple[float, ...]
+    total: tuple[float, ...]
+    total_half_width: tuple[float, ...]
     points: int
 
 
@@ -72,10 +74,10 @@ def indices(
         seed=seed,
     )
     return Indices(
-        first=np.asarray(found["S1"]),
-        first_half_width=np.asarray(found["S1_conf"]),
-        total=np.asarray(found["ST"]),
-        total_half_width=np.asarray(found["ST_conf"]),
+        first=tuple(map(float, found["S1"])),
+        first_half_width=tuple(map(float, found["S1_conf"])),
+        total=tuple(map(float, found["ST"])),
+        total_half_width=tuple(map(float, found["ST_conf"])),
         points=len(blocks),
     )
 

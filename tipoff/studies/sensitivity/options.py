@@ -6,6 +6,10 @@ from typing import Annotated
 import typer
 
 from tipoff.studies.commands.options import Surrogate
+from tipoff.workspace.options import Rule, between
+
+HALVINGS = 3  # parts of the points, each half of the next, for convergence
+_FEWEST = 2**HALVINGS * 8
 
 
 @dataclass(frozen=True)
@@ -15,7 +19,6 @@ class Options:
     vary: Annotated[
         str | None,
         typer.Option(
-            "--vary",
             metavar="FILE",
             help="Distributions of the uncertain inputs, a .toml file; default: "
             "studies/sensitivity/tolerances.toml.",
@@ -23,14 +26,17 @@ class Options:
     ] = None
     points: Annotated[
         int,
+        Rule(
+            lambda value: value >= _FEWEST and not int(value) & (int(value) - 1),
+            f"a power of two, {_FEWEST} or more",
+        ),
         typer.Option(
-            "--points",
             metavar="N",
             help="Base points of the Sobol' indices, a power of two. Each base point needs two cases "
             "more than the number of inputs.",
         ),
     ] = 1024
     seed: Annotated[
-        int, typer.Option("--seed", metavar="N", help="Seed of the points and of the bootstrap.")
+        int, between(1), typer.Option(metavar="N", help="Seed of the points and of the bootstrap.")
     ] = 1
     model: Surrogate = None

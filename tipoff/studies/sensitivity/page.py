@@ -4,6 +4,8 @@ paper's Table 2, and Sobol' indices of every quantity."""
 import math
 from dataclasses import replace
 from itertools import chain
+from operator import attrgetter
+from typing import Any
 
 import numpy as np
 
@@ -11,9 +13,14 @@ from tipoff.studies.populations import answers, population
 from tipoff.studies.render.chart import Chart, Line, Panel, Picture
 from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
-from tipoff.studies.render.table import Cells, Column, Table, span
+from tipoff.studies.render.table import Column, Table, span
 from tipoff.studies.render.uncertain import Measured
+from tipoff.studies.sensitivity.contact_table import Axes, Row
+from tipoff.studies.sensitivity.indices import Indices
+from tipoff.studies.sensitivity.results import Constants, Paper, Sensitivity, Shares, Sobol
 from tipoff.workspace.words import counted
+
+_Indexed = list[tuple[Shares, Indices]]
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s", "rate_deg_s")
 _STILL = 1e-6  # deg/s, the error of integration at the relative tolerance of the tables, 2e-7
@@ -70,17 +77,28 @@ _SHOWN = 3  # inputs in the table of indices
 _HEADS = ("condition", "changed", *_MOVED, replace(_MOVED[0], title="paper: rates"), *_MOVED[1:])
 
 
+_BAR_LOOKS: tuple[tuple[float, str, str, dict[str, Any]], ...] = (
+    (0.2, "total", "total", {"color": NAVY}),
+    (
+        -0.2,
+        "first",
+        "first order",
+        {"color": "#d5dae0", "hatch": "//", "edgecolor": GREY, "linewidth": 0.5},
+    ),
+)
+
+
 def name_of(key: str) -> str:
     """The name of a dotted key for a reader."""
     head, _, last = key.rpartition(".")
     return _NAMES.get(key) or (f"{_NAMES[head]} {last}" if head in _NAMES else key)
 
 
-def figures(found: dict) -> list[Figure]:
+def figures(found: Sensitivity) -> list[Figure]:
     """Every figure of the study and its caption."""
-    sobol = found["sobol"]
-    shown = [item for item in sobol["quantities"] if item["indices"]]
-    rates = [item for item in shown if item["name"] in _RATES]
+    sobol = found.sobol
+    shown = [(item, item.indices) for item in sobol.quantities if item.indices]
+    rates = [(item, own) for item, own in shown if item.name in _RATES]
     if not rates:
         return []
     return [
@@ -90,52 +108,54 @@ def figures(found: dict) -> list[Figure]:
     ]
 
 
-def draw(found: dict) -> list[Part]:
+def draw(found: Sensitivity) -> list[Part]:
     """The section: tables of contact constants, then indices."""
     tables = [
         table
-        for item in found["tables"]
-        for table in (table_of_largest(item, found["paper"]), _beside_paper(item, found["paper"]))
+        for item in found.tables
+        for table in (table_of_largest(item, found.paper), _beside_paper(item, found.paper))
     ]
     return [
         Bullets([population.model_line(found)]),
         *([Heading("One contact constant at a time")] if tables else []),
         *tables,
         Heading("All inputs together"),
-        _used(found["sobol"]),
-        table_of_indices(found["sobol"]),
+        _used(found.sobol),
+        table_of_indices(found.sobol),
         *figures(found),
-        _inputs(found["sobol"]),
+        _inputs(found.sobol),
     ]
 
 
-def terminal(found: dict) -> list[Part]:
+def terminal(found: Sensitivity) -> list[Part]:
     """The largest changes and the total indices, for the terminal."""
     return [
         Bullets([population.model_line(found)]),
-        *(table_of_largest(item, found["paper"]) for item in found["tables"]),
-        _used(found["sobol"]),
-        table_of_indices(found["sobol"]),
+        *(table_of_largest(item, found.paper) for item in found.tables),
+        _used(found.sobol),
+        table_of_indices(found.sobol),
     ]
 
 
-def table_of_largest(item: dict, paper: dict) -> Table:
+def table_of_largest(item: Constants, paper: Paper) -> Table:
     """The largest change of each quantity by a contact constant, by the clearance, and in the
     paper's Table 2."""
-    sources = (item["largest"], item["largest_clearance"], paper["largest"])
+    sources = (item.largest, item.largest_clearance, paper.largest)
+    nothing: Axes = (None, None, None)
     rows: list[tuple] = []
     for place, quantity in enumerate(answers.ALL):
-        name = f"{quantity.label} ({quantity.unit})"
+        name = quantity.title
         if place >= len(answers.RATES):
-            rows.append((name, item["most_moved"].get(quantity.name), *[""] * 5))
+            rows.append((name, item.most_moved.get(quantity.name), *[""] * 5))
             continue
         changes = [
-            (_change(found["absolute_deg_s"][place]), found["relative"][place]) for found in sources
+            (_change((found.absolute_deg_s or nothing)[place]), (found.relative or nothing)[place])
+            for found in sources
         ]
         rows.append((name, *chain.from_iterable(changes)))
     heads = ("contact constants", "clearance", "the paper")
     columns = [(Column(head), Column("%", "", ".2g", 100.0)) for head in heads]
-    title = f"Largest change of each quantity, {item['title']}"
+    title = f"Largest change of each quantity, {item.title}"
     return Table(["quantity", *chain.from_iterable(columns)], rows, (_LARGEST,), title)
 
 
@@ -144,210 +164,166 @@ def _change(value: float | None) -> float | str | None:
     return "0" if value is not None and abs(value) < _STILL else value
 
 
-def _used(sobol: dict) -> str:
+def _used(sobol: Sobol) -> str:
     """How many cases the indices are from."""
     return (
-        f"{sobol['cases']['asked']:,} cases of {counted(len(sobol['inputs']), 'input')}, "
-        f"{sobol['not_settled']:,} did not settle; {sobol['used']:,} of {sobol['base_points']:,} "
+        f"{sobol.cases['asked']:,} cases of {counted(len(sobol.inputs), 'input')}, "
+        f"{sobol.not_settled:,} did not settle; {sobol.used:,} of {sobol.base_points:,} "
         "base points used. A base point is left out if one of its cases did not settle."
     )
 
 
-def table_of_indices(sobol: dict) -> Table:
+def table_of_indices(sobol: Sobol) -> Table:
     """Spread, sum of the first-order indices and largest total indices of each quantity."""
-    rows = []
-    for item in sobol["quantities"]:
-        most = ""
-        if item["indices"]:
-            totals = item["indices"]["total"]
-            order = np.argsort(totals)[::-1][:_SHOWN]
-            most = ", ".join(f"{name_of(sobol['inputs'][n]['key'])} {totals[n]:.2f}" for n in order)
-        rows.append(
-            (
-                f"{item['label']} ({item['unit']})",
-                Measured(item["mean"], item["sd"] / math.sqrt(sobol["used"]), apart=True)
-                if item["sd"]
-                else item["mean"],
-                item["sd"],
-                item["indices"] and sum(item["indices"]["first"]),
-                most,
-            )
-        )
-    heads = (
-        "quantity",
-        "mean",
-        "sd",
-        Column("first order", "%", scale=100.0),
-        "largest total indices",
+
+    def mean(item: Shares) -> Any:
+        error = item.sd / math.sqrt(sobol.used)
+        return Measured(item.mean, error, apart=True) if item.sd else item.mean
+
+    def most(item: Shares) -> str:
+        totals = item.indices.total if item.indices else ()
+        order = np.argsort(totals)[::-1][:_SHOWN]
+        return ", ".join(f"{name_of(sobol.inputs[n].key)} {totals[n]:.2f}" for n in order)
+
+    return Table.of_records(
+        sobol.quantities,
+        ("quantity", lambda item: item.title),
+        ("mean", mean),
+        ("sd", attrgetter("sd")),
+        (
+            Column("first order", "%", scale=100.0),
+            lambda item: item.indices and sum(item.indices.first),
+        ),
+        ("largest total indices", most),
+        notes=(_INDICES,),
     )
-    return Table(heads, rows, (_INDICES,))
 
 
-def _beside_paper(item: dict, paper: dict) -> Table:
+def _beside_paper(item: Constants, paper: Paper) -> Table:
     """One row for each change, with the rates of the paper where its Table 2 has the same."""
-    theirs = {(row["condition"], row["symbol"], row["raised"]): row for row in paper["rows"]}
-    rows: list[tuple] = [
-        (*_ours(row), *_theirs(theirs.get((row["condition"], row["symbol"], row["raised"]))))
-        for row in item["rows"]
+    theirs = {(row.condition, row.symbol, row.raised): _moved(row) for row in paper.rows}
+    rows = [
+        (
+            row.condition,
+            _changed(row),
+            *_moved(row),
+            *theirs.get((row.condition, row.symbol, row.raised), ("", "", "")),
+        )
+        for row in item.rows
     ]
-    constants = ", ".join(f"{key} {value:.4g}" for key, value in item["constants_si"].items())
-    symbols = dict.fromkeys(row["symbol"] for row in item["rows"] if row["raised"] is not None)
+    constants = ", ".join(f"{key} {value:.4g}" for key, value in item.constants_si.items())
+    symbols = dict.fromkeys(row.symbol for row in item.rows if row.raised is not None)
     idle = [
         symbol
         for symbol in symbols
-        if all(_still(row) for row in item["rows"] if row["symbol"] == symbol)
+        if all(_still(row) for row in item.rows if row.symbol == symbol)
     ]
     without = f" No rate changes with {' or '.join(idle)}." if idle else ""
-    title = f"{item['title'].capitalize()}: {item['law']}, SI: {constants}.{without}"
+    title = f"{item.title.capitalize()}: {item.law}, SI: {constants}.{without}"
     return Table(_HEADS, rows, (_TABLE,), title, dense=True)
 
 
-def _ours(row: dict) -> tuple:
-    if row["raised"] is None:
-        changed = "nothing"
-    elif row["symbol"] == "clearance":
-        changed = "clearance +1 µm"
-    else:
-        changed = f"{row['symbol']} {'+' if row['raised'] else '-'}{100.0 * row['share']:.3g} %"
-    return row["condition"], changed, *_rates(row)
+def _changed(row: Row) -> str:
+    if row.raised is None or row.share is None:
+        return "nothing"
+    if row.symbol == "clearance":
+        return "clearance +1 µm"
+    return f"{row.symbol} {'+' if row.raised else '-'}{100.0 * row.share:.3g} %"
 
 
-def _theirs(row: dict | None) -> tuple:
-    return ("", "", "") if row is None else _rates(row)
+def _moved(row: Row) -> tuple:
+    """Rates and their changes; none for the baseline."""
+    if row.raised is None:
+        return row.rate_deg_s, "", ""
+    return row.rate_deg_s, *(("0", "0") if _still(row) else (row.absolute_deg_s, row.relative))
 
 
-def _rates(row: dict) -> tuple:
-    return row["rate_deg_s"], *(_moved(row) if row["raised"] is not None else ("", ""))
-
-
-def _still(row: dict) -> bool:
+def _still(row: Row) -> bool:
     """Whether no rate changed by more than errors of integration."""
-    return row["absolute_deg_s"] is not None and max(map(abs, row["absolute_deg_s"])) < _STILL
-
-
-def _moved(row: dict) -> tuple:
-    if None not in (row["absolute_deg_s"] or [None]) and _still(row):
-        return "0", "0"
-    return row["absolute_deg_s"], row["relative"]
-
-
-def _inputs(sobol: dict) -> Fold:
-    """The inputs that vary with their distributions and provenance, and those that do not."""
-    columns: Cells = (
-        ("input", lambda item: name_of(item["key"])),
-        ("distribution", lambda item: item["distribution"] + (" factor" if item["factor"] else "")),
-        (Column("nominal", form=".4g"), "nominal"),
-        ("95 % within", lambda item: span(item["low"], item["high"], ".4g")),
-        ("unit", lambda item: item["unit"] or "SI"),
-        ("provenance", "provenance"),
+    return row.absolute_deg_s is not None and all(
+        abs(each or 0.0) < _STILL for each in row.absolute_deg_s
     )
-    left = [f"{name_of(key)}: {reason}" for key, reason in sobol["left_out"].items()]
-    parts = [
-        Table.of(sobol["inputs"], columns, dense=True),
-        "Left out:" if left else "",
-        Bullets(left),
-    ]
+
+
+def _inputs(sobol: Sobol) -> Fold:
+    """The inputs that vary with their distributions and provenance, and those that do not."""
+    left = [f"{name_of(key)}: {reason}" for key, reason in sobol.left_out.items()]
+    table = Table.of_records(
+        sobol.inputs,
+        ("input", lambda item: name_of(item.key)),
+        ("distribution", lambda item: item.distribution + (" factor" if item.factor else "")),
+        "nominal",
+        ("95 % within", lambda item: span(item.low, item.high, ".4g")),
+        ("unit", lambda item: item.unit or "SI"),
+        "provenance",
+        dense=True,
+    )
+    parts = [table, "Left out:" if left else "", Bullets(left)]
     return Fold("Inputs and their distributions", parts)
 
 
-def _bars(sobol: dict, rates: list[dict]) -> Picture:
+def _bars(sobol: Sobol, rates: _Indexed) -> Picture:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(9.6, 7.4), dpi=130, layout="constrained")
-    for axes, item in zip(figure.subplots(2, 2).flat, rates):
-        values = {name: np.array(values) for name, values in item["indices"].items()}
+    for axes, (item, own) in zip(figure.subplots(2, 2).flat, rates):
+        values = {name: np.array(values) for name, values in vars(own).items()}
         order = np.argsort(values["total"])[::-1][:_DRAWN][::-1]
         place = np.arange(len(order))
-        axes.barh(
-            place + 0.2,
-            values["total"][order],
-            0.38,
-            xerr=values["total_half_width"][order],
-            color=NAVY,
-            label="total",
-            ecolor=GREY,
-            capsize=2,
-        )
-        axes.barh(
-            place - 0.2,
-            values["first"][order],
-            0.38,
-            xerr=values["first_half_width"][order],
-            color="#d5dae0",
-            hatch="//",
-            edgecolor=GREY,
-            linewidth=0.5,
-            label="first order",
-            ecolor=GREY,
-            capsize=2,
-        )
-        axes.set_yticks(place, [name_of(sobol["inputs"][n]["key"]) for n in order], fontsize=8.5)
-        axes.set_title(f"{item['label']}, sd {item['sd']:.3g} {item['unit']}", fontsize=10.5)
+        for shift, name, label, look in _BAR_LOOKS:
+            axes.barh(
+                place + shift,
+                values[name][order],
+                0.38,
+                xerr=values[f"{name}_half_width"][order],
+                label=label,
+                **(look | {"ecolor": GREY, "capsize": 2}),
+            )
+        axes.set_yticks(place, [name_of(sobol.inputs[n].key) for n in order], fontsize=8.5)
+        axes.set_title(f"{item.label}, sd {item.sd:.3g} {item.unit}", fontsize=10.5)
         axes.set_xlabel("Sobol' index", fontsize=9.5)
-        axes.set_xlim(
-            1.08 * min(0.0, float((values["first"] - values["first_half_width"])[order].min())),
-            None,
-        )
+        least = float((values["first"] - values["first_half_width"])[order].min())
+        axes.set_xlim(1.08 * min(0.0, least), None)
         axes.grid(axis="x", color="#e3e6ea")
         axes.set_axisbelow(True)
         axes.spines[["top", "right"]].set_visible(False)
-    figure.legend(
-        *axes.get_legend_handles_labels(),
-        loc="outside lower center",
-        ncols=2,
-        frameon=False,
-        fontsize=9,
-    )
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False, fontsize=9)
     return Picture("sensitivity-indices", figure)
 
 
-def _map(sobol: dict, shown: list[dict]) -> Picture:
+def _map(sobol: Sobol, shown: _Indexed) -> Picture:
     from matplotlib.figure import Figure
 
-    totals = np.array([item["indices"]["total"] for item in shown]).T
+    totals = np.array([own.total for _, own in shown]).T
     order = np.argsort(-totals.max(axis=1))
     figure = Figure(figsize=(9.6, 0.33 * len(order) + 2.0), dpi=130, layout="constrained")
     axes = figure.subplots()
     image = axes.imshow(totals[order], cmap="Greys", vmin=0.0, vmax=1.0, aspect="auto")
     for (row, column), value in np.ndenumerate(totals[order]):
-        axes.text(
-            column,
-            row,
-            f"{value:.2f}",
-            ha="center",
-            va="center",
-            fontsize=8,
-            color="white" if value > 0.55 else "black",
-        )
-    axes.set_yticks(
-        range(len(order)), [name_of(sobol["inputs"][n]["key"]) for n in order], fontsize=8.5
-    )
+        colour, text = "white" if value > 0.55 else "black", f"{value:.2f}"
+        axes.text(column, row, text, ha="center", va="center", fontsize=8, color=colour)
+    axes.set_yticks(range(len(order)), [name_of(sobol.inputs[n].key) for n in order], fontsize=8.5)
     axes.set_xticks(
-        range(len(shown)), [item["label"] for item in shown], rotation=30, ha="right", fontsize=8.5
+        range(len(shown)), [item.label for item, _ in shown], rotation=30, ha="right", fontsize=8.5
     )
     figure.colorbar(image, label="total Sobol' index", pad=0.02)
     return Picture("sensitivity-map", figure)
 
 
-def _convergence(sobol: dict, rates: list[dict]) -> Chart:
+def _convergence(sobol: Sobol, rates: _Indexed) -> Chart:
     """Every panel shows the inputs with the largest mean total index over all rates."""
-    most = np.argsort(np.mean([item["indices"]["total"] for item in rates], axis=0))[::-1][
-        : len(_LINES)
-    ]
+    order = np.argsort(np.mean([own.total for _, own in rates], axis=0))[::-1]
     panels = []
-    for item in rates:
-        steps = [step for step in item["convergence"] if "total" in step]
+    for item, _ in rates:
+        steps = [(step.base_points, step.total) for step in item.convergence if step.total]
+        points = [count for count, _ in steps]
+        names = [name_of(each.key) for each in sobol.inputs]
         lines = [
             Line(
-                [step["base_points"] for step in steps],
-                [step["total"][n] for step in steps],
-                name_of(sobol["inputs"][n]["key"]),
-                colour,
-                1.6,
-                dash,
-                marker=marker,
+                points, [total[n] for _, total in steps], names[n], colour, 1.6, dash, marker=marker
             )
-            for n, (colour, dash, marker) in zip(most, _LINES)
+            for n, (colour, dash, marker) in zip(order, _LINES)
         ]
-        panels.append(Panel(item["label"], "base points", "total Sobol' index", lines))
+        panels.append(Panel(item.label, "base points", "total Sobol' index", lines))
     return Chart("sensitivity-convergence", panels, columns=2, height=280)

@@ -1,11 +1,14 @@
 """Figures of the sweeps: rates over size and direction as in the paper's Figures 11, 13 and 15,
 growth of the largest rates, and polar maps."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from tipoff.studies.render.chart import Chart, Line, Panel, Picture
 from tipoff.studies.render.document import Figure
 from tipoff.studies.render.palette import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL
+from tipoff.studies.sweeps.results import Launch, Sides, Sweeps, Swept
 
 _LOOKS = {
     "rate_x_deg_s": ("x", "o", "-."),
@@ -36,22 +39,21 @@ _MAP = (
 )
 
 
-def figures(found: dict) -> list[Figure]:
+def figures(found: Sweeps) -> list[Figure]:
     """Every figure of the study and its caption."""
-    given = found["launches"][0]
+    given = found.launches[0]
     drawn = [Figure(_growth(found), _GROWTH)]
-    for factor in given["factors"]:
-        angle = _ANGLE[factor["name"]]
-        caption = _SCATTER.format(figure=_FIGURES[factor["name"]], angle=angle)
+    for factor in given.factors:
+        angle = _ANGLE[factor.name]
+        caption = _SCATTER.format(figure=_FIGURES[factor.name], angle=angle)
         drawn.append(Figure(_scatter(factor), caption))
-        if factor["sides"] is not None:
-            jumps = _jumps(factor["sides"]["jumps_deg_s"])
-            caption = _MAP.format(unit=factor["unit"], angle=angle, jumps=jumps)
-            drawn.append(Figure(_map(factor, given["faces"]), caption))
+        if sides := factor.sides:
+            caption = _MAP.format(unit=factor.unit, angle=angle, jumps=_jumps(sides.jumps_deg_s))
+            drawn.append(Figure(_map(factor, sides, given.faces), caption))
     return drawn
 
 
-def _jumps(jumps: list[float | None]) -> str:
+def _jumps(jumps: tuple[float | None, float | None]) -> str:
     """The change of the rates where the most loaded face changes, and elsewhere."""
     if None in jumps:
         return (
@@ -65,96 +67,59 @@ def _jumps(jumps: list[float | None]) -> str:
     )
 
 
-def _scatter(factor: dict) -> Chart:
-    sizes, angles = np.array(factor["sizes"]), np.array(factor["angles_deg"])
+def _scatter(factor: Swept) -> Chart:
+    sizes, angles = np.array(factor.sizes), np.array(factor.angles_deg)
     size, angle = np.meshgrid(sizes, angles, indexing="ij")
     over_size: list[Line] = []
     over_angle: list[Line] = []
     for place, (name, (axis, marker, _)) in enumerate(_LOOKS.items()):
-        rates = np.array(factor["values"][name], dtype=float).ravel()
+        rates = np.array(factor.values[name], dtype=float).ravel()
         settled = np.isfinite(rates)
         for lines, x, step in (
             (over_size, size, sizes[-1]),
             (over_angle, angle, 180.0 / len(angles)),
         ):
             shifted = x.ravel()[settled] + (place - 1) * _APART * step
-            lines.append(
-                Line(
-                    shifted,
-                    rates[settled],
-                    f"rate about {axis}",
-                    AXIS_COLOURS[axis],
-                    dash="",
-                    marker=marker,
-                    size=3.5,
-                    opacity=0.65,
-                )
-            )
-    direction = f"direction {_ANGLE[factor['name']].split(',')[0]} (deg)"
+            line = shifted, rates[settled], f"rate about {axis}", AXIS_COLOURS[axis]
+            lines.append(Line(*line, dash="", opacity=0.65, marker=marker, size=3.5))
+    direction = f"direction {_ANGLE[factor.name].split(',')[0]} (deg)"
     panels = [
         Panel("", label, "settled rate (deg/s)", lines)
-        for label, lines in (
-            (f"{factor['label']} ({factor['unit']})", over_size),
-            (direction, over_angle),
-        )
+        for label, lines in ((factor.title, over_size), (direction, over_angle))
     ]
-    return Chart(f"sweep-{factor['name']}", panels, columns=2, height=330)
+    return Chart(f"sweep-{factor.name}", panels, columns=2, height=330)
 
 
-def _growth(found: dict) -> Chart:
-    panels = [
-        _grown(launch, factor) for launch in found["launches"] for factor in launch["factors"]
-    ]
+def _growth(found: Sweeps) -> Chart:
+    panels = [_grown(launch, factor) for launch in found.launches for factor in launch.factors]
     return Chart("sweep-growth", panels, columns=3, height=290)
 
 
-def _grown(launch: dict, factor: dict) -> Panel:
-    sizes, lines, spans, top = factor["sizes"], [], [], 0.0
+def _grown(launch: Launch, factor: Swept) -> Panel:
+    sizes, lines, spans, top = factor.sizes, [], [], 0.0
     for name, (axis, marker, dash) in _LOOKS.items():
-        values = [np.nan if value is None else value for value in factor["largest"][name]]
+        values = [np.nan if value is None else value for value in factor.largest[name]]
         top = max(top, np.nanmax(values, initial=0.0))
-        lines.append(
-            Line(
-                sizes,
-                values,
-                f"about {axis}",
-                AXIS_COLOURS[axis],
-                1.4,
-                dash,
-                marker=marker,
-                size=6.0,
-            )
-        )
-        bent = factor["growth"][name]
-        if axis != "x" and bent and bent["verdict"] == "plateau" and bent["low"] is not None:
-            spans.append((bent["low"], bent["high"]))
+        look = f"about {axis}", AXIS_COLOURS[axis], 1.4, dash
+        lines.append(Line(sizes, values, *look, marker=marker, size=6.0))
+        bent = factor.growth[name]
+        if axis == "x" or bent is None or bent.verdict != "plateau":
+            continue
+        if bent.low is not None and bent.high is not None:
+            spans.append((bent.low, bent.high))
     for name, (axis, _, dash) in _LOOKS.items():
-        free = np.array(factor["free"][name])
+        free = np.array(factor.free[name])
         # a free payload may turn much faster, and would flatten the other lines
         shown = free <= 1.15 * top
-        lines.append(
-            Line(
-                np.array(sizes)[shown],
-                free[shown],
-                "free payload",
-                GREY,
-                0.9,
-                dash,
-                legend=axis == "y",
-            )
-        )
-    lines.append(Line([factor["paper"]] * 2, [0.0, top], "the paper's plateau", GREY, 1.6, ":"))
-    how = "as given" if launch["stretch"] == 1.0 else f"thrust x {launch['stretch']:g} as long"
-    return Panel(
-        f"{factor['label']}, {how}",
-        f"size ({factor['unit']})",
-        "largest rate (deg/s)",
-        lines,
-        spans=tuple(spans),
-    )
+        place, named = (np.array(sizes)[shown], free[shown]), axis == "y"
+        lines.append(Line(*place, "free payload", GREY, 0.9, dash, legend=named))
+    lines.append(Line([factor.paper] * 2, [0.0, top], "the paper's plateau", GREY, 1.6, ":"))
+    how = "as given" if launch.stretch == 1.0 else f"thrust x {launch.stretch:g} as long"
+    title, size = f"{factor.label}, {how}", f"size ({factor.unit})"
+    return Panel(title, size, "largest rate (deg/s)", lines, spans=tuple(spans))
 
 
-def _map(factor: dict, faces: list[str]) -> Picture:
+def _map(factor: Swept, sides: Sides, faces: Sequence[str]) -> Picture:
     from matplotlib.artist import Artist
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
@@ -164,12 +129,11 @@ def _map(factor: dict, faces: list[str]) -> Picture:
     axes = figure.subplots(2, 3, subplot_kw={"projection": "polar"})
     for place, name in zip(axes[0], _LOOKS):
         _rate_map(figure, place, factor, name)
-    sides = factor["sides"]
-    for place, kind, title in (
-        (axes[1, 0], "first", "wall touched first"),
-        (axes[1, 1], "most", "wall with the largest impulse"),
+    for place, walls, title in (
+        (axes[1, 0], sides.first, "wall touched first"),
+        (axes[1, 1], sides.most, "wall with the largest impulse"),
     ):
-        _side_map(place, factor, np.array(sides[kind]), np.array(sides["angles_deg"]), faces)
+        _side_map(place, factor, np.array(walls), np.array(sides.angles_deg), faces)
         place.set_title(title, fontsize=10.5)
     for place in axes.flat[:5]:
         place.tick_params(labelsize=7.5)
@@ -195,25 +159,25 @@ def _map(factor: dict, faces: list[str]) -> Picture:
     ]
     axes[1, 2].legend(handles=handles, loc="center", frameon=False, fontsize=9)
     figure.suptitle(
-        f"{factor['label']}: radius 0 to {factor['sizes'][-1]:g} {factor['unit']}, direction "
-        f"{_ANGLE[factor['name']]}",
+        f"{factor.label}: radius 0 to {factor.sizes[-1]:g} {factor.unit}, direction "
+        f"{_ANGLE[factor.name]}",
         fontsize=10.5,
     )
-    return Picture(f"map-{factor['name']}", figure)
+    return Picture(f"map-{factor.name}", figure)
 
 
-def _edges(factor: dict, angles_deg: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _edges(factor: Swept, angles_deg: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Borders of the cells: angles (rad) and sizes."""
     step = 360.0 / len(angles_deg)
-    sizes = np.array(factor["sizes"])
+    sizes = np.array(factor.sizes)
     half = 0.5 * (sizes[1] - sizes[0])
     return np.radians(np.append(angles_deg, 360.0) - 0.5 * step), np.append(
         sizes - half, sizes[-1] + half
     )
 
 
-def _rate_map(figure, axes, factor: dict, name: str) -> None:
-    angles, rates = np.array(factor["angles_deg"]), np.array(factor["values"][name], dtype=float)
+def _rate_map(figure, axes, factor: Swept, name: str) -> None:
+    angles, rates = np.array(factor.angles_deg), np.array(factor.values[name], dtype=float)
     bound = np.nanmax(abs(rates))
     image = axes.pcolormesh(
         *_edges(factor, angles), rates, cmap="cividis", vmin=-bound, vmax=bound, rasterized=True
@@ -221,7 +185,7 @@ def _rate_map(figure, axes, factor: dict, name: str) -> None:
     around = np.radians(np.append(angles, 360.0))
     axes.contour(
         around,
-        factor["sizes"],
+        factor.sizes,
         np.column_stack([rates, rates[:, 0]]),
         levels=[0.0],
         colors="black",
@@ -234,7 +198,7 @@ def _rate_map(figure, axes, factor: dict, name: str) -> None:
 
 
 def _side_map(
-    axes, factor: dict, faces: np.ndarray, angles_deg: np.ndarray, names: list[str]
+    axes, factor: Swept, faces: np.ndarray, angles_deg: np.ndarray, names: Sequence[str]
 ) -> None:
     from matplotlib.colors import ListedColormap
 
@@ -245,7 +209,7 @@ def _side_map(
     axes.pcolormesh(
         *_edges(factor, angles_deg), code, cmap=colours, vmin=-0.5, vmax=len(walls) + 0.5
     )
-    place, size = np.meshgrid(np.radians(angles_deg), factor["sizes"])
+    place, size = np.meshgrid(np.radians(angles_deg), factor.sizes)
     front = np.array([name.startswith("front") for name in names] + [False])[faces]
     axes.plot(
         place[front],

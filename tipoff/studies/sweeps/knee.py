@@ -19,6 +19,7 @@ again. A resample of the angles can only lower the maximum, so the interval is a
 the knee, not about the height of the curve.
 """
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -35,7 +36,8 @@ _LEAST = 6  # sizes; with fewer, AICc of the knee law is not defined
 _SCANNED = 121
 
 
-class Growth(NamedTuple):
+@dataclass(frozen=True)
+class Growth:
     """The chosen ``law`` and its ``verdict``; ``knee`` with the ends of its 95 % interval, None
     where the law has no knee; slopes before and after the knee (or the only slope); ``misfit``, the
     rms residual over the largest value; ``plateau_share``, the share of resamples whose verdict is

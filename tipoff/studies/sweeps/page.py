@@ -1,20 +1,16 @@
 """How large an error may be, on the page and for the terminal: verdicts beside the paper's, the
 reason for a plateau, and the figures."""
 
+from collections.abc import Iterator, Sequence
+
 from tipoff.studies.populations import answers, population
 from tipoff.studies.render.document import Bullets, Caption, Fold, Heading, Part
-from tipoff.studies.render.table import Cells, Column, Noted, Table, number, percent, span
+from tipoff.studies.render.table import Column, Noted, Table, number, percent, span
 from tipoff.studies.sweeps.figures import figures
-from tipoff.studies.sweeps.knee import LEVEL, MISFIT
+from tipoff.studies.sweeps.knee import LEVEL, MISFIT, Growth
+from tipoff.studies.sweeps.results import Curve, Launch, Sweeps, Swept
 
 _SHORT = {"rate_x_deg_s": "x", "rate_y_deg_s": "y", "rate_z_deg_s": "z", "rate_deg_s": "total"}
-_RUN: Cells = (
-    (Column("thrust, times as long", form="g"), "stretch"),
-    ("cases", lambda launch: launch["cases"]["asked"]),
-    ("did not settle", "not_settled"),
-    (Column("exit", "ms", scale=1e3), "exit_s"),
-    (Column("impulse after the exit", "%", ".2g", 100.0), "share_after_exit"),
-)
 _VERDICT = (
     "error",
     Column("the paper", form="g"),
@@ -48,143 +44,117 @@ _REASON = (
 )
 
 
-def draw(found: dict) -> list[Part]:
+def draw(found: Sweeps) -> list[Part]:
     """The section: runs, verdicts, the reason for a plateau, figures."""
-    launches = found["launches"]
     parts = _runs(found)
-    for launch in launches:
-        parts += [
-            Heading(_title(launch)),
-            table_of_verdicts(launch),
-            table_of_largest(launch),
-            Fold("Slopes, and the largest values by size", _details(launch)),
-        ]
-    return [*parts, Caption(_METHOD), *_why(launches), *figures(found)]
+    for launch in found.launches:
+        details = Fold("Slopes, and the largest values by size", _details(launch))
+        parts += [*_launched(launch), details]
+    return [*parts, Caption(_METHOD), *_why(found.launches), *figures(found)]
 
 
-def terminal(found: dict) -> list[Part]:
+def terminal(found: Sweeps) -> list[Part]:
     """Runs, verdicts and the largest values, for the terminal."""
-    parts = _runs(found)
-    for launch in found["launches"]:
-        parts += [Heading(_title(launch)), table_of_verdicts(launch), table_of_largest(launch)]
-    return parts
+    return [*_runs(found), *(part for launch in found.launches for part in _launched(launch))]
 
 
-def _runs(found: dict) -> list[Part]:
-    return [Bullets([population.model_line(found)]), Table.of(found["launches"], _RUN)]
+def _runs(found: Sweeps) -> list[Part]:
+    names = ("not_settled", "exit_s", "share_after_exit")
+    cases = ("cases", lambda launch: launch.cases["asked"])
+    table = Table.of_records(found.launches, "stretch", cases, *names)
+    return [Bullets([population.model_line(found)]), table]
 
 
-def _title(launch: dict) -> str:
-    if launch["stretch"] == 1.0:
-        return "The launcher as given"
-    return f"With a thrust {launch['stretch']:g} times as long and the same impulse"
+def _launched(launch: Launch) -> list[Part]:
+    title = (
+        "The launcher as given"
+        if launch.stretch == 1.0
+        else f"With a thrust {launch.stretch:g} times as long and the same impulse"
+    )
+    return [Heading(title), table_of_verdicts(launch), table_of_largest(launch)]
 
 
-def table_of_verdicts(launch: dict) -> Table:
+def table_of_verdicts(launch: Launch) -> Table:
     """Verdict of each rate over the sizes of an error, beside that of the paper."""
     rows = [
         (
-            *_error(factor, name, factor["paper"]),
-            _SHORT[name],
-            bent["verdict"],
-            None
-            if bent["knee"] is None
-            else Noted(bent["knee"], span(bent["low"], bent["high"], ".2f")),
-            bent["misfit"],
-            bent["plateau_share"],
+            *((factor.title, factor.paper) if first else ("", "")),
+            rate,
+            bent.verdict,
+            None if bent.knee is None else Noted(bent.knee, span(bent.low, bent.high, ".2f")),
+            bent.misfit,
+            bent.plateau_share,
         )
-        for factor, name, bent in _judged(launch)
+        for factor, first, rate, bent in _judged(launch)
     ]
     return Table(_VERDICT, rows, (_INTERVAL,))
 
 
-def _slopes(launch: dict) -> Table:
-    rows = [
-        (
-            *_error(factor, name, factor["departs_from_free_at"]),
-            _SHORT[name],
-            bent["slope_before"],
-            bent["slope_after"],
-        )
-        for factor, name, bent in _judged(launch)
-    ]
-    return Table(_SLOPES, rows, (_FREE,), dense=True)
+def _judged(launch: Launch) -> Iterator[tuple[Swept, bool, str, Growth]]:
+    """Factor, whether its rate is the first one, the rate, and its growth."""
+    for factor in launch.factors:
+        judged = [(name, bent) for name, bent in factor.growth.items() if bent]
+        for name, bent in judged:
+            yield factor, name == judged[0][0], _SHORT[name], bent
 
 
-def _judged(launch: dict) -> list[tuple[dict, str, dict]]:
-    """Factor, name of the rate, and its growth."""
-    return [
-        (factor, name, bent)
-        for factor in launch["factors"]
-        for name, bent in factor["growth"].items()
-        if bent
-    ]
-
-
-def _error(factor: dict, name: str, size: float | None) -> tuple:
-    """Label and a size of a factor, in the first of its rows alone."""
-    first = next(key for key, bent in factor["growth"].items() if bent)
-    return (f"{factor['label']} ({factor['unit']})", size) if name == first else ("", "")
-
-
-def table_of_largest(launch: dict) -> Table:
+def table_of_largest(launch: Launch) -> Table:
     """The largest magnitude of every quantity over sizes and directions."""
-    factors = launch["factors"]
+
+    def most(curve: Curve) -> float | None:
+        return max((value for value in curve if value is not None), default=None)
+
     rows = [
-        (
-            f"{item.label} ({item.unit})",
-            *(
-                max(
-                    (value for value in factor["largest"][item.name] if value is not None),
-                    default=None,
-                )
-                for factor in factors
-            ),
-        )
+        (item.title, *(most(factor.largest[item.name]) for factor in launch.factors))
         for item in answers.ALL
     ]
     note = "Largest magnitude of the settled cases, over all sizes and directions."
-    return Table(["largest", *(factor["label"] for factor in factors)], rows, (note,))
+    return Table(["largest", *(factor.label for factor in launch.factors)], rows, (note,))
 
 
-def _details(launch: dict) -> list[Part]:
+def _details(launch: Launch) -> list[Part]:
     """Slopes, and every quantity at every size, in magnitude."""
-    tables: list[Part] = [
+    slopes = [
+        (
+            *((factor.title, factor.departs_from_free_at) if first else ("", "")),
+            rate,
+            bent.slope_before,
+            bent.slope_after,
+        )
+        for factor, first, rate, bent in _judged(launch)
+    ]
+    tables = [
         Table(
-            [f"{factor['label']} ({factor['unit']})", *(f"{size:g}" for size in factor["sizes"])],
-            [
-                (f"{item.label} ({item.unit})", *factor["largest"][item.name])
-                for item in answers.ALL
-            ],
+            [factor.title, *(f"{size:g}" for size in factor.sizes)],
+            [(item.title, *factor.largest[item.name]) for item in answers.ALL],
             dense=True,
         )
-        for factor in launch["factors"]
+        for factor in launch.factors
     ]
     note = Caption("Largest magnitude of the settled cases, over all directions.")
-    return [_slopes(launch), *tables, note]
+    return [Table(_SLOPES, slopes, (_FREE,), dense=True), *tables, note]
 
 
-def _why(launches: list[dict]) -> list[Part]:
+def _why(launches: Sequence[Launch]) -> list[Part]:
     """The reason for a plateau, with the numbers of both launches for the first error."""
-    if len(launches) < 2 or launches[0]["share_after_exit"] is None:
+    if len(launches) < 2 or launches[0].share_after_exit is None:
         return []
-    held, freed = sorted(launches, key=lambda item: item["share_after_exit"])
-    rises = [
-        _late_rise(launch["factors"][0]["largest"]["rate_y_deg_s"]) for launch in (held, freed)
-    ]
-    free = _late_rise(freed["factors"][0]["free"]["rate_y_deg_s"])
-    after = None if free is None else freed["share_after_exit"] * free
+    held, freed = sorted(launches, key=lambda launch: launch.share_after_exit or 0.0)
+    rises = [_late_rise(launch.factors[0].largest["rate_y_deg_s"]) for launch in (held, freed)]
+    free = _late_rise(freed.factors[0].free["rate_y_deg_s"])
+    share = freed.share_after_exit
+    after = None if free is None or share is None else share * free
     return [
         _REASON,
-        f"Over the upper half of the sizes of the {held['factors'][0]['label']}, the largest rate "
+        f"Over the upper half of the sizes of the {held.factors[0].label}, the largest rate "
         f"about y changes by {number(rises[0])} deg/s with "
-        f"{percent(held['share_after_exit'], '.2g')} % of the impulse after the exit, and by "
-        f"{number(rises[1])} deg/s with {percent(freed['share_after_exit'], '.2g')} %. The moment "
+        f"{percent(held.share_after_exit, '.2g')} % of the impulse after the exit, and by "
+        f"{number(rises[1])} deg/s with {percent(share, '.2g')} %. The moment "
         f"after the exit alone gives {number(after)} deg/s.",
     ]
 
 
-def _late_rise(values: list[float | None]) -> float | None:
+def _late_rise(values: Curve) -> float | None:
     """Change over the upper half of the sizes."""
     first, last = values[len(values) // 2 - 1], values[-1]
     return None if first is None or last is None else last - first

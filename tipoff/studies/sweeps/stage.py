@@ -2,6 +2,7 @@
 vary one at a time in size and direction. Results: the size at which the largest rate stops growing,
 the walls that the payload touches, and both for a longer or shorter thrust."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from tipoff.studies.sweeps import burnout, factors, knee, sides
 from tipoff.studies.sweeps import figures as drawing
 from tipoff.studies.sweeps.factors import FACTORS, SIZES, Factor
 from tipoff.studies.sweeps.options import FEWEST, Options
+from tipoff.studies.sweeps.results import Curve, Launch, Sides, Sweeps, Swept
 from tipoff.workspace.progress import Board
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study
@@ -28,61 +30,57 @@ _DEPARTS = 0.05  # of the rate of a free payload: a larger difference is an effe
 
 
 def run(study: Study, options: Options = Options()) -> dict:
-    """``launches``: the scene as given, and with a stretched thrust, each with its factors.
+    """The content of ``Sweeps``. Raises SceneError for bad input, before anything runs."""
 
-    Raises SceneError for bad input, before anything runs.
-    """
-
-    def make() -> tuple[dict, list[Path]]:
+    def make() -> tuple[Sweeps, list[Path]]:
         model = population.surrogate(study, options.model)
         alone = model._replace(scene=factors.alone(model.scene))
         launch, alone = _launch(study, alone, options, 1.0, burnout.exit_of(alone))
-        launches = [launch]
-        launches[0]["faces"], touched = _sides(study, alone, options)
-        for factor, each in zip(launches[0]["factors"], touched):
-            factor["sides"] = each
+        faces, touched = _sides(study, alone, options)
+        swept = tuple(replace(each, sides=own) for each, own in zip(launch.factors, touched))
+        launches = [replace(launch, faces=faces, factors=swept)]
         if other := burnout.other_way(alone):
             launches.append(_launch(study, other[1], options, other[0], other[2])[0])
-        found = {
-            "asked": STAGE.plain(options),
+        found = Sweeps(
             **population.answering(study, alone),
-            "citation": published.CITATION,
-            "launches": launches,
-        }
+            asked=options,
+            citation=published.CITATION,
+            launches=tuple(launches),
+        )
         return with_figures(found, drawing.figures, study.path("figures"))
 
     return STAGE.run(study, options, make)
 
 
-STAGE = Stage(NAME, __name__, Options)
+STAGE = Stage(NAME, __name__, Options, result=Sweeps)
 
 
 def _launch(
     study: Study, model: Surrogate, options: Options, stretch: float, leaves: burnout.Exit | None
-) -> tuple[dict, Surrogate]:
+) -> tuple[Launch, Surrogate]:
     """All cases of one surrogate in one ensemble, and the results of each factor; the surrogate with
     the modes of its cases."""
     directions = factors.angles(options.angles)
     found = population.run(study, NAME, model, factors.cases(directions), _TOLERANCE)
     count = len(SIZES) * options.angles
-    made = {
-        "stretch": stretch,
-        "exit_s": leaves and leaves.time,
-        "share_after_exit": leaves and leaves.share_after,
-        "cases": found.counts,
-        "not_settled": int((~found.settled).sum()),
-        "store": found.store,
-        "factors": [
-            _factor(model, factor, directions, found, slice(place * count, (place + 1) * count))
+    made = Launch(
+        stretch=stretch,
+        exit_s=leaves and leaves.time,
+        share_after_exit=leaves and leaves.share_after,
+        cases=found.counts,
+        not_settled=int((~found.settled).sum()),
+        store=found.store,
+        factors=tuple(
+            _swept(model, factor, directions, found, slice(place * count, (place + 1) * count))
             for place, factor in enumerate(FACTORS)
-        ],
-    }
+        ),
+    )
     return made, found.model
 
 
-def _factor(
+def _swept(
     model: Surrogate, factor: Factor, directions: np.ndarray, found: Population, part: slice
-) -> dict:
+) -> Swept:
     """Results of one factor from its ``part`` of the cases."""
     shape = len(SIZES), len(directions)
     values = {item.name: item.of(found.results)[part].reshape(shape) for item in answers.ALL}
@@ -91,33 +89,31 @@ def _factor(
     )
     total, free_total = values[answers.TOTAL_RATE.name], np.linalg.norm(free, axis=2)
     departs = (abs(total - free_total) > _DEPARTS * free_total).any(axis=1)
-    free_largest = {
-        item.name: abs(column).max(axis=1)
-        for item, column in zip(JUDGED, [*np.moveaxis(free, 2, 0), free_total])
-    }
-    return {
-        "name": factor.name,
-        "label": factor.label,
-        "unit": factor.unit,
-        "paper": published.PLATEAUS[factor.name],
-        "sizes": SIZES.tolist(),
-        "angles_deg": np.degrees(directions).tolist(),
-        "values": {name: _plain(table) for name, table in values.items()},
-        "largest": {name: _plain(knee.largest(abs(table))) for name, table in values.items()},
-        "free": {name: _plain(curve) for name, curve in free_largest.items()},
-        "departs_from_free_at": float(SIZES[departs.argmax()]) if departs.any() else None,
-        "growth": {
-            item.name: (bent := knee.growth(SIZES, abs(values[item.name]))) and bent._asdict()
-            for item in JUDGED
+    return Swept(
+        name=factor.name,
+        label=factor.label,
+        unit=factor.unit,
+        paper=published.PLATEAUS[factor.name],
+        sizes=tuple(SIZES.tolist()),
+        angles_deg=tuple(np.degrees(directions).tolist()),
+        values={name: tuple(map(_plain, table)) for name, table in values.items()},
+        largest={name: _plain(knee.largest(abs(table))) for name, table in values.items()},
+        free={
+            item.name: _plain(abs(column).max(axis=1))
+            for item, column in zip(JUDGED, [*np.moveaxis(free, 2, 0), free_total])
         },
-    }
+        departs_from_free_at=float(SIZES[departs.argmax()]) if departs.any() else None,
+        growth={item.name: knee.growth(SIZES, abs(values[item.name])) for item in JUDGED},
+    )
 
 
-def _sides(study: Study, model: Surrogate, options: Options) -> tuple[list[str], list[dict | None]]:
+def _sides(
+    study: Study, model: Surrogate, options: Options
+) -> tuple[tuple[str, ...], list[Sides | None]]:
     """Names of the faces, and for each factor the face that touched first and the one with the
     largest impulse, on a coarser grid of directions."""
     if model.scene.contact is None:
-        return [], [None] * len(FACTORS)
+        return (), [None] * len(FACTORS)
     directions = factors.angles(max(FEWEST, options.angles // _COARSER))
     rows = [row for factor in FACTORS for row in factor.rows(SIZES, directions)]
     with Board("which walls", 1) as board:
@@ -127,21 +123,19 @@ def _sides(study: Study, model: Surrogate, options: Options) -> tuple[list[str],
     shape = len(FACTORS), len(SIZES), len(directions)
     names = sides.names(model.scene)
     faces = np.array([*names, ""])  # the last for no face, which is -1
-    return names, [
-        {
-            "angles_deg": np.degrees(directions).tolist(),
-            "first": first.tolist(),
-            "most": most.tolist(),
-            "jumps_deg_s": sides.jumps(faces[most], np.degrees(rate)),
-        }
+    return tuple(names), [
+        Sides(
+            angles_deg=tuple(np.degrees(directions).tolist()),
+            first=tuple(map(tuple, first.tolist())),
+            most=tuple(map(tuple, most.tolist())),
+            jumps_deg_s=sides.jumps(faces[most], np.degrees(rate)),
+        )
         for first, most, rate in zip(
             seen.first.reshape(shape), seen.most.reshape(shape), seen.rate.reshape(*shape, 3)
         )
     ]
 
 
-def _plain(values: np.ndarray) -> list:
-    """Values with six digits, None where a case did not settle."""
-    if values.ndim > 1:
-        return [_plain(row) for row in values]
-    return [float(f"{value:.6g}") if np.isfinite(value) else None for value in values]
+def _plain(values: np.ndarray) -> Curve:
+    """Values (n,) with six digits, None where a case did not settle."""
+    return tuple(float(f"{value:.6g}") if np.isfinite(value) else None for value in values)

@@ -1,0 +1,96 @@
+"""Result of ``tipoff sensitivity``."""
+
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from tipoff.studies.populations.answers import Named
+from tipoff.studies.populations.population import Answering
+from tipoff.studies.render.column import Column
+from tipoff.studies.sensitivity.contact_table import Deviations, Row
+from tipoff.studies.sensitivity.indices import Indices
+from tipoff.studies.sensitivity.options import Options
+
+
+@dataclass(frozen=True, kw_only=True)
+class Paper:
+    """A table of changed constants, and its largest deviations."""
+
+    rows: tuple[Row, ...]
+    largest: Deviations
+
+
+@dataclass(frozen=True, kw_only=True)
+class Constants(Paper):
+    """The table of the contact ``law`` with its constants (SI); the largest deviations by the clearance;
+    the largest change of each of ``answers.ALL`` by a constant."""
+
+    title: str
+    law: str
+    constants_si: dict[str, Any]
+    largest_clearance: Deviations
+    most_moved: dict[str, float]
+    store: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Varied:
+    """An input of the indices: 95 % of its numbers are within ``low`` to ``high``; ``factor``: whether the
+    distribution is that of a factor of the ``nominal`` value, None where the scene has none."""
+
+    key: Annotated[str, Column("input")]
+    unit: str
+    nominal: Annotated[float | None, Column("nominal", form=".4g")]
+    low: float
+    high: float
+    factor: bool
+    distribution: str
+    provenance: Annotated[str | None, Column("provenance")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Step:
+    """Indices of the first ``base_points``; None where the quantity does not vary there."""
+
+    base_points: int
+    first: tuple[float, ...] | None = None
+    first_half_width: tuple[float, ...] | None = None
+    total: tuple[float, ...] | None = None
+    total_half_width: tuple[float, ...] | None = None
+    points: int | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shares(Named):
+    """Spread of a quantity and its indices, None where it does not vary."""
+
+    mean: float
+    sd: float
+    indices: Indices | None
+    convergence: tuple[Step, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sobol:
+    """``left_out``: the reasons by key; ``used``: base points all of whose cases settled; ``cases`` by
+    status."""
+
+    inputs: tuple[Varied, ...]
+    left_out: dict[str, str]
+    base_points: int
+    used: int
+    cases: dict[str, int]
+    not_settled: int
+    store: str
+    quantities: tuple[Shares, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sensitivity(Answering):
+    """``tables`` of the constants of the surrogate, and of those of the scene where a calibration changed
+    them; none without contact."""
+
+    asked: Options
+    citation: str
+    tables: tuple[Constants, ...]
+    paper: Paper
+    sobol: Sobol

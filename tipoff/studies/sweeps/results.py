@@ -1,0 +1,73 @@
+"""Result of ``tipoff sweeps``."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from tipoff.studies.populations.population import Answering
+from tipoff.studies.render.column import Column
+from tipoff.studies.sweeps.knee import Growth
+from tipoff.studies.sweeps.options import Options
+
+Curve = tuple[float | None, ...]  # over the sizes; None where no case settled
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sides:
+    """Numbers of the face that touched ``first`` and of the one with the ``most`` impulse, over sizes and
+    directions, -1 without contact; median change of the rates where the latter changes, and elsewhere."""
+
+    angles_deg: tuple[float, ...]
+    first: tuple[tuple[int, ...], ...]
+    most: tuple[tuple[int, ...], ...]
+    jumps_deg_s: tuple[float | None, float | None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Swept:
+    """An error over ``sizes`` in its ``unit`` and directions: ``values`` of ``answers.ALL`` by name, the
+    ``largest`` over all directions, that of a ``free`` payload, and the ``growth`` of the largest rates,
+    None where too few cases settled; ``paper``: size at which the plateau of the paper begins; ``sides``:
+    None without contact, and with another thrust."""
+
+    name: str
+    label: str
+    unit: str
+    paper: float
+    sizes: tuple[float, ...]
+    angles_deg: tuple[float, ...]
+    values: dict[str, tuple[Curve, ...]]
+    largest: dict[str, Curve]
+    free: dict[str, Curve]
+    departs_from_free_at: float | None
+    growth: dict[str, Growth | None]
+    sides: Sides | None = None
+
+    @property
+    def title(self) -> str:
+        """Label with unit."""
+        return f"{self.label} ({self.unit})"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Launch:
+    """All sweeps with a thrust ``stretch`` times as long; exit and impulse None where the payload does not
+    leave; ``cases`` by status; ``faces``: the names of the faces that ``sides`` numbers."""
+
+    stretch: Annotated[float, Column("thrust, times as long", form="g")]
+    cases: dict[str, int]
+    not_settled: Annotated[int, Column("did not settle")]
+    exit_s: Annotated[float | None, Column("exit", "ms", scale=1e3)]
+    share_after_exit: Annotated[float | None, Column("impulse after the exit", "%", ".2g", 100.0)]
+    store: str
+    factors: tuple[Swept, ...]
+    faces: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sweeps(Answering):
+    """``launches``: the scene as given, and with a stretched thrust where that changes the impulse after
+    the exit."""
+
+    asked: Options
+    citation: str
+    launches: tuple[Launch, ...]
