@@ -1,10 +1,13 @@
 """Tables of docs/results.md: balances, chaotic conditions, time at equal accuracy, error of the reference, speeds."""
 
+from collections.abc import Sequence
 from operator import attrgetter
 from pathlib import Path
 
 from tipoff.files import read_json
 from tipoff.studies.agreement import distribution_page
+from tipoff.studies.agreement import stage as compare
+from tipoff.studies.agreement.distributions import Distribution
 from tipoff.studies.convergence import summary
 from tipoff.studies.cost import scaling_page
 from tipoff.studies.cost import stage as cost_study
@@ -22,7 +25,9 @@ def details(folder: Path) -> str:
         read(folder / f"{name}.json") for name in ("convergence", "cost_study", "agreement")
     )
     parts: list[Part] = [_promises(highfi, lowfi)]
-    parts += distributions(agreement["distributions"]) if agreement is not None else []
+    parts += (
+        distributions(compare.STAGE.read(agreement).distributions) if agreement is not None else []
+    )
     parts += _cost(cost_study.STAGE.read(cost)) if cost is not None else []
     parts += _convergence(refined) if refined is not None else []
     if (found := reference.stored(folder.parent)) is not None:
@@ -31,7 +36,7 @@ def details(folder: Path) -> str:
     return markdown(parts)
 
 
-def distributions(found: list[dict]) -> list[Part]:
+def distributions(found: Sequence[Distribution]) -> list[Part]:
     """Verdicts on conditions that no single run can judge; nothing where there is none."""
     if not found:
         return []

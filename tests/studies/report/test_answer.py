@@ -1,11 +1,13 @@
 """The first screen of the page: what it says of known rows."""
 
 import re
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
 
+from tests.studies.agreement import made
+from tests.studies.agreement.made import ROW
 from tests.studies.shown import html
 from tests.studies.synthetic import flight
 from tipoff import scenes
@@ -24,20 +26,15 @@ def settled(x, y, z):
     return flight(outcome=outcome, cost=cost | {"elements": 1, "ns_per_element_step": 1.0})
 
 
-def judged(name, uncertainty, converged=True, passes=True):
-    return {
-        "condition": name,
-        "reference_uncertainty_deg_s": uncertainty,
-        "settled_rate_error_deg_s": 0.0312,
-        "floor_deg_s": 0.043,
-        "reference_converged": converged,
-        "touches": True,
-        "judged_as": verdicts.CURVE,
-        "judgement": (
-            verdicts.CANNOT if not converged else verdicts.AGREES if passes else verdicts.MISSES
-        ),
-        "verdict": "agrees" if passes else "misses",
-    }
+def judged(name, uncertainty, **others):
+    return replace(
+        ROW,
+        condition=name,
+        reference_uncertainty_deg_s=uncertainty,
+        settled_rate_error_deg_s=0.0312,
+        floor_deg_s=0.043,
+        **others,
+    )
 
 
 @pytest.fixture
@@ -46,10 +43,8 @@ def page(tmp_path):
         row("phi15", settled(-28.458, 3.0, 4.0), ""),
         row("phi60", settled(1.0, 0.3, 0.4), ""),
     ]
-    agreement = {
-        "compliant": [judged("phi15", 13.2, converged=False), judged("phi60", 7.64e-11)],
-        "speedup_compliant": {"ratio": 183.2, "highfi_wall_s": 1.03, "lowfi_wall_s": 5.6e-3},
-    }
+    lost = judged("phi15", 13.2, reference_converged=False, judgement=verdicts.CANNOT)
+    agreement = made.document(compliant=(lost, judged("phi60", 7.64e-11)))
     return Page(
         scenes.load("tiny"),
         tmp_path,
@@ -172,7 +167,14 @@ def test_a_spread_condition_has_its_range_over_neighbours(page):
     assert "-28 ± 13" in html(answer.draw(page))
     rates = [[-31.0, 3.0, 4.0], [-12.0, 0.0, 2.0], [-25.0, 6.0, 8.0]]
     page.documents["agreement"]["distributions"] = [
-        {"condition": "phi15", "reference_deg_s": rates}
+        {
+            "condition": "phi15",
+            "neighbours": 4,
+            "further": 32,
+            "limit_deg_s": 0.1,
+            "reference_deg_s": [*rates, None],  # one that did not settle has no rate
+            "models": {},
+        }
     ]
     shown = html(answer.draw(page))
     assert "± 13" not in shown and "-31.0 to -12.0" in shown and "2.00 to 10.00" in shown

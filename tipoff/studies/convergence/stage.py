@@ -18,7 +18,7 @@ from tipoff.comparison.extrapolation import Estimate, estimate
 from tipoff.highfi.numerics import Numerics
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
-from tipoff.studies.agreement import equal_accuracy, interface, refined, verdicts
+from tipoff.studies.agreement import equal_accuracy, interface, refinement, verdicts
 from tipoff.studies.agreement.candidates import compliant
 from tipoff.studies.convergence import contact_loads, ripple, statics, stresses
 from tipoff.studies.convergence.quantities import RATE, quantities, settled_rate
@@ -42,11 +42,11 @@ def run(study: Study, condition: str | None = None) -> dict:
     scene = study.condition(name)
 
     def make() -> tuple[dict, list[Path]]:
-        asked, sizes = refined.mesh_sizes(study, scene, study.settings.mesh_sizes, _LEAST)
+        asked, sizes = refinement.mesh_sizes(study, scene, study.settings.mesh_sizes, _LEAST)
         nominal = sizes[asked.index(study.settings.element_size)]
-        meshes = _finished(study, "convergence, meshes", refined.meshes(study, name, asked))
+        meshes = _finished(study, "convergence, meshes", refinement.meshes(study, name, asked))
         steps = _finished(
-            study, "convergence, steps", refined.steps(study, name, study.settings.safeties)
+            study, "convergence, steps", refinement.steps(study, name, study.settings.safeties)
         )
         by_mesh = [*quantities(scene, meshes), *statics.quantities(scene, asked)]
         judged = [
@@ -156,7 +156,7 @@ def _cells(study: Study, name: str) -> list[dict]:
     """Rows by contact cells along each edge of a pad; none without contact."""
     if study.condition(name).contact is None:
         return []
-    wanted = refined.contact_cells(study, name, study.settings.contact_cells)
+    wanted = refinement.contact_cells(study, name, study.settings.contact_cells)
     heads = [{"cells_per_edge": count} for count in study.settings.contact_cells]
     return _compared(study, "convergence, contact cells", name, heads, wanted)
 
@@ -210,8 +210,8 @@ def _at_equal_accuracy(
             study.settings.lowfi_repeats,
             board.callback(f"{1e3 * mesh.element_size:g} mm"),
         ).values()
-        board.finished(f"{1e3 * mesh.element_size:g} mm", f"{found['ratio']:,.0f} times")
-    return found | {
+        board.finished(f"{1e3 * mesh.element_size:g} mm", f"{found.ratio:,.0f} times")
+    return asdict(found) | {
         "condition": name,
         "error_deg_s": error,
         "element_size_m": mesh.element_size,

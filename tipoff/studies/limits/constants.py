@@ -9,7 +9,6 @@ from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.agreement import stage as compare
-from tipoff.studies.agreement import verdicts
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.workspace.study import Study
 from tipoff.workspace.words import counted
@@ -70,10 +69,11 @@ def margin(study: Study, model: str) -> Margin:
         return Margin(
             dict.fromkeys(("x", "y", "z", "total"), 0.0), "zero, because the scene has no contact"
         )
-    table = (compare.stored(study) or {}).get("compliant" if model == COMPLIANT else "held_out", [])
-    rows = [row for row in table if row["role"] == "held_out"]
-    judged = [row for row in rows if verdicts.is_judged_as_curve(row)]
-    found = [row["settled_rate_error_xyz_deg_s"] for row in judged]
+    table = compare.stored(study)
+    every = () if table is None else table.compliant if model == COMPLIANT else table.held_out
+    rows = [row for row in every if row.role == "held_out"]
+    judged = [row for row in rows if row.is_judged_as_curve]
+    found = [row.settled_rate_error_xyz_deg_s for row in judged]
     errors = [error for error in found if error is not None]
     if errors:
         largest = {

@@ -173,4 +173,4 @@ def _costs(drawn: Draws, whole: Population, surrogate: float) -> dict:
 
 def _gate(study: Study) -> float:
     """Limit of the error of a settled rate (deg/s)."""
-    return verdicts.gates(study.scene)["settled_rate_error_deg_s"]
+    return verdicts.gates(study.scene).settled_rate_error_deg_s

@@ -3,6 +3,7 @@
 import shlex
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 from markupsafe import Markup
 
@@ -15,6 +16,7 @@ from tipoff.studies.render.interactive import to_html
 from tipoff.studies.runs import stage as runs
 from tipoff.studies.runs.figures import Runs
 from tipoff.studies.runs.results import Row
+from tipoff.workspace.stage import Stage
 
 
 class Page:
@@ -45,6 +47,11 @@ class Page:
         found = self.documents.get(result)
         return list(body(found)) if found else [self.missing(result, target)]
 
+    def read(self, stage: Stage) -> Any:
+        """The result of a stage; None where it is missing."""
+        found = self.documents.get(stage.name)
+        return stage.read(found) if found else None
+
     def missing(self, stage: str, target: str) -> Notice | Missing:
         """The reason why a result is missing, or the command ``target`` that makes it."""
         if reason := self.problems.get(stage):
@@ -69,6 +76,6 @@ class Page:
     def rows(self) -> dict[str, Sequence[Row]]:
         """Conditions of both models."""
         return {
-            name: stage.read(found).conditions if (found := self.documents.get(name)) else ()
+            name: found.conditions if (found := self.read(stage)) else ()
             for name, stage in runs.STAGES.items()
         }
