@@ -13,7 +13,7 @@ from pathlib import Path
 
 from tipoff.files import read_json, write_text
 from tipoff.mechanics.models import FINITE_ELEMENTS
-from tipoff.studies.agreement import equal_accuracy, growth_page, other_rails, verdicts
+from tipoff.studies.agreement import growth_page, other_rails, verdicts
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.agreement.growth import Growth
 from tipoff.studies.agreement.page import by_factor
@@ -21,6 +21,7 @@ from tipoff.studies.agreement.stage import Agreement
 from tipoff.studies.agreement.verdicts import Row
 from tipoff.studies.blind import stage as blind_study
 from tipoff.studies.blind.stage import Blind
+from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.cost import stage as cost_study
 from tipoff.studies.cost.results import Cost
 from tipoff.studies.montecarlo import tails_page
@@ -89,9 +90,8 @@ def headline(folder: Path) -> str:
     """The few figures of README: agreement of compliant contact, and the one speed-up, at equal
     accuracy, where the error of the reference was studied."""
     lines = [_agreed(_compared(folder).compliant)]
-    refined = read(folder / "convergence.json")
-    if refined is not None and (found := refined["equal_accuracy"]) is not None:
-        said = equal_accuracy.sentence(found).split(". ")[0].removeprefix("speed-up ")
+    if said := _equal(folder):
+        said = said.split(". ")[0].removeprefix("speed-up ")
         lines.append(f"- **Speed-up** {said}.")
     return "\n".join(lines)
 
@@ -137,16 +137,15 @@ def _upper(sentence: str) -> str:
 def section(folder: Path) -> str:
     """Markdown of the results: agreement, speed-up, other rails, time against accuracy."""
     agreement = _compared(folder)
-    refined, cost, blind = (
-        read(folder / f"{name}.json") for name in ("convergence", "cost_study", "blind")
-    )
+    cost, blind = (read(folder / f"{name}.json") for name in ("cost_study", "blind"))
     parts: list[Part] = [
         _agreement(agreement),
         *by_factor(agreement.interface),
         *_growth(agreement.growth),
         _speed(agreement),
-        *_equal(refined),
     ]
+    if said := _equal(folder):
+        parts.append(f"{_upper(said)} (`make convergence`).")
     parts += [_rails(found)] if (found := other_rails.beside(folder)) else []
     parts += [_blind(blind_study.STAGE.read(blind))] if blind is not None else []
     parts += _ladder(cost_study.STAGE.read(cost)) if cost is not None else []
@@ -231,13 +230,12 @@ def _speed(agreement: Agreement) -> str:
     )
 
 
-def _equal(refined: dict | None) -> list[Part]:
-    """The speed-up on the mesh whose uncertainty is as small as the error of the surrogate, where
-    the error of the reference was studied."""
-    if refined is None or refined["equal_accuracy"] is None:
-        return []
-    sentence = equal_accuracy.sentence(refined["equal_accuracy"])
-    return [f"{_upper(sentence)} (`make convergence`)."]
+def _equal(folder: Path) -> str:
+    """The speed-up on the mesh whose uncertainty is as small as the error of the surrogate; empty where
+    it was not measured."""
+    found = read(folder / "convergence.json")
+    equal = None if found is None else convergence.STAGE.read(found).equal_accuracy
+    return equal.sentence() if equal else ""
 
 
 def _rails(found: Sequence[other_rails.Scene]) -> Table:

@@ -3,6 +3,7 @@
 from pydantic_core import to_jsonable_python
 
 from tipoff.studies.agreement import verdicts
+from tipoff.studies.agreement.equal_accuracy import EqualAccuracy
 from tipoff.studies.agreement.stage import Agreement
 from tipoff.studies.agreement.verdicts import Row
 from tipoff.workspace.timing import Speedup
@@ -56,6 +57,14 @@ SPEEDUP = Speedup(
     cpu_ratio=None,
     repeats_identical=None,
     hardware={},
+)
+
+EQUAL = EqualAccuracy(
+    **vars(SPEEDUP) | {"condition": "phi35", "highfi_wall_s": 250.0, "lowfi_wall_s": 5e-3},
+    error_deg_s=0.01,
+    element_size_m=1e-3,
+    mesh_uncertainty_deg_s=0.012,
+    surer=True,
 )
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from tests.studies.agreement import made
 from tests.studies.agreement.made import ROW
+from tests.studies.convergence import stub
 from tests.studies.shown import html
 from tests.studies.synthetic import flight
 from tipoff import scenes
@@ -81,8 +82,8 @@ def test_agreement_speed_and_trust(page):
     assert "Model: " in shown and "within 0.031 deg/s" in shown
     assert "validated on a measured ejection" in shown
     assert re.search(r"Inputs: \d+ of \d+ values are assumed", shown)
-    equal = {"ratio": 12.0, "surer": False, "element_size_m": 4e-3}
-    page.documents["convergence"] = {"equal_accuracy": equal}
+    equal = replace(made.EQUAL, surer=False, element_size_m=4e-3)
+    page.documents["convergence"] = stub.document(equal=equal)
     assert "at least, at equal accuracy (mesh of 4 mm)" in html(answer.draw(page))
 
 
@@ -121,11 +122,7 @@ def test_rates_by_hand_stand_beside_those_of_the_run(page):
 def test_the_largest_rate_of_converged_conditions_is_said_where_another_is_larger(page):
     shown = html(answer.draw(page))
     assert "phi15, not converged; of the converged ones 1.000 ± &lt;0.001 (phi60)" in shown
-    page.documents["convergence"] = {
-        "condition": "phi60",
-        "equal_accuracy": None,
-        "quantities": [{"quantity": "settled axial velocity", "nominal_uncertainty": 2e-3}],
-    }
+    page.documents["convergence"] = stub.document(speed=2e-3)
     assert "v_x (m/s), each ± 0.002 by mesh and step, measured on phi60" in html(answer.draw(page))
 
 

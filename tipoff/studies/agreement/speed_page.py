@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from tipoff.studies import published
-from tipoff.studies.agreement import equal_accuracy, stage
+from tipoff.studies.agreement import stage
+from tipoff.studies.agreement.equal_accuracy import EqualAccuracy
 from tipoff.studies.render.document import Caption, Part
 from tipoff.studies.render.table import Column, Table, span
 from tipoff.studies.render.uncertain import LEAST, Measured, rounded
@@ -16,13 +17,13 @@ if TYPE_CHECKING:
 
 def draw(page: "Page") -> list[Part]:
     """The section, or how to make its result."""
-    equal = (page.documents.get("convergence") or {}).get("equal_accuracy")
+    equal = page.equal_accuracy
     return page.shown(
         "agreement", lambda found: speedups(stage.STAGE.read(found), equal), "compare"
     )
 
 
-def speedups(found: stage.Agreement, equal: dict | None = None) -> list[Part]:
+def speedups(found: stage.Agreement, equal: EqualAccuracy | None = None) -> list[Part]:
     """Wall times of the reference and of two surrogates on one machine, their ratios and scatter;
     and those at ``equal`` accuracy, where the convergence study measured them."""
     machine = found.speedup.hardware
@@ -38,12 +39,12 @@ def speedups(found: stage.Agreement, equal: dict | None = None) -> list[Part]:
     ]
 
 
-def _equal(found: dict | None) -> str:
+def _equal(found: EqualAccuracy | None) -> str:
     """The speed-up at equal accuracy; the mesh of the tables above is fixed."""
     if found is None:
         return "`tipoff convergence` measures the speed-up at equal accuracy."
     printed = float(published.headline()["speedup"])
-    sentence = equal_accuracy.sentence(found)
+    sentence = found.sentence()
     return f"{sentence[0].upper()}{sentence[1:]}. The paper has {printed:,.0f} for its two models."
 
 

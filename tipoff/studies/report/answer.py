@@ -16,6 +16,7 @@ from tipoff.studies.agreement import stage as compare
 from tipoff.studies.agreement.distributions import Distribution
 from tipoff.studies.agreement.page import counts
 from tipoff.studies.agreement.stage import Agreement
+from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.nominal import page as nominal_page
 from tipoff.studies.nominal import stage as nominal_stage
 from tipoff.studies.populations.exceedance import TOTAL, Limit
@@ -102,19 +103,17 @@ def _speed(page: "Page", rows: Sequence[Row]) -> list[tuple[str, str]]:
     if not speeds:
         return []
     low, high = (uncertain(speed, least=STEPS["m/s"]) for speed in (min(speeds), max(speeds)))
-    studied = page.documents.get("convergence") or {}
+    studied = page.read(convergence.STAGE)
     known = [
-        row["nominal_uncertainty"]
-        for row in studied.get("quantities", [])
-        if row["quantity"] == "settled axial velocity" and row["nominal_uncertainty"] is not None
+        row.nominal_uncertainty
+        for row in (studied.quantities if studied else ())
+        if row.quantity == "settled axial velocity" and row.nominal_uncertainty is not None
     ]
     shown = low if low == high else f"{low} to {high}"
     if not known:
         return [(shown, "v_x (m/s), uncertainty not measured (tipoff convergence)")]
     error = rounded(max(known), max(known), STEPS["m/s"])
-    return [
-        (shown, f"v_x (m/s), each ± {error} by mesh and step, measured on {studied['condition']}")
-    ]
+    return [(shown, f"v_x (m/s), each ± {error} by mesh and step, measured on {studied.condition}")]
 
 
 def _largest(
@@ -176,10 +175,10 @@ def _models(page: "Page", agreement: Agreement | None) -> list[tuple[str, str]]:
         return []
     agree, words = counts(agreement.compliant)
     found = [(agree, f"{words}: surrogate against finite elements")]
-    if equal := (page.documents.get("convergence") or {}).get("equal_accuracy"):
-        bound = "" if equal["surer"] else "at least, "
-        words = f"faster, {bound}at equal accuracy (mesh of {1e3 * equal['element_size_m']:g} mm)"
-        return [*found, (f"{equal['ratio']:,.0f} ×", words)]
+    if equal := page.equal_accuracy:
+        bound = "" if equal.surer else "at least, "
+        words = f"faster, {bound}at equal accuracy (mesh of {1e3 * equal.element_size_m:g} mm)"
+        return [*found, (f"{equal.ratio:,.0f} ×", words)]
     speed = agreement.speedup_compliant
     walls = f"{speed.highfi_wall_s:.2g} s against {1e3 * speed.lowfi_wall_s:.2g} ms"
     return [*found, (f"{speed.ratio:,.0f} ×", f"faster ({walls}); not at equal accuracy")]

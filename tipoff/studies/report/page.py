@@ -8,6 +8,8 @@ from typing import Any
 from markupsafe import Markup
 
 from tipoff.scenes.scene import Scene
+from tipoff.studies.agreement.equal_accuracy import EqualAccuracy
+from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.render import document
 from tipoff.studies.render.chart import Chart, Picture, to_files
@@ -51,6 +53,12 @@ class Page:
         """The result of a stage; None where it is missing."""
         found = self.documents.get(stage.name)
         return stage.read(found) if found else None
+
+    @property
+    def equal_accuracy(self) -> EqualAccuracy | None:
+        """The speed-up at equal accuracy, where the convergence study measured it."""
+        found = self.read(convergence.STAGE)
+        return found.equal_accuracy if found else None
 
     def missing(self, stage: str, target: str) -> Notice | Missing:
         """The reason why a result is missing, or the command ``target`` that makes it."""
