@@ -14,17 +14,18 @@ which that is not known, is judged as a distribution (``agreement.distributions`
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any
 
 from tipoff.comparison.metrics import compare
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.studies.agreement import growth, verdicts
+from tipoff.studies.agreement import growth, judging, verdicts
 from tipoff.studies.agreement.verdicts import AtFactor, Context, Judged, RateL2, SettledError
 from tipoff.studies.render.column import Column
 from tipoff.workspace.run import Run
 from tipoff.workspace.study import Study
 
+Place = tuple[str, float]  # a condition and a factor of the stiffness
 FACTORS = (0.25, 1.0, 4.0)
 _NOT_JUDGED = {
     growth.CHAOTIC: "reference chaotic",
@@ -52,25 +53,18 @@ class Row(Judged):
     growth: str | None = None
 
 
-class _Pair(NamedTuple):
-    """Both models on one condition at one factor of the stiffness."""
+def reference(
+    study: Study, name: str, factor: float, overrides: dict | None = None, tag: str = ""
+) -> Run:
+    """The run of the reference on the coarse mesh, with further ``overrides``."""
+    own = "" if factor == 1.0 else f"-interface-{factor:g}"
+    return study.coarse(name, _stiffened(study, factor) | (overrides or {}), own + tag)
 
-    condition: str
-    factor: float
-    reference: Trajectory
-    surrogate: Trajectory
 
-
-def overrides(study: Study, factor: float) -> dict[str, float]:
+def _stiffened(study: Study, factor: float) -> dict[str, float]:
     """Changes of a scene with contact for ``factor`` times its interface stiffness."""
     assert study.scene.contact is not None  # as for every caller
     return {} if factor == 1.0 else study.scene.contact.stiffened(factor)
-
-
-def reference(study: Study, name: str, factor: float) -> Run:
-    """The run of the reference on the coarse mesh."""
-    tag = "" if factor == 1.0 else f"-interface-{factor:g}"
-    return study.coarse(name, overrides(study, factor), tag)
 
 
 def rows(study: Study, request: Callable[..., Run], context: Context) -> list[Row]:
@@ -78,10 +72,23 @@ def rows(study: Study, request: Callable[..., Run], context: Context) -> list[Ro
     the surrogate on the compliance of the coarse mesh from condition, overrides and tag."""
     if study.scene.contact is None:
         return []
-    names = [name for name in study.conditions if name in study.scene.agreement.refined]
-    pairs = _pairs(study, request, names)
-    nominal = {pair.condition: pair for pair in pairs if pair.factor == 1.0}
-    found = [_row(study, pair, nominal[pair.condition], context) for pair in pairs]
+    places = [
+        (name, factor)
+        for name in study.conditions
+        if name in study.scene.agreement.refined
+        for factor in FACTORS
+    ]
+    wanted = [
+        run
+        for name, factor in places
+        for run in (
+            reference(study, name, factor),
+            request(study, name, _stiffened(study, factor), f"-interface-{factor:g}-coarse"),
+        )
+    ]
+    runs = iter(study.store.fill("interface stiffness", wanted))
+    pairs = {place: (next(runs), next(runs)) for place in places}
+    found = [_row(study, place, pairs, context) for place in places]
     missed = [(row.condition, row.factor) for row in found if row.judgement == verdicts.MISSES]
     grown = _growths(study, missed, context)
     return [_regarding(row, grown.get((row.condition, row.factor))) for row in found]
@@ -131,31 +138,21 @@ def _combined(row: verdicts.Row, own: list[Row]) -> verdicts.Row:
     return replace(row, judgement=word, verdict=said)
 
 
-def _pairs(study: Study, request: Callable[..., Run], names: Sequence[str]) -> list[_Pair]:
-    places = [(name, factor) for name in names for factor in FACTORS]
-    wanted = [
-        run
-        for name, factor in places
-        for run in (
-            reference(study, name, factor),
-            request(study, name, overrides(study, factor), f"-interface-{factor:g}-coarse"),
-        )
-    ]
-    runs = iter(study.store.fill("interface stiffness", wanted))
-    return [_Pair(name, factor, next(runs), next(runs)) for name, factor in places]
-
-
-def _row(study: Study, pair: _Pair, nominal: _Pair, context: Context) -> Row:
+def _row(
+    study: Study, place: Place, pairs: dict[Place, tuple[Trajectory, Trajectory]], context: Context
+) -> Row:
     assert study.scene.contact is not None
-    difference = compare(pair.reference, pair.surrogate)
-    touches = bool(pair.reference.pad_force.any())
-    _, judgement, verdict = verdicts.single(pair.condition, difference, context, touches)
+    name, factor = place
+    (reference, surrogate), nominal = pairs[place], pairs[name, 1.0]
+    difference = compare(reference, surrogate)
+    touches = bool(reference.pad_force.any())
+    _, judgement, verdict = verdicts.single(name, difference, context, touches)
     return Row(
-        condition=pair.condition,
-        factor=pair.factor,
-        interface_stiffness_n_m3=pair.factor * study.scene.contact.series_stiffness(),
-        reference_change_deg_s=verdicts.settled_change(nominal.reference, pair.reference),
-        surrogate_change_deg_s=verdicts.settled_change(nominal.surrogate, pair.surrogate),
+        condition=name,
+        factor=factor,
+        interface_stiffness_n_m3=factor * study.scene.contact.series_stiffness(),
+        reference_change_deg_s=verdicts.settled_change(nominal[0], reference),
+        surrogate_change_deg_s=verdicts.settled_change(nominal[1], surrogate),
         rate_relative_l2=difference.rate_relative_l2,
         velocity_relative_l2=difference.velocity_relative_l2,
         settled_rate_error_deg_s=difference.settled_rate_error_deg_s,
@@ -164,34 +161,16 @@ def _row(study: Study, pair: _Pair, nominal: _Pair, context: Context) -> Row:
     )
 
 
-def _growths(
-    study: Study, places: Sequence[tuple[str, float]], context: Context
-) -> dict[tuple[str, float], str]:
+def _growths(study: Study, places: Sequence[Place], context: Context) -> dict[Place, str]:
     """Whether 1 um of clearance grows from contact to contact of the reference, by condition and
     factor, in the words of ``Growth.verdict``."""
-    assert study.scene.contact is not None
-    change = study.settings.clearance_change
-    clearances = study.scene.contact.either_way(change)
-    wanted = [
-        run
-        for name, factor in places
-        for run in (
-            reference(study, name, factor),
-            *(
-                study.coarse(
-                    name,
-                    overrides(study, factor) | changed,
-                    f"-interface-{factor:g}-clearance-{number}",
-                )
-                for number, changed in enumerate(clearances.values())
-            ),
-        )
-    ]
-    runs = iter(study.store.fill("interface stiffness, chaos", wanted))
-    gate = context.gates.settled_rate_error_deg_s
-    found = {}
-    for name, factor in places:
-        nominal, *twins = (next(runs) for _ in range(1 + len(clearances)))
-        grown = growth.growth(name, FINITE_ELEMENTS, nominal, twins, change, gate)
-        found[name, factor] = grown.verdict
-    return found
+
+    def request(place: Place, **changes: Any) -> Run:
+        return reference(study, *place, **changes)
+
+    change, gate = study.settings.clearance_change, context.gates.settled_rate_error_deg_s
+    found = judging.twins(study, "interface stiffness, chaos", request, places)
+    return {
+        place: growth.growth(place[0], FINITE_ELEMENTS, *runs, change, gate).verdict
+        for place, runs in found.items()
+    }

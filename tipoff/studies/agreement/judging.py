@@ -8,7 +8,7 @@ and less clearance give the floor and the growth.
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
@@ -19,6 +19,8 @@ from tipoff.studies.agreement.growth import Growth
 from tipoff.studies.agreement.verdicts import Context, Refinement, Row, Spread
 from tipoff.workspace.run import Run, with_modes_of
 from tipoff.workspace.study import Study, require_success
+
+Name = TypeVar("Name")
 
 
 class Curves(NamedTuple):
@@ -108,7 +110,7 @@ def floors(study: Study, model: str, request: Callable[..., Run]) -> list[Spread
         return []
     return [
         verdicts.spread(name, model, "clearance", nominal, changed)
-        for name, (nominal, *changed) in _twins(
+        for name, (nominal, changed) in twins(
             study, f"floor, {model}", request, study.scene.agreement.floor
         ).items()
     ]
@@ -133,24 +135,21 @@ def _growths(study: Study, compliant: Candidate, rows: Iterable[Row]) -> list[Gr
             (FINITE_ELEMENTS, study.coarse),
             (compliant.title, partial(compliant.request, study)),
         )
-        for name, (nominal, *changed) in _twins(study, f"growth, {model}", request, names).items()
+        for name, (nominal, changed) in twins(study, f"growth, {model}", request, names).items()
     ]
 
 
-def _twins(
-    study: Study, title: str, request: Callable[..., Run], names: Iterable[str]
-) -> dict[str, list[Trajectory]]:
-    """The run of each condition, and its runs with 1 um more and less clearance."""
+def twins(
+    study: Study, title: str, request: Callable[..., Run], names: Iterable[Name]
+) -> dict[Name, tuple[Trajectory, list[Trajectory]]]:
+    """The run that ``request`` makes of each name, and its runs with 1 um more and less clearance."""
     assert study.scene.contact is not None  # as for every caller
     names, changes = list(names), study.scene.contact.either_way(study.settings.clearance_change)
     nominal = dict(zip(names, study.store.fill(title, [request(name) for name in names])))
-    changed = study.store.fill(
-        title,
-        [
-            with_modes_of(nominal[name], request(name, overrides=change, tag=f"-clearance-{sign}"))
-            for name in names
-            for sign, change in changes.items()
-        ],
-    )
-    runs = iter(changed)
-    return {name: [nominal[name], *(next(runs) for _ in changes)] for name in names}
+    wanted = [
+        with_modes_of(nominal[name], request(name, overrides=change, tag=f"-clearance-{sign}"))
+        for name in names
+        for sign, change in changes.items()
+    ]
+    runs = iter(study.store.fill(title, wanted))
+    return {name: (nominal[name], [next(runs) for _ in changes]) for name in names}

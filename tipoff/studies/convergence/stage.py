@@ -12,7 +12,7 @@ half a facet. A wall has at least one element through its thickness, so coarse m
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any
 
 from tipoff.comparison.extrapolation import Estimate, estimate
 from tipoff.highfi.numerics import Numerics
@@ -137,8 +137,9 @@ def run(study: Study, options: Options | None = None) -> dict:
             study, "convergence, steps", refinement.steps(study, name, study.settings.safeties)
         )
         by_mesh = [*quantities(scene, meshes), *statics.quantities(scene, asked)]
-        in_space = _judged(_Parameter("element size", "m", sizes, nominal), by_mesh)
-        in_time = _judged(_time_step(steps), quantities(scene, steps))
+        in_space = _judged("element size", "m", sizes, nominal, by_mesh)
+        dt = [found.cost["dt_s"] for found in steps]
+        in_time = _judged("time step", "s", dt, dt[0], quantities(scene, steps))
         touching = scene.contact is not None
         return Convergence(
             condition=name,
@@ -175,41 +176,30 @@ def _finished(study: Study, title: str, wanted: list[Run]) -> list[Trajectory]:
     return runs
 
 
-class _Parameter(NamedTuple):
-    """What is refined: its name, unit, ``sizes``, coarsest first, and the ``nominal`` one, which all
-    other stages use."""
-
-    name: str
-    unit: str
-    sizes: list[float]
-    nominal: float
-
-
-def _time_step(steps: list[Trajectory]) -> _Parameter:
-    sizes = [found.cost["dt_s"] for found in steps]
-    return _Parameter("time step", "s", sizes, sizes[0])
-
-
 def _judged(
-    parameter: _Parameter, values_of: Iterable[tuple[str, str, Sequence[float | None]]]
+    parameter: str,
+    unit: str,
+    sizes: list[float],
+    nominal: float,
+    values_of: Iterable[tuple[str, str, Sequence[float | None]]],
 ) -> list[Refined]:
-    """One row a quantity."""
+    """One row a quantity over ``sizes``, coarsest first; other stages use the ``nominal`` one."""
     rows = []
-    for quantity, unit, values in values_of:
-        found = estimate(parameter.sizes, values)
-        at_nominal, finest = values[parameter.sizes.index(parameter.nominal)], values[-1]
-        if quantity == stresses.PEAK and parameter.unit == "m":
+    for quantity, its_unit, values in values_of:
+        found = estimate(sizes, values)
+        at_nominal, finest = values[sizes.index(nominal)], values[-1]
+        if quantity == stresses.PEAK and unit == "m":
             found = Estimate(found.order, None, None, stresses.SINGULAR)
         rows.append(
             Refined(
                 **vars(found),
                 quantity=quantity,
-                unit=unit,
-                parameter=parameter.name,
-                sizes=parameter.sizes,
-                size_unit=parameter.unit,
+                unit=its_unit,
+                parameter=parameter,
+                sizes=sizes,
+                size_unit=unit,
                 values=list(values),
-                nominal_size=parameter.nominal,
+                nominal_size=nominal,
                 nominal_uncertainty=None
                 if found.uncertainty is None or at_nominal is None or finest is None
                 else found.uncertainty + abs(at_nominal - finest),
