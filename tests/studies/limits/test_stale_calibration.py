@@ -1,5 +1,8 @@
 """The error of the springs comes from a calibration of the present scene and code alone."""
 
+from dataclasses import replace
+
+from tests.studies.calibration.test_page import FIT
 from tipoff.files import write_json
 from tipoff.scenes import load
 from tipoff.studies.limits import constants
@@ -14,5 +17,5 @@ def test_residuals_of_another_calibration_are_not_taken(tmp_path, monkeypatch):
     study = Study(load("reference"), tmp_path, Settings())
     write_json(study.path("calibration.json"), {"key": "another", "residuals": RESIDUALS})
     assert constants.margin(study, "springs").deg_s is None
-    monkeypatch.setattr(constants.calibrate, "stored", lambda _: {"residuals": RESIDUALS})
+    monkeypatch.setattr(constants.calibrate, "stored", lambda _: replace(FIT, residuals=RESIDUALS))
     assert constants.margin(study, "springs").deg_s["x"] == 0.5

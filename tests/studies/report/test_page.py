@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.studies.agreement import made as agreement
+from tests.studies.calibration.test_page import FIT
 from tests.studies.cost.made import cost, point
 from tests.studies.shown import html
 from tests.studies.synthetic import COSTS, flight
@@ -212,14 +213,11 @@ def test_bits_are_the_same_only_where_repeats_were_compared():
 
 
 def test_agreement_on_held_out_conditions_is_given_where_one_is_judged():
-    calibrated = {"information": [[1.0]], "weak_directions": []}
     for words, kept in (([verdicts.CANNOT], False), ([verdicts.CANNOT, verdicts.MISSES], True)):
         held_out = tuple(replace(agreement.ROW, judgement=word) for word in words)
-        found = promised(
-            {"highfi": [], "lowfi": []}, agreement.table(held_out=held_out), calibrated
-        )
+        found = promised({"highfi": [], "lowfi": []}, agreement.table(held_out=held_out), FIT)
         assert found["calibration reports its information matrix and weak directions"].kept is kept
-    found = promised({"highfi": [], "lowfi": []}, None, calibrated)
+    found = promised({"highfi": [], "lowfi": []}, None, FIT)
     assert found["calibration reports its information matrix and weak directions"].kept is None
 
 
@@ -325,23 +323,11 @@ def test_a_study_the_scene_gives_no_occasion_for_stops_nothing(tmp_path, monkeyp
 
 
 def test_calibration_shows_intervals_and_constants_without_one():
-    document = {
-        "parameters": ["contact.force", "contact.damping"],
-        "values": [400.0, 0.0],
-        "fitted": [400.0, 0.0],
-        "intervals": [[350.0, 450.0], [None, None]],
-        "units": ["N", "N*s/m"],
-        "lower": [20.0, 0.0],
-        "upper": [6720.0, 7000.0],
-        "justification": ["a", "b"],
-        "weak_directions": [],
-        "residuals": {},
-        "information": [[1.0, 0.0], [0.0, 0.0]],
-        "constants": {},
-        "valid": {},
-        "provenance": {},
-        "conditions": ["phi15"],
-        "objective": 1.0,
-    }
-    shown = html(calibration(document))
+    found = replace(
+        FIT,
+        parameters=["contact.force", "contact.damping"],
+        fitted=[400.0, 0.0],
+        intervals=[(350.0, 450.0), (None, None)],
+    )
+    shown = html(calibration(found))
     assert ">350 to 450<" in shown and ">not determined by the curves<" in shown

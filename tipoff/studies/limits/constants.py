@@ -10,6 +10,7 @@ from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.calibration import stage as calibrate
+from tipoff.studies.calibration.stage import Fit
 from tipoff.workspace.study import Study
 from tipoff.workspace.words import counted
 
@@ -53,11 +54,11 @@ class Margin(NamedTuple):
     source: str
 
 
-def _residuals(found: dict) -> list[float]:
-    """Errors (deg/s) of the fitted conditions in the result of a calibration; none where one of them
-    did not settle."""
-    errors = [row["settled_rate_error_deg_s"] for row in found.get("residuals", {}).values()]
-    return [] if None in errors else [float(error) for error in errors]
+def _residuals(found: Fit | None) -> list[float]:
+    """Errors (deg/s) of the fitted conditions of a calibration; none where one of them did not settle."""
+    errors = [own["settled_rate_error_deg_s"] for own in found.residuals.values()] if found else []
+    known = [error for error in errors if error is not None]
+    return known if len(known) == len(errors) else []
 
 
 def margin(study: Study, model: str) -> Margin:
@@ -85,7 +86,7 @@ def margin(study: Study, model: str) -> Margin:
             f"largest of {counted(len(errors), 'held-out condition')}; not judged as curves: "
             f"{len(rows) - len(judged)}; not settled: {len(judged) - len(errors)}",
         )
-    left = _residuals(calibrate.stored(study) or {})
+    left = _residuals(calibrate.stored(study))
     if model == COMPLIANT or not left:
         if not rows:
             return Margin(None, "not measured (tipoff compare measures it)")

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from tipoff.mechanics.trajectory import versions
 from tipoff.scenes import plausibility
 from tipoff.studies.agreement import stage as compare
+from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.question import Section
 from tipoff.studies.registry import sections
 from tipoff.studies.render.document import Caption, Missing, Notice, Part
@@ -101,7 +102,7 @@ def _drawn(page: Page, item: Section, before: Sequence[Part] = ()) -> Drawn:
 
 
 def _promises(page: Page) -> list[Part]:
-    agreement, calibration = page.read(compare.STAGE), page.documents.get("calibration")
+    agreement, calibration = page.read(compare.STAGE), page.read(calibrate.STAGE)
     return [table(promises(page.rows(), agreement, calibration)), Caption(_VALIDATION)]
 
 

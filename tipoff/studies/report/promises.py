@@ -8,6 +8,7 @@ from typing import NamedTuple
 from tipoff.mechanics.promises import FINITE_ELEMENTS, RIGID
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.stage import Agreement
+from tipoff.studies.calibration.stage import Fit
 from tipoff.studies.render.table import Table, number
 from tipoff.studies.runs.results import Row
 from tipoff.workspace.timing import Speedup
@@ -52,7 +53,7 @@ _NOT_MEASURED = (
 def promises(
     rows: Mapping[str, Sequence[Row]],
     agreement: Agreement | None = None,
-    calibration: dict | None = None,
+    calibration: Fit | None = None,
 ) -> list[Promise]:
     """All promises; ``rows`` are the condition rows of every run by fidelity."""
     found: list[Promise | None] = [
@@ -176,18 +177,18 @@ def _same_bits(speedup: Speedup) -> Promise:
     return Promise("same input, same bits", words, "identical", same if compared else None)
 
 
-def _calibration(calibration: dict | None, agreement: Agreement | None) -> Promise | None:
+def _calibration(calibration: Fit | None, agreement: Agreement | None) -> Promise | None:
     if not calibration:
         return None
     held_out = agreement.held_out if agreement else ()
     judged = [row for row in held_out if row.judgement != verdicts.CANNOT]
-    informed = bool(calibration["information"])
+    informed = bool(calibration.information)
     # without a judged condition no agreement is given, and without one compared it is not known
     reported = False if not informed else bool(judged) if held_out else None
     return Promise(
         "calibration reports its information matrix and weak directions; agreement is given on "
         "held-out conditions",
-        f"{counted(len(calibration['weak_directions']), 'weak direction')} named, "
+        f"{counted(len(calibration.weak_directions), 'weak direction')} named, "
         f"{len(judged)} of {counted(len(held_out), 'held-out condition')} judged",
         "",
         reported,
