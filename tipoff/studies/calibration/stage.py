@@ -116,6 +116,7 @@ def _inputs(study: Study, _: None) -> list[str]:
 
 
 STAGE = Stage("calibration", __name__, inputs=_inputs, result=Fit)
+stored = STAGE.stored
 
 
 def _other(
@@ -128,12 +129,6 @@ def _other(
     """The content of a ``Fit`` with a file of another ``name``, from ``sources`` (JSON values)."""
     inputs = [sources, parameters and list(parameters)]
     return replace(STAGE, name=name, inputs=lambda *_: inputs).run(study, None, make)
-
-
-def stored(study: Study) -> Fit | None:
-    """The stored result of the present scene, code and settings."""
-    found = STAGE.stored(study)
-    return None if found is None else STAGE.read(found)
 
 
 def constants(study: Study) -> dict:

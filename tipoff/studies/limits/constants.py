@@ -86,7 +86,8 @@ def margin(study: Study, model: str) -> Margin:
             f"largest of {counted(len(errors), 'held-out condition')}; not judged as curves: "
             f"{len(rows) - len(judged)}; not settled: {len(judged) - len(errors)}",
         )
-    left = _residuals(calibrate.stored(study))
+    stored = calibrate.stored(study)
+    left = _residuals(calibrate.STAGE.read(stored) if stored else None)
     if model == COMPLIANT or not left:
         if not rows:
             return Margin(None, "not measured (tipoff compare measures it)")

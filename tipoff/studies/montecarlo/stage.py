@@ -93,7 +93,7 @@ def run(study: Study, options: Options = Options()) -> dict:
 
 def fitted(study: Study, _options: object) -> str | None:
     """Key of the calibration, with which both models are compared; None without one."""
-    found = calibrate.STAGE.stored(study)
+    found = calibrate.stored(study)
     return found["key"] if found else None
 
 
