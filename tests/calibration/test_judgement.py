@@ -212,8 +212,7 @@ def test_a_kept_value_is_not_beside_the_interval_of_the_fit():
     assert found.values == [0.25e-3] and found.fitted != found.values
     ((low, high),) = found.with_model_error
     assert 0.5 * (low + high) == pytest.approx(found.fitted[0], rel=1e-9)
-    document = stage.as_dict(found) | {"calibration": "calibration.toml"}
-    table = page.terminal(document, Path())[0]
+    table = page.terminal(stage.fit_of(found, "calibration.toml"), Path())[0]
     heads = [getattr(column, "head", column) for column in table.columns]
     assert "kept, the scene's" in str(heads)
     same = dataclasses.replace(found, fitted=[])

@@ -1,30 +1,28 @@
 """README: short enough to be read, no dead link, and figures that are those of the results."""
 
 import re
+from dataclasses import replace
 
 import pytest
 
 from tests.docs import pages
+from tests.studies.agreement import made
+from tests.studies.agreement.made import ROW
 from tipoff.files import write_json
 from tipoff.studies.agreement import verdicts
+from tipoff.studies.agreement.verdicts import Row
 from validation.documents import readme
 
 TEXT = (pages.ROOT / "README.md").read_text(encoding="utf-8")
 
 
-def _row(judgement: str, curve: float = 0.001, settled: float = 0.01, **other) -> dict:
-    return {
-        "judged_as": verdicts.CURVE,
-        "judgement": judgement,
-        "touches": True,
-        "rate_relative_l2": curve,
-        "settled_rate_error_deg_s": settled,
-        **other,
-    }
+def _row(judgement: str, curve: float = 0.001, settled: float = 0.01, **other) -> Row:
+    errors = {"rate_relative_l2": curve, "settled_rate_error_deg_s": settled}
+    return replace(ROW, judgement=judgement, **errors, **other)
 
 
-def _written(folder, rows: list[dict]) -> str:
-    write_json(folder / "agreement.json", {"compliant": rows})
+def _written(folder, rows: list[Row]) -> str:
+    write_json(folder / "agreement.json", made.document(compliant=rows))
     return readme.headline(folder)
 
 

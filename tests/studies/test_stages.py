@@ -14,7 +14,7 @@ from tipoff.highfi.mesh.facets import area
 from tipoff.lowfi.compiled import LAWS as lowfi_laws
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.studies.ablation import stage as ablation
-from tipoff.studies.agreement import interface, refined, twins
+from tipoff.studies.agreement import interface, refinement
 from tipoff.studies.cost import stage as cost
 from tipoff.studies.stability import weaker_methods
 from tipoff.studies.sweeps import stage as sweeps
@@ -157,15 +157,15 @@ def test_matched_meshes():
     assert cost.matched([*meshes, *lost]) == []
 
 
-def test_closed_gap_is_only_opened(tmp_path):
-    study = Study(scenes.load("tiny").replace({"contact.clearance": 0.0}), tmp_path, Settings())
-    assert twins.clearances(study) == {"plus": {"contact.clearance": 1e-6}}
+def test_closed_gap_is_only_opened():
+    closed = scenes.load("tiny").replace({"contact.clearance": 0.0}).contact
+    assert closed.either_way(1e-6) == {"plus": {"contact.clearance": 1e-6}}
 
 
 def test_refinements_change_one_thing_each(tmp_path):
     """And only those of the scene's refined conditions are by more than the mesh."""
     study = Study(scenes.load("tiny"), tmp_path, defaults("tiny"))
-    groups = refined.groups(study, "phi15")
+    groups = refinement.groups(study, "phi15")
     coarse, nominal = study.coarse("phi15"), study.highfi("phi15")
     assert [run.numerics for run in groups["mesh"].runs] == [coarse.numerics, nominal.numerics]
     half = replace(coarse.numerics, safety=0.5 * coarse.numerics.safety)
@@ -177,7 +177,7 @@ def test_refinements_change_one_thing_each(tmp_path):
     used = {cause: group.runs[group.used] for cause, group in groups.items()}
     assert used["mesh"].numerics == nominal.numerics
     assert used["step"].numerics == used["cells"].numerics == coarse.numerics
-    assert list(refined.groups(study, "phi60")) == ["mesh"]
+    assert list(refinement.groups(study, "phi60")) == ["mesh"]
 
 
 def test_the_interface_stiffness_is_changed_alone(tmp_path):

@@ -8,6 +8,7 @@ from typing import get_args
 import pytest
 from typer.testing import CliRunner
 
+from tests.studies.agreement.made import ROW, table
 from tipoff import scenes
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
 from tipoff.scenes.faults import SceneError
@@ -19,30 +20,14 @@ from tipoff.workspace import models
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.study import Study, StudyError
 
-ROW = {
-    "condition": "phi15",
-    "reference_converged": True,
-    "touches": True,
-    "judged_as": "curve",
-    "judgement": "agrees",
-    "verdict": "agrees",
-    "settled_rate_error_deg_s": 0.012,
-    "rate_relative_l2": 0.0033,
-}
-UNKNOWN = ROW | {
-    "condition": "h8",
-    "reference_converged": False,
-    "judgement": "cannot be judged",
-    "verdict": "cannot be judged: reference not converged",
-}
-TABLE = {
-    "compliant": [ROW, UNKNOWN],
-    "modal": [],
-    "rail_modes": 4,
-    "fitted": [ROW | {"settled_rate_error_deg_s": 0.14}],
-    "held_out": [],
-    "uncalibrated": [],
-}
+UNKNOWN = replace(
+    ROW,
+    condition="h8",
+    reference_converged=False,
+    judgement="cannot be judged",
+    verdict="cannot be judged: reference not converged",
+)
+TABLE = table(compliant=(ROW, UNKNOWN), fitted=(replace(ROW, settled_rate_error_deg_s=0.14),))
 
 
 def call(*arguments):
@@ -55,12 +40,12 @@ def study(tmp_path):
 
 
 def test_a_model_that_does_not_settle_has_no_error_there(study, monkeypatch):
-    lost = ROW | {"condition": "h1", "settled_rate_error_deg_s": None, "judgement": "misses"}
+    lost = replace(ROW, condition="h1", settled_rate_error_deg_s=None, judgement="misses")
     for rows, said in (
         ([ROW, lost], "at most 0.012 deg/s from the reference on 1 condition"),
         ([lost], "it does not settle on 1 where the reference does"),
     ):
-        found = TABLE | {"compliant": rows}
+        found = replace(TABLE, compliant=rows)
         monkeypatch.setattr("tipoff.studies.agreement.stage.stored", lambda _, found=found: found)
         words = kept.words(study, COMPLIANT)
         assert said in words and "does not settle on 1" in words
@@ -68,15 +53,15 @@ def test_a_model_that_does_not_settle_has_no_error_there(study, monkeypatch):
 
 def test_what_could_not_be_judged_is_not_called_unmeasured(study, monkeypatch):
     """Control: without a table it is not measured, and the command that measures it is named."""
-    lost = ROW | {"condition": "h8", "judgement": "cannot be judged"}
+    lost = replace(ROW, condition="h8", judgement="cannot be judged")
     for rows, said in (
         (
             [lost],
             "could judge none of 1 condition with contact by single runs; h8 cannot be judged",
         ),
-        ([ROW | {"touches": False}], "no pad touches on any of 1 compared condition"),
+        ([replace(ROW, touches=False)], "no pad touches on any of 1 compared condition"),
     ):
-        found = TABLE | {"compliant": rows}
+        found = replace(TABLE, compliant=rows)
         monkeypatch.setattr("tipoff.studies.agreement.stage.stored", lambda _, found=found: found)
         words = kept.words(study, COMPLIANT)
         assert words.startswith("not known: ") and said in words
@@ -168,12 +153,8 @@ def test_the_error_comes_from_the_agreement_table(study, monkeypatch):
 
 def test_a_run_is_not_answered_by_a_model_that_its_agreement_rejects(study, monkeypatch):
     """Controls: the same condition by name; one whose reference is not converged."""
-    missed = TABLE | {
-        "compliant": [
-            ROW | {"judgement": "misses", "verdict": "misses: rate L2 2 x limit"},
-            TABLE["compliant"][1],
-        ]
-    }
+    wrong = replace(ROW, judgement="misses", verdict="misses: rate L2 2 x limit")
+    missed = replace(TABLE, compliant=(wrong, UNKNOWN))
     monkeypatch.setattr("tipoff.studies.agreement.stage.stored", lambda _: missed)
     monkeypatch.setattr(single, "result_of", lambda *_: {"made": True})
     monkeypatch.setattr(Study, "rail_compliance", lambda *_, **__: None)
@@ -197,18 +178,19 @@ def test_a_chaotic_condition_rejects_the_default_model_where_its_own_distributio
 ):
     """On that condition and nowhere else. Its curve misses the gates in every case. Control: as a curve
     the same miss rejects the model for the whole scene."""
-    chaotic = UNKNOWN | {
-        "reference_converged": converged,
-        "judged_as": "distribution",
-        "judgement": judgement,
-        "verdict": judgement,
-    }
+    chaotic = replace(
+        UNKNOWN,
+        reference_converged=converged,
+        judged_as="distribution",
+        judgement=judgement,
+        verdict=judgement,
+    )
 
-    def table(row):
-        found = TABLE | {"compliant": [ROW, row]}
+    def compared(row):
+        found = replace(TABLE, compliant=(ROW, row))
         monkeypatch.setattr("tipoff.studies.agreement.stage.stored", lambda _: found)
 
-    table(chaotic)
+    compared(chaotic)
     for condition in (None, "phi15"):
         kept.require_accepted(study, None, condition)
     if judgement == "misses":
@@ -219,6 +201,6 @@ def test_a_chaotic_condition_rejects_the_default_model_where_its_own_distributio
     words = kept.words(study, COMPLIANT)
     assert words.endswith(f"where that is converged and pads touch{said}")
     assert kept.words(study, COMPLIANT, "h8").endswith(f"it {judgement}")
-    table(chaotic | {"judged_as": "curve", "judgement": "misses"})
+    compared(replace(chaotic, judged_as="curve", judgement="misses"))
     with pytest.raises(StudyError, match="h8: "):
         kept.require_accepted(study, None)

@@ -8,6 +8,7 @@
 import statistics
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,6 +16,29 @@ from tipoff.mechanics.trajectory import Trajectory
 from tipoff.workspace import machine
 from tipoff.workspace.compiling import warm_up
 from tipoff.workspace.run import Run, execute
+
+
+@dataclass(frozen=True, kw_only=True)
+class Speedup:
+    """Medians and ranges of wall times (s) on one ``condition``, their ``ratio``; that of the time loops
+    alone and of processor times, None where a time is not known; whether all repeats have equal bits,
+    None without repeats."""
+
+    condition: str
+    ratio: float
+    low: float
+    high: float
+    highfi_wall_s: float
+    lowfi_wall_s: float
+    highfi_wall_range_s: tuple[float, float]
+    lowfi_wall_range_s: tuple[float, float]
+    elements: int
+    highfi_repeats: int
+    lowfi_repeats: int
+    kernel_ratio: float | None
+    cpu_ratio: float | None
+    repeats_identical: bool | None
+    hardware: dict
 
 
 def timed(
@@ -37,7 +61,7 @@ def speedups(
     highfi_repeats: int,
     lowfi_repeats: int,
     progress: Callable[[float], None] = lambda fraction: None,
-) -> dict[str, dict]:
+) -> dict[str, Speedup]:
     """Speed of the reference and of each surrogate for one case; ``lowfi_repeats`` runs of each
     surrogate follow each of the ``highfi_repeats`` reference runs."""
     for run in (highfi, *surrogates.values()):
@@ -55,29 +79,29 @@ def speedups(
     return {name: _speedup(highfi.label, slow, found) for name, found in fast.items()}
 
 
-def _speedup(condition: str, slow: list, fast: list) -> dict:
+def _speedup(condition: str, slow: list, fast: list) -> Speedup:
     slow_wall, fast_wall = [wall for _, wall, _ in slow], [wall for _, wall, _ in fast]
     slow_median, fast_median = statistics.median(slow_wall), statistics.median(fast_wall)
-    return {
-        "condition": condition,
-        "ratio": slow_median / fast_median,
-        "low": min(slow_wall) / max(fast_wall),
-        "high": max(slow_wall) / min(fast_wall),
-        "highfi_wall_s": slow_median,
-        "lowfi_wall_s": fast_median,
-        "highfi_wall_range_s": [min(slow_wall), max(slow_wall)],
-        "lowfi_wall_range_s": [min(fast_wall), max(fast_wall)],
-        "elements": slow[0][0].cost["elements"],
-        "highfi_repeats": len(slow),
-        "lowfi_repeats": len(fast),
-        "kernel_ratio": _median_ratio(
+    return Speedup(
+        condition=condition,
+        ratio=slow_median / fast_median,
+        low=min(slow_wall) / max(fast_wall),
+        high=max(slow_wall) / min(fast_wall),
+        highfi_wall_s=slow_median,
+        lowfi_wall_s=fast_median,
+        highfi_wall_range_s=(min(slow_wall), max(slow_wall)),
+        lowfi_wall_range_s=(min(fast_wall), max(fast_wall)),
+        elements=slow[0][0].cost["elements"],
+        highfi_repeats=len(slow),
+        lowfi_repeats=len(fast),
+        kernel_ratio=_median_ratio(
             [run.cost.get("kernel_s") for run, _, _ in slow],
             [run.cost.get("kernel_s") for run, _, _ in fast],
         ),
-        "cpu_ratio": _median_ratio([cpu for _, _, cpu in slow], [cpu for _, _, cpu in fast]),
-        "repeats_identical": _identical([[run for run, _, _ in runs] for runs in (slow, fast)]),
-        "hardware": machine.describe(),
-    }
+        cpu_ratio=_median_ratio([cpu for _, _, cpu in slow], [cpu for _, _, cpu in fast]),
+        repeats_identical=_identical([[run for run, _, _ in runs] for runs in (slow, fast)]),
+        hardware=machine.describe(),
+    )
 
 
 def _identical(repeats: list[list[Trajectory]]) -> bool | None:

@@ -1,11 +1,16 @@
 """Tables of docs/results.md: balances, chaotic conditions, time at equal accuracy, error of the reference, speeds."""
 
+from collections.abc import Sequence
 from operator import attrgetter
 from pathlib import Path
 
 from tipoff.files import read_json
 from tipoff.studies.agreement import distribution_page
-from tipoff.studies.convergence import summary
+from tipoff.studies.agreement import stage as compare
+from tipoff.studies.agreement.distributions import Distribution
+from tipoff.studies.convergence import page
+from tipoff.studies.convergence import stage as convergence
+from tipoff.studies.convergence.stage import Convergence
 from tipoff.studies.cost import scaling_page
 from tipoff.studies.cost import stage as cost_study
 from tipoff.studies.cost.results import Cost, Growth, Laws, Match, Scaling
@@ -22,16 +27,18 @@ def details(folder: Path) -> str:
         read(folder / f"{name}.json") for name in ("convergence", "cost_study", "agreement")
     )
     parts: list[Part] = [_promises(highfi, lowfi)]
-    parts += distributions(agreement["distributions"]) if agreement is not None else []
+    parts += (
+        distributions(compare.STAGE.read(agreement).distributions) if agreement is not None else []
+    )
     parts += _cost(cost_study.STAGE.read(cost)) if cost is not None else []
-    parts += _convergence(refined) if refined is not None else []
+    parts += _convergence(convergence.STAGE.read(refined)) if refined is not None else []
     if (found := reference.stored(folder.parent)) is not None:
         parts += [_bench(found["rows"])] if found["rows"] else []
         parts += [_surrogate(found["lowfi"])] if found["lowfi"] else []
     return markdown(parts)
 
 
-def distributions(found: list[dict]) -> list[Part]:
+def distributions(found: Sequence[Distribution]) -> list[Part]:
     """Verdicts on conditions that no single run can judge; nothing where there is none."""
     if not found:
         return []
@@ -99,47 +106,44 @@ def _ends(law: Growth) -> str:
     return f"{law.points[0].n:,} to {law.points[-1].n:,}"
 
 
-def _convergence(found: dict) -> list[Part]:
-    sizes = [row for row in found["quantities"] if row["parameter"] == "element size"]
-    heads = [f"{1e3 * size:g} mm" for size in sizes[0]["sizes"]]
+def _convergence(found: Convergence) -> list[Part]:
+    sizes = found.refined("element size")
+    heads = [f"{1e3 * size:g} mm" for size in sizes[0].sizes]
     rows = [
         (
-            f"{row['quantity']}, {row['unit']}",
-            *row["values"],
-            number(row["order"], ".2g"),
-            number(row["uncertainty"], ".2g"),
-            row["method"],
+            f"{row.quantity}, {row.unit}",
+            *row.values,
+            number(row.order, ".2g"),
+            number(row.uncertainty, ".2g"),
+            row.method,
         )
         for row in sizes
     ]
     columns = [Column(head, form=".5g") for head in heads]
     return [
-        f"Error of the reference itself (`make convergence`, {found['condition']}):",
-        Bullets(summary.lines(found)),
+        f"Error of the reference itself (`make convergence`, {found.condition}):",
+        Bullets(page.sentences(found)),
         Table(["quantity", *columns, "order", f"± at {heads[-1]}", "method"], rows),
         _changes(found),
     ]
 
 
-def _changes(found: dict) -> Table:
+def _changes(found: Convergence) -> Table:
     """Changes by interface stiffness and contact cells."""
     changed = [
-        (f"{row['interface_stiffness_n_m3']:.3g} N/m³, {row['factor']:g} times the scene's", row)
-        for row in found["interface_stiffness"]
+        (f"{row.interface_stiffness_n_m3:.3g} N/m³, {row.factor:g} times the scene's", row)
+        for row in found.interface_stiffness
     ] + [
-        (f"{row['cells_per_edge']} x {row['cells_per_edge']} contact cells per pad face", row)
-        for row in found["contact_cells"]
+        (f"{row.cells_per_edge} x {row.cells_per_edge} contact cells per pad face", row)
+        for row in found.contact_cells
     ]
     return Table(
         [
-            f"{1e3 * found['coarse_size_m']:g} mm elements",
+            f"{1e3 * found.coarse_size_m:g} mm elements",
             Column("settled x, y, z, deg/s", form=".3f"),
             Column("largest change", form=".2g"),
         ],
-        [
-            (words, row["settled_rate_deg_s"], row["settled_rate_change_deg_s"])
-            for words, row in changed
-        ],
+        [(words, row.settled_rate_deg_s, row.settled_rate_change_deg_s) for words, row in changed],
     )
 
 

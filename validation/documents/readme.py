@@ -7,20 +7,28 @@ files of ``make full-report``.
 import shutil
 import sys
 from collections import Counter
+from collections.abc import Callable, Sequence
+from operator import attrgetter
 from pathlib import Path
 
 from tipoff.files import read_json, write_text
 from tipoff.mechanics.models import FINITE_ELEMENTS
-from tipoff.studies.agreement import equal_accuracy, growth_page, rails_page, verdicts
-from tipoff.studies.agreement.other_rails import beside
+from tipoff.studies.agreement import growth_page, other_rails, verdicts
+from tipoff.studies.agreement import stage as compare
+from tipoff.studies.agreement.growth import Growth
 from tipoff.studies.agreement.page import by_factor
+from tipoff.studies.agreement.stage import Agreement
+from tipoff.studies.agreement.verdicts import Row
+from tipoff.studies.blind import stage as blind_study
+from tipoff.studies.blind.stage import Blind
+from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.cost import stage as cost_study
 from tipoff.studies.cost.results import Cost
 from tipoff.studies.montecarlo import tails as checked
 from tipoff.studies.montecarlo import tails_page
 from tipoff.studies.montecarlo.results import Tails
 from tipoff.studies.render.document import Part, markdown
-from tipoff.studies.render.table import Cells, Column, Table, number, percent
+from tipoff.studies.render.table import Column, Table, number, percent
 from tipoff.studies.render.uncertain import STEPS
 from tipoff.workspace.study import read
 from validation.documents import further
@@ -83,35 +91,39 @@ def _into_readme(name: str, text: str) -> None:
 def headline(folder: Path) -> str:
     """The few figures of README: agreement of compliant contact, and the one speed-up, at equal
     accuracy, where the error of the reference was studied."""
-    rows = read_json(folder / "agreement.json")["compliant"]
-    lines = [_agreed(rows)]
-    refined = read(folder / "convergence.json")
-    if refined is not None and (found := refined["equal_accuracy"]) is not None:
-        said = equal_accuracy.sentence(found).split(". ")[0].removeprefix("speed-up ")
+    lines = [_agreed(_compared(folder).compliant)]
+    if said := _equal(folder):
+        said = said.split(". ")[0].removeprefix("speed-up ")
         lines.append(f"- **Speed-up** {said}.")
     return "\n".join(lines)
 
 
-def _agreed(rows: list[dict]) -> str:
+def _compared(folder: Path) -> Agreement:
+    return compare.STAGE.read(read_json(folder / "agreement.json"))
+
+
+def _agreed(rows: Sequence[Row]) -> str:
     """How many conditions are judged and agree, and the errors where pads touch."""
-    curves = [row for row in rows if row["judged_as"] == verdicts.CURVE]
-    judged = [row for row in curves if row["judgement"] != verdicts.CANNOT]
-    agree = [row for row in judged if row["judgement"] == verdicts.AGREES]
-    touched = [row for row in agree if row["touches"]]
-    errors = [row["rate_relative_l2"] for row in touched]
+    curves = [row for row in rows if row.judged_as == verdicts.CURVE]
+    judged = [row for row in curves if row.judgement != verdicts.CANNOT]
+    agree = [row for row in judged if row.judgement == verdicts.AGREES]
+    touched = [row for row in agree if row.touches]
     said = (
         f"- **Agreement**: The reference is converged on {len(judged)} of {len(rows)} conditions. "
         f"Compliant contact has no fitted constants and agrees on {len(agree)} of these {len(judged)}."
     )
     if touched:
-        settled = max(row["settled_rate_error_deg_s"] for row in touched)
+        rates, settled = (
+            verdicts.largest(getattr(row, name) for row in touched)
+            for name in ("rate_relative_l2", "settled_rate_error_deg_s")
+        )
         said += (
             f"\n  - Pads touch in {len(touched)} of the {len(agree)}. There the rates differ by at most "
-            f"{percent(max(errors), '.2g')} % over time (L2), and the settled rates by at most "
+            f"{percent(rates, '.2g')} % over time (L2), and the settled rates by at most "
             f"{number(settled, '.2g')} deg/s."
         )
-    if others := [row for row in rows if row["judged_as"] == verdicts.DISTRIBUTION]:
-        count = Counter(row["judgement"] for row in others)
+    if others := [row for row in rows if row.judged_as == verdicts.DISTRIBUTION]:
+        count = Counter(row.judgement for row in others)
         said += (
             f"\n  - On {len(others)} others, [distributions](docs/chaotic_conditions.md) of the settled rates "
             f"are compared: {count[verdicts.AS_DISTRIBUTION]} agree, {count[verdicts.MISSES]} miss, "
@@ -126,52 +138,54 @@ def _upper(sentence: str) -> str:
 
 def section(folder: Path) -> str:
     """Markdown of the results: agreement, speed-up, other rails, time against accuracy."""
-    agreement = read_json(folder / "agreement.json")
-    refined, cost, blind = (
-        read(folder / f"{name}.json") for name in ("convergence", "cost_study", "blind")
-    )
+    agreement = _compared(folder)
+    cost, blind = (read(folder / f"{name}.json") for name in ("cost_study", "blind"))
     parts: list[Part] = [
         _agreement(agreement),
-        *by_factor(agreement["interface"]),
-        *_growth(agreement["growth"]),
+        *by_factor(agreement.interface),
+        *_growth(agreement.growth),
         _speed(agreement),
-        *_equal(refined),
     ]
-    parts += [_rails(found)] if (found := beside(folder)) else []
-    parts += [_blind(blind)] if blind is not None else []
+    if said := _equal(folder):
+        parts.append(f"{_upper(said)} (`make convergence`).")
+    parts += [_rails(found)] if (found := other_rails.beside(folder)) else []
+    parts += [_blind(blind_study.STAGE.read(blind))] if blind is not None else []
     parts += _ladder(cost_study.STAGE.read(cost)) if cost is not None else []
     return markdown(parts)
 
 
-def _pair(row: dict) -> str:
+def _pair(row: Row) -> str:
     return (
-        f"{percent(row['rate_relative_l2'], '.2g')} / "
-        f"{number(row['settled_rate_error_deg_s'], '.2g', STEPS['deg/s'])}"
+        f"{percent(row.rate_relative_l2, '.2g')} / "
+        f"{number(row.settled_rate_error_deg_s, '.2g', STEPS['deg/s'])}"
     )
 
 
-_COMPLIANT: Cells = (
+_COMPLIANT: tuple = (
     ("compliant contact", _pair),
-    (Column("floor", "deg/s", ".2g"), "floor_deg_s"),
-    (Column("reference uncertainty", "deg/s", ".2g"), "reference_uncertainty_deg_s"),
-    ("judged as", "judged_as"),
-    ("verdict", "verdict"),
+    "floor_deg_s",
+    (
+        Column("reference uncertainty", "deg/s", ".2g"),
+        attrgetter("reference_uncertainty_deg_s"),
+    ),
+    *("judged_as", "verdict"),
 )
 
 
-def _agreement(found: dict) -> Table:
-    before = {row["condition"]: row for row in found["uncalibrated"]}
-    fitted = {row["condition"]: row for row in found["fitted"] + found["held_out"]}
-    columns: Cells = (
-        ("condition", "condition"),
-        ("role", lambda row: row["role"].replace("_", " ")),
-        ("springs, uncalibrated", lambda row: _pair(before[row["condition"]])),
-        ("springs, calibrated", lambda row: _pair(fitted[row["condition"]])),
+def _of(rows: Sequence[Row]) -> Callable[[Row], str]:
+    """A cell with the errors of another model on the same condition."""
+    own = {row.condition: _pair(row) for row in rows}
+    return lambda row: own[row.condition]
+
+
+def _agreement(found: Agreement) -> Table:
+    return Table.of_records(
+        found.compliant,
+        "condition",
+        ("role", lambda row: row.role.replace("_", " ")),
+        ("springs, uncalibrated", _of(found.uncalibrated)),
+        ("springs, calibrated", _of(found.calibrated)),
         *_COMPLIANT,
-    )
-    return Table.of(
-        found["compliant"],
-        columns,
         title="Errors of the surrogates against the reference (rate L2 in % / largest error of "
         "a settled rate in deg/s), the floor, and the\nuncertainty of the reference. "
         "Compliant contact has no fitted constants; the role is that of the condition in "
@@ -179,20 +193,20 @@ def _agreement(found: dict) -> Table:
     )
 
 
-def _growth(found: list[dict]) -> list[Part]:
+def _growth(found: Sequence[Growth]) -> list[Part]:
     """One line a condition that 1 µm moves by more than the gate, and one for all others; nothing
     where it was not measured."""
-    own = [item for item in found if item["model"] == FINITE_ELEMENTS]
-    stable = [item for item in own if item["sensitive"] is False]
+    own = [item for item in found if item.model == FINITE_ELEMENTS]
+    stable = [item for item in own if item.sensitive is False]
     lines = [
         f"- {growth_page.sentence(item)} "
-        f"({number(item['settled_growth_deg_s_um'], '.2g', STEPS['deg/s'])} deg/s per µm)"
+        f"({number(item.settled_growth_deg_s_um, '.2g', STEPS['deg/s'])} deg/s per µm)"
         for item in own
-        if item["sensitive"] is not False
+        if item.sensitive is not False
     ]
     if stable:
-        most = max(item["settled_growth_deg_s_um"] for item in stable)
-        names = ", ".join(item["condition"] for item in stable)
+        most = verdicts.largest(item.settled_growth_deg_s_um for item in stable)
+        names = ", ".join(item.condition for item in stable)
         lines.append(
             f"- {names}: stable to the end (up to {number(most, '.2g', STEPS['deg/s'])} deg/s per µm)"
         )
@@ -203,47 +217,42 @@ def _growth(found: list[dict]) -> list[Part]:
     )
 
 
-def _speed(agreement: dict) -> str:
-    found, plain = agreement["speedup_compliant"], agreement["speedup"]
-    machine = found["hardware"]
+def _speed(agreement: Agreement) -> str:
+    found, plain = agreement.speedup_compliant, agreement.speedup
+    machine = found.hardware
     return (
-        f"Speed: {found['ratio']:,.0f} times ({found['low']:,.0f} to {found['high']:,.0f} over "
+        f"Speed: {found.ratio:,.0f} times ({found.low:,.0f} to {found.high:,.0f} over "
         f"repeats): "
-        f"{found['highfi_wall_s']:.3g} s for the reference with {found['elements']:,} elements "
+        f"{found.highfi_wall_s:.3g} s for the reference with {found.elements:,} elements "
         f"against "
-        f"{1e3 * found['lowfi_wall_s']:.3g} ms on compliant contact; {plain['ratio']:,.0f} times "
-        f"({1e3 * plain['lowfi_wall_s']:.3g} ms) for springs, calibrated. The same case, "
+        f"{1e3 * found.lowfi_wall_s:.3g} ms on compliant contact; {plain.ratio:,.0f} times "
+        f"({1e3 * plain.lowfi_wall_s:.3g} ms) for springs, calibrated. The same case, "
         f"everything but compilation "
         f"included, on {machine['cores']} cores of {machine['processor']}."
     )
 
 
-def _equal(refined: dict | None) -> list[Part]:
-    """The speed-up on the mesh whose uncertainty is as small as the error of the surrogate, where
-    the error of the reference was studied."""
-    if refined is None or refined["equal_accuracy"] is None:
-        return []
-    sentence = equal_accuracy.sentence(refined["equal_accuracy"])
-    return [f"{_upper(sentence)} (`make convergence`)."]
+def _equal(folder: Path) -> str:
+    """The speed-up on the mesh whose uncertainty is as small as the error of the surrogate; empty where
+    it was not measured."""
+    found = read(folder / "convergence.json")
+    equal = None if found is None else convergence.STAGE.read(found).equal_accuracy
+    return equal.sentence() if equal else ""
 
 
-def _rails(found: list[dict]) -> Table:
+def _rails(found: Sequence[other_rails.Scene]) -> Table:
     title = "Other rails, each with its own calibration (`make rails`):"
-    return rails_page.table(found, title=title)
+    return other_rails.table(found, title=title)
 
 
-def _blind(found: dict) -> Table:
+def _blind(found: Blind) -> Table:
     """Conditions drawn after all code was written, as the agreement table has the scene's own."""
-    springs = {row["condition"]: row for row in found["calibrated"]}
-    columns: Cells = (
-        ("condition", "condition"),
-        ("springs, calibrated", lambda row: _pair(springs[row["condition"]])),
+    return Table.of_records(
+        found.compliant,
+        "condition",
+        ("springs, calibrated", _of(found.calibrated)),
         *_COMPLIANT,
-    )
-    return Table.of(
-        found["compliant"],
-        columns,
-        title=f"{len(springs)} random conditions with errors as in the paper's Table 3 (`make "
+        title=f"{len(found.compliant)} random conditions with errors as in the paper's Table 3 (`make "
         "blind`; other code draws other conditions):",
     )
 

@@ -7,7 +7,7 @@ starts add to the stored ones.
 
 import math
 from concurrent.futures import as_completed
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -250,8 +250,9 @@ def _with_present(study: Study, found: dict) -> dict:
     best = misfit.Launcher(_base(study.scene)).scene(
         inputs.shares(found["searches"][found["best"]]["values"])
     )
+    ours = compare.stored(study)
     return found | {
-        "ours": (compare.stored(study) or {}).get("speedup"),
+        "ours": ours and asdict(ours.speedup),
         "catalogue": {
             "name": kept.name,
             "same": not _differing(kept.physics(), best.physics()),

@@ -2,11 +2,12 @@
 stubbed runs of the reference."""
 
 import json
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 import pytest
 
+from tests.studies.agreement.made import ROW
 from tests.studies.synthetic import flight
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.scenes import load
@@ -74,15 +75,20 @@ def judged(study, count=36):
     return found
 
 
+def compared(found):
+    """With the verdict on the springs for compliant contact too."""
+    springs = found.models["calibrated"]
+    return replace(found, models={"calibrated": springs, "compliant": springs})
+
+
 def row(condition, converged=True, judgement=verdicts.AGREES):
-    return {
-        "condition": condition,
-        "reference_converged": converged,
-        "touches": True,
-        "judged_as": verdicts.CURVE,
-        "judgement": judgement,
-        "verdict": judgement,
-    }
+    return replace(
+        ROW,
+        condition=condition,
+        reference_converged=converged,
+        judgement=judgement,
+        verdict=judgement,
+    )
 
 
 def grown(condition, sensitive, model=FINITE_ELEMENTS):
@@ -93,7 +99,7 @@ def grown(condition, sensitive, model=FINITE_ELEMENTS):
 def test_only_conditions_that_no_single_run_can_judge_have_neighbours():
     """Sensitive ones have all draws, others a quarter. Controls: a surrogate that is sensitive, and a
     reference that is converged and stable, which is judged as a curve."""
-    table = [row("a"), row("b", converged=False), row("c"), row("d"), row("e"), row("f")]
+    rows = [row("a"), row("b", converged=False), row("c"), row("d"), row("e"), row("f")]
     growths = [
         grown("a", False),
         grown("b", False),
@@ -101,7 +107,7 @@ def test_only_conditions_that_no_single_run_can_judge_have_neighbours():
         grown("d", None),
         grown("f", True, "compliant"),
     ]
-    wanted = distributions.counts(table, growths, ["e"], 32)
+    wanted = distributions.counts(rows, growths, ["e"], 32)
     assert wanted == {"b": 8, "c": 32, "d": 32, "e": 32}
 
 
@@ -113,15 +119,15 @@ def test_a_surrogate_agrees_as_a_distribution_where_1_um_moves_more_than_the_lim
     asked = stub(monkeypatch, 0.4)
     found = judged(study)
     assert asked == [f"phi15-neighbour-{number}-coarse" for number in range(36)]
-    own = found["models"]["calibrated"]
-    assert (own["judgement"], own["verdict"]) == ("agrees as distribution",) * 2
-    first = own["comparisons"][0]
-    assert first["margin_deg_s"] == pytest.approx(0.8, rel=0.2)
-    assert first["difference_deg_s"] == pytest.approx(0.4, abs=0.05)
+    own = found.models["calibrated"]
+    assert (own.judgement, own.verdict) == ("agrees as distribution",) * 2
+    first = own.comparisons[0]
+    assert first.margin_deg_s == pytest.approx(0.8, rel=0.2)
+    assert first.difference_deg_s == pytest.approx(0.4, abs=0.05)
     stub(monkeypatch, 1.6)
-    far = judged(study)["models"]["calibrated"]
-    assert far["judgement"] == "misses" and far["verdict"].startswith("misses: ")
-    assert far["verdict"].endswith(" x margin") and "rate x" in far["verdict"]
+    far = judged(study).models["calibrated"]
+    assert far.judgement == "misses" and far.verdict.startswith("misses: ")
+    assert far.verdict.endswith(" x margin") and "rate x" in far.verdict
 
 
 def test_too_few_neighbours_cannot_judge_and_say_how_many_can(study, monkeypatch):
@@ -133,21 +139,24 @@ def test_too_few_neighbours_cannot_judge_and_say_how_many_can(study, monkeypatch
         "run_many",
         lambda scene, rows, model, **options: settled(scene, [*rows[5::-1], *rows[6:]], model),
     )
-    found = judged(study, 6)["models"]["calibrated"]
-    assert found["judgement"] == "cannot be judged"
-    assert "with 6 neighbours the" in found["verdict"] and "are needed" in found["verdict"]
+    found = judged(study, 6).models["calibrated"]
+    assert found.judgement == "cannot be judged"
+    assert "with 6 neighbours the" in found.verdict and "are needed" in found.verdict
 
 
 def test_neighbours_that_do_not_settle(study, monkeypatch):
     """In the reference they forbid a claim, in the surrogate alone they are a miss."""
     stub(monkeypatch, 0.0, lost=(3,))
-    found = judged(study)["models"]["calibrated"]
-    assert found["verdict"] == (
-        "cannot be judged: 1 of 36 neighbours did not settle in the reference"
-    )
+    own = judged(study)
+    # a missing number is None in the file, and the range is that of the others
+    kept = json.loads(json.dumps(asdict(own), allow_nan=False))["reference_deg_s"]
+    assert kept.count(None) == 1 and kept[3] is None and len(own.settled_deg_s) == 35
+    assert document.markdown(distribution_page.parts([compared(own)], 1e-6))
+    found = own.models["calibrated"]
+    assert found.verdict == ("cannot be judged: 1 of 36 neighbours did not settle in the reference")
     stub(monkeypatch, float("nan"))
-    found = judged(study)["models"]["calibrated"]
-    assert found["verdict"] == "misses: 36 of 36 neighbours did not settle"
+    found = judged(study).models["calibrated"]
+    assert found.verdict == "misses: 36 of 36 neighbours did not settle"
 
 
 def test_verdicts_go_into_the_table(study, monkeypatch):
@@ -155,30 +164,36 @@ def test_verdicts_go_into_the_table(study, monkeypatch):
     judged."""
     stub(monkeypatch, 0.4)
     found = [judged(study)]
-    table = [row("phi15", False, verdicts.CANNOT), row("h1"), row("h2", False, verdicts.CANNOT)]
-    combined = distributions.combined(table, found, ["phi15", "h2"], "calibrated")
-    assert [item["judgement"] for item in combined] == [
+    rows = [row("phi15", False, verdicts.CANNOT), row("h1"), row("h2", False, verdicts.CANNOT)]
+    combined = distributions.combined(rows, found, ["phi15", "h2"], "calibrated")
+    assert [item.judgement for item in combined] == [
         "agrees as distribution",
         "agrees",
         "cannot be judged",
     ]
-    assert [item["judged_as"] for item in combined] == ["distribution", "curve", "distribution"]
-    assert combined[2]["verdict"] == "cannot be judged: no clearance for neighbours"
+    assert [item.judged_as for item in combined] == ["distribution", "curve", "distribution"]
+    assert combined[2].verdict == "cannot be judged: no clearance for neighbours"
 
 
 def test_a_miss_at_another_stiffness_is_a_miss_of_a_distribution_too():
     """Control: at the nominal stiffness the distribution has judged."""
     agreeing = row("phi15", judgement=verdicts.AS_DISTRIBUTION)
     for factor, expected in ((4.0, verdicts.MISSES), (1.0, verdicts.AS_DISTRIBUTION)):
-        item = {
-            "condition": "phi15",
-            "factor": factor,
-            "growth": growth.STABLE,
-            "judgement": verdicts.MISSES,
-            "verdict": "misses: rate L2 2 x limit",
-        }
+        item = interface.Row(
+            condition="phi15",
+            factor=factor,
+            interface_stiffness_n_m3=1e12,
+            reference_change_deg_s=0.0,
+            surrogate_change_deg_s=0.0,
+            rate_relative_l2=0.1,
+            velocity_relative_l2=0.0,
+            settled_rate_error_deg_s=0.0,
+            growth=growth.STABLE,
+            judgement=verdicts.MISSES,
+            verdict="misses: rate L2 2 x limit",
+        )
         (found,) = interface.combined([agreeing], [item])
-        assert found["judgement"] == expected
+        assert found.judgement == expected
 
 
 def test_a_clearance_below_the_neighbours_has_none(tmp_path):
@@ -203,22 +218,22 @@ def test_the_cost_is_announced_before_it_is_paid(study, monkeypatch, capsys):
 def test_figure_and_tables(study, monkeypatch):
     """The distribution of the reference rises from 0 to 1 in steps of 1/36 at its values."""
     stub(monkeypatch, 0.4)
-    found = json.loads(json.dumps([judged(study)]))
-    found[0]["models"]["compliant"] = found[0]["models"]["calibrated"]
-    parts = distribution_page.parts({"distributions": found, "clearance_change_m": 1e-6})
+    own = judged(study)
+    found = [compared(own)]
+    parts = distribution_page.parts(found, 1e-6)
     shown = [distribution_page.summary(found), distribution_page.quantiles(found)]
     text = document.markdown(shown)
     assert "agrees as distribution" in text and "springs, calibrated" in text
     assert "agrees as distribution" in document.terminal([distribution_page.verdicts_of(found)])
     assert "phi15 " in distribution_page.sentence(found, "calibrated")
-    assert distribution_page.parts({"distributions": []}) == further.distributions([]) == []
+    assert distribution_page.parts([], 1e-6) == further.distributions([]) == []
     assert "Springs are the control" in document.markdown(further.distributions(found))
     chart = distribution_page.picture(distribution_page.most_spread(found))
     assert "settled rate" in chart.panels[0].x_label
-    reference, _, springs = chart.panels[0].lines
+    reference, _, drawn = chart.panels[0].lines
     assert (min(reference.y), max(reference.y), len(reference.y)) == (0.0, 1.0, 72)
     assert np.all(np.diff(reference.x) >= 0.0) and np.all(np.diff(reference.y) >= 0.0)
-    middle = np.interp(0.5, springs.y, springs.x)
+    middle = np.interp(0.5, drawn.y, drawn.x)
     assert middle == pytest.approx(0.4, abs=0.2)
     assert len(parts) == 4
 
@@ -231,5 +246,5 @@ def test_control_calibrated_springs_miss_where_compliant_contact_agrees(study):
     compliance = study.rail_compliances(["phi15"], study.settings.coarse_size)
     compliant = Candidate("compliant", "compliant", compliance=compliance)
     (found,) = distributions.judge(study, {"phi15": 8}, [springs, compliant], LIMIT)
-    words = {name: item["judgement"] for name, item in found["models"].items()}
+    words = {name: item.judgement for name, item in found.models.items()}
     assert words == {"calibrated": "misses", "compliant": "agrees as distribution"}

@@ -1,14 +1,17 @@
 """Which mesh a speed-up is measured against: uncertainties of a series that is known, and the
 choice among them."""
 
+from dataclasses import replace
+
 import pytest
 
+from tests.studies.agreement.made import EQUAL
 from tipoff.studies.agreement import equal_accuracy
 
 SIZES = (8e-3, 4e-3, 2e-3, 1e-3)
 RATES = [
-    {"values": [1.4, 1.1, 1.02, 1.0], "uncertainty": 0.01},
-    {"values": [-2.0, -2.3, -2.31, -2.3], "uncertainty": 0.02},
+    ([1.4, 1.1, 1.02, 1.0], 0.01),
+    ([-2.0, -2.3, -2.31, -2.3], 0.02),
 ]
 
 
@@ -16,49 +19,29 @@ def test_mesh_is_as_uncertain_as_the_finest_and_its_way_from_it_on_the_worst_axi
     assert equal_accuracy.uncertainties(RATES) == pytest.approx([0.41, 0.11, 0.03, 0.02])
 
 
-@pytest.mark.parametrize(
-    "axis",
-    [
-        {"values": [1.0, None, 1.0, 1.0], "uncertainty": 0.1},
-        {"values": [1.0] * 4, "uncertainty": None},
-    ],
-)
+@pytest.mark.parametrize("axis", [([1.0, None, 1.0, 1.0], 0.1), ([1.0] * 4, None)])
 def test_axis_that_did_not_settle_leaves_all_unknown(axis):
     assert equal_accuracy.uncertainties([*RATES, axis]) is None
 
 
 @pytest.mark.parametrize(
-    "error, size, sufficient",
+    "error, mesh",
     [
-        (0.5, 8e-3, True),
-        (0.41, 4e-3, True),
-        (0.1, 2e-3, True),
-        (0.025, 1e-3, True),
-        (0.02, 1e-3, False),
-        (0.0, 1e-3, False),
+        (0.5, (8e-3, 0.41)),
+        (0.41, (4e-3, 0.11)),
+        (0.1, (2e-3, 0.03)),
+        (0.025, (1e-3, 0.02)),
+        (0.02, (1e-3, 0.02)),
+        (0.0, (1e-3, 0.02)),
     ],
 )
-def test_coarsest_sufficient_mesh_or_the_finest(error, size, sufficient):
-    mesh = equal_accuracy.coarsest(SIZES, [0.41, 0.11, 0.03, 0.02], error)
-    assert (mesh.element_size, mesh.sufficient) == (size, sufficient)
+def test_coarsest_sufficient_mesh_or_the_finest(error, mesh):
+    assert equal_accuracy.coarsest(SIZES, [0.41, 0.11, 0.03, 0.02], error) == mesh
 
 
 def test_speedup_over_an_insufficient_mesh_is_a_lower_bound():
-    found = {
-        "condition": "phi35",
-        "error_deg_s": 0.01,
-        "element_size_m": 1e-3,
-        "mesh_uncertainty_deg_s": 0.012,
-        "ratio": 5e4,
-        "low": 4e4,
-        "high": 6e4,
-        "highfi_wall_s": 250.0,
-        "lowfi_wall_s": 5e-3,
-    }
-    least, measured = (
-        equal_accuracy.sentence(found | {"surer": False}),
-        equal_accuracy.sentence(found | {"surer": True}),
-    )
+    surer = replace(EQUAL, ratio=5e4, low=4e4, high=6e4)
+    least, measured = (replace(surer, surer=False).sentence(), surer.sentence())
     assert (
         "at least 50,000 times (40,000 to 60,000 over repeats): 250 s with the reference, 5 ms with"
         in least

@@ -11,7 +11,8 @@ from tests.studies.synthetic import flight
 from tipoff.comparison.extrapolation import estimate
 from tipoff.highfi.rail import memory_estimate, refinement
 from tipoff.scenes import load
-from tipoff.studies.agreement import refined, verdicts
+from tipoff.studies.agreement import refinement as by
+from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.verdicts import NOT_KNOWN, Context
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
@@ -43,7 +44,7 @@ def study(monkeypatch):
 
 
 def by_mesh(study):
-    return [item for item in refined.refinements(study) if item.cause == "mesh"]
+    return [item for item in by.refinements(study) if item.cause == "mesh"]
 
 
 def test_sizes_are_those_of_the_meshes_that_the_file_gives():
@@ -72,12 +73,12 @@ def test_convergence_is_not_known_where_the_finer_mesh_does_not_fit(study, monke
         monkeypatch.setattr(memory_estimate, "available", lambda: 1e6)
     else:
         monkeypatch.setattr(refinement, "LONGEST", 1.0)
-    context = Context([], refined.refinements(study), verdicts.gates(study.scene))
+    context = Context([], by.refinements(study), verdicts.gates(study.scene))
     name = next(iter(study.conditions))
     still = flight(lambda t: np.zeros((t.size, 3)))
     row = verdicts.row(name, "held_out", still, still, context)
-    assert row["reference_uncertainty_deg_s"] is None and not row["reference_converged"]
-    assert row["verdict"] == NOT_KNOWN
+    assert row.reference_uncertainty_deg_s is None and not row.reference_converged
+    assert row.verdict == NOT_KNOWN
 
 
 def test_meshes_of_the_convergence_study_differ(study, monkeypatch):
@@ -85,12 +86,12 @@ def test_meshes_of_the_convergence_study_differ(study, monkeypatch):
     uncertainty is told. Control: equal meshes alone seem to be exact."""
     name = next(iter(study.conditions))
     scene = study.condition(name)
-    asked, sizes = refined.mesh_sizes(study, scene, study.settings.mesh_sizes, 3)
+    asked, sizes = by.mesh_sizes(study, scene, study.settings.mesh_sizes, 3)
     assert asked == [0.004, 0.002]
     assert sizes == pytest.approx([0.004, 0.002])
     one = Study(study.scene, study.folder, Settings(element_size=0.016))
     monkeypatch.setattr(refinement, "LONGEST", 1.0)
-    asked, sizes = refined.mesh_sizes(one, scene, one.settings.mesh_sizes, 3)
+    asked, sizes = by.mesh_sizes(one, scene, one.settings.mesh_sizes, 3)
     assert asked == [0.016] and sizes == pytest.approx([0.004])
     assert estimate(sizes, [3.0]).uncertainty is None
     assert estimate([4.0, 2.0, 1.0], [3.0, 3.0, 3.0]).uncertainty == 0.0

@@ -6,7 +6,7 @@ import pytest
 
 from tests.studies.synthetic import flight
 from tipoff import scenes
-from tipoff.studies.agreement import twins
+from tipoff.studies.agreement import judging
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.store import Store
 from tipoff.workspace.study import Study
@@ -30,7 +30,7 @@ def test_runs_with_other_clearances_have_the_modes_of_the_nominal_one(
     def request(name, **asked):
         return study.lowfi(name, compliance=compliance, **asked)
 
-    twins.floors(study, "compliant", request)
+    judging.floors(study, "compliant", request)
     nominal, *others = made
     assert nominal.numerics.modes == "auto" and len(others) == 2
     expected = chosen["modes"] if "modes_why" in chosen else "auto"

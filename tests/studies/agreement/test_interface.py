@@ -1,28 +1,37 @@
 """Agreement at other values of the interface stiffness, on stubbed runs."""
 
 import math
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import pytest
 
+from tests.studies.agreement.made import ROW
 from tests.studies.synthetic import flight
 from tipoff.scenes import load
 from tipoff.studies.agreement import growth, interface, page, verdicts
-from tipoff.studies.agreement.refinement import Refinement
-from tipoff.studies.agreement.verdicts import Context
+from tipoff.studies.agreement.verdicts import Context, Gates, Refinement
 from tipoff.studies.render import document
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.store import Store
 from tipoff.workspace.study import Study
 
-GATES = {"rate_relative_l2": 0.05, "velocity_relative_l2": 1e-3, "settled_rate_error_deg_s": 0.1}
+GATES = Gates(0.05, 1e-3, 0.1)
 
 
 def context(uncertainty=0.01, known=True):
     change = 0.0 if known else None
     found = Refinement(
-        "phi15", "reference", "mesh", [2.0, 1.0], change, 0.0, uncertainty, 1.0, "GCI"
+        condition="phi15",
+        model="reference",
+        cause="mesh",
+        sizes=[2.0, 1.0],
+        rate_relative_l2=change,
+        settled_rate_change_deg_s=0.0,
+        uncertainty_deg_s=uncertainty,
+        order=1.0,
+        method="GCI",
     )
     return Context([], [found], GATES)
 
@@ -75,42 +84,32 @@ def test_both_models_move_and_agree_at_every_factor(study, monkeypatch):
     part of its uncertainty. No twin is run where the models agree."""
     asked = settle(monkeypatch, lambda factor: 0.01)
     found = rows(study)
-    assert [(row["factor"], row["verdict"]) for row in found] == [
+    assert [(row.factor, row.verdict) for row in found] == [
         (0.25, "agrees"),
         (1.0, "agrees"),
         (4.0, "agrees"),
     ]
-    assert [row["reference_change_deg_s"] for row in found] == pytest.approx([0.4, 0.0, 0.4])
+    assert [row.reference_change_deg_s for row in found] == pytest.approx([0.4, 0.0, 0.4])
     assert not any("clearance" in label for label in asked)
-    (whole,) = interface.combined([agreeing()], found)
-    assert whole["judgement"] == whole["verdict"] == "agrees"
-
-
-def agreeing():
-    return {
-        "condition": "phi15",
-        "reference_converged": True,
-        "judgement": "agrees",
-        "verdict": "agrees",
-        "touches": True,
-    }
+    (whole,) = interface.combined([ROW], found)
+    assert whole.judgement == whole.verdict == "agrees"
 
 
 def test_a_miss_at_one_factor_is_a_miss_of_the_condition(study, monkeypatch):
     """Control: the same row where the reference is not converged is judged at no factor."""
     asked = settle(monkeypatch, lambda factor: 0.3 * (factor == 4.0))
     found = rows(study)
-    assert [row["judgement"] for row in found] == ["agrees", "agrees", "misses"]
-    assert "misses: " in found[2]["verdict"]
-    assert [row["growth"] for row in found] == [None, None, growth.STABLE]
+    assert [row.judgement for row in found] == ["agrees", "agrees", "misses"]
+    assert "misses: " in found[2].verdict
+    assert [row.growth for row in found] == [None, None, growth.STABLE]
     assert sum("clearance" in label for label in asked) == 2
-    (whole,) = interface.combined([agreeing()], found)
-    assert whole["verdict"] == "misses: at 4 times the interface stiffness"
-    assert whole["judgement"] == verdicts.MISSES
+    (whole,) = interface.combined([ROW], found)
+    assert whole.verdict == "misses: at 4 times the interface stiffness"
+    assert whole.judgement == verdicts.MISSES
     unknown = rows(study, uncertainty=0.2)
-    assert {row["verdict"] for row in unknown} == {verdicts.NOT_CONVERGED}
-    (same,) = interface.combined([agreeing()], unknown)
-    assert same["judgement"] == "agrees"
+    assert {row.verdict for row in unknown} == {verdicts.NOT_CONVERGED}
+    (same,) = interface.combined([ROW], unknown)
+    assert same.judgement == "agrees"
 
 
 def test_a_chaotic_reference_is_not_judged(study, monkeypatch):
@@ -118,12 +117,12 @@ def test_a_chaotic_reference_is_not_judged(study, monkeypatch):
     grow, the same difference is a miss."""
     settle(monkeypatch, lambda factor: 0.3 * (factor == 4.0), grows=5.0)
     found = rows(study)
-    assert [row["verdict"] for row in found[:2]] == ["agrees", "agrees"]
-    assert found[2]["judgement"] == verdicts.CANNOT and found[2]["growth"] == growth.CHAOTIC
-    assert found[2]["verdict"].startswith("cannot be judged: reference chaotic (rate L2 ")
+    assert [row.verdict for row in found[:2]] == ["agrees", "agrees"]
+    assert found[2].judgement == verdicts.CANNOT and found[2].growth == growth.CHAOTIC
+    assert found[2].verdict.startswith("cannot be judged: reference chaotic (rate L2 ")
     assert page.stiffnesses(found).endswith("none is judged at 4 times")
-    (whole,) = interface.combined([agreeing()], found)
-    assert whole["judgement"] == "agrees"
+    (whole,) = interface.combined([ROW], found)
+    assert whole.judgement == "agrees"
 
 
 def test_a_miss_where_growth_is_not_known_is_neither_agreement_nor_a_miss(study, monkeypatch):
@@ -132,29 +131,29 @@ def test_a_miss_where_growth_is_not_known_is_neither_agreement_nor_a_miss(study,
     factor decides alone."""
     settle(monkeypatch, lambda factor: 0.3 * (factor == 4.0), lost=True)
     found = rows(study)
-    assert [row["growth"] for row in found] == [None, None, growth.UNKNOWN]
-    assert found[2]["judgement"] == verdicts.CANNOT
-    assert found[2]["verdict"].startswith(
+    assert [row.growth for row in found] == [None, None, growth.UNKNOWN]
+    assert found[2].judgement == verdicts.CANNOT
+    assert found[2].verdict.startswith(
         "cannot be judged: growth of 1 µm in the reference not known (rate L2 "
     )
     assert page.stiffnesses(found).endswith("none is judged at 4 times")
-    (whole,) = interface.combined([agreeing()], found)
-    assert (whole["judgement"], whole["verdict"]) == (
+    (whole,) = interface.combined([ROW], found)
+    assert (whole.judgement, whole.verdict) == (
         verdicts.CANNOT,
         "cannot be judged: growth of 1 µm in the reference not known at 4 times the interface "
         "stiffness",
     )
-    missed = found[0] | {"judgement": verdicts.MISSES, "growth": growth.STABLE}
-    (whole,) = interface.combined([agreeing()], [missed, *found[1:]])
-    assert whole["verdict"] == "misses: at 0.25 times the interface stiffness"
+    missed = replace(found[0], judgement=verdicts.MISSES, growth=growth.STABLE)
+    (whole,) = interface.combined([ROW], [missed, *found[1:]])
+    assert whole.verdict == "misses: at 0.25 times the interface stiffness"
 
 
 def test_a_reference_whose_convergence_is_not_known_is_judged_at_no_factor(study, monkeypatch):
     """A mesh could not be refined. Control: above, a known one is judged at each. No twin is run."""
     asked = settle(monkeypatch, lambda factor: 0.3)
     found = rows(study, known=False)
-    assert {row["verdict"] for row in found} == {verdicts.NOT_KNOWN}
-    assert {row["judgement"] for row in found} == {verdicts.CANNOT}
+    assert {row.verdict for row in found} == {verdicts.NOT_KNOWN}
+    assert {row.judgement for row in found} == {verdicts.CANNOT}
     assert not any("clearance" in label for label in asked)
 
 
@@ -173,12 +172,12 @@ def test_verdicts_are_on_the_page_in_markdown_and_in_the_terminal(study, monkeyp
         "1 of 1 judged conditions agree at 0.25 times, 1 of 1 judged conditions agree at 1 times"
     )
     for text in (
-        document.markdown(page.interface(found)),
+        document.markdown(page.at_factors(found)),
         document.markdown(page.by_factor(found)),
         document.terminal(page.by_factor(found)),
     ):
         assert words in " ".join(text.split()) and "misses: " in text and "phi15" in text
-    assert page.interface([]) == page.by_factor([]) == []
+    assert page.at_factors([]) == page.by_factor([]) == []
 
 
 def test_a_scene_without_contact_has_no_interface(study):

@@ -4,6 +4,7 @@ import pytest
 
 from tipoff.scenes import load
 from tipoff.studies.agreement import stage
+from tipoff.studies.agreement.options import Options
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study
@@ -22,6 +23,6 @@ def test_the_number_is_that_asked_for_or_of_the_settings(
     monkeypatch.setattr(stage, "candidates", lambda _: (None,) * 4)
     monkeypatch.setattr(Stage, "stored", lambda *_: found)
     monkeypatch.setattr(Stage, "run", lambda own, _, options, make: own.plain(options))
-    options = None if given is None else stage.Options(given)
+    options = None if given is None else Options(given)
     assert stage.run(study, options) == {"neighbours": taken}
     assert stage.current(study) == {"neighbours": stored or 5}

@@ -1,20 +1,19 @@
 """Rows of the agreement table: gates, floor, and a reference that is not converged."""
 
-from dataclasses import replace
+from dataclasses import asdict, astuple, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.studies.agreement.made import ROW
 from tests.studies.synthetic import flight
 from tests.written_names import AGREEMENT_ROW
 from tipoff import highfi, lowfi
 from tipoff.comparison import metrics
 from tipoff.scenes import load
-from tipoff.studies.agreement import page, verdicts
-from tipoff.studies.agreement import refined as refined_runs
-from tipoff.studies.agreement.refinement import Refinement
-from tipoff.studies.agreement.verdicts import Context, Spread
+from tipoff.studies.agreement import page, refinement, verdicts
+from tipoff.studies.agreement.verdicts import Context, Refinement, Spread
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
 
@@ -25,7 +24,17 @@ def constant(*rate, **parts):
 
 
 def refined(cause, uncertainty):
-    return Refinement("phi15", "reference", cause, [4.0, 2.0], 0.001, 0.01, uncertainty, 1.0, "GCI")
+    return Refinement(
+        condition="phi15",
+        model="reference",
+        cause=cause,
+        sizes=[4.0, 2.0],
+        rate_relative_l2=0.001,
+        settled_rate_change_deg_s=0.01,
+        uncertainty_deg_s=uncertainty,
+        order=1.0,
+        method="GCI",
+    )
 
 
 CONVERGED = [refined("mesh", 0.02), refined("cells", 0.05)]
@@ -43,15 +52,15 @@ def row(other, refinements=CONVERGED, condition="phi15"):
 
 
 def test_row_holds_every_key_other_tools_read():
-    assert AGREEMENT_ROW <= set(row(constant(3.0, 0.0, 4.0)))
+    assert AGREEMENT_ROW <= set(asdict(row(constant(3.0, 0.0, 4.0))))
 
 
 def test_agreement_within_all_gates():
     found = row(constant(3.0, 0.05, 4.0))
-    assert found["verdict"] == found["judgement"] == "agrees"
-    assert found["judged_as"] == "curve"
-    assert found["rate_relative_l2"] == pytest.approx(0.01, rel=1e-9)
-    assert found["settled_rate_error_deg_s"] == pytest.approx(0.05, rel=1e-9)
+    assert found.verdict == found.judgement == "agrees"
+    assert found.judged_as == "curve"
+    assert found.rate_relative_l2 == pytest.approx(0.01, rel=1e-9)
+    assert found.settled_rate_error_deg_s == pytest.approx(0.05, rel=1e-9)
 
 
 def test_agreement_in_free_flight_says_that_nothing_was_tested():
@@ -62,26 +71,22 @@ def test_agreement_in_free_flight_says_that_nothing_was_tested():
         constant(3.0, 0.0, 4.0),
         Context(FLOORS, CONVERGED, GATES),
     )
-    assert not found["touches"] and found["verdict"] == "agrees (no pad touches)"
+    assert not found.touches and found.verdict == "agrees (no pad touches)"
 
 
 def test_missed_gate_says_by_how_much():
     found = row(constant(3.0, 0.0, 4.4))
-    assert found["gates"]["settled_rate_error_deg_s"]["times_limit"] == pytest.approx(4.0, rel=1e-9)
-    assert found["verdict"] == "misses: rate L2 1.6 x limit, settled rate 4 x limit"
-    assert found["judgement"] == "misses"
+    assert found.gates["settled_rate_error_deg_s"].times_limit == pytest.approx(4.0, rel=1e-9)
+    assert found.verdict == "misses: rate L2 1.6 x limit, settled rate 4 x limit"
+    assert found.judgement == "misses"
 
 
 def test_gates_are_those_of_the_scene_or_twice_the_floor():
-    assert GATES == pytest.approx(
-        {"rate_relative_l2": 0.05, "velocity_relative_l2": 0.001, "settled_rate_error_deg_s": 0.1}
-    )
+    assert astuple(GATES) == pytest.approx((0.05, 0.001, 0.1))
     harder = verdicts.gates(load("sensitive"))
-    assert (harder["rate_relative_l2"], harder["settled_rate_error_deg_s"]) == pytest.approx(
-        (0.1, 0.2)
-    )
+    assert (harder.rate_relative_l2, harder.settled_rate_error_deg_s) == pytest.approx((0.1, 0.2))
     limits = [
-        Context([], [], GATES).limits(floor)["settled_rate_error_deg_s"]
+        Context([], [], GATES).limits(floor).settled_rate_error_deg_s
         for floor in (None, 0.03, 0.08, 3.0)
     ]
     # a chaotic condition does not forgive everything
@@ -90,10 +95,10 @@ def test_gates_are_those_of_the_scene_or_twice_the_floor():
 
 def test_reference_that_is_not_converged_forbids_any_claim():
     found = row(constant(3.0, 0.0, 4.0), [refined("mesh", 0.18)])
-    assert found["verdict"] == "cannot be judged: reference not converged"
-    assert found["reference_uncertainty_deg_s"] == 0.18
-    assert found["judgement"] == verdicts.CANNOT
-    assert row(constant(3.0, 0.0, 4.0), [])["verdict"] == verdicts.NOT_KNOWN
+    assert found.verdict == "cannot be judged: reference not converged"
+    assert found.reference_uncertainty_deg_s == 0.18
+    assert found.judgement == verdicts.CANNOT
+    assert row(constant(3.0, 0.0, 4.0), []).verdict == verdicts.NOT_KNOWN
 
 
 @pytest.mark.parametrize("steps", [[None], [0.01, None]])
@@ -107,22 +112,22 @@ def test_borrowed_uncertainties_that_are_not_known_stay_unknown(steps):
         return row(constant(3.0, 0.0, 4.0), [own, *borrowed], "h1")
 
     found = judged(*steps)
-    assert found["reference_uncertainty_deg_s"] is None and not found["reference_converged"]
-    assert found["judgement"] == verdicts.CANNOT
-    assert not found["reference_uncertainty_measured_here"]
+    assert found.reference_uncertainty_deg_s is None and not found.reference_converged
+    assert found.judgement == verdicts.CANNOT
+    assert not found.reference_uncertainty_measured_here
     known = judged(0.01, 0.03)
-    assert known["reference_uncertainty_deg_s"] == 0.03 and known["judgement"] == verdicts.AGREES
+    assert known.reference_uncertainty_deg_s == 0.03 and known.judgement == verdicts.AGREES
 
 
 def test_floor_is_the_own_one_where_measured_else_the_largest():
     own, other = row(constant(3.0, 0.0, 4.0)), row(constant(3.0, 0.0, 4.0), condition="h1")
-    assert (own["floor_deg_s"], own["floor_l2"], own["floor_measured_here"]) == (0.03, 0.004, True)
-    assert (other["floor_deg_s"], other["floor_l2"], other["floor_measured_here"]) == (
+    assert (own.floor_deg_s, own.floor_l2, own.floor_measured_here) == (0.03, 0.004, True)
+    assert (other.floor_deg_s, other.floor_l2, other.floor_measured_here) == (
         0.03,
         0.006,
         False,
     )
-    assert own["reference_uncertainty_by_cause_deg_s"] == {"mesh": 0.02, "cells": 0.05}
+    assert own.reference_uncertainty_by_cause_deg_s == {"mesh": 0.02, "cells": 0.05}
 
 
 def test_run_that_did_not_settle_never_passes():
@@ -133,8 +138,8 @@ def test_run_that_did_not_settle_never_passes():
         flight(status="jammed"),
         Context(FLOORS, CONVERGED, GATES),
     )
-    assert found["judgement"] == verdicts.MISSES
-    assert "settled rate unknown" in found["verdict"]
+    assert found.judgement == verdicts.MISSES
+    assert "settled rate unknown" in found.verdict
 
 
 def test_spread_takes_the_larger_side():
@@ -163,7 +168,7 @@ def test_every_condition_of_the_reference_has_an_uncertainty_of_its_own(monkeypa
         monkeypatch.setattr(
             type(study.store), "fill", lambda store, title, runs: [flight() for _ in runs]
         )
-        context = Context([], refined_runs.refinements(study), GATES)
+        context = Context([], refinement.refinements(study), GATES)
         assert {name for name in study.conditions if context.uncertainty(name)[2]} == expected
         assert list(context.uncertainty("h4")[1]) == ["mesh", "step", "cells"]
 
@@ -184,20 +189,20 @@ def test_compliant_walls_agree_with_finite_elements_on_the_same_mesh(coarse_wall
     assert reference.status == "exited" and reference.pad_force.any()
     found = metrics.compare(reference, lowfi.run(scene, compliance=coarse_walls))
     assert found.rate_relative_l2 < 0.02 and found.settled_rate_error_deg_s < 0.05
-    assert found.velocity_relative_l2 < GATES["velocity_relative_l2"]
+    assert found.velocity_relative_l2 < GATES.velocity_relative_l2
     springs = metrics.compare(reference, lowfi.run(scene, "springs"))
-    assert springs.rate_relative_l2 > GATES["rate_relative_l2"]
-    assert springs.settled_rate_error_deg_s > GATES["settled_rate_error_deg_s"]
+    assert springs.rate_relative_l2 > GATES.rate_relative_l2
+    assert springs.settled_rate_error_deg_s > GATES.settled_rate_error_deg_s
 
 
 def test_conditions_are_counted_by_their_word():
     words = [verdicts.AGREES] * 3 + [verdicts.AS_DISTRIBUTION] * 2 + [verdicts.MISSES]
-    rows = [{"judgement": word, "touches": number > 0} for number, word in enumerate(words)]
+    rows = [replace(ROW, judgement=word, touches=number > 0) for number, word in enumerate(words)]
     assert page.summary(rows) == (
         "3 of 6 conditions agree (1 of them without contact), 2 agree as distributions, "
         "0 cannot be judged, 1 misses"
     )
-    assert page.summary([{"judgement": verdicts.CANNOT, "touches": True}], "fitted ") == (
+    assert page.summary([replace(ROW, judgement=verdicts.CANNOT)], "fitted ") == (
         "0 of 1 fitted conditions agree, 1 cannot be judged, 0 miss"
     )
 
@@ -215,5 +220,5 @@ def test_a_floor_is_unknown_where_a_neighbour_does_not_settle():
     floor, _, measured = Context([half, other], CONVERGED, GATES).floor("phi15")
     assert floor is None and measured
     limits = Context([half, other], CONVERGED, GATES).limits(floor)
-    assert limits["settled_rate_error_deg_s"] == GATES["settled_rate_error_deg_s"]
+    assert limits.settled_rate_error_deg_s == GATES.settled_rate_error_deg_s
     assert Context([both, other], CONVERGED, GATES).floor("phi15")[0] == pytest.approx(0.5)

@@ -10,7 +10,7 @@ from tests.studies.synthetic import flight
 from tipoff import scenes
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.scenes.faults import SceneError
-from tipoff.studies.agreement import distributions, refined, verdicts
+from tipoff.studies.agreement import distributions, refinement, verdicts
 from tipoff.studies.agreement.verdicts import Context
 from tipoff.studies.blind import page
 from tipoff.studies.blind import stage as blind
@@ -68,7 +68,7 @@ def test_no_drawn_condition_borrows_its_uncertainty(monkeypatch):
         type(drawn.store), "fill", lambda store, title, runs: [flight() for _ in runs]
     )
     for study, measured in ((drawn, [True, True, True]), (alone, [False, True, False])):
-        context = Context([], refined.refinements(study), {})
+        context = Context([], refinement.refinements(study), verdicts.gates(study.scene))
         assert [context.uncertainty(name)[2] for name in drawn.conditions] == measured
 
 
@@ -155,11 +155,15 @@ def test_the_page_says_how_each_condition_was_judged(stubbed):
     found = blind.run(study, Options(cases=3, seed=1))
     assert [item["neighbours"] for item in found["distributions"]] == [5, 5]
     for text in (
-        document.markdown(page.draw(found)),
-        document.terminal(page.terminal(found)),
+        document.markdown(page.draw(blind.STAGE.read(found))),
+        document.terminal(page.terminal(blind.STAGE.read(found))),
     ):
         words = " ".join(text.split())
         assert "judged as" in words and "distribution" in words and "curve" in words
-    assert "Conditions judged as distributions" in document.terminal(page.terminal(found))
-    (figure,) = [part for part in page.draw(found) if isinstance(part, document.Figure)]
+    assert "Conditions judged as distributions" in document.terminal(
+        page.terminal(blind.STAGE.read(found))
+    )
+    (figure,) = [
+        part for part in page.draw(blind.STAGE.read(found)) if isinstance(part, document.Figure)
+    ]
     assert figure.chart.name == "blind-distributions"  # the agreement study has the other

@@ -8,6 +8,7 @@ from dataclasses import replace
 import h5py
 import pytest
 
+from tests.studies.calibration.test_page import FIT
 from tipoff import scenes
 from tipoff.calibration import parameters, refine, search
 from tipoff.files import sealed, write_json
@@ -124,7 +125,7 @@ def test_a_fit_on_compliant_contact_counts_its_own_runs_and_parameters(tmp_path)
 
 def test_curves_are_fitted_after_the_time_was_said(tmp_path, capsys, monkeypatch):
     """Control: a second call fits nothing and says nothing of it."""
-    monkeypatch.setattr(stage, "fit", lambda *asked: ({}, []))
+    monkeypatch.setattr(stage, "fit", lambda *asked: (FIT, []))
     path = tmp_path / "phi15.csv"
     lines = [f"{0.5 * n},{0.1 * n},1,2,3" for n in range(120)]
     path.write_text(
@@ -155,7 +156,7 @@ def test_a_narrow_interval_shows_its_width(ends, said):
 def test_a_fit_of_other_parameters_is_another_result(tmp_path, monkeypatch):
     """From files and on the reference. Control: the same parameters again."""
     fitted = []
-    monkeypatch.setattr(stage, "fit", lambda *asked: (fitted.append(asked[4]) or {}, []))
+    monkeypatch.setattr(stage, "fit", lambda *asked: (fitted.append(asked[4]) or FIT, []))
     monkeypatch.setattr(stage, "require_success", lambda *asked: None)
     path, names = tmp_path / "phi15.csv", ("contact.clearance", "friction.dynamic")
     head = "time [ms],velocity_x [m/s],rate_x [deg/s],rate_y [deg/s],rate_z [deg/s]"

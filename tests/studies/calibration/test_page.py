@@ -1,9 +1,13 @@
 """What the terminal shows of a calibration: tables with units, and the files."""
 
+from dataclasses import replace
+
 import numpy as np
+from pydantic_core import to_jsonable_python
 
 from tipoff.scenes import Calibration
 from tipoff.studies.calibration import page, stage
+from tipoff.studies.calibration.compliance import Compliance, UnderPad
 from tipoff.studies.render import document
 
 FOUND = Calibration(
@@ -21,12 +25,19 @@ FOUND = Calibration(
     objective=0.5,
     intervals=[[6.0, 6.5], [float("-inf"), float("inf")]],
 )
-COMPLIANCE = {
-    "file": "compliance-1.npz",
-    "stations": 53,
-    "element_size_m": 8e-3,
-    "under_a_pad": {"direct_m_per_n": {"-y": [1e-9, 4.5e-8]}},
-}
+FIT = stage.fit_of(FOUND, "calibration.toml")
+COMPLIANCE = Compliance(
+    file="compliance-1.npz",
+    stations=53,
+    element_size_m=8e-3,
+    under_a_pad=UnderPad(
+        pad=0,
+        place_m=[0.0, 0.1],
+        mounts_m=[],
+        direct_m_per_n={"-y": [1e-9, 4.5e-8]},
+        cross_m_per_n={},
+    ),
+)
 
 
 def shown(found, tmp_path):
@@ -34,8 +45,7 @@ def shown(found, tmp_path):
 
 
 def test_constants_and_residuals_are_tables(tmp_path):
-    fitted = stage.as_dict(FOUND) | {"calibration": "calibration.toml"}
-    lines = shown(fitted, tmp_path).splitlines()
+    lines = shown(FIT, tmp_path).splitlines()
     force = next(line for line in lines if line.strip().startswith("force at"))
     assert force.split()[-5:] == ["6.3", "N", "6.0", "to", "6.5"]
     assert any(
@@ -47,16 +57,15 @@ def test_constants_and_residuals_are_tables(tmp_path):
 
 
 def test_model_error_is_a_column_where_there_is_one(tmp_path):
-    fitted = stage.as_dict(FOUND) | {"calibration": "calibration.toml"}
-    assert "with model error" not in shown(fitted, tmp_path)
-    wider = fitted | {"with_model_error": [[5.0, 7.0], [0.1, 0.4]]}
+    assert "with model error" not in shown(FIT, tmp_path)
+    wider = replace(FIT, with_model_error=[(5.0, 7.0), (0.1, 0.4)])
     assert "with model error" in shown(wider, tmp_path) and "5 to 7" in shown(wider, tmp_path)
 
 
 def test_the_compliance_stands_before_the_springs(tmp_path):
-    fitted = stage.as_dict(FOUND) | {"calibration": "calibration.toml"}
-    text = shown({"compliance": COMPLIANCE, "springs": fitted}, tmp_path)
+    both = {"compliance": COMPLIANCE, "springs": FIT}
+    text = document.terminal(page.of_models(to_jsonable_python(both), tmp_path))
     assert text.index("(nm/N)") < text.index("force at")
     assert f"  {tmp_path / 'compliance-1.npz'}" in text.splitlines() and " 45" in text
-    without = shown({"compliance": COMPLIANCE | {"file": None}}, tmp_path)
-    assert without == "no contact: no compliance"
+    without = to_jsonable_python({"compliance": Compliance()})
+    assert document.terminal(page.of_models(without, tmp_path)) == "no contact: no compliance"

@@ -3,10 +3,12 @@
 import math
 
 import numpy as np
+from pydantic_core import to_jsonable_python
 
 from tests.studies.synthetic import flight
 from tipoff import scenes
 from tipoff.studies.convergence.ripple import Ripple
+from tipoff.studies.convergence.stage import Convergence, Refined
 
 SURROGATE_ERROR = 1.2  # deg/s
 NOMINAL_INTERFACE_STIFFNESS = scenes.load("tiny").contact.interface_stiffness
@@ -70,7 +72,39 @@ def resting(scene, sizes):
 def row(found, parameter, quantity):
     (matching,) = [
         item
-        for item in found["quantities"]
-        if (item["parameter"], item["quantity"]) == (parameter, quantity)
+        for item in found.quantities
+        if (item.parameter, item.quantity) == (parameter, quantity)
     ]
     return matching
+
+
+def document(*, speed=None, equal=None):
+    """The content of a file with one quantity, a settled ``speed`` of known uncertainty, and the
+    speed-up at ``equal`` accuracy."""
+    row = Refined(
+        order=None,
+        uncertainty=speed,
+        gci_percent=None,
+        method="GCI",
+        quantity="settled axial velocity",
+        unit="m/s",
+        parameter="element size",
+        sizes=[1.0],
+        size_unit="m",
+        values=[13.6],
+        nominal_size=1.0,
+        nominal_uncertainty=speed,
+    )
+    found = Convergence(
+        condition="phi60",
+        element_size_m=8e-3,
+        coarse_size_m=16e-3,
+        force_cutoff_hz=1000.0,
+        meshes=(),
+        quantities=() if speed is None else (row,),
+        interface_stiffness=(),
+        contact_cells=(),
+        ripple=(),
+        equal_accuracy=equal,
+    )
+    return to_jsonable_python(found)

@@ -19,18 +19,16 @@ from tipoff.workspace.study import Study
 
 def test_a_deflection_of_first_order_stands_beside_the_rates(finished):
     """As at the edge of a rigid mount: what is left is more than the last change."""
-    found = stub.row(finished[1], "element size", "deflection under 100 N")
-    assert found["values"] == pytest.approx([8.4, 9.2, 9.6]) and found["unit"] == "µm"
-    assert found["order"] == pytest.approx(1.0) and found["method"] == "GCI"
-    assert found["uncertainty"] == pytest.approx(1.25 * 0.4)
-    assert found["nominal_uncertainty"] == pytest.approx(0.4 + 1.25 * 0.4)
+    found = stub.row(convergence.STAGE.read(finished[1]), "element size", "deflection under 100 N")
+    assert found.values == pytest.approx([8.4, 9.2, 9.6]) and found.unit == "µm"
+    assert found.order == pytest.approx(1.0) and found.method == "GCI"
+    assert found.uncertainty == pytest.approx(1.25 * 0.4)
+    assert found.nominal_uncertainty == pytest.approx(0.4 + 1.25 * 0.4)
 
 
 def test_loads_of_the_one_pad_that_touches(finished):
-    _, found = finished
-    names = [
-        item["quantity"] for item in found["quantities"] if item["parameter"] == "element size"
-    ]
+    found = convergence.STAGE.read(finished[1])
+    names = [item.quantity for item in found.quantities if item.parameter == "element size"]
     assert names == [
         "settled rate x",
         "settled rate y",
@@ -40,13 +38,13 @@ def test_loads_of_the_one_pad_that_touches(finished):
         "peak contact force below 1 kHz",
         "deflection under 100 N",
     ]
-    assert stub.row(found, "element size", "contact impulse, pad 2")["values"] == pytest.approx(
+    assert stub.row(found, "element size", "contact impulse, pad 2").values == pytest.approx(
         [0.6] * 3
     )
-    assert stub.row(found, "time step", "peak contact force below 1 kHz")[
-        "values"
-    ] == pytest.approx([20.0] * 3)
-    assert found["force_cutoff_hz"] == 1000.0
+    assert stub.row(found, "time step", "peak contact force below 1 kHz").values == pytest.approx(
+        [20.0] * 3
+    )
+    assert found.force_cutoff_hz == 1000.0
 
 
 def test_stress_is_judged_on_patches_and_never_at_its_peak(tmp_path, monkeypatch, asked):
@@ -65,18 +63,19 @@ def test_stress_is_judged_on_patches_and_never_at_its_peak(tmp_path, monkeypatch
 
     monkeypatch.setattr(store_module, "execute", execute)
     study = Study(scenes.load("tiny"), tmp_path / "tiny", defaults("tiny"))
-    found = convergence.run(study)
+    written = convergence.run(study)
+    found = convergence.STAGE.read(written)
     patch = stub.row(found, "element size", "patch stress below 1 kHz")
-    assert (patch["unit"], patch["order"]) == ("MPa", pytest.approx(2.0, abs=1e-6))
-    assert patch["uncertainty"] == pytest.approx(1.25 * 0.016, rel=1e-6)
+    assert (patch.unit, patch.order) == ("MPa", pytest.approx(2.0, abs=1e-6))
+    assert patch.uncertainty == pytest.approx(1.25 * 0.016, rel=1e-6)
     peak = stub.row(found, "element size", "peak stress of the rail")
-    assert (peak["uncertainty"], peak["nominal_uncertainty"], peak["gci_percent"]) == (
+    assert (peak.uncertainty, peak.nominal_uncertainty, peak.gci_percent) == (
         None,
         None,
         None,
     )
-    assert peak["order"] < 0.0 and "mesh-dependent" in peak["method"]
+    assert peak.order < 0.0 and "mesh-dependent" in peak.method
     shown = document.markdown(
-        draw(Page(study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {}))
+        draw(Page(study.scene, study.folder, {"convergence": written}, Runs({}, {}, {}), {}))
     )
     assert "patch stress below 1 kHz" in shown and "mesh-dependent" in shown

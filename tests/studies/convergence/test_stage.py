@@ -13,8 +13,8 @@ from tipoff.scenes.faults import SceneError
 from tipoff.studies import registry
 from tipoff.studies.cli import app
 from tipoff.studies.convergence import stage as convergence
-from tipoff.studies.convergence import summary
-from tipoff.studies.convergence.page import draw
+from tipoff.studies.convergence.options import Options
+from tipoff.studies.convergence.page import draw, sentences
 from tipoff.studies.render import document
 from tipoff.studies.render.table import inline
 from tipoff.studies.report import stage as report
@@ -24,66 +24,72 @@ from tipoff.workspace.settings import Settings, defaults
 from tipoff.workspace.study import Study, StudyError
 
 
+def made(study) -> convergence.Convergence:
+    """The result of a run."""
+    return convergence.STAGE.read(convergence.run(study))
+
+
 def page_of(study, found):
     """A report with this study alone."""
     return Page(study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {})
 
 
 def test_order_and_uncertainty_of_a_law_of_second_order(finished):
-    _, found = finished
+    found = convergence.STAGE.read(finished[1])
     x = stub.row(found, "element size", "settled rate x")
-    assert (x["unit"], x["size_unit"], x["sizes"]) == ("deg/s", "m", [0.016, 0.008, 0.004])
-    assert x["order"] == pytest.approx(2.0, abs=1e-9)
-    assert x["uncertainty"] == pytest.approx(1.25 * 0.016)
-    assert x["gci_percent"] == pytest.approx(125.0 * 0.016 / x["values"][-1])
+    assert (x.unit, x.size_unit, x.sizes) == ("deg/s", "m", [0.016, 0.008, 0.004])
+    assert x.order == pytest.approx(2.0, abs=1e-9)
+    assert x.uncertainty == pytest.approx(1.25 * 0.016)
+    assert x.gci_percent == pytest.approx(125.0 * 0.016 / x.values[-1])
     # At 8 mm, as other stages run, the error is 0.064: what lies between the values, and the
     # uncertainty of the finest.
-    assert x["nominal_uncertainty"] == pytest.approx(0.064 - 0.016 + 1.25 * 0.016)
+    assert x.nominal_uncertainty == pytest.approx(0.064 - 0.016 + 1.25 * 0.016)
     in_time = stub.row(found, "time step", "settled rate x")
-    assert in_time["sizes"] == [0.9, 0.45, 0.225]
-    assert in_time["order"] == pytest.approx(2.0, abs=1e-9)
-    assert in_time["uncertainty"] == pytest.approx(1.25 * 0.1 * 0.225**2)
+    assert in_time.sizes == [0.9, 0.45, 0.225]
+    assert in_time.order == pytest.approx(2.0, abs=1e-9)
+    assert in_time.uncertainty == pytest.approx(1.25 * 0.1 * 0.225**2)
 
 
 def test_values_without_order_are_told_apart(finished):
-    _, found = finished
+    found = convergence.STAGE.read(finished[1])
     y = stub.row(found, "element size", "settled rate y")
-    assert y["order"] is None and y["method"] == "not converged: changes do not fall"
-    assert y["uncertainty"] == pytest.approx(3.0 * 0.3)
-    assert stub.row(found, "element size", "settled rate z")["method"] == "no change at all"
-    line = summary.lines(found)[0]
+    assert y.order is None and y.method == "not converged: changes do not fall"
+    assert y.uncertainty == pytest.approx(3.0 * 0.3)
+    assert stub.row(found, "element size", "settled rate z").method == "no change at all"
+    line = sentences(found)[0]
     assert "element size on phi15" in line and "1.2 deg/s at the default 8 mm" in line
     assert line.endswith("0.9 deg/s at 4 mm; not converged: changes do not fall")
 
 
 def test_interface_stiffness_and_contact_cells_are_compared_with_the_nominal_run(finished):
-    _, found = finished
-    assert [item["factor"] for item in found["interface_stiffness"]] == [0.25, 1.0, 4.0, 16.0]
-    assert [
-        item["settled_rate_change_deg_s"] for item in found["interface_stiffness"]
-    ] == pytest.approx([0.02, 0.0, 0.02, 0.04])
+    found = convergence.STAGE.read(finished[1])
+    assert [item.factor for item in found.interface_stiffness] == [0.25, 1.0, 4.0, 16.0]
+    assert [item.settled_rate_change_deg_s for item in found.interface_stiffness] == pytest.approx(
+        [0.02, 0.0, 0.02, 0.04]
+    )
     assert (
-        found["interface_stiffness"][3]["interface_stiffness_n_m3"]
+        found.interface_stiffness[3].interface_stiffness_n_m3
         == 16.0 * stub.NOMINAL_INTERFACE_STIFFNESS
     )
-    changes = {
-        item["cells_per_edge"]: item["settled_rate_change_deg_s"] for item in found["contact_cells"]
-    }
+    changes = {item.cells_per_edge: item.settled_rate_change_deg_s for item in found.contact_cells}
     assert changes == {8: 0.0, 16: 0.0, 32: 0.0}
-    assert summary.lines(found)[2:4] == [
+    assert sentences(found)[2:4] == [
         "interface stiffness, times 0.25 to 16: a settled rate changes by up to 0.04 deg/s",
         "contact cells along each edge of a pad, 8 to 32: a settled rate changes by up to 0 deg/s",
     ]
 
 
 def test_ripple_of_both_meshes_beside_that_of_few_cells(finished):
-    study, found = finished
-    assert [
-        (row["element_size_m"], row["cells_per_edge"], row["ripple"]) for row in found["ripple"]
-    ] == [(0.016, 3, 0.04 / 3), (0.016, 16, 0.0025), (0.008, 16, 0.0025)]
-    line = summary.lines(found)[-2]
+    study, written = finished
+    found = convergence.STAGE.read(written)
+    assert [(row.element_size_m, row.cells_per_edge, row.ripple) for row in found.ripple] == [
+        (0.016, 3, 0.04 / 3),
+        (0.016, 16, 0.0025),
+        (0.008, 16, 0.0025),
+    ]
+    line = sentences(found)[-2]
     assert line.startswith("ripple") and "750 Hz, facets of 8 mm: 0.25 %" in line
-    shown = document.markdown(draw(page_of(study, found)))
+    shown = document.markdown(draw(page_of(study, written)))
     assert "ripple (%)" in shown
 
 
@@ -93,14 +99,14 @@ def test_speed_is_measured_on_the_coarsest_sufficient_mesh(
 ):
     """y jumps by 0.3 deg/s, which leaves 0.9 open at 4 mm, and as much at 16 mm."""
     monkeypatch.setattr(stub, "SURROGATE_ERROR", error)
-    found = convergence.run(study)
-    equal = found["equal_accuracy"]
-    assert (equal["element_size_m"], equal["surer"]) == (size, sufficient)
-    assert equal["error_deg_s"] == pytest.approx(error)
-    assert equal["ratio"] > 0.0 and equal["highfi_repeats"] == study.settings.highfi_repeats
+    found = made(study)
+    equal = found.equal_accuracy
+    assert (equal.element_size_m, equal.surer) == (size, sufficient)
+    assert equal.error_deg_s == pytest.approx(error)
+    assert equal.ratio > 0.0 and equal.highfi_repeats == study.settings.highfi_repeats
     assert (
-        "equal accuracy on phi15" in summary.lines(found)[-1]
-        and ("at least" in summary.lines(found)[-1]) is not sufficient
+        "equal accuracy on phi15" in sentences(found)[-1]
+        and ("at least" in sentences(found)[-1]) is not sufficient
     )
 
 
@@ -130,7 +136,7 @@ def test_no_run_is_made_twice_and_none_again(study, asked):
     del asked[:]
     convergence.run(study)
     assert asked == []
-    assert convergence.run(study, "phi60")["condition"] == "phi60" and len(asked) == 11
+    assert convergence.run(study, Options("phi60"))["condition"] == "phi60" and len(asked) == 11
 
 
 def test_four_meshes_of_the_reference():
@@ -140,17 +146,17 @@ def test_four_meshes_of_the_reference():
 
 def test_run_that_did_not_settle_leaves_its_error_unknown(study, asked):
     asked.failing = {"phi15-4mm": "jammed", "phi15-interface-16-coarse": "diverged"}
-    found = convergence.run(study)
+    found = made(study)
     x = stub.row(found, "element size", "settled rate x")
-    assert (x["uncertainty"], x["nominal_uncertainty"], x["method"]) == (
+    assert (x.uncertainty, x.nominal_uncertainty, x.method) == (
         None,
         None,
         "a run did not settle",
     )
-    assert "unknown" in summary.lines(found)[0]
-    assert stub.row(found, "element size", "contact impulse, pad 2")["uncertainty"] == 0.0
-    assert found["interface_stiffness"][3]["settled_rate_deg_s"] == [None] * 3
-    assert summary.lines(found)[2].endswith("up to 0.02 deg/s; 16 diverged")
+    assert "unknown" in sentences(found)[0]
+    assert stub.row(found, "element size", "contact impulse, pad 2").uncertainty == 0.0
+    assert found.interface_stiffness[3].settled_rate_deg_s == [None] * 3
+    assert sentences(found)[2].endswith("up to 0.02 deg/s; 16 diverged")
 
 
 def test_mesh_that_diverges_stops_the_stage(study, asked):
@@ -162,34 +168,34 @@ def test_mesh_that_diverges_stops_the_stage(study, asked):
 
 def test_scene_without_contact_has_no_loads_and_no_interface_stiffness(tmp_path, asked):
     scene = scenes.load("tiny").replace({"contact": None, "friction": None})
-    found = convergence.run(Study(scene, tmp_path, defaults("tiny")))
+    found = made(Study(scene, tmp_path, defaults("tiny")))
     assert (
-        found["interface_stiffness"] == found["contact_cells"] == []
-        and found["equal_accuracy"] is None
-        and len(summary.lines(found)) == 2
+        found.interface_stiffness == found.contact_cells == ()
+        and found.equal_accuracy is None
+        and len(sentences(found)) == 2
     )
-    assert {item["unit"] for item in found["quantities"]} == {"deg/s", "m/s"}
+    assert {item.unit for item in found.quantities} == {"deg/s", "m/s"}
 
 
 def test_unknown_condition_is_refused_before_anything_runs(study, asked):
     with pytest.raises(SceneError, match="phi99"):
-        convergence.run(study, "phi99")
+        convergence.run(study, Options("phi99"))
     assert asked == []
 
 
 def test_stored_result_counts_only_while_nothing_changed(study):
-    assert convergence.stored(study) is None
-    found = convergence.run(study, "phi60")
-    assert convergence.stored(study) == found
-    assert convergence.stored(Study(study.scene, study.folder, Settings())) is None
+    assert convergence.STAGE.stored(study) is None
+    found = convergence.run(study, Options("phi60"))
+    assert convergence.STAGE.stored(study) == found
+    assert convergence.STAGE.stored(Study(study.scene, study.folder, Settings())) is None
 
 
 def test_page_shows_the_study_only_where_there_is_one(finished):
-    study, found = finished
-    page = page_of(study, found)
+    study, written = finished
+    found, page = convergence.STAGE.read(written), page_of(study, written)
     shown = document.html(draw(page), page.figure)
     assert 'id="chart-convergence"' in shown
-    assert all(f"{inline(line[1:])}." in shown for line in summary.lines(found))
+    assert all(f"{inline(line[1:])}." in shown for line in sentences(found))
     assert study.path("figures/convergence.png").is_file()
     assert draw(Page(study.scene, study.folder, {}, Runs({}, {}, {}), {})) == []
 
@@ -217,7 +223,8 @@ def test_command_prints_the_summary_or_the_result(tmp_path, asked, monkeypatch):
     printed = CliRunner().invoke(app, arguments, catch_exceptions=False)
     written = json.loads((tmp_path / "tiny" / "convergence.json").read_text())
     assert printed.exit_code == 0
-    assert printed.stdout.splitlines()[: len(summary.lines(written))] == summary.lines(written)
+    said = sentences(convergence.STAGE.read(written))
+    assert printed.stdout.splitlines()[: len(said)] == said
     assert printed.stdout.count("settled rate x") == 2  # element size and time step
     result = CliRunner().invoke(app, [*arguments, "--json"], catch_exceptions=False)
     assert json.loads(result.stdout) == written

@@ -5,8 +5,10 @@ from dataclasses import replace
 import pytest
 from typer.testing import CliRunner
 
+from tests.studies.agreement.made import ROW, table
 from tests.studies.cost.made import cost, point
 from tipoff import scenes
+from tipoff.studies.agreement.stage import Simpler
 from tipoff.studies.cli import app
 from tipoff.studies.cost import stage as cost_stage
 from tipoff.studies.cost.choice import choose, elsewhere
@@ -87,28 +89,40 @@ def test_refusal_of_one_limit_names_the_best_there_is():
 
 def agreement(error, unsure):
     """Rows of two conditions: small errors on phi60, these on h8."""
-    rows = [
-        {
-            "condition": "phi60",
-            "settled_rate_error_deg_s": 0.01,
-            "reference_uncertainty_deg_s": 0.01,
-        },
-        {
-            "condition": "h8",
-            "settled_rate_error_deg_s": error,
-            "reference_uncertainty_deg_s": unsure,
-        },
-    ]
-    simpler = [row | {"patterns": 1, "coupled": False} for row in rows]
-    return {
-        "uncalibrated": rows,
-        "fitted": rows[:1],
-        "held_out": rows[1:],
-        "compliant": rows,
-        "modal": rows,
-        "simpler": simpler,
-        "element_size_m": 2e-3,
-    }
+    small = replace(
+        ROW,
+        condition="phi60",
+        settled_rate_error_deg_s=0.01,
+        reference_uncertainty_deg_s=0.01,
+    )
+    rows = (
+        small,
+        replace(
+            small,
+            condition="h8",
+            settled_rate_error_deg_s=error,
+            reference_uncertainty_deg_s=unsure,
+        ),
+    )
+    simpler = tuple(
+        Simpler(
+            walls="mean pressure of each face by itself",
+            patterns=1,
+            coupled=False,
+            condition=row.condition,
+            rate_relative_l2=None,
+            settled_rate_error_deg_s=row.settled_rate_error_deg_s,
+        )
+        for row in rows
+    )
+    return table(
+        uncalibrated=rows,
+        fitted=rows[:1],
+        held_out=rows[1:],
+        compliant=rows,
+        modal=rows,
+        simpler=simpler,
+    )
 
 
 def test_what_holds_on_one_condition_is_not_promised_of_another():

@@ -2,6 +2,7 @@
 the one error that varies."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from scipy import stats
 from typer.testing import CliRunner
 
 from tests.studies import free_flight
+from tests.studies.agreement.made import ROW, table
 from tests.studies.limits import in_memory
 from tests.studies.shown import html
 from tipoff.lowfi.ensemble.rows import numbers
@@ -353,12 +355,7 @@ def test_the_model_error_is_the_largest_of_the_held_out_conditions(tmp_path, mon
         and "tipoff compare" in constants.margin(study, "springs").said
     )
     rows = [
-        {
-            "role": "held_out",
-            "judged_as": judged_as,
-            "judgement": judgement,
-            "settled_rate_error_xyz_deg_s": errors,
-        }
+        replace(ROW, judged_as=judged_as, judgement=judgement, settled_rate_error_xyz_deg_s=errors)
         for judged_as, judgement, errors in (
             (verdicts.CURVE, verdicts.MISSES, [0.3, -0.4, 0.0]),
             (verdicts.CURVE, verdicts.MISSES, None),
@@ -367,15 +364,9 @@ def test_the_model_error_is_the_largest_of_the_held_out_conditions(tmp_path, mon
             (verdicts.DISTRIBUTION, verdicts.AS_DISTRIBUTION, [7.0, 7.0, 7.0]),
         )
     ]
-    fitted = {
-        "role": "fitted",
-        "judged_as": verdicts.CURVE,
-        "judgement": verdicts.MISSES,
-        "settled_rate_error_xyz_deg_s": [9.0, 9.0, 9.0],
-    }
-    monkeypatch.setattr(
-        constants.compare, "stored", lambda _: {"held_out": rows, "compliant": [fitted, *rows[2:]]}
-    )
+    fitted = replace(ROW, role="fitted", settled_rate_error_xyz_deg_s=[9.0, 9.0, 9.0])
+    found = table(held_out=tuple(rows), compliant=(fitted, *rows[2:]))
+    monkeypatch.setattr(constants.compare, "stored", lambda _: found)
     assert constants.margin(study, "springs").deg_s == pytest.approx(
         {"x": 0.3, "y": 0.4, "z": 0.2, "total": 0.5}
     )

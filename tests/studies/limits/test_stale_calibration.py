@@ -1,5 +1,10 @@
 """The error of the springs comes from a calibration of the present scene and code alone."""
 
+from dataclasses import replace
+
+from pydantic_core import to_jsonable_python
+
+from tests.studies.calibration.test_page import FIT
 from tipoff.files import write_json
 from tipoff.scenes import load
 from tipoff.studies.limits import constants
@@ -14,5 +19,6 @@ def test_residuals_of_another_calibration_are_not_taken(tmp_path, monkeypatch):
     study = Study(load("reference"), tmp_path, Settings())
     write_json(study.path("calibration.json"), {"key": "another", "residuals": RESIDUALS})
     assert constants.margin(study, "springs").deg_s is None
-    monkeypatch.setattr(constants.calibrate, "stored", lambda _: {"residuals": RESIDUALS})
+    found = to_jsonable_python(replace(FIT, residuals=RESIDUALS))
+    monkeypatch.setattr(constants.calibrate, "stored", lambda _: found)
     assert constants.margin(study, "springs").deg_s["x"] == 0.5

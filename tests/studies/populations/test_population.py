@@ -1,17 +1,18 @@
 """Many cases on the surrogate of a study: the store, the model, and the reported quantities."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from tests.studies import free_flight
+from tests.studies.agreement.made import ROW, table
 from tipoff import lowfi
 from tipoff.lowfi.ensemble.rows import Listed
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.scenes import load
-from tipoff.studies.agreement import kept
 from tipoff.studies.limits import stage as limits
 from tipoff.studies.montecarlo import stage as montecarlo
 from tipoff.studies.populations import answers, population
@@ -44,23 +45,12 @@ def test_springs_are_used_where_they_are_named(tmp_path, monkeypatch):
 
 def test_a_model_that_the_agreement_table_rejects_must_be_named(tmp_path, monkeypatch):
     """Control: a reference that is not converged rejects nothing, nor does another condition."""
-    rows = [
-        {
-            "condition": "h1",
-            "reference_converged": True,
-            "judged_as": "curve",
-            "judgement": "misses",
-            "verdict": "misses: settled rate 3 x limit",
-        },
-        {
-            "condition": "h8",
-            "reference_converged": False,
-            "judged_as": "curve",
-            "judgement": "cannot be judged",
-            "verdict": "cannot be judged: reference not converged",
-        },
-    ]
-    monkeypatch.setattr(kept, "rows", lambda *_, **__: rows)
+    missed = replace(
+        ROW, condition="h1", judgement="misses", verdict="misses: settled rate 3 x limit"
+    )
+    lost = replace(ROW, condition="h8", reference_converged=False, judgement="cannot be judged")
+    found = table(compliant=(missed, lost))
+    monkeypatch.setattr("tipoff.studies.agreement.stage.stored", lambda _: found)
     monkeypatch.setattr(Study, "rail_compliance", lambda *_, **__: FLEXIBLE)
     study = Study(SCENE, tmp_path, Settings())
     for condition in (None, "h1"):

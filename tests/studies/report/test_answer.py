@@ -1,11 +1,14 @@
 """The first screen of the page: what it says of known rows."""
 
 import re
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
 
+from tests.studies.agreement import made
+from tests.studies.agreement.made import ROW
+from tests.studies.convergence import stub
 from tests.studies.shown import html
 from tests.studies.synthetic import flight
 from tipoff import scenes
@@ -24,20 +27,15 @@ def settled(x, y, z):
     return flight(outcome=outcome, cost=cost | {"elements": 1, "ns_per_element_step": 1.0})
 
 
-def judged(name, uncertainty, converged=True, passes=True):
-    return {
-        "condition": name,
-        "reference_uncertainty_deg_s": uncertainty,
-        "settled_rate_error_deg_s": 0.0312,
-        "floor_deg_s": 0.043,
-        "reference_converged": converged,
-        "touches": True,
-        "judged_as": verdicts.CURVE,
-        "judgement": (
-            verdicts.CANNOT if not converged else verdicts.AGREES if passes else verdicts.MISSES
-        ),
-        "verdict": "agrees" if passes else "misses",
-    }
+def judged(name, uncertainty, **others):
+    return replace(
+        ROW,
+        condition=name,
+        reference_uncertainty_deg_s=uncertainty,
+        settled_rate_error_deg_s=0.0312,
+        floor_deg_s=0.043,
+        **others,
+    )
 
 
 @pytest.fixture
@@ -46,10 +44,8 @@ def page(tmp_path):
         row("phi15", settled(-28.458, 3.0, 4.0), ""),
         row("phi60", settled(1.0, 0.3, 0.4), ""),
     ]
-    agreement = {
-        "compliant": [judged("phi15", 13.2, converged=False), judged("phi60", 7.64e-11)],
-        "speedup_compliant": {"ratio": 183.2, "highfi_wall_s": 1.03, "lowfi_wall_s": 5.6e-3},
-    }
+    lost = judged("phi15", 13.2, reference_converged=False, judgement=verdicts.CANNOT)
+    agreement = made.document(compliant=(lost, judged("phi60", 7.64e-11)))
     return Page(
         scenes.load("tiny"),
         tmp_path,
@@ -86,8 +82,8 @@ def test_agreement_speed_and_trust(page):
     assert "Model: " in shown and "within 0.031 deg/s" in shown
     assert "validated on a measured ejection" in shown
     assert re.search(r"Inputs: \d+ of \d+ values are assumed", shown)
-    equal = {"ratio": 12.0, "surer": False, "element_size_m": 4e-3}
-    page.documents["convergence"] = {"equal_accuracy": equal}
+    equal = replace(made.EQUAL, surer=False, element_size_m=4e-3)
+    page.documents["convergence"] = stub.document(equal=equal)
     assert "at least, at equal accuracy (mesh of 4 mm)" in html(answer.draw(page))
 
 
@@ -126,11 +122,7 @@ def test_rates_by_hand_stand_beside_those_of_the_run(page):
 def test_the_largest_rate_of_converged_conditions_is_said_where_another_is_larger(page):
     shown = html(answer.draw(page))
     assert "phi15, not converged; of the converged ones 1.000 ± &lt;0.001 (phi60)" in shown
-    page.documents["convergence"] = {
-        "condition": "phi60",
-        "equal_accuracy": None,
-        "quantities": [{"quantity": "settled axial velocity", "nominal_uncertainty": 2e-3}],
-    }
+    page.documents["convergence"] = stub.document(speed=2e-3)
     assert "v_x (m/s), each ± 0.002 by mesh and step, measured on phi60" in html(answer.draw(page))
 
 
@@ -172,7 +164,14 @@ def test_a_spread_condition_has_its_range_over_neighbours(page):
     assert "-28 ± 13" in html(answer.draw(page))
     rates = [[-31.0, 3.0, 4.0], [-12.0, 0.0, 2.0], [-25.0, 6.0, 8.0]]
     page.documents["agreement"]["distributions"] = [
-        {"condition": "phi15", "reference_deg_s": rates}
+        {
+            "condition": "phi15",
+            "neighbours": 4,
+            "further": 32,
+            "limit_deg_s": 0.1,
+            "reference_deg_s": [*rates, None],  # one that did not settle has no rate
+            "models": {},
+        }
     ]
     shown = html(answer.draw(page))
     assert "± 13" not in shown and "-31.0 to -12.0" in shown and "2.00 to 10.00" in shown

@@ -7,12 +7,14 @@ from dataclasses import asdict, replace
 import numpy as np
 import pytest
 
+from tests.studies.agreement import made as agreement
+from tests.studies.calibration.test_page import FIT
 from tests.studies.cost.made import cost, point
 from tests.studies.shown import html
 from tests.studies.synthetic import COSTS, flight
 from tipoff import scenes
 from tipoff.studies import registry
-from tipoff.studies.agreement import rails_page, verdicts
+from tipoff.studies.agreement import other_rails, verdicts
 from tipoff.studies.agreement.page import starred
 from tipoff.studies.calibration.page import calibration
 from tipoff.studies.cost.page import picture as cost_picture
@@ -114,12 +116,7 @@ def test_page_of_a_reference_alone_names_the_targets_that_make_the_rest(tmp_path
         for name, run in runs.items()
         if run.cost.update(elements=1, ns_per_element_step=1.0) is None
     ]
-    other = {
-        "name": "thin",
-        "element_size_m": 4e-3,
-        "constants": {},
-        "agreement": {"fitted": [], "held_out": [], "compliant": []},
-    }
+    other = other_rails.Scene("thin", agreement.table(), {})
     made = Page(
         scene,
         tmp_path,
@@ -160,17 +157,15 @@ def test_broken_promise_is_called_broken():
             "ns_per_element_step": 1.0,
         },
     )
-    found = {
-        item.text: item for item in promises({"highfi": [row("phi15", run, "")], "lowfi": []}, {})
-    }
+    found = {item.text: item for item in promises({"highfi": [row("phi15", run, "")], "lowfi": []})}
     assert found["linear momentum of the free system, finite elements"].kept is False
     assert found["angular momentum, finite elements"].kept is True
     assert found["no step above the critical one, finite elements"].kept is True
     assert found["total energy ledger, finite elements"].kept is False  # not reported is not kept
 
 
-def promised(rows, documents=None):
-    return {item.text.split(";")[0]: item for item in promises(rows, documents or {})}
+def promised(rows, *others):
+    return {item.text.split(";")[0]: item for item in promises(rows, *others)}
 
 
 def test_a_promise_is_kept_only_by_runs_that_keep_it():
@@ -209,24 +204,22 @@ def test_a_check_that_one_run_does_not_report_is_not_kept():
 def test_bits_are_the_same_only_where_repeats_were_compared():
     """One run of each model has no repeat. Control: two have one."""
     for repeats, same, kept in ((1, None, None), (1, True, None), (2, True, True)):
-        speed = {"repeats_identical": same, "highfi_repeats": repeats, "lowfi_repeats": repeats}
-        documents = {"agreement": {"speedup": speed, "held_out": []}}
-        assert (
-            promised({"highfi": [], "lowfi": []}, documents)["same input, same bits"].kept is kept
+        speed = replace(
+            agreement.SPEEDUP,
+            repeats_identical=same,
+            highfi_repeats=repeats,
+            lowfi_repeats=repeats,
         )
+        found = promised({"highfi": [], "lowfi": []}, agreement.table(speedup=speed))
+        assert found["same input, same bits"].kept is kept
 
 
 def test_agreement_on_held_out_conditions_is_given_where_one_is_judged():
-    calibrated = {"information": [[1.0]], "weak_directions": []}
     for words, kept in (([verdicts.CANNOT], False), ([verdicts.CANNOT, verdicts.MISSES], True)):
-        held_out = [{"judgement": word} for word in words]
-        speed = {"repeats_identical": None, "highfi_repeats": 1, "lowfi_repeats": 1}
-        documents = {"agreement": {"speedup": speed, "held_out": held_out}}
-        documents["calibration"] = calibrated
-        found = promised({"highfi": [], "lowfi": []}, documents)
+        held_out = tuple(replace(agreement.ROW, judgement=word) for word in words)
+        found = promised({"highfi": [], "lowfi": []}, agreement.table(held_out=held_out), FIT)
         assert found["calibration reports its information matrix and weak directions"].kept is kept
-    documents = {"calibration": calibrated}
-    found = promised({"highfi": [], "lowfi": []}, documents)
+    found = promised({"highfi": [], "lowfi": []}, None, FIT)
     assert found["calibration reports its information matrix and weak directions"].kept is None
 
 
@@ -245,39 +238,27 @@ def test_figures_of_one_condition():
     )  # the same flight
 
 
-def judged(condition, l2, settled, touches=True, converged=True, passes=True):
-    return {
-        "condition": condition,
-        "rate_relative_l2": l2,
-        "settled_rate_error_deg_s": settled,
-        "touches": touches,
-        "reference_converged": converged,
-        "judged_as": "curve",
-        "judgement": verdicts.judgement(passes, converged),
-    }
+def judged(condition, l2, settled, **others):
+    errors = {"rate_relative_l2": l2, "settled_rate_error_deg_s": settled}
+    return replace(agreement.ROW, condition=condition, **errors, **others)
 
 
 def test_other_rails_are_judged_where_a_pad_touches_and_the_reference_is_converged():
-    agreement = {
-        "fitted": [judged("phi15", 0.05, 0.2)],
-        "held_out": [judged("h1", 0.12, 0.3, passes=False)],
-        "compliant": [
+    compared = agreement.table(
+        fitted=(judged("phi15", 0.05, 0.2),),
+        held_out=(judged("h1", 0.12, 0.3, judgement=verdicts.MISSES),),
+        compliant=(
             judged("phi15", 0.003, 0.01),
             judged("h1", 0.005, 0.02),
             judged("h5", 0.9, 9.0, touches=False),
-            judged("h8", 0.8, 8.0, converged=False, passes=False),
-            judged("h9", None, None, passes=False),
-            judged("h7", 0.7, 7.0)
-            | {"judged_as": "distribution", "judgement": "agrees as distribution"},
-        ],
-    }
-    scene = {
-        "name": "thin",
-        "element_size_m": 4e-3,
-        "agreement": agreement,
-        "constants": {"contact.stiffness": 2e7},
-    }
-    table, constants = rails_page.parts([scene])
+            judged("h8", 0.8, 8.0, judgement=verdicts.CANNOT),
+            judged("h9", None, None, judgement=verdicts.MISSES),
+            judged("h7", 0.7, 7.0, judged_as="distribution", judgement=verdicts.AS_DISTRIBUTION),
+        ),
+        element_size_m=4e-3,
+    )
+    scene = other_rails.Scene("thin", compared, {"contact.stiffness": 2e7})
+    table, constants = other_rails.parts([scene])
     springs, compliant = table.rows
     assert springs == ("thin", 4e-3, "springs, calibrated", "2 of 2", 1, 0, 0.12, 0.3, "")
     assert compliant == ("thin", 4e-3, "compliant", "4 of 5", 2, 1, 0.005, 0.02, "h8")
@@ -344,23 +325,11 @@ def test_a_study_the_scene_gives_no_occasion_for_stops_nothing(tmp_path, monkeyp
 
 
 def test_calibration_shows_intervals_and_constants_without_one():
-    document = {
-        "parameters": ["contact.force", "contact.damping"],
-        "values": [400.0, 0.0],
-        "fitted": [400.0, 0.0],
-        "intervals": [[350.0, 450.0], [None, None]],
-        "units": ["N", "N*s/m"],
-        "lower": [20.0, 0.0],
-        "upper": [6720.0, 7000.0],
-        "justification": ["a", "b"],
-        "weak_directions": [],
-        "residuals": {},
-        "information": [[1.0, 0.0], [0.0, 0.0]],
-        "constants": {},
-        "valid": {},
-        "provenance": {},
-        "conditions": ["phi15"],
-        "objective": 1.0,
-    }
-    shown = html(calibration(document))
+    found = replace(
+        FIT,
+        parameters=["contact.force", "contact.damping"],
+        fitted=[400.0, 0.0],
+        intervals=[(350.0, 450.0), (None, None)],
+    )
+    shown = html(calibration(found))
     assert ">350 to 450<" in shown and ">not determined by the curves<" in shown

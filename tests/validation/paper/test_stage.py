@@ -4,10 +4,12 @@ import signal
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from tests.studies.agreement.made import SPEEDUP, document, table
 from tests.studies.synthetic import undrawn
 from tests.validation.paper.searched import BASE, COUNT, SMALL, copied, page, shown, stub, studied
 from tipoff import lowfi, scenes
@@ -152,8 +154,10 @@ def test_printed_deviations_stand_beside_ours(quick):
     ours = published.Sensitivity(
         printed.baseline + 0.01, printed.changed + 0.0204
     ).largest_relative()
-    for table in (printed.largest_relative(), ours):
-        assert "".join(f'<td class="number">{100.0 * share:.2f} %</td>' for share in table) in drawn
+    for shares in (printed.largest_relative(), ours):
+        assert (
+            "".join(f'<td class="number">{100.0 * share:.2f} %</td>' for share in shares) in drawn
+        )
     assert not np.allclose(ours, printed.largest_relative(), rtol=0.01)
 
 
@@ -177,12 +181,12 @@ def test_headline_has_our_cost_of_the_present_code_only(quick, monkeypatch):
     """An agreement.json of other code is passed over, and the stage is found again when one is
     made."""
     study, _ = quick
-    speed = {"highfi_wall_s": 60.0, "lowfi_wall_s": 2e-3, "ratio": 30000.0}
-    write_json(study.path("agreement.json"), {"key": "of other code", "speedup": speed})
+    speed = replace(SPEEDUP, highfi_wall_s=60.0, lowfi_wall_s=2e-3, ratio=30000.0)
+    write_json(study.path("agreement.json"), {"key": "of other code"} | document(speedup=speed))
     stale = paper.stored(study)
     for text in (page(stale), shown(stale)):
         assert "tipoff compare --scene reference" in text and "30,000" not in text
-    monkeypatch.setattr(compare, "stored", lambda _: {"speedup": speed})
+    monkeypatch.setattr(compare, "stored", lambda _: table(speedup=speed))
     fresh = paper.stored(study)
     for text in (page(fresh), shown(fresh)):
         assert "tipoff compare" not in text and "30,000" in text

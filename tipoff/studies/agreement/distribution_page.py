@@ -1,13 +1,22 @@
 """Conditions that are judged as distributions, on the page: quantiles of both models over neighbours
 within 1 um, and the empirical distributions of one chaotic condition."""
 
+from collections.abc import Callable, Sequence
+from operator import attrgetter
+from typing import Any
+
 from tipoff.mechanics.models import FINITE_ELEMENTS
-from tipoff.studies.agreement.equivalence import AXES, CONFIDENCE, MARGIN_SHARE
+from tipoff.studies.agreement import verdicts
+from tipoff.studies.agreement.distributions import Distribution, Verdict
+from tipoff.studies.agreement.equivalence import AXES, CONFIDENCE, MARGIN_SHARE, Comparison
 from tipoff.studies.render.chart import Chart, Line, Panel
+from tipoff.studies.render.column import of_record
 from tipoff.studies.render.document import Figure, Fold, Part
 from tipoff.studies.render.palette import AMBER, NAVY, VERMILION
-from tipoff.studies.render.table import Cells, Column, Table
+from tipoff.studies.render.table import Column, Table
 
+Shown = tuple[Distribution, Verdict]
+_VERDICT = ("verdict", lambda shown: shown[1].verdict)
 _SHOWN = {"compliant": (VERMILION, 1.6, "-"), "calibrated": (AMBER, 1.6, "--")}
 _CAPTION = (
     "Share of the neighbours of {condition} with a smaller settled rate: {count} runs of the reference, "
@@ -15,79 +24,78 @@ _CAPTION = (
 )
 
 
-def parts(document: dict, name: str = "distributions") -> list[Part]:
-    """Figure, called ``name``, and tables of a result file; nothing where every condition is judged as
-    a curve."""
-    found = document["distributions"]
+def parts(
+    found: Sequence[Distribution], distance: float, name: str = "distributions"
+) -> list[Part]:
+    """Figure, called ``name``, and tables of distributions over neighbours within ``distance`` (m);
+    nothing where every condition is judged as a curve."""
     if not found:
         return []
     shown = most_spread(found)
+    caption = _CAPTION.format(
+        condition=shown.condition, count=shown.neighbours, further=shown.further
+    )
     return [
         "Conditions judged as distributions over neighbours within "
-        f"±{1e6 * document['clearance_change_m']:g} µm: {sentence(found)}.",
-        Figure(picture(shown, name), _CAPTION.format(count=shown["neighbours"], **shown)),
+        f"±{1e6 * distance:g} µm: {sentence(found)}.",
+        Figure(picture(shown, name), caption),
         summary(found, name),
         Fold("Every quantile of every rate", [quantiles(found)]),
     ]
 
 
-def most_spread(found: list[dict]) -> dict:
+def most_spread(found: Sequence[Distribution]) -> Distribution:
     """The condition with the widest distribution of a settled rate of the reference."""
 
-    def width(item: dict) -> float:
-        columns = zip(*item["reference_deg_s"])
+    def width(item: Distribution) -> float:
+        columns = zip(*item.settled_deg_s)
         return max((max(column) - min(column) for column in columns), default=0.0)
 
     return max(found, key=width)
 
 
-def sentence(found: list[dict], model: str = "compliant") -> str:
+def sentence(found: Sequence[Distribution], model: str = "compliant") -> str:
     """The verdicts on one ``model``, condition by condition."""
-    return "; ".join(f"{item['condition']} {item['models'][model]['verdict']}" for item in found)
+    return "; ".join(f"{item.condition} {item.models[model].verdict}" for item in found)
 
 
-def picture(item: dict, name: str = "distributions") -> Chart:
+def picture(item: Distribution, name: str = "distributions") -> Chart:
     """Empirical distributions of the settled rates on one condition, a panel for each axis."""
     panels = []
     for place, axis in enumerate(AXES):
-        values = sorted(row[place] for row in item["reference_deg_s"])
+        values = sorted(rates[place] for rates in item.settled_deg_s)
         steps = [value for value in values for _ in (0, 1)]
         shares = [(number + up) / len(values) for number in range(len(values)) for up in (0, 1)]
         lines = [Line(steps, shares, FINITE_ELEMENTS, NAVY, 3.0, "-", 0.6)]
         for model, look in _SHOWN.items():
-            own = item["models"].get(model)
-            if own and own["quantiles"]["rates_deg_s"]:
-                curve = own["quantiles"]
-                lines.append(
-                    Line(curve["rates_deg_s"][place], curve["shares"], own["title"], *look)
-                )
+            own = item.models.get(model)
+            if own and (rates := own.quantiles.rates_deg_s):
+                lines.append(Line(rates[place], own.quantiles.shares, own.title, *look))
         panels.append(
-            Panel(f"{item['condition']}, rate {axis}", "settled rate (deg/s)", "share", lines)
+            Panel(f"{item.condition}, rate {axis}", "settled rate (deg/s)", "share", lines)
         )
     return Chart(name, panels, columns=3, height=280)
 
 
-def summary(found: list[dict], name: str = "distributions") -> Table:
+_BEFORE: tuple[tuple[Column | str, Callable[[Shown], Any]], ...] = (
+    ("condition", lambda shown: shown[0].condition),
+    ("model", lambda shown: shown[1].title),
+    ("neighbours", lambda shown: shown[0].neighbours),
+)
+
+
+def summary(found: Sequence[Distribution], name: str = "distributions") -> Table:
     """One row for each condition and model: the comparison that decides."""
-    heads = (
-        "condition",
-        "model",
-        "neighbours",
-        "rate, quantile",
-        Column("reference", "deg/s"),
-        Column("difference", "deg/s", "+.2g"),
-        Column("margin", "deg/s", ".2g"),
-        Column("bound of the difference", "margins", ".2g"),
-        Column("reference known within", "margins", ".2g"),
-        "verdict",
+    columns = (
+        *_BEFORE,
+        ("rate, quantile", _of_worst(lambda item: f"{item.axis}, {100.0 * item.share:g} %")),
+        (Column("reference", "deg/s"), _of_worst(attrgetter("reference_deg_s"))),
+        (Column("difference", "deg/s", "+.2g"), _of_worst(attrgetter("difference_deg_s"))),
+        (Column("margin", "deg/s", ".2g"), _of_worst(attrgetter("margin_deg_s"))),
+        (Column("bound of the difference", "margins", ".2g"), _of_worst(attrgetter("bound"))),
+        (Column("reference known within", "margins", ".2g"), _of_worst(attrgetter("width"))),
+        _VERDICT,
     )
-    rows, kinds = [], []
-    for item in found:
-        for own in item["models"].values():
-            rows.append(
-                (item["condition"], own["title"], item["neighbours"], *_worst(own), own["verdict"])
-            )
-            kinds.append(kind(own["judgement"]))
     note = (
         f"The quantile with the largest bound of its difference. Agreement: all {CONFIDENCE:.0%} "
         "bounds are below one margin. The margin is the larger of two values: the limit of "
@@ -95,68 +103,44 @@ def summary(found: list[dict], name: str = "distributions") -> Table:
         "the reference. Both models run on the coarse mesh. docs/chaotic_conditions.md explains "
         "the test."
     )
-    return Table(heads, rows, (note,), "", name, kinds, dense=True)
+    rows = _pairs(found)
+    kinds = [kind(own.judgement) for _, own in rows]
+    return Table.of(rows, columns, notes=(note,), name=name, kinds=kinds, dense=True)
 
 
-def verdicts_of(found: list[dict]) -> Table:
+def verdicts_of(found: Sequence[Distribution]) -> Table:
     """The same for the terminal: the largest bound of each model, and its verdict."""
-    heads = ("condition", "model", "neighbours", Column("bound", "margins", ".2g"), "verdict")
-    rows = [
-        (item["condition"], own["title"], item["neighbours"], _worst(own)[4], own["verdict"])
-        for item in found
-        for own in item["models"].values()
-    ]
+    bound = Column("bound", "margins", ".2g"), _of_worst(attrgetter("bound"))
     title = (
         "Conditions judged as distributions over neighbours. Both models run on the coarse mesh."
     )
-    return Table(heads, rows, title=title)
+    return Table.of(_pairs(found), (*_BEFORE, bound, _VERDICT), title=title)
 
 
 def kind(judgement: str) -> str:
     """Look of a row with this word."""
-    return {
-        "agrees": "good",
-        "agrees as distribution": "good",
-        "misses": "bad",
-    }.get(judgement, "doubt")
+    good = (verdicts.AGREES, verdicts.AS_DISTRIBUTION)
+    return "good" if judgement in good else "bad" if judgement == verdicts.MISSES else "doubt"
 
 
-def _worst(own: dict) -> tuple:
-    if not own["comparisons"]:
-        return (None,) * 6
-    item = max(own["comparisons"], key=_bound)
-    return (
-        f"{item['axis']}, {100.0 * item['share']:g} %",
-        item["reference_deg_s"],
-        item["difference_deg_s"],
-        item["margin_deg_s"],
-        _bound(item),
-        item["width"],
-    )
+def _pairs(found: Sequence[Distribution]) -> list[Shown]:
+    return [(item, own) for item in found for own in item.models.values()]
 
 
-def _bound(item: dict) -> float:
-    return max(abs(item["low"]), abs(item["high"]))
+def _of_worst(cell: Callable[[Comparison], Any]) -> Callable[[Shown], Any]:
+    """A cell of the comparison with the largest bound; None without one."""
+    return lambda shown: shown[1].worst and cell(shown[1].worst)
 
 
-def quantiles(found: list[dict]) -> Table:
+def quantiles(found: Sequence[Distribution]) -> Table:
     """All quantiles of all models."""
-    columns: Cells = (
-        ("condition", "condition"),
-        ("model", "title"),
-        ("rate", "axis"),
-        (Column("quantile", "%", "g", 100.0), "share"),
-        (Column("reference", "deg/s"), "reference_deg_s"),
-        (Column("surrogate", "deg/s"), "surrogate_deg_s"),
-        (Column("difference, lower bound", "margins", "+.2g"), "low"),
-        (Column("upper bound", "margins", "+.2g"), "high"),
-        (Column("reference known within", "margins", ".2g"), "width"),
-        (Column("weight of pairs", form=".2f"), "weight"),
-    )
-    rows = [
-        {"condition": item["condition"], "title": own["title"], **one}
-        for item in found
-        for own in item["models"].values()
-        for one in own["comparisons"]
+    rows = [(item, own, one) for item, own in _pairs(found) for one in own.comparisons]
+    columns: list[tuple[Column | str, Callable[[Any], Any]]] = [
+        ("condition", lambda row: row[0].condition),
+        ("model", lambda row: row[1].title),
+        *(
+            (column, lambda row, name=name: getattr(row[2], name))
+            for name, column in of_record(Comparison).items()
+        ),
     ]
     return Table.of(rows, columns, dense=True)

@@ -6,9 +6,8 @@ on the coarse mesh, the surrogate with the rail compliance of that mesh, so that
 their difference. ``agreement.neighbours`` draws, ``agreement.equivalence`` judges.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict
-from typing import Protocol
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,10 +15,12 @@ from tipoff import lowfi
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.agreement import equivalence, neighbours, verdicts
+from tipoff.studies.agreement.candidates import Candidate
+from tipoff.studies.agreement.equivalence import Comparison
 from tipoff.studies.agreement.growth import Growth
+from tipoff.studies.agreement.verdicts import Row
 from tipoff.workspace.announcing import announce
 from tipoff.workspace.progress import Board
-from tipoff.workspace.run import Run
 from tipoff.workspace.study import Study
 
 FURTHER = 8  # draws of the surrogates beside each of the reference; more would add little
@@ -29,18 +30,58 @@ _LEAST = 5  # fewer do not enclose a median
 _FORETOLD = 20
 
 
-class Surrogate(Protocol):
-    """A surrogate that is compared (``stage.Candidate``)."""
+@dataclass(frozen=True)
+class Quantiles:
+    """Distribution of the settled rates of a surrogate: ``rates_deg_s`` of x, y and z at the ``shares``,
+    None where no case settled."""
+
+    shares: list[float]
+    rates_deg_s: list[list[float]] | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verdict:
+    """Verdict on one surrogate, called ``title``; the ``comparisons`` are empty where cases did not
+    settle."""
+
+    title: str
+    judgement: str
+    verdict: str
+    comparisons: list[Comparison]
+    quantiles: Quantiles
 
     @property
-    def name(self) -> str: ...
+    def worst(self) -> Comparison | None:
+        """The comparison with the largest bound."""
+        return max(self.comparisons, key=lambda item: item.bound, default=None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Distribution:
+    """Settled rates of the reference on the ``neighbours`` of one condition, None where one did not settle,
+    and the verdicts on surrogates by name, which have ``further`` neighbours too; ``limit_deg_s`` is the
+    smallest margin."""
+
+    condition: str
+    neighbours: int
+    further: int
+    limit_deg_s: float
+    reference_deg_s: list[list[float] | None]
+    models: dict[str, Verdict]
+
     @property
-    def title(self) -> str: ...
-    def request(self, study: Study, condition: str) -> Run: ...
+    def settled_deg_s(self) -> list[list[float]]:
+        """The rates of the neighbours that settled in the reference."""
+        return [rates for rates in self.reference_deg_s if rates is not None]
+
+    def within(self, measure: Callable[[Sequence[float]], float]) -> tuple[float, float]:
+        """The smallest and the largest ``measure`` of the settled rates of the reference."""
+        found = [measure(rates) for rates in self.settled_deg_s]
+        return min(found), max(found)
 
 
 def counts(
-    rows: Iterable[dict], growths: Iterable[Growth], undecided: Iterable[str], draws: int
+    rows: Iterable[Row], growths: Iterable[Growth], undecided: Iterable[str], draws: int
 ) -> dict[str, int]:
     """Number of neighbours by condition, for those that are judged as distributions: ``draws``, or a
     quarter where the reference is not converged though 1 um does not move it by more than the limit.
@@ -51,17 +92,17 @@ def counts(
     sensitive |= set(undecided)
     few = max(_LEAST, draws // _STABLE_SHARE)
     return {
-        row["condition"]: draws if row["condition"] in sensitive else few
+        row.condition: draws if row.condition in sensitive else few
         for row in rows
-        if row["condition"] in sensitive or not row["reference_converged"]
+        if row.condition in sensitive or not row.reference_converged
     }
 
 
 def judge(
-    study: Study, wanted: Mapping[str, int], surrogates: Sequence[Surrogate], limit: float
-) -> list[dict]:
-    """The distributions of each condition with its verdicts, as result files hold them; ``limit``
-    (deg/s) is that of the settled rates. The surrogates stand on the coarse mesh."""
+    study: Study, wanted: Mapping[str, int], surrogates: Sequence[Candidate], limit: float
+) -> list[Distribution]:
+    """The distributions of each condition with its verdicts; ``limit`` (deg/s) is that of the settled
+    rates. The surrogates stand on the coarse mesh."""
     distance = study.settings.clearance_change
     possible = {
         name: count
@@ -79,8 +120,23 @@ def judge(
             own = {
                 item.name: _settled(study, item, name, drawn[name], board) for item in surrogates
             }
-            titles = {item.name: item.title for item in surrogates}
-            found.append(_judged(name, reference[name], own, titles, limit))
+            of = reference[name]
+            found.append(
+                Distribution(
+                    condition=name,
+                    neighbours=count,
+                    further=FURTHER * count,
+                    limit_deg_s=limit,
+                    reference_deg_s=[
+                        rates.tolist() if np.isfinite(rates).all() else None
+                        for rates in np.round(of, 7)
+                    ],
+                    models={
+                        item.name: _verdict(item.title, of, own[item.name], limit)
+                        for item in surrogates
+                    },
+                )
+            )
             board.finished(name, f"{(1 + FURTHER) * count} draws of each model")
     return found
 
@@ -109,7 +165,7 @@ def _rates(run: Trajectory) -> list[float]:
 
 
 def _settled(
-    study: Study, surrogate: Surrogate, condition: str, drawn: list[dict], board: Board
+    study: Study, surrogate: Candidate, condition: str, drawn: list[dict], board: Board
 ) -> np.ndarray:
     """Settled rates (n,3) deg/s of a surrogate on every draw; NaN where a case did not settle."""
     run = surrogate.request(study, condition)
@@ -126,39 +182,27 @@ def _settled(
     return np.degrees(cases["rate"].values)
 
 
-def _judged(
-    name: str,
-    reference: np.ndarray,
-    surrogates: Mapping[str, np.ndarray],
-    titles: Mapping[str, str],
-    limit: float,
-) -> dict:
-    return {
-        "condition": name,
-        "neighbours": len(reference),
-        "further": FURTHER * len(reference),
-        "limit_deg_s": limit,
-        "reference_deg_s": np.round(reference, 7).tolist(),
-        "models": {
-            model: {"title": titles[model], **_model(reference, rates, limit)}
-            for model, rates in surrogates.items()
-        },
-    }
-
-
-def _model(reference: np.ndarray, rates: np.ndarray, limit: float) -> dict:
-    """Verdict on one surrogate, its comparisons, and the curves of its distribution."""
+def _verdict(title: str, reference: np.ndarray, rates: np.ndarray, limit: float) -> Verdict:
+    """Verdict on the surrogate ``title`` with settled ``rates``."""
     count = len(reference)
     settled = rates[np.isfinite(rates).all(axis=1)]
     curve = np.quantile(settled, _CURVE, axis=0).T.tolist() if len(settled) else None
+
+    def said(word: str, why: str, found: list[Comparison] | None = None) -> Verdict:
+        return Verdict(
+            title=title,
+            judgement=word,
+            verdict=f"{word}: {why}" if why else word,
+            comparisons=found or [],
+            quantiles=Quantiles(list(_CURVE), curve),
+        )
+
     if lost := _lost(reference):
-        word = verdicts.CANNOT
         why = f"{lost} of {count} neighbours did not settle in the reference"
-        return _entry(word, f"{word}: {why}", [], curve)
+        return said(verdicts.CANNOT, why)
     for part, most in ((rates[:count], 0.0), (rates, len(rates) / count)):
         if (lost := _lost(part)) > most:
-            word, why = verdicts.MISSES, f"{lost} of {len(part)} neighbours did not settle"
-            return _entry(word, f"{word}: {why}", [], curve)
+            return said(verdicts.MISSES, f"{lost} of {len(part)} neighbours did not settle")
     further = rates[count:][np.isfinite(rates[count:]).all(axis=1)]
     found = equivalence.compare(reference, rates[:count], further, limit)
     word = {
@@ -166,7 +210,7 @@ def _model(reference: np.ndarray, rates: np.ndarray, limit: float) -> dict:
         equivalence.MISSES: verdicts.MISSES,
         equivalence.UNKNOWN: verdicts.CANNOT,
     }[equivalence.verdict(found)]
-    return _entry(word, f"{word}{_why(word, found, count)}", found, curve)
+    return said(word, _why(word, found, count), found)
 
 
 def _lost(rates: np.ndarray) -> int:
@@ -174,61 +218,45 @@ def _lost(rates: np.ndarray) -> int:
     return int((~np.isfinite(rates).all(axis=1)).sum())
 
 
-def _entry(word: str, words: str, found: list[equivalence.Comparison], curve: list | None) -> dict:
-    return {
-        "judgement": word,
-        "verdict": words,
-        "comparisons": [asdict(item) for item in found],
-        "quantiles": {"shares": list(_CURVE), "rates_deg_s": curve},
-    }
-
-
-def _why(word: str, found: list[equivalence.Comparison], draws: int) -> str:
-    """What decides a verdict, as text behind its word."""
+def _why(word: str, found: list[Comparison], draws: int) -> str:
+    """What decides a verdict; empty for agreement."""
     if word == verdicts.AS_DISTRIBUTION:
         return ""
     shown = [item for item in found if item.shown]
     if word == verdicts.MISSES and not shown:
         widest = max(found, key=lambda item: item.bound)
-        return f": {_place(widest)} within {widest.bound:.3g} x margin only"
+        return f"{_place(widest)} within {widest.bound:.3g} x margin only"
     if word == verdicts.MISSES:
         worst = max(shown, key=lambda item: abs(item.difference_deg_s) / item.margin_deg_s)
         times = abs(worst.difference_deg_s) / worst.margin_deg_s
-        return f": {_place(worst)} {times:.3g} x margin"
+        return f"{_place(worst)} {times:.3g} x margin"
     worst = max(found, key=lambda item: item.width)
     needed = equivalence.needed(found, draws)
     # far beyond, the width of so few draws foretells nothing
     words = f"up to {needed}" if needed <= _FORETOLD * draws else f"more than {_FORETOLD * draws}"
     return (
-        f": with {draws} neighbours the {_place(worst)} of the reference is uncertain by "
+        f"with {draws} neighbours the {_place(worst)} of the reference is uncertain by "
         f"{worst.width:.2g} x margin; {words} are needed"
     )
 
 
-def _place(item: equivalence.Comparison) -> str:
+def _place(item: Comparison) -> str:
     share = "median" if item.share == 0.5 else f"{100.0 * item.share:g} % quantile"
     return f"{share} of rate {item.axis}"
 
 
 def combined(
-    rows: Iterable[dict], found: Iterable[dict], wanted: Iterable[str], model: str
-) -> list[dict]:
+    rows: Iterable[Row], found: Iterable[Distribution], wanted: Iterable[str], model: str
+) -> list[Row]:
     """Rows of the agreement table of a ``model`` with the verdicts on distributions. A condition that
     was ``wanted`` and has none cannot be judged."""
-    own = {item["condition"]: item["models"][model] for item in found}
+    own = {item.condition: item.models[model] for item in found}
     asked = set(wanted)
-    return [
-        row
-        if row["condition"] not in asked
-        else row | {"judged_as": verdicts.DISTRIBUTION} | _words(own.get(row["condition"]))
-        for row in rows
-    ]
+    return [_as_distribution(row, own) if row.condition in asked else row for row in rows]
 
 
-def _words(entry: dict | None) -> dict[str, str]:
-    if entry is None:
-        return {
-            "judgement": verdicts.CANNOT,
-            "verdict": f"{verdicts.CANNOT}: no clearance for neighbours",
-        }
-    return {"judgement": entry["judgement"], "verdict": entry["verdict"]}
+def _as_distribution(row: Row, own: Mapping[str, Verdict]) -> Row:
+    judgement, verdict = verdicts.CANNOT, f"{verdicts.CANNOT}: no clearance for neighbours"
+    if (found := own.get(row.condition)) is not None:
+        judgement, verdict = found.judgement, found.verdict
+    return replace(row, judged_as=verdicts.DISTRIBUTION, judgement=judgement, verdict=verdict)

@@ -12,50 +12,57 @@ surrogate. Where even the finest mesh is not sufficient, its speed-up is a lower
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
+
+from tipoff.workspace.timing import Speedup
 
 
-class Mesh(NamedTuple):
-    """A mesh with its ``element_size`` (m) and ``uncertainty`` (deg/s); ``sufficient``: the
-    uncertainty is below the error of the surrogate."""
+@dataclass(frozen=True, kw_only=True)
+class EqualAccuracy(Speedup):
+    """A speed-up over the chosen mesh. ``error_deg_s``: of the surrogate. ``surer``: whether the uncertainty
+    of the mesh is below it."""
 
-    element_size: float
-    uncertainty: float
-    sufficient: bool
+    error_deg_s: float
+    element_size_m: float
+    mesh_uncertainty_deg_s: float
+    surer: bool
+
+    def sentence(self) -> str:
+        """The speed-up at equal accuracy, without a full stop."""
+        size = f"{1e3 * self.element_size_m:g} mm"
+        mesh = (
+            f"{size} is the coarsest mesh with a smaller uncertainty"
+            if self.surer
+            else f"no mesh down to {size} has a smaller uncertainty"
+        )
+        return (
+            f"speed-up at equal accuracy on {self.condition}: {'' if self.surer else 'at least '}"
+            f"{self.ratio:,.0f} times ({self.low:,.0f} to {self.high:,.0f} over repeats): "
+            f"{self.highfi_wall_s:.3g} s with the reference, {1e3 * self.lowfi_wall_s:.3g} ms with "
+            f"compliant contact. The error of compliant contact is {self.error_deg_s:.2g} deg/s from "
+            f"the finest mesh; {mesh} ({self.mesh_uncertainty_deg_s:.2g} deg/s, without "
+            "interface stiffness and contact cells)"
+        )
 
 
-def uncertainties(rates: Sequence[dict]) -> list[float] | None:
+def uncertainties(
+    rates: Sequence[tuple[Sequence[float | None], float | None]],
+) -> list[float] | None:
     """u(h) in deg/s of every mesh, coarsest first; None where one is unknown. Each of ``rates`` is
-    one axis: ``values`` (deg/s) by mesh, and the ``uncertainty`` (deg/s) of the last."""
-    if any(axis["uncertainty"] is None or None in axis["values"] for axis in rates):
-        return None
-    by_axis = [
-        [axis["uncertainty"] + abs(value - axis["values"][-1]) for value in axis["values"]]
-        for axis in rates
-    ]
+    one axis: its values (deg/s) by mesh, and the uncertainty (deg/s) of the last."""
+    by_axis = []
+    for values, uncertainty in rates:
+        known = [value for value in values if value is not None]
+        if uncertainty is None or len(known) < len(values):
+            return None
+        by_axis.append([uncertainty + abs(value - known[-1]) for value in known])
     return [max(found) for found in zip(*by_axis)]
 
 
-def coarsest(sizes: Sequence[float], uncertainty: Sequence[float], error: float) -> Mesh:
-    """The first of the meshes of falling ``sizes`` (m) with ``uncertainty`` (deg/s) below ``error``
-    (deg/s), else the last."""
-    meshes = [Mesh(size, value, value < error) for size, value in zip(sizes, uncertainty)]
-    return next((mesh for mesh in meshes if mesh.sufficient), meshes[-1])
-
-
-def sentence(found: dict) -> str:
-    """The speed-up at equal accuracy, without a full stop."""
-    size = f"{1e3 * found['element_size_m']:g} mm"
-    mesh = (
-        f"{size} is the coarsest mesh with a smaller uncertainty"
-        if found["surer"]
-        else f"no mesh down to {size} has a smaller uncertainty"
-    )
-    return (
-        f"speed-up at equal accuracy on {found['condition']}: {'' if found['surer'] else 'at least '}"
-        f"{found['ratio']:,.0f} times ({found['low']:,.0f} to {found['high']:,.0f} over repeats): "
-        f"{found['highfi_wall_s']:.3g} s with the reference, {1e3 * found['lowfi_wall_s']:.3g} ms with "
-        f"compliant contact. The error of compliant contact is {found['error_deg_s']:.2g} deg/s from "
-        f"the finest mesh; {mesh} ({found['mesh_uncertainty_deg_s']:.2g} deg/s, without "
-        "interface stiffness and contact cells)"
-    )
+def coarsest(
+    sizes: Sequence[float], uncertainty: Sequence[float], error: float
+) -> tuple[float, float]:
+    """Size (m) and uncertainty (deg/s) of the first of the meshes of falling ``sizes`` with an
+    ``uncertainty`` below ``error`` (deg/s), else of the last."""
+    meshes = list(zip(sizes, uncertainty))
+    return next((mesh for mesh in meshes if mesh[1] < error), meshes[-1])

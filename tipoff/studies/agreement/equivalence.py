@@ -31,11 +31,13 @@ one-sided tests, and their intersection).
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from scipy.special import betainc, ndtr, stdtrit
 
 from tipoff.comparison import order_statistics
+from tipoff.studies.render.column import Column
 
 SHARES = (0.1, 0.5, 0.9)
 MARGIN_SHARE = 0.25
@@ -47,23 +49,23 @@ _REPLICATES = 2000
 _SEED = 20261124
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Comparison:
     """One quantile ``share`` of the settled rate about ``axis``: values of both models, their
     difference D and the margin (deg/s); the one-sided bounds ``low`` and ``high`` of D and the
     ``width`` of the interval of the reference's own quantile between its one-sided bounds, in
     margins; the weight b; whether a difference above the margin is ``shown``."""
 
-    axis: str
-    share: float
-    reference_deg_s: float
-    surrogate_deg_s: float
+    axis: Annotated[str, Column("rate")]
+    share: Annotated[float, Column("quantile", "%", "g", 100.0)]
+    reference_deg_s: Annotated[float, Column("reference", "deg/s")]
+    surrogate_deg_s: Annotated[float, Column("surrogate", "deg/s")]
     difference_deg_s: float
     margin_deg_s: float
-    low: float
-    high: float
-    width: float
-    weight: float
+    low: Annotated[float, Column("difference, lower bound", "margins", "+.2g")]
+    high: Annotated[float, Column("upper bound", "margins", "+.2g")]
+    width: Annotated[float, Column("reference known within", "margins", ".2g")]
+    weight: Annotated[float, Column("weight of pairs", form=".2f")]
     shown: bool
 
     @property

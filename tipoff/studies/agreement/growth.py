@@ -19,12 +19,14 @@ contact to contact is the cause. All of it is **not known** where a run did not 
 
 import math
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
 from tipoff.comparison.metrics import common_time
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.studies.agreement.verdicts import largest, settled_change
+from tipoff.studies.agreement.verdicts import largest_known, settled_change
+from tipoff.studies.render.column import Column
 
 STABLE, SENSITIVE, CHAOTIC = "stable", "sensitive, not chaotic", "chaotic"
 UNKNOWN = "not known: a run did not settle"
@@ -44,28 +46,35 @@ class Contact:
     exponent_per_s: float | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Growth:
     """Separation of one model from its twins on one condition, settled in deg/s (None where a run
     did not settle) and per um of the disturbance; factor and exponent (1/s) from the first contact
     to the last, None with fewer than two; horizon (s), None where the gate is never left; the
     verdicts above; and the curve, of each stretch its largest value."""
 
-    condition: str
-    model: str
+    condition: Annotated[str, Column("condition")]
+    model: Annotated[str, Column("model")]
     disturbance_m: float
     gate_deg_s: float
     contacts: list[Contact]
-    factor: float | None
-    exponent_per_s: float | None
+    factor: Annotated[float | None, Column("factor, first to last")]
+    exponent_per_s: Annotated[float | None, Column("exponent", "1/s")]
     settled_separation_deg_s: float | None
-    settled_growth_deg_s_um: float | None
+    settled_growth_deg_s_um: Annotated[float | None, Column("settled", "deg/s per µm")]
     horizon_s: float | None
     end_s: float
     sensitive: bool | None
     chaotic: bool | None
     time_s: list[float]
     separation_deg_s: list[float]
+
+    @property
+    def verdict(self) -> str:
+        """One word for whether 1 um grows: ``STABLE``, ``SENSITIVE``, ``CHAOTIC`` or ``UNKNOWN``."""
+        if self.sensitive is None:
+            return UNKNOWN
+        return CHAOTIC if self.chaotic else SENSITIVE if self.sensitive else STABLE
 
 
 def growth(
@@ -83,33 +92,26 @@ def growth(
     spans = contacts(time, np.any([_loaded(run, time) for run in (nominal, *twins)], axis=0))
     touched = _after(time, apart, spans)
     factor, exponent = _rate(touched[0], touched[-1]) if len(touched) > 1 else (None, None)
-    changes = [settled_change(nominal, twin) for twin in twins]
-    settled = None if None in changes else largest(changes)
+    settled = largest_known(settled_change(nominal, twin) for twin in twins)
     sensitive = None if settled is None else settled > gate
-    chaotic = sensitive and factor is not None and factor > len(touched)
+    times, separations = _drawn(time, apart)
     return Growth(
-        condition,
-        model,
-        disturbance,
-        gate,
-        touched,
-        factor,
-        exponent,
-        settled,
-        None if settled is None else settled / (1e6 * disturbance),
-        horizon(time, apart, spans, gate),
-        float(time[-1]),
-        sensitive,
-        chaotic,
-        *_drawn(time, apart),
+        condition=condition,
+        model=model,
+        disturbance_m=disturbance,
+        gate_deg_s=gate,
+        contacts=touched,
+        factor=factor,
+        exponent_per_s=exponent,
+        settled_separation_deg_s=settled,
+        settled_growth_deg_s_um=None if settled is None else settled / (1e6 * disturbance),
+        horizon_s=horizon(time, apart, spans, gate),
+        end_s=float(time[-1]),
+        sensitive=sensitive,
+        chaotic=sensitive and factor is not None and factor > len(touched),
+        time_s=times,
+        separation_deg_s=separations,
     )
-
-
-def verdict(sensitive: bool | None, chaotic: bool | None) -> str:
-    """One word for whether 1 um grows: ``STABLE``, ``SENSITIVE``, ``CHAOTIC`` or ``UNKNOWN``."""
-    if sensitive is None:
-        return UNKNOWN
-    return CHAOTIC if chaotic else SENSITIVE if sensitive else STABLE
 
 
 def separation(time: np.ndarray, nominal: Trajectory, twins: list[Trajectory]) -> np.ndarray:

@@ -1,14 +1,16 @@
 """Growth of a 1 um disturbance on the page: separation of each model from its disturbed twins, and
 the time up to which curves can be compared."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from tipoff.mechanics.models import FINITE_ELEMENTS
-from tipoff.studies.agreement import growth
+from tipoff.studies.agreement import stage
+from tipoff.studies.agreement.growth import Growth
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Part
 from tipoff.studies.render.palette import NAVY, VERMILION
-from tipoff.studies.render.table import Cells, Column, Table
+from tipoff.studies.render.table import Column, Table
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
@@ -32,18 +34,17 @@ _MARKERS = "Do"
 
 def draw(page: "Page") -> list[Part]:
     """The section, where a pad touches a rail."""
-    found = (page.documents.get("agreement") or {}).get("growth")
-    if not found:
+    found = page.read(stage.STAGE)
+    if found is None or not found.growth:
         return []
-    return [Figure(picture(found), _SEPARATION), *tables(found)]
+    return [Figure(picture(found.growth), _SEPARATION), *tables(found.growth)]
 
 
-def picture(found: list[dict]) -> Chart:
-    """Separation over time, one panel a condition, logarithmic; ``found`` is that part of
-    agreement.json."""
+def picture(found: Sequence[Growth]) -> Chart:
+    """Separation over time, one panel a condition, logarithmic."""
     panels = []
-    for condition in dict.fromkeys(item["condition"] for item in found):
-        own = [item for item in found if item["condition"] == condition]
+    for condition in dict.fromkeys(item.condition for item in found):
+        own = [item for item in found if item.condition == condition]
         lines = [
             line
             for item, look, marker in zip(own, _LOOKS, _MARKERS)
@@ -56,32 +57,32 @@ def picture(found: list[dict]) -> Chart:
                     "time after ignition (ms)",
                     "separation (deg/s)",
                     lines,
-                    band=(own[0]["gate_deg_s"], "below the limit of agreement"),
+                    band=(own[0].gate_deg_s, "below the limit of agreement"),
                     log_y=True,
                 )
             )
     return Chart("growth", panels, columns=min(3, max(1, len(panels))), height=270)
 
 
-def _lines(item: dict, look: tuple[str, float, str, float], marker: str) -> list[Line]:
+def _lines(item: Growth, look: tuple[str, float, str, float], marker: str) -> list[Line]:
     """The curve of one model and its horizon; nothing where the twins do not separate."""
     points = [
         (1e3 * time, apart)
-        for time, apart in zip(item["time_s"], item["separation_deg_s"])
-        if apart > _SHOWN * item["gate_deg_s"]
+        for time, apart in zip(item.time_s, item.separation_deg_s)
+        if apart > _SHOWN * item.gate_deg_s
     ]
     if not points:
         return []
     times, separations = zip(*points)
-    curve = Line(times, separations, item["model"], *look)
-    if item["horizon_s"] is None:
+    curve = Line(times, separations, item.model, *look)
+    if item.horizon_s is None:
         return [curve]
     return [
         curve,
         Line(
-            [1e3 * item["horizon_s"]],
-            [item["gate_deg_s"]],
-            f"horizon, {item['model']}",
+            [1e3 * item.horizon_s],
+            [item.gate_deg_s],
+            f"horizon, {item.model}",
             look[0],
             1.0,
             "",
@@ -90,50 +91,44 @@ def _lines(item: dict, look: tuple[str, float, str, float], marker: str) -> list
     ]
 
 
-def tables(found: list[dict]) -> list[Part]:
+def tables(found: Sequence[Growth]) -> list[Part]:
     """Up to when curves can be compared, and the growth over the contacts."""
-    columns: Cells = (
-        ("condition", "condition"),
-        ("model", "model"),
-        ("contacts", lambda item: len(item["contacts"])),
+    columns = (
+        *("condition", "model"),
+        ("contacts", lambda item: len(item.contacts)),
         (
             Column("difference after each", "deg/s", ".2g"),
-            lambda item: [contact["separation_deg_s"] for contact in item["contacts"]] or None,
+            lambda item: [contact.separation_deg_s for contact in item.contacts] or None,
         ),
-        ("factor, first to last", "factor"),
-        (Column("exponent", "1/s"), "exponent_per_s"),
-        (Column("settled", "deg/s per µm"), "settled_growth_deg_s_um"),
+        *("factor", "exponent_per_s", "settled_growth_deg_s_um"),
         ("horizon (ms)", _horizon),
-        ("verdict", lambda item: growth.verdict(item["sensitive"], item["chaotic"])),
+        ("verdict", lambda item: item.verdict),
     )
-    kinds = ["good" if item["sensitive"] is False else "doubt" for item in found]
-    notes = tuple(note.format(gate=found[0]["gate_deg_s"]) for note in _NOTES)
-    own = [item for item in found if item["model"] == FINITE_ELEMENTS]
+    kinds = ["good" if item.sensitive is False else "doubt" for item in found]
+    notes = tuple(note.format(gate=found[0].gate_deg_s) for note in _NOTES)
+    own = [item for item in found if item.model == FINITE_ELEMENTS]
     return [
         Bullets(_sentences(own)),
-        Table.of(found, columns, notes=notes, name="growth", kinds=kinds, dense=True),
+        Table.of_records(found, *columns, notes=notes, name="growth", kinds=kinds, dense=True),
     ]
 
 
-def _sentences(found: list[dict]) -> list[str]:
+def _sentences(found: Sequence[Growth]) -> list[str]:
     """One line on all stable conditions, and one on each other condition."""
-    stable = [item["condition"] for item in found if item["sensitive"] is False]
-    others = [f"condition {sentence(item)}" for item in found if item["sensitive"] is not False]
+    stable = [item.condition for item in found if item.sensitive is False]
+    others = [f"condition {sentence(item)}" for item in found if item.sensitive is not False]
     if not stable:
         return others
     return [f"stable, so that curves can be compared to the end: {', '.join(stable)}", *others]
 
 
-def sentence(item: dict) -> str:
+def sentence(item: Growth) -> str:
     """Up to when curves of one condition can be compared."""
-    horizon = _horizon(item) if item["horizon_s"] is not None else f"{1e3 * item['end_s']:.1f}"
-    word = growth.verdict(item["sensitive"], item["chaotic"])
-    return f"{item['condition']}: {word}; curves can be compared up to {horizon} ms"
+    horizon = f"{1e3 * item.end_s:.1f}" if item.horizon_s is None else _horizon(item)
+    return f"{item.condition}: {item.verdict}; curves can be compared up to {horizon} ms"
 
 
-def _horizon(item: dict) -> str:
-    return (
-        "none"
-        if item["horizon_s"] is None
-        else f"{1e3 * item['horizon_s']:.1f} of {1e3 * item['end_s']:.1f}"
-    )
+def _horizon(item: Growth) -> str:
+    if item.horizon_s is None:
+        return "none"
+    return f"{1e3 * item.horizon_s:.1f} of {1e3 * item.end_s:.1f}"

@@ -12,17 +12,20 @@ model, and the condition cannot be judged. A condition that is chaotic at the no
 which that is not known, is judged as a distribution (``agreement.distributions``).
 """
 
-from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
 
 from tipoff.comparison.metrics import compare
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.studies.agreement import growth, verdicts
-from tipoff.studies.agreement.verdicts import Context
+from tipoff.studies.agreement import growth, judging, verdicts
+from tipoff.studies.agreement.verdicts import AtFactor, Context, Judged, RateL2, SettledError
+from tipoff.studies.render.column import Column
 from tipoff.workspace.run import Run
 from tipoff.workspace.study import Study
 
+Place = tuple[str, float]  # a condition and a factor of the stiffness
 FACTORS = (0.25, 1.0, 4.0)
 _NOT_JUDGED = {
     growth.CHAOTIC: "reference chaotic",
@@ -30,165 +33,144 @@ _NOT_JUDGED = {
 }
 
 
-class _Pair(NamedTuple):
-    """Both models on one condition at one factor of the stiffness."""
+@dataclass(frozen=True, kw_only=True)
+class Row(Judged):
+    """Both models on one condition at one ``factor`` of the stiffness: changes of the largest settled rate
+    relative to factor 1, metrics, verdict, and ``growth`` of 1 um in the reference, None where nobody
+    looked for it."""
 
-    condition: str
-    factor: float
-    reference: Trajectory
-    surrogate: Trajectory
+    factor: Annotated[float, Column("factor", form="g")]
+    interface_stiffness_n_m3: Annotated[float, Column("interface stiffness", "N/m³")]
+    reference_change_deg_s: Annotated[
+        float | None, Column("change of the reference", "deg/s", ".2g")
+    ]
+    surrogate_change_deg_s: Annotated[
+        float | None, Column("change of the surrogate", "deg/s", ".2g")
+    ]
+    rate_relative_l2: RateL2
+    velocity_relative_l2: float | None
+    settled_rate_error_deg_s: SettledError
+    growth: str | None = None
 
 
-def overrides(study: Study, factor: float) -> dict[str, float]:
+def reference(
+    study: Study, name: str, factor: float, overrides: dict | None = None, tag: str = ""
+) -> Run:
+    """The run of the reference on the coarse mesh, with further ``overrides``."""
+    own = "" if factor == 1.0 else f"-interface-{factor:g}"
+    return study.coarse(name, _stiffened(study, factor) | (overrides or {}), own + tag)
+
+
+def _stiffened(study: Study, factor: float) -> dict[str, float]:
     """Changes of a scene with contact for ``factor`` times its interface stiffness."""
     assert study.scene.contact is not None  # as for every caller
     return {} if factor == 1.0 else study.scene.contact.stiffened(factor)
 
 
-def reference(study: Study, name: str, factor: float) -> Run:
-    """The run of the reference on the coarse mesh."""
-    tag = "" if factor == 1.0 else f"-interface-{factor:g}"
-    return study.coarse(name, overrides(study, factor), tag)
-
-
-def rows(study: Study, request: Callable[..., Run], context: Context) -> list[dict]:
+def rows(study: Study, request: Callable[..., Run], context: Context) -> list[Row]:
     """Verdicts on the scene's refined conditions; none without contact. ``request`` makes runs of
     the surrogate on the compliance of the coarse mesh from condition, overrides and tag."""
     if study.scene.contact is None:
         return []
-    names = [name for name in study.conditions if name in study.scene.agreement.refined]
-    pairs = _pairs(study, request, names)
-    nominal = {pair.condition: pair for pair in pairs if pair.factor == 1.0}
-    found = [_row(study, pair, nominal[pair.condition], context) for pair in pairs]
-    missed = [(row["condition"], row["factor"]) for row in found if _misses(row)]
+    places = [
+        (name, factor)
+        for name in study.conditions
+        if name in study.scene.agreement.refined
+        for factor in FACTORS
+    ]
+    wanted = [
+        run
+        for name, factor in places
+        for run in (
+            reference(study, name, factor),
+            request(study, name, _stiffened(study, factor), f"-interface-{factor:g}-coarse"),
+        )
+    ]
+    runs = iter(study.store.fill("interface stiffness", wanted))
+    pairs = {place: (next(runs), next(runs)) for place in places}
+    found = [_row(study, place, pairs, context) for place in places]
+    missed = [(row.condition, row.factor) for row in found if row.judgement == verdicts.MISSES]
     grown = _growths(study, missed, context)
-    return [_regarding(row, grown.get((row["condition"], row["factor"]))) for row in found]
+    return [_regarding(row, grown.get((row.condition, row.factor))) for row in found]
 
 
-def _misses(row: dict) -> bool:
-    return row["judgement"] == verdicts.MISSES
+def _regarding(row: Row, grown: str | None) -> Row:
+    """A row with the growth that was ``grown``. A miss can be judged only where 1 um does not grow."""
+    row = replace(row, growth=grown)
+    if grown is None or (why := _NOT_JUDGED.get(grown)) is None:
+        return row
+    missed = row.verdict.removeprefix(f"{verdicts.MISSES}: ")
+    said = f"{verdicts.CANNOT}: {why} ({missed})"
+    return replace(row, judgement=verdicts.CANNOT, verdict=said)
 
 
-def _regarding(row: dict, grown: str | None) -> dict:
-    """A row with the ``growth`` of 1 um in the reference, None where nobody looked for it. A miss can
-    be judged only where 1 um does not grow."""
-    why = None if grown is None else _NOT_JUDGED.get(grown)
-    if why is None:
-        return row | {"growth": grown}
-    missed = row["verdict"].removeprefix(f"{verdicts.MISSES}: ")
-    return row | {
-        "growth": grown,
-        "judgement": verdicts.CANNOT,
-        "verdict": f"{verdicts.CANNOT}: {why} ({missed})",
-    }
-
-
-def undecided(found: Sequence[dict]) -> list[str]:
+def undecided(found: Sequence[Row]) -> list[str]:
     """Conditions that no single run can judge at the nominal stiffness: their reference is chaotic, or
     that is not known."""
-    return [
-        item["condition"]
-        for item in found
-        if item["factor"] == 1.0 and item["growth"] in _NOT_JUDGED
-    ]
+    return [item.condition for item in found if item.factor == 1.0 and item.growth in _NOT_JUDGED]
 
 
-def combined(agreement: Sequence[dict], found: Sequence[dict]) -> list[dict]:
+def combined(agreement: Iterable[verdicts.Row], found: Sequence[Row]) -> list[verdicts.Row]:
     """Rows of the agreement table with the verdicts at each factor under ``interface``. A condition
     agrees where it does at every factor at which it is judged, and cannot be judged where it misses
     at none and the growth of 1 um is not known at one."""
     return [
-        _combined(row, [item for item in found if item["condition"] == row["condition"]])
+        _combined(row, [item for item in found if item.condition == row.condition])
         for row in agreement
     ]
 
 
-def _combined(row: dict, own: list[dict]) -> dict:
-    as_distribution = row["judgement"] == verdicts.AS_DISTRIBUTION
+def _combined(row: verdicts.Row, own: list[Row]) -> verdicts.Row:
+    as_distribution = row.judgement == verdicts.AS_DISTRIBUTION
     # the distribution has judged the nominal stiffness
-    further = [item for item in own if not (as_distribution and item["factor"] == 1.0)]
-    row = row | {
-        "interface": [{"factor": item["factor"], "verdict": item["verdict"]} for item in own]
-    }
-    if row["judgement"] not in (verdicts.AGREES, verdicts.AS_DISTRIBUTION):
+    further = [item for item in own if not (as_distribution and item.factor == 1.0)]
+    row = replace(row, interface=tuple(AtFactor(item.factor, item.verdict) for item in own))
+    if row.judgement not in (verdicts.AGREES, verdicts.AS_DISTRIBUTION):
         return row
-    if misses := [item for item in further if _misses(item)]:
-        return row | _said(verdicts.MISSES, "", misses)
-    if unknown := [item for item in further if item["growth"] == growth.UNKNOWN]:
-        return row | _said(verdicts.CANNOT, f"{_NOT_JUDGED[growth.UNKNOWN]} ", unknown)
-    return row
+    misses = [item for item in further if item.judgement == verdicts.MISSES]
+    unknown = [item for item in further if item.growth == growth.UNKNOWN]
+    if not (decide := misses or unknown):
+        return row
+    word = verdicts.MISSES if misses else verdicts.CANNOT
+    why = "" if misses else f"{_NOT_JUDGED[growth.UNKNOWN]} "
+    where = ", ".join(f"{item.factor:g}" for item in decide)
+    said = f"{word}: {why}at {where} times the interface stiffness"
+    return replace(row, judgement=word, verdict=said)
 
 
-def _said(word: str, why: str, items: Sequence[dict]) -> dict[str, str]:
-    where = ", ".join(f"{item['factor']:g}" for item in items)
-    return {
-        "judgement": word,
-        "verdict": f"{word}: {why}at {where} times the interface stiffness",
-    }
-
-
-def _pairs(study: Study, request: Callable[..., Run], names: Sequence[str]) -> list[_Pair]:
-    places = [(name, factor) for name in names for factor in FACTORS]
-    wanted = [
-        run
-        for name, factor in places
-        for run in (
-            reference(study, name, factor),
-            request(study, name, overrides(study, factor), f"-interface-{factor:g}-coarse"),
-        )
-    ]
-    runs = iter(study.store.fill("interface stiffness", wanted))
-    return [_Pair(name, factor, next(runs), next(runs)) for name, factor in places]
-
-
-def _row(study: Study, pair: _Pair, nominal: _Pair, context: Context) -> dict:
+def _row(
+    study: Study, place: Place, pairs: dict[Place, tuple[Trajectory, Trajectory]], context: Context
+) -> Row:
     assert study.scene.contact is not None
-    difference = compare(pair.reference, pair.surrogate)
-    judged = verdicts.single(
-        pair.condition, difference, context, bool(pair.reference.pad_force.any())
+    name, factor = place
+    (reference, surrogate), nominal = pairs[place], pairs[name, 1.0]
+    difference = compare(reference, surrogate)
+    touches = bool(reference.pad_force.any())
+    _, judgement, verdict = verdicts.single(name, difference, context, touches)
+    return Row(
+        condition=name,
+        factor=factor,
+        interface_stiffness_n_m3=factor * study.scene.contact.series_stiffness(),
+        reference_change_deg_s=verdicts.settled_change(nominal[0], reference),
+        surrogate_change_deg_s=verdicts.settled_change(nominal[1], surrogate),
+        rate_relative_l2=difference.rate_relative_l2,
+        velocity_relative_l2=difference.velocity_relative_l2,
+        settled_rate_error_deg_s=difference.settled_rate_error_deg_s,
+        judgement=judgement,
+        verdict=verdict,
     )
-    return {
-        "condition": pair.condition,
-        "factor": pair.factor,
-        "interface_stiffness_n_m3": pair.factor * study.scene.contact.series_stiffness(),
-        "reference_change_deg_s": verdicts.settled_change(nominal.reference, pair.reference),
-        "surrogate_change_deg_s": verdicts.settled_change(nominal.surrogate, pair.surrogate),
-        "rate_relative_l2": difference.rate_relative_l2,
-        "velocity_relative_l2": difference.velocity_relative_l2,
-        "settled_rate_error_deg_s": difference.settled_rate_error_deg_s,
-        "judgement": judged["judgement"],
-        "verdict": judged["verdict"],
-    }
 
 
-def _growths(
-    study: Study, places: Sequence[tuple[str, float]], context: Context
-) -> dict[tuple[str, float], str]:
+def _growths(study: Study, places: Sequence[Place], context: Context) -> dict[Place, str]:
     """Whether 1 um of clearance grows from contact to contact of the reference, by condition and
-    factor, in the words of ``growth.verdict``."""
-    assert study.scene.contact is not None
-    change = study.settings.clearance_change
-    clearances = study.scene.contact.either_way(change)
-    wanted = [
-        run
-        for name, factor in places
-        for run in (
-            reference(study, name, factor),
-            *(
-                study.coarse(
-                    name,
-                    overrides(study, factor) | changed,
-                    f"-interface-{factor:g}-clearance-{number}",
-                )
-                for number, changed in enumerate(clearances.values())
-            ),
-        )
-    ]
-    runs = iter(study.store.fill("interface stiffness, chaos", wanted))
-    gate = context.gates["settled_rate_error_deg_s"]
-    found = {}
-    for name, factor in places:
-        nominal, *twins = (next(runs) for _ in range(1 + len(clearances)))
-        grown = growth.growth(name, FINITE_ELEMENTS, nominal, twins, change, gate)
-        found[name, factor] = growth.verdict(grown.sensitive, grown.chaotic)
-    return found
+    factor, in the words of ``Growth.verdict``."""
+
+    def request(place: Place, **changes: Any) -> Run:
+        return reference(study, *place, **changes)
+
+    change, gate = study.settings.clearance_change, context.gates.settled_rate_error_deg_s
+    found = judging.twins(study, "interface stiffness, chaos", request, places)
+    return {
+        place: growth.growth(place[0], FINITE_ELEMENTS, *runs, change, gate).verdict
+        for place, runs in found.items()
+    }

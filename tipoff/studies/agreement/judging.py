@@ -2,21 +2,25 @@
 share it.
 
 Single runs are compared first. Conditions that no single run can judge, because their reference is not
-converged or 1 um moves it by more than the limit, are then judged as distributions.
+converged or 1 um moves it by more than the limit, are then judged as distributions. Runs with 1 um more
+and less clearance give the floor and the growth.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
-from tipoff.mechanics.models import COMPLIANT
+from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.studies.agreement import distributions, refined, twins, verdicts
+from tipoff.studies.agreement import distributions, growth, refinement, verdicts
 from tipoff.studies.agreement.candidates import Candidate, on_coarse
+from tipoff.studies.agreement.distributions import Distribution
 from tipoff.studies.agreement.growth import Growth
-from tipoff.studies.agreement.refinement import Refinement
-from tipoff.studies.agreement.verdicts import Context, Spread
+from tipoff.studies.agreement.verdicts import Context, Refinement, Row, Spread
+from tipoff.workspace.run import Run, with_modes_of
 from tipoff.workspace.study import Study, require_success
+
+Name = TypeVar("Name")
 
 
 class Curves(NamedTuple):
@@ -25,7 +29,7 @@ class Curves(NamedTuple):
     reference, and ``refinements`` of the reference."""
 
     reference: dict[str, Trajectory]
-    rows: dict[str, list[dict]]
+    rows: dict[str, list[Row]]
     contexts: dict[str, Context]
     floors: list[Spread]
     refinements: list[Refinement]
@@ -33,11 +37,11 @@ class Curves(NamedTuple):
 
 class Judged(NamedTuple):
     """``rows`` of the agreement table by candidate, each judged as a curve or as a distribution;
-    ``growths`` of 1 um; ``distributions`` as result files hold them."""
+    ``growths`` of 1 um; ``distributions``."""
 
-    rows: dict[str, list[dict]]
+    rows: dict[str, list[Row]]
     growths: list[Growth]
-    distributions: list[dict]
+    distributions: list[Distribution]
 
 
 def as_curves(study: Study, compared: Sequence[Candidate], purpose: str) -> Curves:
@@ -46,10 +50,10 @@ def as_curves(study: Study, compared: Sequence[Candidate], purpose: str) -> Curv
     wanted = {name: study.highfi(name) for name in study.conditions}
     reference = dict(zip(wanted, study.store.fill("highfi", list(wanted.values()))))
     require_success(reference, purpose)
-    refinements = refined.refinements(study)
-    floor = twins.floors(study, "reference", study.coarse)
+    refinements = refinement.refinements(study)
+    floor = floors(study, "reference", study.coarse)
     own = {
-        candidate.name: twins.floors(study, candidate.title, partial(candidate.request, study))
+        candidate.name: floors(study, candidate.title, partial(candidate.request, study))
         for candidate in compared
     }
     gates = verdicts.gates(study.scene)
@@ -63,7 +67,7 @@ def as_curves(study: Study, compared: Sequence[Candidate], purpose: str) -> Curv
 
 def _rows(
     study: Study, candidate: Candidate, reference: dict[str, Trajectory], context: Context
-) -> list[dict]:
+) -> list[Row]:
     """Agreement of one surrogate on every condition."""
     wanted = {name: candidate.request(study, name) for name in study.conditions}
     found = dict(zip(wanted, study.store.fill(candidate.title, list(wanted.values()))))
@@ -87,9 +91,9 @@ def judge(
     the store, so that an interrupted study goes on."""
     static = next(candidate for candidate in compared if candidate.name == COMPLIANT)
     own = curves.rows[static.name]
-    growths = twins.growths(study, static, own)
+    growths = _growths(study, static, own)
     wanted = distributions.counts(own, growths, undecided, draws)
-    limit = verdicts.gates(study.scene)["settled_rate_error_deg_s"]
+    limit = verdicts.gates(study.scene).settled_rate_error_deg_s
     coarse = list(on_coarse(study, compared).values()) if wanted else []
     found = distributions.judge(study, wanted, coarse, limit)
     rows = {
@@ -97,3 +101,55 @@ def judge(
         for name, single in curves.rows.items()
     }
     return Judged(rows, growths, found)
+
+
+def floors(study: Study, model: str, request: Callable[..., Run]) -> list[Spread]:
+    """Spread of one model under +-1 um of clearance, on the scene's conditions of the floor;
+    ``request`` makes its runs."""
+    if study.scene.contact is None:
+        return []
+    return [
+        verdicts.spread(name, model, "clearance", nominal, changed)
+        for name, (nominal, changed) in twins(
+            study, f"floor, {model}", request, study.scene.agreement.floor
+        ).items()
+    ]
+
+
+def _growths(study: Study, compliant: Candidate, rows: Iterable[Row]) -> list[Growth]:
+    """Growth of 1 um of clearance in both models, on the conditions of the floor and on those whose
+    reference is not converged in the ``rows`` of the agreement table, because chaos can be the
+    reason."""
+    if study.scene.contact is None:
+        return []
+    names = dict.fromkeys(
+        [
+            *study.scene.agreement.floor,
+            *(row.condition for row in rows if not row.reference_converged),
+        ]
+    )
+    gate = verdicts.gates(study.scene).settled_rate_error_deg_s
+    return [
+        growth.growth(name, model, nominal, changed, study.settings.clearance_change, gate)
+        for model, request in (
+            (FINITE_ELEMENTS, study.coarse),
+            (compliant.title, partial(compliant.request, study)),
+        )
+        for name, (nominal, changed) in twins(study, f"growth, {model}", request, names).items()
+    ]
+
+
+def twins(
+    study: Study, title: str, request: Callable[..., Run], names: Iterable[Name]
+) -> dict[Name, tuple[Trajectory, list[Trajectory]]]:
+    """The run that ``request`` makes of each name, and its runs with 1 um more and less clearance."""
+    assert study.scene.contact is not None  # as for every caller
+    names, changes = list(names), study.scene.contact.either_way(study.settings.clearance_change)
+    nominal = dict(zip(names, study.store.fill(title, [request(name) for name in names])))
+    wanted = [
+        with_modes_of(nominal[name], request(name, overrides=change, tag=f"-clearance-{sign}"))
+        for name in names
+        for sign, change in changes.items()
+    ]
+    runs = iter(study.store.fill(title, wanted))
+    return {name: (nominal[name], [next(runs) for _ in changes]) for name in names}

@@ -1,55 +1,55 @@
 """Error of a model from the stored agreement table for this scene and code."""
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes.scene import NOMINAL
 from tipoff.studies.agreement import verdicts
+from tipoff.studies.agreement.verdicts import Row
 from tipoff.workspace.errors import StudyError
 from tipoff.workspace.study import Study
 from tipoff.workspace.words import counted
 
+if TYPE_CHECKING:
+    from tipoff.studies.agreement.stage import Agreement
 
-def rows(study: Study, model: str, calibrated: bool = False, modes: int | str = AUTO) -> list[dict]:
-    """Rows of ``model`` with its options in the agreement table; none without a current table."""
-    from tipoff.studies.agreement import stage as compare
 
-    found = compare.stored(study.unrestricted())
+def _stored(study: Study) -> "Agreement | None":
+    from tipoff.studies.agreement import stage  # slow to load
+
+    return stage.stored(study.unrestricted())
+
+
+def _rows(
+    found: "Agreement | None", model: str, calibrated: bool = False, modes: int | str = AUTO
+) -> Sequence[Row]:
+    """Rows of ``model`` with its options in the agreement table; none without one."""
     if found is None or model == FINITE_ELEMENTS or (calibrated and model == COMPLIANT):
-        return []
-    if model == COMPLIANT:
-        return (
-            found["compliant"]
-            if modes == AUTO
-            else found["modal"]
-            if modes == found["rail_modes"]
-            else []
-        )
-    return found["fitted"] + found["held_out"] if calibrated else found["uncalibrated"]
-
-
-def missed(study: Study, model: str, condition: str | None = None) -> list[dict]:
-    """Rows that ``model`` misses: of ``condition``, or without one of the whole scene. A miss of a
-    distribution counts for its own condition alone. There the model is wrong by more than a share of
-    what 1 um does, which tells nothing of cases that differ by far more."""
-    return [
-        row
-        for row in rows(study, model)
-        if row["judgement"] == verdicts.MISSES
-        and (
-            row["judged_as"] == verdicts.CURVE
-            if condition is None
-            else row["condition"] == condition
-        )
-    ]
+        return ()
+    if model != COMPLIANT:
+        return found.calibrated if calibrated else found.uncalibrated
+    if modes == AUTO:
+        return found.compliant
+    return found.modal if modes == found.rail_modes else ()
 
 
 def require_accepted(study: Study, name: str | None, condition: str | None = None) -> None:
     """Raises StudyError where ``name`` is None and the stored agreement table rejects the default
-    model: on ``condition`` or, without one, on any condition of the scene."""
+    model: on ``condition`` or, without one, on any condition of the scene. A miss of a distribution counts
+    for its own condition alone. There the model is wrong by more than a share of what 1 um does, which
+    tells nothing of cases that differ by far more."""
     if name is not None:
         return
-    if found := missed(study, COMPLIANT, condition):
-        listed = "\n  ".join(f"{row['condition']}: {row['verdict']}" for row in found)
+    missed = [
+        row
+        for row in _rows(_stored(study), COMPLIANT)
+        if row.judgement == verdicts.MISSES
+        and (row.judged_as == verdicts.CURVE if condition is None else row.condition == condition)
+    ]
+    if missed:
+        listed = "\n  ".join(f"{row.condition}: {row.verdict}" for row in missed)
         raise StudyError(
             f"compliant contact does not agree with the converged reference:\n  {listed}\n"
             f"name a model: --model {FINITE_ELEMENTS} for the reference, or --model {COMPLIANT} "
@@ -70,16 +70,28 @@ def words(
         return "the reference itself"
     if calibrated and model == COMPLIANT:
         return "not measured: the agreement table has compliant contact with the scene's constants"
-    found = rows(study, model, calibrated, modes)
-    own = [row for row in found if row["condition"] == condition]
+    table = _stored(study)
+    found = _rows(table, model, calibrated, modes)
+    own = [row for row in found if row.condition == condition]
     if own:
         return _one(own[0])
-    touched = [row for row in found if row["touches"]]
-    judged = [row for row in touched if verdicts.is_judged_as_curve(row)]
+    if not found:
+        if table is None or model != COMPLIANT or modes == AUTO:
+            return "not measured for this scene with this code (tipoff compare measures it)"
+        return f"not measured with {modes} modes: tipoff compare has {AUTO} and {table.rail_modes}"
+    touched = [row for row in found if row.touches]
+    judged = [row for row in touched if row.is_judged_as_curve]
+    if not touched:
+        return f"not known: no pad touches on any of {counted(len(found), 'compared condition')}"
     if not judged:
-        return _not_judged(study, model, found, touched, modes)
+        lost = [row.condition for row in touched if row.judgement == verdicts.CANNOT]
+        why = f"; {', '.join(lost)} cannot be judged" if lost else ""
+        return (
+            f"not known: tipoff compare could judge none of {counted(len(touched), 'condition')} "
+            f"with contact by single runs{why}{_others(touched)}"
+        )
     where = "" if condition in (None, NOMINAL) else f"; {condition} is not one of them"
-    errors = [row["settled_rate_error_deg_s"] for row in judged]
+    errors = [row.settled_rate_error_deg_s for row in judged]
     known = [error for error in errors if error is not None]
     parts = []
     if known:
@@ -87,54 +99,31 @@ def words(
             f"at most {max(known):.2g} deg/s from the reference on {counted(len(known), 'condition')} where "
             "that is converged and pads touch"
         )
-    if lost := len(errors) - len(known):
-        parts.append(f"it does not settle on {lost} where the reference does")
+    if lost_count := len(errors) - len(known):
+        parts.append(f"it does not settle on {lost_count} where the reference does")
     return f"{'; '.join(parts)}{_others(touched)}{where}"
 
 
-def _not_judged(
-    study: Study, model: str, found: list[dict], touched: list[dict], modes: int | str
-) -> str:
-    """Why there is no error: nothing was compared, or nothing of what was compared can be judged."""
-    if not found:
-        from tipoff.studies.agreement import stage as compare
-
-        stored = compare.stored(study.unrestricted())
-        if stored is None or model != COMPLIANT or modes == AUTO:
-            return "not measured for this scene with this code (tipoff compare measures it)"
-        return (
-            f"not measured with {modes} modes: tipoff compare has {AUTO} and {stored['rail_modes']}"
-        )
-    if not touched:
-        return f"not known: no pad touches on any of {counted(len(found), 'compared condition')}"
-    lost = [row["condition"] for row in touched if row["judgement"] == verdicts.CANNOT]
-    why = f"; {', '.join(lost)} cannot be judged" if lost else ""
-    return (
-        f"not known: tipoff compare could judge none of {counted(len(touched), 'condition')} with "
-        f"contact by single runs{why}{_others(touched)}"
-    )
-
-
-def _others(rows: list[dict]) -> str:
+def _others(rows: Sequence[Row]) -> str:
     """How many conditions agree, and which miss, as distributions; empty without one."""
-    alike = [row for row in rows if row["judged_as"] == verdicts.DISTRIBUTION]
-    agree = sum(row["judgement"] == verdicts.AS_DISTRIBUTION for row in alike)
-    lost = [row["condition"] for row in alike if row["judgement"] == verdicts.MISSES]
+    alike = [row for row in rows if row.judged_as == verdicts.DISTRIBUTION]
+    agree = sum(row.judgement == verdicts.AS_DISTRIBUTION for row in alike)
+    lost = [row.condition for row in alike if row.judgement == verdicts.MISSES]
     return (f"; {agree} more agree as distributions" if agree else "") + (
         f"; as distributions it misses {', '.join(lost)}" if lost else ""
     )
 
 
-def _one(row: dict) -> str:
-    if row["settled_rate_error_deg_s"] is None:
+def _one(row: Row) -> str:
+    if row.settled_rate_error_deg_s is None or row.rate_relative_l2 is None:
         return "unknown: the reference or this model did not settle"
     off = (
-        f"settled rates within {row['settled_rate_error_deg_s']:.2g} deg/s of the reference, "
+        f"settled rates within {row.settled_rate_error_deg_s:.2g} deg/s of the reference, "
         f"curves within "
-        f"{100.0 * row['rate_relative_l2']:.2g} %"
+        f"{100.0 * row.rate_relative_l2:.2g} %"
     )
-    if verdicts.is_judged_as_curve(row):
+    if row.is_judged_as_curve:
         return off
-    if row["judged_as"] == verdicts.DISTRIBUTION:
-        return f"{off}, but 1 µm or the mesh changes the reference as much; it {row['verdict']}"
+    if row.judged_as == verdicts.DISTRIBUTION:
+        return f"{off}, but 1 µm or the mesh changes the reference as much; it {row.verdict}"
     return f"{off}, but the reference is not converged there"

@@ -2,20 +2,24 @@
 conditions, as curves or as distributions, with the floor and the uncertainty of the reference; growth
 of a 1 um disturbance; speed-up."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from tipoff.comparison import metrics
 from tipoff.mechanics.rail_compliance import PATTERNS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.agreement import interface, judging, verdicts
 from tipoff.studies.agreement.candidates import Candidate, candidates, on_coarse
+from tipoff.studies.agreement.distributions import Distribution
+from tipoff.studies.agreement.growth import Growth
+from tipoff.studies.agreement.options import Options
+from tipoff.studies.agreement.verdicts import Row
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.workspace.progress import Board
-from tipoff.workspace.settings import Settings
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study
-from tipoff.workspace.timing import speedups
+from tipoff.workspace.timing import Speedup, speedups
 
 _SIMPLER = {
     "mean pressure of each face by itself": (1, False),
@@ -25,58 +29,91 @@ _SIMPLER = {
 }
 
 
-@dataclass(frozen=True)
-class Options:
-    """``neighbours`` of each condition that is judged as a distribution."""
+@dataclass(frozen=True, kw_only=True)
+class Simpler:
+    """Errors of compliant contact on a part of the rail compliance, ``walls`` in words: its first pressure
+    ``patterns`` of each face, ``coupled`` between faces or not; None where a run did not settle."""
 
-    neighbours: int = Settings().neighbours
+    walls: str
+    patterns: int
+    coupled: bool
+    condition: str
+    rate_relative_l2: verdicts.RateL2
+    settled_rate_error_deg_s: verdicts.SettledError
+
+
+@dataclass(frozen=True, kw_only=True)
+class Agreement:
+    """Rows of the agreement table by surrogate, of calibrated springs ``fitted`` and ``held_out``;
+    ``rail_compliance``, the elements of the most uncertain one and their uncertainty, None where not
+    known; ``rail_modes`` of the rows ``modal``; measured ``floor`` and ``refinement``; ``growth`` of a
+    1 um disturbance; ``distributions`` of conditions that no single run can judge; ``simpler`` rail
+    compliance; other values of the ``interface`` stiffness; ``speedup`` of calibrated springs and of
+    compliant contact."""
+
+    uncalibrated: tuple[Row, ...]
+    fitted: tuple[Row, ...]
+    held_out: tuple[Row, ...]
+    compliant: tuple[Row, ...]
+    modal: tuple[Row, ...]
+    rail_compliance: dict[str, Any] | None
+    rail_modes: int
+    gates: verdicts.Gates
+    element_size_m: float
+    converged_deg_s: float
+    clearance_change_m: float
+    floor: tuple[verdicts.Spread, ...]
+    refinement: tuple[verdicts.Refinement, ...]
+    growth: tuple[Growth, ...]
+    distributions: tuple[Distribution, ...]
+    simpler: tuple[Simpler, ...]
+    interface: tuple[interface.Row, ...]
+    speedup: Speedup
+    speedup_compliant: Speedup
+
+    @property
+    def calibrated(self) -> tuple[Row, ...]:
+        """Rows of calibrated springs, fitted ones first."""
+        return self.fitted + self.held_out
 
 
 def run(study: Study, options: Options | None = None) -> dict:
-    """``uncalibrated``, ``fitted``, ``held_out``, ``compliant`` and ``modal`` rows; measured
-    ``floor`` and ``refinement``; ``growth`` of a 1 um disturbance; ``distributions`` of conditions
-    that no single run can judge; ``speedup`` of calibrated springs and ``speedup_compliant``;
-    ``simpler`` rail compliance; ``rail_compliance``, its elements and their uncertainty; other
-    values of the ``interface`` stiffness. ``options`` None: those of the settings."""
+    """The content of ``Agreement``; without ``options`` those of the settings."""
     study.fitted()
-    chosen = options or Options(study.settings.neighbours)
+    draws = (options and options.neighbours) or study.settings.neighbours
     _, calibrated, static, modal = compared = candidates(study)
 
-    def make() -> tuple[dict, list[Path]]:
+    def make() -> tuple[Agreement, list[Path]]:
         curves = judging.as_curves(study, compared, "compare")
         stiffnesses = interface.rows(
             study, on_coarse(study, compared)[static.name].request, curves.contexts[static.name]
         )
-        found = judging.judge(
-            study, compared, curves, chosen.neighbours, interface.undecided(stiffnesses)
-        )
-        table = found.rows | {static.name: interface.combined(found.rows[static.name], stiffnesses)}
-        groups = {
-            role: [row for row in table["calibrated"] if row["role"] == role]
-            for role in ("fitted", "held_out")
-        }
-        return {
-            "asked": STAGE.plain(chosen),
-            "uncalibrated": table["uncalibrated"],
-            **groups,
-            "compliant": table["compliant"],
-            "modal": table["modal"],
-            "rail_compliance": _elements(static),
-            "rail_modes": modal.modes,
-            "gates": verdicts.gates(study.scene),
-            "element_size_m": study.settings.element_size,
-            "converged_deg_s": verdicts.CONVERGED_DEG_S,
-            "clearance_change_m": study.settings.clearance_change,
-            "floor": [asdict(item) for item in curves.floors],
-            "refinement": [asdict(item) for item in curves.refinements],
-            "growth": [asdict(item) for item in found.growths],
-            "distributions": found.distributions,
-            "simpler": _simpler(study, static, curves.reference),
-            "interface": stiffnesses,
-            **dict(zip(("speedup", "speedup_compliant"), _speedups(study, [calibrated, static]))),
-        }, []
+        found = judging.judge(study, compared, curves, draws, interface.undecided(stiffnesses))
+        springs = found.rows[calibrated.name]
+        speeds = _speedups(study, [calibrated, static])
+        return Agreement(
+            uncalibrated=tuple(found.rows["uncalibrated"]),
+            fitted=tuple(row for row in springs if row.role == "fitted"),
+            held_out=tuple(row for row in springs if row.role == "held_out"),
+            compliant=tuple(interface.combined(found.rows[static.name], stiffnesses)),
+            modal=tuple(found.rows[modal.name]),
+            rail_compliance=_elements(static),
+            rail_modes=study.settings.rail_modes,
+            gates=verdicts.gates(study.scene),
+            element_size_m=study.settings.element_size,
+            converged_deg_s=verdicts.CONVERGED_DEG_S,
+            clearance_change_m=study.settings.clearance_change,
+            floor=tuple(curves.floors),
+            refinement=tuple(curves.refinements),
+            growth=tuple(found.growths),
+            distributions=tuple(found.distributions),
+            simpler=tuple(_simpler(study, static, curves.reference)),
+            interface=tuple(stiffnesses),
+            speedup=speeds[calibrated.name],
+            speedup_compliant=speeds[static.name],
+        ), []
 
-    return STAGE.run(study, chosen, make)
+    return STAGE.run(study, Options(draws), make)
 
 
 def current(study: Study) -> dict:
@@ -94,14 +131,19 @@ def _elements(compliant: Candidate) -> dict | None:
 
 
 def _inputs(study: Study, _: Options) -> list:
-    return [calibrate.constants(study), verdicts.gates(study.scene)]
+    return [calibrate.constants(study), asdict(verdicts.gates(study.scene))]
 
 
-STAGE = Stage("agreement", __name__, Options, inputs=_inputs)
-stored = STAGE.stored
+STAGE = Stage("agreement", __name__, Options, inputs=_inputs, result=Agreement)
 
 
-def _simpler(study: Study, compliant: Candidate, highfi: dict[str, Trajectory]) -> list[dict]:
+def stored(study: Study) -> Agreement | None:
+    """The stored result if it was made from the present scene, code and settings."""
+    found = STAGE.stored(study)
+    return None if found is None else STAGE.read(found)
+
+
+def _simpler(study: Study, compliant: Candidate, highfi: dict[str, Trajectory]) -> list[Simpler]:
     """Errors of surrogates with parts of the rail compliance."""
     found = []
     for words, (patterns, coupled) in _SIMPLER.items():
@@ -118,19 +160,19 @@ def _simpler(study: Study, compliant: Candidate, highfi: dict[str, Trajectory]) 
         for name, result in zip(study.conditions, study.store.fill(f"walls: {words}", wanted)):
             difference = metrics.compare(highfi[name], result)
             found.append(
-                {
-                    "walls": words,
-                    "patterns": patterns,
-                    "coupled": coupled,
-                    "condition": name,
-                    "rate_relative_l2": difference.rate_relative_l2,
-                    "settled_rate_error_deg_s": difference.settled_rate_error_deg_s,
-                }
+                Simpler(
+                    walls=words,
+                    patterns=patterns,
+                    coupled=coupled,
+                    condition=name,
+                    rate_relative_l2=difference.rate_relative_l2,
+                    settled_rate_error_deg_s=difference.settled_rate_error_deg_s,
+                )
             )
     return found
 
 
-def _speedups(study: Study, compared: list[Candidate]) -> list[dict]:
+def _speedups(study: Study, compared: list[Candidate]) -> dict[str, Speedup]:
     name, settings = study.fitted()[0], study.settings
     with Board("speed-up", 1) as board:
         found = speedups(
@@ -140,7 +182,6 @@ def _speedups(study: Study, compared: list[Candidate]) -> list[dict]:
             settings.lowfi_repeats,
             board.callback("speed-up"),
         )
-        board.finished(
-            "speed-up", " and ".join(f"{item['ratio']:,.0f} times" for item in found.values())
-        )
-    return [item | {"condition": name} for item in found.values()]
+        ratios = " and ".join(f"{item.ratio:,.0f} times" for item in found.values())
+        board.finished("speed-up", ratios)
+    return {key: replace(item, condition=name) for key, item in found.items()}

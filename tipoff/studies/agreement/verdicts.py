@@ -18,20 +18,19 @@ row is first judged as a curve; ``agreement.distributions`` judges those that no
 """
 
 import math
-from dataclasses import dataclass
-from typing import TypeVar
+from dataclasses import dataclass, replace
+from typing import Annotated, TypeVar
 
 from tipoff.comparison.metrics import Difference, compare, settled_rate_errors
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
-from tipoff.studies.agreement.refinement import Refinement
+from tipoff.studies.render.column import Column
 
 VELOCITY_LIMIT = 0.001
 CONVERGED_DEG_S = 0.1
 FLOOR_CAP_DEG_S = 0.1
 AGREES, AS_DISTRIBUTION = "agrees", "agrees as distribution"
 MISSES, CANNOT = "misses", "cannot be judged"
-JUDGEMENTS = (AGREES, AS_DISTRIBUTION, MISSES, CANNOT)
 CURVE, DISTRIBUTION = "curve", "distribution"
 NOT_CONVERGED = f"{CANNOT}: reference not converged"
 NOT_KNOWN = f"{CANNOT}: convergence of the reference not known"
@@ -42,15 +41,80 @@ _SHORT = {
     "settled_rate_error_deg_s": "settled rate",
 }
 
+# metrics as columns of tables
+RateL2 = Annotated[float | None, Column("rate L2", "%", ".2g", 100.0)]
+SettledError = Annotated[float | None, Column("settled error", "deg/s", ".2g")]
 
-def gates(scene: Scene) -> dict[str, float]:
-    """Limits of the metrics by name, before any floor."""
+
+@dataclass(frozen=True)
+class Gates:
+    """Limits of the metrics."""
+
+    rate_relative_l2: float
+    velocity_relative_l2: float
+    settled_rate_error_deg_s: float
+
+
+def gates(scene: Scene) -> Gates:
+    """Limits of the metrics, before any floor."""
     roles = scene.agreement
-    return {
-        "rate_relative_l2": roles.rate_limit,
-        "velocity_relative_l2": VELOCITY_LIMIT,
-        "settled_rate_error_deg_s": math.degrees(roles.settled_limit),
-    }
+    return Gates(roles.rate_limit, VELOCITY_LIMIT, math.degrees(roles.settled_limit))
+
+
+@dataclass(frozen=True)
+class Gate:
+    """Whether a metric ``passes`` its ``limit``, and how many times the limit it is, None where it is not
+    known."""
+
+    limit: float
+    passes: bool
+    times_limit: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Judged:
+    """A condition with one of the four words above, and the ``verdict`` as a phrase."""
+
+    condition: Annotated[str, Column("condition")]
+    judgement: str
+    verdict: Annotated[str, Column("verdict")]
+
+
+@dataclass(frozen=True)
+class AtFactor:
+    """Verdict at ``factor`` times the interface stiffness."""
+
+    factor: float
+    verdict: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row(Difference, Judged):
+    """One line of the agreement table: the metrics of one surrogate on one condition, None where a run did
+    not settle. ``_measured_here``: False for the largest value of other conditions. ``touches``: whether a
+    pad of the reference touches a rail. ``interface``: verdicts at other values of its stiffness."""
+
+    role: Annotated[str, Column("role")]
+    reference_status: str
+    surrogate_status: str
+    rate_relative_l2: RateL2
+    settled_rate_error_deg_s: SettledError
+    floor_deg_s: Annotated[float | None, Column("floor", "deg/s", ".2g")]
+    floor_l2: float | None
+    floor_measured_here: bool
+    reference_uncertainty_deg_s: Annotated[float | None, Column("reference ±", "deg/s", ".2g")]
+    reference_uncertainty_by_cause_deg_s: dict[str, float | None]
+    reference_uncertainty_measured_here: bool
+    reference_converged: bool
+    touches: bool
+    judged_as: Annotated[str, Column("judged as")] = CURVE
+    gates: dict[str, Gate]
+    interface: tuple[AtFactor, ...] = ()
+
+    @property
+    def is_judged_as_curve(self) -> bool:
+        """Whether single runs are compared on this condition, with a verdict."""
+        return self.judged_as == CURVE and self.judgement != CANNOT
 
 
 @dataclass(frozen=True)
@@ -58,11 +122,24 @@ class Spread:
     """Change of one model by one cause on one condition, the larger of its cases; None where a run
     did not settle."""
 
-    condition: str
-    model: str
-    cause: str
-    rate_relative_l2: float | None
-    settled_rate_change_deg_s: float | None
+    condition: Annotated[str, Column("condition")]
+    model: Annotated[str, Column("model")]
+    cause: Annotated[str, Column("changed input")]
+    rate_relative_l2: RateL2
+    settled_rate_change_deg_s: Annotated[float | None, Column("settled rates", "deg/s")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Refinement(Spread):
+    """Refinement of one ``cause`` on one condition: ``sizes``, coarsest first, and of the last two
+    runs the change of both metrics; ``uncertainty_deg_s`` of the settled rates, None where it is
+    not known; ``order`` and ``method`` of the axis with the largest."""
+
+    cause: Annotated[str, Column("refined")]
+    sizes: list[float]
+    uncertainty_deg_s: Annotated[float | None, Column("uncertainty", "deg/s", ".2g")]
+    order: Annotated[float | None, Column("order", form=".2g")]
+    method: Annotated[str, Column("method")]
 
 
 def spread(
@@ -97,7 +174,7 @@ def largest_known(values) -> float | None:
     return None if None in found else largest(found)
 
 
-_Measured = TypeVar("_Measured", Spread, Refinement)
+_Measured = TypeVar("_Measured", bound=Spread)
 
 
 @dataclass(frozen=True)
@@ -107,14 +184,13 @@ class Context:
 
     floors: list[Spread]
     refinements: list[Refinement]
-    gates: dict[str, float]
+    gates: Gates
 
-    def limits(self, floor_deg_s: float | None) -> dict[str, float]:
+    def limits(self, floor_deg_s: float | None) -> Gates:
         """The gates on a condition with this floor."""
-        settled = "settled_rate_error_deg_s"
-        return self.gates | {
-            settled: max(self.gates[settled], 2.0 * min(floor_deg_s or 0.0, FLOOR_CAP_DEG_S))
-        }
+        least = 2.0 * min(floor_deg_s or 0.0, FLOOR_CAP_DEG_S)
+        settled = max(self.gates.settled_rate_error_deg_s, least)
+        return replace(self.gates, settled_rate_error_deg_s=settled)
 
     def floor(self, condition: str) -> tuple[float | None, float | None, bool]:
         """Floor of the settled rates (deg/s) and of the rate L2, None where a run did not settle, and
@@ -165,77 +241,54 @@ def _own(spreads: list[_Measured], condition: str) -> tuple[list[_Measured], boo
 
 def row(
     condition: str, role: str, reference: Trajectory, surrogate: Trajectory, context: Context
-) -> dict:
-    """One line of the agreement table as result files hold it."""
+) -> Row:
+    """One line of the agreement table."""
     difference = compare(reference, surrogate)
     floor_deg_s, floor_l2, floor_measured = context.floor(condition)
     uncertainty, causes, uncertainty_measured = context.uncertainty(condition)
     touches = bool(reference.pad_force.any())
-    return {
-        "condition": condition,
-        "role": role,
-        "reference_status": reference.status,
-        "surrogate_status": surrogate.status,
-        **difference.as_dict(),
-        "floor_deg_s": floor_deg_s,
-        "floor_l2": floor_l2,
-        "floor_measured_here": floor_measured,
-        "reference_uncertainty_deg_s": uncertainty,
-        "reference_uncertainty_by_cause_deg_s": causes,
-        "reference_uncertainty_measured_here": uncertainty_measured,
-        "reference_converged": context.converged(condition),
-        "touches": touches,
-        "judged_as": CURVE,
-        **single(condition, difference, context, touches),
-    }
+    gates, judgement, verdict = single(condition, difference, context, touches)
+    return Row(
+        **vars(difference),
+        condition=condition,
+        role=role,
+        reference_status=reference.status,
+        surrogate_status=surrogate.status,
+        floor_deg_s=floor_deg_s,
+        floor_l2=floor_l2,
+        floor_measured_here=floor_measured,
+        reference_uncertainty_deg_s=uncertainty,
+        reference_uncertainty_by_cause_deg_s=causes,
+        reference_uncertainty_measured_here=uncertainty_measured,
+        reference_converged=context.converged(condition),
+        touches=touches,
+        gates=gates,
+        judgement=judgement,
+        verdict=verdict,
+    )
 
 
-def single(condition: str, difference: Difference, context: Context, touches: bool) -> dict:
-    """``gates``, ``judgement`` and ``verdict`` on the ``difference`` of two single runs, in the
-    reference of which a pad ``touches`` a rail or none."""
-    gates = {
-        name: gate(getattr(difference, name), limit)
-        for name, limit in context.limits(context.floor(condition)[0]).items()
-    }
-    converged, known = context.converged(condition), context.known(condition)
-    passes = all(item["passes"] for item in gates.values())
-    return {
-        "gates": gates,
-        "judgement": judgement(passes, converged and known),
-        "verdict": verdict(gates, converged, touches) if known else NOT_KNOWN,
-    }
-
-
-def is_judged_as_curve(row: dict) -> bool:
-    """Whether single runs are compared on the condition of a ``row``, with a verdict."""
-    return row["judged_as"] == CURVE and row["judgement"] != CANNOT
-
-
-def judgement(passes: bool, converged: bool) -> str:
-    """The word for a curve that ``passes`` its gates or not."""
-    return CANNOT if not converged else AGREES if passes else MISSES
-
-
-def gate(value: float | None, limit: float) -> dict:
-    """Whether ``value`` is within ``limit``, and how many times the limit it is."""
-    return {
-        "limit": limit,
-        "passes": value is not None and value <= limit,
-        "times_limit": None if value is None else value / limit,
-    }
-
-
-def verdict(gates: dict[str, dict], converged: bool, touches: bool = True) -> str:
-    """Verdict as a phrase. A reference that is not converged comes first; agreement without contact
-    is marked."""
-    if not converged:
-        return NOT_CONVERGED
+def single(
+    condition: str, difference: Difference, context: Context, touches: bool
+) -> tuple[dict[str, Gate], str, str]:
+    """Gates by metric, judgement and verdict on the ``difference`` of two single runs, in the reference
+    of which a pad ``touches`` a rail or none."""
+    gates = {}
+    for name, limit in vars(context.limits(context.floor(condition)[0])).items():
+        value = getattr(difference, name)
+        known = value is not None
+        gates[name] = Gate(limit, known and value <= limit, value / limit if known else None)
+    if not context.known(condition):
+        return gates, CANNOT, NOT_KNOWN
+    # a reference that is not converged comes first
+    if not context.converged(condition):
+        return gates, CANNOT, NOT_CONVERGED
     missed = [
         f"{_SHORT[name]} "
-        f"{'unknown' if item['times_limit'] is None else format(item['times_limit'], '.3g') + ' x limit'}"
-        for name, item in gates.items()
-        if not item["passes"]
+        f"{'unknown' if gate.times_limit is None else format(gate.times_limit, '.3g') + ' x limit'}"
+        for name, gate in gates.items()
+        if not gate.passes
     ]
     if missed:
-        return f"{MISSES}: " + ", ".join(missed)
-    return AGREES if touches else UNTOUCHED
+        return gates, MISSES, f"{MISSES}: {', '.join(missed)}"
+    return gates, AGREES, AGREES if touches else UNTOUCHED

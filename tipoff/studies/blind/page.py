@@ -1,23 +1,26 @@
 """Agreement on blind conditions on the page and in the terminal."""
 
 import math
+from operator import itemgetter
 
 from tipoff.studies.agreement import distribution_page
 from tipoff.studies.agreement.page import judged, summary
+from tipoff.studies.blind.stage import Blind
+from tipoff.studies.render.column import Column
 from tipoff.studies.render.document import Fold, Part
-from tipoff.studies.render.table import Cells, Column, Table
+from tipoff.studies.render.table import Table
 
 
-def draw(found: dict) -> list[Part]:
+def draw(found: Blind) -> list[Part]:
     """The section."""
-    options, compliant, calibrated = found["asked"], found["compliant"], found["calibrated"]
+    compliant, calibrated = found.compliant, found.calibrated
     origin = (
         " (a digest of the sources and the scene, so other code draws other conditions)"
-        if options["seed"] is None
+        if found.asked.seed is None
         else ""
     )
     note = (
-        f"Drawn from the distributions “{options['vary']}” with seed {found['seed']}{origin}. "
+        f"Drawn from the distributions “{found.asked.vary}” with seed {found.seed}{origin}. "
         "Every condition has its own floor and its own uncertainty of the reference by mesh, "
         "step and contact cells. A condition is judged as a distribution if its reference is "
         "not converged, or if 1 µm changes a settled rate by more than the limit of agreement."
@@ -27,31 +30,30 @@ def draw(found: dict) -> list[Part]:
         judged(compliant, "blind-compliant", (note,)),
         f"Calibrated springs: {summary(calibrated)}.",
         judged(calibrated, "blind-calibrated"),
-        *distribution_page.parts(found, "blind-distributions"),
-        Fold("Drawn conditions", [_drawn(found["conditions"])]),
+        *distribution_page.parts(
+            found.distributions, found.clearance_change_m, "blind-distributions"
+        ),
+        Fold("Drawn conditions", [_drawn(found.conditions)]),
     ]
 
 
-def terminal(found: dict) -> list[Part]:
+def terminal(found: Blind) -> list[Part]:
     """The verdicts for the terminal."""
-    columns: Cells = (
-        ("model", "model"),
-        ("condition", "condition"),
-        (Column("rate L2", "%", scale=100.0), "rate_relative_l2"),
-        (Column("settled error", "deg/s"), "settled_rate_error_deg_s"),
-        (Column("reference ±", "deg/s"), "reference_uncertainty_deg_s"),
-        ("judged as", "judged_as"),
-        ("verdict", "verdict"),
+    rows = [("calibrated", row) for row in found.calibrated]
+    rows += [("compliant", row) for row in found.compliant]
+    columns = (
+        ("model", itemgetter(0)),
+        ("condition", lambda pair: pair[1].condition),
+        (Column("rate L2", "%", scale=100.0), lambda pair: pair[1].rate_relative_l2),
+        (Column("settled error", "deg/s"), lambda pair: pair[1].settled_rate_error_deg_s),
+        (Column("reference ±", "deg/s"), lambda pair: pair[1].reference_uncertainty_deg_s),
+        ("judged as", lambda pair: pair[1].judged_as),
+        ("verdict", lambda pair: pair[1].verdict),
     )
-    rows = [
-        {**row, "model": model} for model in ("calibrated", "compliant") for row in found[model]
-    ]
-    count = len(found["conditions"])
-    alike = found["distributions"]
-    return [
-        Table.of(rows, columns, title=f"{count} conditions drawn with seed {found['seed']}"),
-        *([distribution_page.verdicts_of(alike)] if alike else []),
-    ]
+    title = f"{len(found.conditions)} conditions drawn with seed {found.seed}"
+    table = Table.of(rows, columns, title=title)
+    alike = found.distributions
+    return [table, *([distribution_page.verdicts_of(alike)] if alike else [])]
 
 
 def _drawn(conditions: dict) -> Table:

@@ -5,7 +5,7 @@ the default seed is a digest of the sources and the scene, so any change of the 
 They are judged as the chosen ones are: as curves, or as distributions where no single run can judge.
 """
 
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from tipoff import sources
@@ -14,6 +14,9 @@ from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.scenes import uncertainty
 from tipoff.studies.agreement import judging, verdicts
 from tipoff.studies.agreement.candidates import calibrated, compliant
+from tipoff.studies.agreement.distributions import Distribution
+from tipoff.studies.agreement.growth import Growth
+from tipoff.studies.agreement.verdicts import Gates, Row
 from tipoff.studies.blind.options import Options
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.workspace.stage import Stage
@@ -23,27 +26,43 @@ NAME = "blind"
 _CODE = ("tipoff.highfi", "tipoff.lowfi", "tipoff.calibration")
 
 
-def run(study: Study, options: Options = Options()) -> dict:
+@dataclass(frozen=True, kw_only=True)
+class Blind:
     """Rows of ``calibrated`` springs and of ``compliant`` contact, ``growth`` of a 1 um disturbance
-    and ``distributions``, as in the agreement study, and the drawn conditions."""
+    and ``distributions``, as in the agreement study, and the drawn ``conditions``: overrides in SI."""
+
+    asked: Options
+    seed: int
+    gates: Gates
+    converged_deg_s: float
+    clearance_change_m: float
+    conditions: dict[str, dict[str, float]]
+    calibrated: tuple[Row, ...]
+    compliant: tuple[Row, ...]
+    growth: tuple[Growth, ...]
+    distributions: tuple[Distribution, ...]
+
+
+def run(study: Study, options: Options = Options()) -> dict:
+    """The content of ``Blind``."""
     drawn = draw(study, options)
     compared = [calibrated(study), compliant(drawn, drawn.conditions)]
 
-    def make() -> tuple[dict, list[Path]]:
+    def make() -> tuple[Blind, list[Path]]:
         curves = judging.as_curves(drawn, compared, "judge blind conditions")
         draws = options.neighbours or study.settings.neighbours
         found = judging.judge(drawn, compared, curves, draws)
-        return {
-            "asked": STAGE.plain(options),
-            "seed": seed_of(study, options),
-            "gates": verdicts.gates(study.scene),
-            "converged_deg_s": verdicts.CONVERGED_DEG_S,
-            "clearance_change_m": study.settings.clearance_change,
-            "conditions": drawn.scene.conditions,
-            **found.rows,
-            "growth": [asdict(item) for item in found.growths],
-            "distributions": found.distributions,
-        }, []
+        return Blind(
+            asked=options,
+            seed=seed_of(study, options),
+            gates=verdicts.gates(study.scene),
+            converged_deg_s=verdicts.CONVERGED_DEG_S,
+            clearance_change_m=study.settings.clearance_change,
+            conditions=drawn.scene.conditions,
+            **{name: tuple(rows) for name, rows in found.rows.items()},
+            growth=tuple(found.growths),
+            distributions=tuple(found.distributions),
+        ), []
 
     return STAGE.run(study, options, make)
 
@@ -85,7 +104,7 @@ def seed_of(study: Study, options: Options) -> int:
 
 def _inputs(study: Study, options: Options) -> list:
     conditions = draw(study, options).scene.conditions
-    return [conditions, calibrate.constants(study), verdicts.gates(study.scene)]
+    return [conditions, calibrate.constants(study), asdict(verdicts.gates(study.scene))]
 
 
-STAGE = Stage(NAME, __name__, Options, _inputs)
+STAGE = Stage(NAME, __name__, Options, _inputs, result=Blind)

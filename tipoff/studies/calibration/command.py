@@ -1,15 +1,12 @@
 """``tipoff calibrate``."""
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from tipoff.studies.commands.options import SurrogateName, condition_names
 from tipoff.studies.commands.request import Request, scene_command
 from tipoff.studies.commands.running import Output, quantity
-
-if TYPE_CHECKING:
-    from tipoff.studies.render.document import Part
 
 
 @scene_command()
@@ -88,9 +85,6 @@ def calibrate(
     from tipoff.mechanics.models import COMPLIANT, SPRINGS
     from tipoff.studies.calibration import page, stage
 
-    def shown(found: dict) -> "list[Part]":
-        return page.terminal(found, request.out / found["scene"])
-
     start = quantity("--settled-from", settled_from, "s", "44 ms")
     files = stage.named(reference or [], condition, start)
     study = request.study()
@@ -102,4 +96,5 @@ def calibrate(
         found = stage.on_reference(study, model or default, chosen)
     else:
         found = stage.of_models(study, model)
-    return Output(found, shown)
+        return Output(found, lambda found: page.of_models(found, study.folder))
+    return Output(found, lambda found: page.terminal(stage.STAGE.read(found), study.folder))

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tipoff.studies.calibration import compliance
+from tipoff.studies.calibration.compliance import UnderPad
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
@@ -26,22 +28,21 @@ _LOOKS = ((5.0, "-", 0.35), (1.5, "-", 1.0), (1.5, ":", 1.0))  # width, dash, op
 
 def draw(page: "Page") -> list[Part]:
     """The curves and their extremes; nothing for a scene without contact."""
-    document = page.documents.get("compliance") or {}
-    if not (found := document.get("under_a_pad")):
+    found = page.read(compliance.STAGE)
+    if found is None or (under := found.under_a_pad) is None:
         return []
-    caption = _CAPTION.format(size=1e3 * document["element_size_m"])
-    if elements := document.get("elements"):
-        caption += f" Elements: {elements['words']}."
-    return [Figure(picture(found), caption), table(found)]
+    caption = _CAPTION.format(size=1e3 * found.element_size_m)
+    if found.elements:
+        caption += f" Elements: {found.elements['words']}."
+    return [Figure(picture(under), caption), table(under)]
 
 
-def picture(found: dict) -> Chart:
-    """Compliance over the place of the pad, mounts shaded; ``found`` is ``under_a_pad`` of
-    compliance.json."""
-    place = 1e3 * np.array(found["place_m"])
+def picture(found: UnderPad) -> Chart:
+    """Compliance over the place of the pad, mounts shaded."""
+    place = 1e3 * np.array(found.place_m)
     lines = [
         Line(place, 1e9 * np.array(values), f"{name} wall, force on itself", colour, *look)
-        for (name, values), colour, look in zip(found["direct_m_per_n"].items(), _DIRECT, _LOOKS)
+        for (name, values), colour, look in zip(found.direct_m_per_n.items(), _DIRECT, _LOOKS)
     ]
     lines += [
         Line(
@@ -52,9 +53,9 @@ def picture(found: dict) -> Chart:
             2.0,
             "--",
         )
-        for (name, values), colour in zip(found["cross_m_per_n"].items(), _CROSS)
+        for (name, values), colour in zip(found.cross_m_per_n.items(), _CROSS)
     ]
-    mounts = tuple((1e3 * low, 1e3 * high) for low, high in found["mounts_m"])
+    mounts = tuple((1e3 * low, 1e3 * high) for low, high in found.mounts_m)
     return Chart(
         "compliance",
         [Panel("", "middle of the pad along X (mm)", "compliance (nm/N)", lines, spans=mounts)],
@@ -62,13 +63,13 @@ def picture(found: dict) -> Chart:
     )
 
 
-def table(found: dict) -> Table:
+def table(found: UnderPad) -> Table:
     """Smallest, median and largest compliance by magnitude, the place of the largest, and the ratio
     of a cross compliance to the geometric mean of the direct ones."""
-    direct = {name: np.array(values) for name, values in found["direct_m_per_n"].items()}
-    place = np.array(found["place_m"])
+    direct = {name: np.array(values) for name, values in found.direct_m_per_n.items()}
+    place = np.array(found.place_m)
     rows = [(f"{name} wall", *_figures(values, place), "") for name, values in direct.items()]
-    for name, values in found["cross_m_per_n"].items():
+    for name, values in found.cross_m_per_n.items():
         first, second = name.split()
         ratio = np.array(values) / np.sqrt(direct[first] * direct[second])
         rows.append(

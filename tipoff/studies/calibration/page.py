@@ -4,6 +4,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tipoff.studies.calibration import compliance
+from tipoff.studies.calibration.compliance import Compliance
+from tipoff.studies.calibration.stage import STAGE, Fit
 from tipoff.studies.render.document import Fold, Part
 from tipoff.studies.render.table import Column, Table, span
 from tipoff.studies.render.uncertain import LEAST, Measured, rounded
@@ -20,68 +23,66 @@ _INTERVALS = (
 
 def draw(page: "Page") -> list[Part]:
     """The calibration, or how to make it."""
-    return page.shown("calibration", calibration, "calibrate")
+    return page.shown("calibration", lambda found: calibration(STAGE.read(found)), "calibrate")
 
 
-def terminal(document: dict, folder: Path) -> list[Part]:
-    """What the terminal shows: the compliance, the constants with intervals, weak directions, files in
+def of_models(found: dict, folder: Path) -> list[Part]:
+    """What the terminal shows of the results of both models, or of one, with the files in ``folder``."""
+    parts: list[Part] = []
+    if "compliance" in found:
+        parts += _compliance(compliance.STAGE.read(found["compliance"]), folder)
+    if "springs" in found:
+        parts += terminal(STAGE.read(found["springs"]), folder)
+    return parts
+
+
+def terminal(found: Fit, folder: Path) -> list[Part]:
+    """What the terminal shows of a fit: the constants with intervals, weak directions, its file in
     ``folder``."""
-    if "parameters" not in document:
-        both = [
-            *(_compliance(document["compliance"], folder) if "compliance" in document else []),
-            *(terminal(document["springs"], folder) if "springs" in document else []),
-        ]
-        return both
-    wide = document["with_model_error"]
-    heads: list[Column | str] = ["constant", Column("value", form=".5g"), "unit", "95 % interval"]
     # a value that is kept is not that of the fit, and the interval is not its own
-    keys = ("parameters", "fitted", "units", "intervals")
-    rows = [list(row) for row in zip(*(document[key] for key in keys))]
-    kept = document["values"] != document["fitted"]
+    kept = found.values != found.fitted
+    columns: list[tuple[Column | str, Sequence[Any]]] = [
+        ("constant", found.parameters),
+        (
+            Column("fitted" if kept else "value", form=".5g"),
+            list(map(constant, found.fitted, found.intervals)),
+        ),
+        ("unit", found.units),
+        ("95 % interval", list(map(interval, found.intervals))),
+    ]
+    if found.with_model_error:
+        columns.append(("with model error", list(map(interval, found.with_model_error))))
     if kept:
-        heads[1] = Column("fitted", form=".5g")
-    for row in rows:
-        row[1], row[3] = constant(row[1], row[3]), interval(row[3])
-    if wide:
-        heads.append("with model error")
-        rows = [[*row, interval(ends)] for row, ends in zip(rows, wide)]
-    if kept:
-        heads.append(Column("kept, the scene's", form=".5g"))
-        rows = [[*row, value] for row, value in zip(rows, document["values"])]
-    fitted = (
-        f"Fitted to {', '.join(document['conditions'])}: objective {document['objective']:.4g}."
-    )
-    notes = [f"Weak: {words}" for words in document["weak_directions"]]
-    notes += [f"Verdict: {words}" for words in [document["verdict"]] if words]
+        columns.append((Column("kept, the scene's", form=".5g"), found.values))
+    title = f"Fitted to {', '.join(found.conditions)}: objective {found.objective:.4g}."
+    notes = [f"Weak: {words}" for words in found.weak_directions]
+    notes += [f"Verdict: {found.verdict}"] if found.verdict else []
+    heads, cells = zip(*columns)
     return [
-        Table(heads, rows, tuple(notes), fitted),
-        _residuals(document),
-        f"  {folder / document['calibration']}",
+        Table(heads, list(zip(*cells)), tuple(notes), title),
+        _residuals(found),
+        f"  {folder / found.calibration}",
     ]
 
 
-def _compliance(document: dict, folder: Path) -> list[Part]:
-    if document["file"] is None:
+def _compliance(found: Compliance, folder: Path) -> list[Part]:
+    if found.file is None or found.under_a_pad is None:
         return ["no contact: no compliance"]
-    largest = max(max(values) for values in document["under_a_pad"]["direct_m_per_n"].values())
+    largest = max(max(values) for values in found.under_a_pad.direct_m_per_n.values())
     columns = (
         "stations",
         Column("elements", "mm", "g", 1e3),
         Column("compliance under a pad, largest", "nm/N", ".3g", 1e9),
     )
-    row = (document["stations"], document["element_size_m"], largest)
-    return [
-        Table(columns, [row], title="Rail compliance."),
-        f"  {folder / document['file']}",
-    ]
+    row = (found.stations, found.element_size_m, largest)
+    return [Table(columns, [row], title="Rail compliance."), f"  {folder / found.file}"]
 
 
-def _residuals(document: dict) -> Table:
-    residuals = document["residuals"]
-    names = list(dict.fromkeys(name for found in residuals.values() for name in found))
+def _residuals(found: Fit) -> Table:
+    names = list(dict.fromkeys(name for own in found.residuals.values() for name in own))
     return Table(
         ("condition", *(name.replace("_", " ") for name in names)),
-        [(name, *map(found.get, names)) for name, found in residuals.items()],
+        [(name, *map(own.get, names)) for name, own in found.residuals.items()],
     )
 
 
@@ -104,52 +105,33 @@ def interval(ends: Sequence[float | None]) -> str:
     return " to ".join(rounded(end, half, LEAST * half) for end in (low, high))
 
 
-def calibration(document: dict) -> list[Part]:
+def calibration(found: Fit) -> list[Part]:
     """Fitted constants with bounds and reasons, weak directions, residuals."""
-    columns = (
-        "constant",
-        Column("value", form=".3g"),
-        "95 % interval",
-        "unit",
-        Column("lower bound", form=".4g"),
-        Column("upper bound", form=".4g"),
-        "reasons for fit and bounds",
-    )
     # of springs, whose fitted values are never replaced by the scene's
-    keys = ("parameters", "fitted", "intervals", "units", "lower", "upper", "justification")
-    rows = [
-        (name, constant(value, ends), interval(ends), *rest)
-        for name, value, ends, *rest in zip(*(document[key] for key in keys))
-    ]
+    columns: dict[Column | str, Sequence[Any]] = {
+        "constant": found.parameters,
+        Column("value", form=".3g"): list(map(constant, found.fitted, found.intervals)),
+        "95 % interval": list(map(interval, found.intervals)),
+        "unit": found.units,
+        Column("lower bound", form=".4g"): found.lower,
+        Column("upper bound", form=".4g"): found.upper,
+        "reasons for fit and bounds": found.justification,
+    }
+    weak = [(line,) for line in found.weak_directions or ["none"]]
+    constants = [(f"`{key}`", value) for key, value in found.constants.items()]
+    matrix = [(name, *row) for name, row in zip(found.parameters, found.information)]
     return [
-        f"Fitted to {', '.join(document['conditions'])} together; objective "
-        f"{document['objective']:.4g}.",
-        Table(columns, rows, (_INTERVALS,)),
-        Table(
-            ("weak directions, and constants that the curves do not determine",),
-            [(line,) for line in document["weak_directions"] or ["none"]],
-        ),
+        f"Fitted to {', '.join(found.conditions)} together; objective {found.objective:.4g}.",
+        Table(list(columns), list(zip(*columns.values())), (_INTERVALS,)),
+        Table(("weak directions, and constants that the curves do not determine",), weak),
         Fold(
             "Constants of the surrogate (SI)",
-            [
-                Table(
-                    ("key", Column("value", form=".6g")),
-                    [(f"`{key}`", value) for key, value in document["constants"].items()],
-                )
-            ],
+            [Table(("key", Column("value", form=".6g")), constants)],
         ),
-        Fold("Provenance", [Table(("", ""), list(document["provenance"].items()))]),
-        Fold("Residuals of each condition", [_residuals(document)]),
+        Fold("Provenance", [Table(("", ""), list(found.provenance.items()))]),
+        Fold("Residuals of each condition", [_residuals(found)]),
         Fold(
             "Information matrix of the scaled constants",
-            [
-                Table(
-                    ("", *document["parameters"]),
-                    [
-                        (name, *row)
-                        for name, row in zip(document["parameters"], document["information"])
-                    ],
-                )
-            ],
+            [Table(("", *found.parameters), matrix)],
         ),
     ]

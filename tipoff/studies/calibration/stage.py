@@ -6,7 +6,8 @@ then in a separate folder, so that other stages, which compare with the referenc
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -27,12 +28,43 @@ FILE = "calibration.toml"
 _OF_COMPLIANT = f"calibration-{COMPLIANT}"
 
 
+Ends = tuple[
+    float | None, float | None
+]  # of an interval; None where the curves do not determine it
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fit:
+    """A calibration as ``scenes.Calibration`` has it, in a result: ``fitted`` are always the values that
+    the intervals belong to; ``calibration`` is its file in the folder of the scene."""
+
+    constants: dict[str, float]
+    changes: dict[str, float]
+    verdict: str
+    parameters: list[str]
+    values: list[float]
+    fitted: list[float]
+    intervals: list[Ends]
+    with_model_error: list[Ends]
+    units: list[str]
+    lower: list[float]
+    upper: list[float]
+    justification: list[str]
+    information: list[list[float]]
+    weak_directions: list[str]
+    residuals: dict[str, dict[str, float | None]]
+    conditions: list[str]
+    objective: float
+    provenance: dict[str, str]
+    calibration: str
+
+
 def run(study: Study) -> dict:
-    """The calibration as JSON values; writes ``calibration.toml``."""
+    """The content of ``Fit``, of springs; writes ``calibration.toml``."""
     names = study.fitted()
     requested = _requested(study)
 
-    def make() -> tuple[dict, list[Path]]:
+    def make() -> tuple[Fit, list[Path]]:
         from tipoff import calibration
 
         say(f"  {forecast.calibration(study, requested)}")
@@ -58,22 +90,21 @@ def of_models(study: Study, model: str | None = None) -> dict:
 
 
 def on_reference(study: Study, model: str, parameters: Sequence[str]) -> dict:
-    """The calibration of the ``model`` compliant, with these ``parameters``, on the reference's fitted
-    conditions as JSON values; writes ``calibration-compliant.toml``. Raises CalibrationError."""
+    """The content of ``Fit`` of the ``model`` compliant, with these ``parameters``, on the reference's
+    fitted conditions; writes ``calibration-compliant.toml``. Raises CalibrationError."""
     from tipoff import calibration
 
     calibration.require_model(study.scene, model, parameters)
     calibration.require_parameters(study.scene, study.fitted(), parameters)
     names, requested = study.fitted(), _requested(study)
 
-    def make() -> tuple[dict, list[Path]]:
+    def make() -> tuple[Fit, list[Path]]:
         say(f"  {forecast.calibration(study, requested, COMPLIANT, parameters)}")
         references = dict(zip(names, study.store.fill("highfi", requested)))
         require_success(references, "calibrate")
         return fit(study, references, study.path(f"{_OF_COMPLIANT}.toml"), COMPLIANT, parameters)
 
-    key = study.key(__name__, [item.key for item in requested], list(parameters))
-    return study.stage(_OF_COMPLIANT, key, make)
+    return _other(_OF_COMPLIANT, [item.key for item in requested], parameters, study, make)
 
 
 def _requested(study: Study) -> list[Run]:
@@ -84,8 +115,20 @@ def _inputs(study: Study, _: None) -> list[str]:
     return [item.key for item in _requested(study)]
 
 
-STAGE = Stage("calibration", __name__, inputs=_inputs)
+STAGE = Stage("calibration", __name__, inputs=_inputs, result=Fit)
 stored = STAGE.stored
+
+
+def _other(
+    name: str,
+    sources: Any,
+    parameters: Sequence[str] | None,
+    study: Study,
+    make: Callable[[], tuple[Fit, list[Path]]],
+) -> dict:
+    """The content of a ``Fit`` with a file of another ``name``, from ``sources`` (JSON values)."""
+    inputs = [sources, parameters and list(parameters)]
+    return replace(STAGE, name=name, inputs=lambda *_: inputs).run(study, None, make)
 
 
 def constants(study: Study) -> dict:
@@ -134,9 +177,9 @@ def from_files(
     model: str = SPRINGS,
     parameters: Sequence[str] | None = None,
 ) -> dict:
-    """The calibration of a ``model``, of these ``parameters`` where they are chosen, as JSON values,
-    from CSV files (condition, path) that ``Curves.read_csv`` reads; writes
-    ``curves/calibration.toml``, on compliant contact ``curves/calibration-compliant.toml``.
+    """The content of ``Fit`` of a ``model``, of these ``parameters`` where they are chosen, from CSV files
+    (condition, path) that ``Curves.read_csv`` reads; writes ``curves/calibration.toml``, on compliant
+    contact ``curves/calibration-compliant.toml``.
 
     Raises SceneError listing every fault of every file, CalibrationError for curves that do not fit
     the scene.
@@ -161,14 +204,13 @@ def from_files(
     if parameters is not None:
         calibration.require_parameters(study.scene, list(references), parameters)
 
-    def make() -> tuple[dict, list[Path]]:
+    def make() -> tuple[Fit, list[Path]]:
         say(f"  {forecast.search(study, len(references), model, parameters)}")
         return fit(study, references, study.path(f"{stage}.toml"), model, parameters)
 
     stage = f"curves/{_OF_COMPLIANT if model == COMPLIANT else 'calibration'}"
     sources = {name: item.source for name, item in references.items()}
-    chosen = [] if parameters is None else [list(parameters)]
-    return study.stage(stage, study.key(__name__, sources, *chosen), make)
+    return _other(stage, sources, parameters, study, make)
 
 
 def fit(
@@ -177,9 +219,9 @@ def fit(
     path: Path,
     model: str = SPRINGS,
     parameters: Sequence[str] | None = None,
-) -> tuple[dict, list[Path]]:
+) -> tuple[Fit, list[Path]]:
     """Fit a ``model``, with these ``parameters`` where they are chosen, to ``references`` (condition:
-    run or curves) and write the record to ``path``: the calibration as plain values, and the files
+    run or curves) and write the record to ``path``: the result, and the files
     written. Raises CalibrationError."""
     from tipoff import calibration
 
@@ -197,7 +239,7 @@ def fit(
         )
         board.finished("calibrate", f"objective {found.objective:.4g}")
     found.save(path)
-    return as_dict(found) | {"calibration": study.relative(path)}, [path]
+    return fit_of(found, study.relative(path)), [path]
 
 
 def rigid_walls(study: Study, names: Iterable[str]) -> RailCompliance | None:
@@ -212,29 +254,19 @@ def load(study: Study) -> Calibration:
     return Calibration.load(study.path(FILE))
 
 
-def as_dict(found: Calibration) -> dict:
-    """A calibration as JSON values."""
-    return {
-        "constants": found.constants,
-        "changes": found.changes,
-        "verdict": found.verdict,
-        "parameters": found.parameters,
-        "values": list(found.values),
-        "fitted": list(found.estimates),
+def fit_of(found: Calibration, path: str) -> Fit:
+    """A calibration in the file ``path`` as a result."""
+    changed: dict[str, Any] = {
+        "fitted": found.estimates,
         "intervals": _finite(found.intervals),
         "with_model_error": _finite(found.with_model_error),
-        "units": found.units,
-        "lower": list(found.lower),
-        "upper": list(found.upper),
-        "justification": found.justification,
         "information": np.asarray(found.information).tolist(),
-        "weak_directions": found.weak_directions,
-        "residuals": found.residuals,
-        "conditions": found.conditions,
-        "objective": float(found.objective),
-        "provenance": found.provenance,
     }
+    return Fit(**vars(found) | changed, calibration=path)
 
 
-def _finite(intervals: list[list[float]]) -> list[list[float | None]]:
-    return [[end if math.isfinite(end) else None for end in ends] for ends in intervals]
+def _finite(intervals: list[list[float]]) -> list[Ends]:
+    return [
+        (low if math.isfinite(low) else None, high if math.isfinite(high) else None)
+        for low, high in intervals
+    ]

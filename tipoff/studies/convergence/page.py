@@ -1,14 +1,21 @@
 """Error of the reference on the page and in the terminal: settled rates over element size, and
 tables of the refinements and changes."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from operator import attrgetter, itemgetter
+from typing import TYPE_CHECKING, Any
 
-from tipoff.studies.convergence import summary
+from tipoff.comparison.extrapolation import NOT_CONVERGED
+from tipoff.highfi.numerics import Numerics
+from tipoff.studies.agreement import verdicts
+from tipoff.studies.convergence import stage
+from tipoff.studies.convergence.quantities import RATE
+from tipoff.studies.convergence.stage import Change, Convergence, Refined
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Part
 from tipoff.studies.render.palette import AXIS_COLOURS, GREY
-from tipoff.studies.render.table import Cells, Column, Table
-from tipoff.studies.render.uncertain import Measured
+from tipoff.studies.render.table import Column, Table
+from tipoff.studies.render.uncertain import LEAST, Measured, number
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
@@ -31,131 +38,158 @@ _RIPPLE = (
 
 def draw(page: "Page") -> list[Part]:
     """The section; empty without a result, which takes minutes to make."""
-    found = page.documents.get("convergence")
-    if not found:
+    found = page.read(stage.STAGE)
+    if found is None:
         return []
     chart = picture(found)
-    figure = [Figure(chart, _RATES.format(condition=found["condition"]))] if chart.panels else []
-    return [*figure, Bullets(summary.lines(found)), *tables(found), *_changes(found)]
+    figure = [Figure(chart, _RATES.format(condition=found.condition))] if chart.panels else []
+    return [*figure, Bullets(sentences(found)), *tables(found), *_changed(found)]
 
 
-def terminal(found: dict) -> list[Part]:
+def terminal(found: Convergence) -> list[Part]:
     """The sentences and the tables of the refinements."""
-    return [Bullets(summary.lines(found)), *tables(found)]
+    return [Bullets(sentences(found)), *tables(found)]
 
 
-def picture(document: dict) -> Chart:
+def sentences(found: Convergence) -> list[str]:
+    """One sentence for each of: meshes, steps, interface stiffness, contact cells, ripple, equal
+    accuracy, where the result ``found`` has it."""
+    step = (
+        f", {Numerics().safety:g} of the step limit on elements of {1e3 * found.coarse_size_m:g} mm"
+    )
+    stiffness = [(row.factor, row) for row in found.interface_stiffness]
+    cells = [(row.cells_per_edge, row) for row in found.contact_cells]
+    return [
+        _refinement(found, "element size", "mm", 1e3, ""),
+        _refinement(found, "time step", "ns", 1e9, step),
+        *_largest_change("interface stiffness, times", stiffness),
+        *_largest_change("contact cells along each edge of a pad,", cells),
+        *(
+            f"ripple of a constant contact force at the facet frequency {row.frequency:.4g} Hz, "
+            f"facets of {1e3 * row.element_size_m:.3g} mm: {100.0 * row.ripple:.2g} %"
+            for row in found.ripple[-1:]
+        ),
+        *([found.equal_accuracy.sentence()] if found.equal_accuracy else []),
+    ]
+
+
+def _refinement(found: Convergence, parameter: str, unit: str, factor: float, default: str) -> str:
+    """Uncertainty of the settled rates by one ``parameter``, whose sizes are shown in ``unit``, times
+    ``factor``; ``default`` says more of the default size."""
+    rows = found.refined(parameter, RATE)
+    known = [
+        (row.nominal_uncertainty, row.uncertainty, row)
+        for row in rows
+        if row.nominal_uncertainty is not None and row.uncertainty is not None
+    ]
+    if len(known) < len(rows):
+        last = [row for row in rows if None in (row.nominal_uncertainty, row.uncertainty)][-1]
+        return f"{parameter} on {found.condition}: uncertainty unknown, {last.method}"
+    at_nominal, _, worst = sorted(known, key=itemgetter(0))[-1]
+    return (
+        f"{parameter} on {found.condition}: uncertainty of the settled rates "
+        f"{number(at_nominal, '.2g', LEAST)} deg/s at the default "
+        f"{factor * worst.nominal_size:.3g} {unit}{default}, "
+        f"{number(max(finest for _, finest, _ in known), '.2g', LEAST)} deg/s at "
+        f"{factor * worst.sizes[-1]:.3g} {unit}"
+        f"{f'; {NOT_CONVERGED}' if worst.method == NOT_CONVERGED else ''}"
+    )
+
+
+def _largest_change(title: str, rows: Sequence[tuple[float, Change]]) -> list[str]:
+    """Largest change of a settled rate over the ``rows`` with their numbers; none without rows."""
+    if not rows:
+        return []
+    change = verdicts.largest(row.settled_rate_change_deg_s for _, row in rows)
+    odd = "".join(
+        f"; {value:g} {row.status}" for value, row in rows if row.settled_rate_change_deg_s is None
+    )
+    found = (
+        "no run settled"
+        if change is None
+        else f"a settled rate changes by up to {number(change, '.2g', LEAST)} deg/s"
+    )
+    return [f"{title} {rows[0][0]:g} to {rows[-1][0]:g}: {found}{odd}"]
+
+
+def picture(found: Convergence) -> Chart:
     """Settled rates over element size, one panel an axis, with the uncertainty of the finest
     mesh."""
-    rows = [
-        row
-        for row in document["quantities"]
-        if row["parameter"] == "element size" and row["unit"] == "deg/s"
-    ]
-    panels = [
-        _panel(row, colour)
-        for row, colour in zip(rows, AXIS_COLOURS.values())
-        if None not in row["values"]
-    ]
+    panels = []
+    for row, colour in zip(found.refined("element size", RATE), AXIS_COLOURS.values()):
+        sizes = [1e3 * size for size in row.sizes]
+        values = [value for value in row.values if value is not None]
+        if len(values) < len(sizes):
+            continue
+        lines = [Line(sizes, values, "finite elements", colour, marker="o", legend=False)]
+        if row.uncertainty is not None:
+            bounds = values[-1] - row.uncertainty, values[-1] + row.uncertainty
+            words = "uncertainty of the finest mesh"
+            lines = [
+                *(Line([0.0, sizes[0]], [end, end], words, GREY, 1.1, ":") for end in bounds),
+                *lines,
+            ]
+        panels.append(Panel(row.quantity, "element size (mm)", "rate (deg/s)", lines))
     return Chart("convergence", panels, columns=3, height=300)
 
 
-def _panel(row: dict, colour: str) -> Panel:
-    sizes, values = [1e3 * size for size in row["sizes"]], row["values"]
-    bounds = (
-        [
-            Line([0.0, sizes[0]], [value, value], "uncertainty of the finest mesh", GREY, 1.1, ":")
-            for value in (values[-1] - row["uncertainty"], values[-1] + row["uncertainty"])
-        ]
-        if row["uncertainty"] is not None
-        else []
-    )
-    return Panel(
-        row["quantity"],
-        "element size (mm)",
-        "rate (deg/s)",
-        [*bounds, Line(sizes, values, "finite elements", colour, marker="o", legend=False)],
-    )
-
-
-def tables(document: dict) -> list[Part]:
+def tables(found: Convergence) -> list[Part]:
     """One table of orders and uncertainties for each refined parameter."""
-    found: list[Part] = []
-    for parameter, factor, unit in (("element size", 1e3, "mm"), ("time step", 1e9, "ns")):
-        rows = [row for row in document["quantities"] if row["parameter"] == parameter]
-        sizes = [f"{factor * size:.4g} {unit}" for size in rows[0]["sizes"]]
-        heads: tuple[Column | str, ...] = (
-            f"{parameter}: quantity",
-            "unit",
-            *(Column(size, form=".5g") for size in sizes),
-            Column("order", form=".2g"),
-            f"± at {sizes[-1]}",
-            Column("GCI", "%", ".2g"),
-            f"± at {factor * rows[0]['nominal_size']:.4g} {unit}",
-            "method",
-        )
-        shown = [
-            (
-                row["quantity"],
-                row["unit"],
-                *(_rounded(row, value) for value in row["values"]),
-                row["order"],
-                _rounded(row, row["uncertainty"]),
-                row["gci_percent"],
-                _rounded(row, row["nominal_uncertainty"], row["nominal_uncertainty"]),
-                row["method"],
-            )
-            for row in rows
-        ]
-        notes = (_meshes(document),) if parameter == "element size" else (_METHOD,)
-        found.append(Table(heads, shown, notes, dense=True))
-    return found
-
-
-def _rounded(row: dict, value: float | None, uncertainty: float | None = None) -> Measured:
-    """A value of a quantity, by default with the digits that the finest size gives it."""
-    own = row["uncertainty"] if uncertainty is None else uncertainty
-    return Measured(value, own, apart=True, unit=row["unit"])
-
-
-def _meshes(document: dict) -> str:
-    counts = ", ".join(f"{mesh['elements']:,}" for mesh in document["meshes"])
-    return (
+    counts = ", ".join(f"{mesh.elements:,}" for mesh in found.meshes)
+    meshes = (
         f"Elements of the meshes: {counts}. A wall has at least one element through its thickness, "
         "so coarse meshes differ along the wall only."
     )
+    shown: list[Part] = []
+    for parameter, factor, unit, note in (
+        ("element size", 1e3, "mm", meshes),
+        ("time step", 1e9, "ns", _METHOD),
+    ):
+        rows = found.refined(parameter)
+        sizes = [f"{factor * size:.4g} {unit}" for size in rows[0].sizes]
+        columns: list[Any] = [
+            (f"{parameter}: quantity", attrgetter("quantity")),
+            ("unit", attrgetter("unit")),
+            *(
+                (Column(size, form=".5g"), lambda row, at=at: _rounded(row, row.values[at]))
+                for at, size in enumerate(sizes)
+            ),
+            (Column("order", form=".2g"), attrgetter("order")),
+            (f"± at {sizes[-1]}", lambda row: _rounded(row, row.uncertainty)),
+            (Column("GCI", "%", ".2g"), attrgetter("gci_percent")),
+            (
+                f"± at {factor * rows[0].nominal_size:.4g} {unit}",
+                lambda row: _rounded(row, row.nominal_uncertainty, row.nominal_uncertainty),
+            ),
+            ("method", attrgetter("method")),
+        ]
+        shown.append(Table.of_records(rows, *columns, notes=(note,), dense=True))
+    return shown
 
 
-def _changes(document: dict) -> list[Part]:
+def _rounded(row: Refined, value: float | None, uncertainty: float | None = None) -> Measured:
+    """A value of a quantity, by default with the digits that the finest size gives it."""
+    own = row.uncertainty if uncertainty is None else uncertainty
+    return Measured(value, own, apart=True, unit=row.unit)
+
+
+def _changed(found: Convergence) -> list[Part]:
     """Ripple, interface stiffness and contact cells; nothing without contact."""
-    if not document["interface_stiffness"]:
+    if not found.interface_stiffness:
         return []
-    cells = ("contact cells along each edge of a pad", "cells_per_edge")
-    slides: Cells = (
-        (Column("element size", "mm", "g", 1e3), "element_size_m"),
-        cells,
-        (Column("facet frequency", "Hz", ".4g"), "frequency"),
-        ("facets", "facets"),
-        (Column("ripple", "%", ".2g", 100.0), "ripple"),
-        (Column("between multiples", "%", ".2g", 100.0), "background"),
-    )
-    settled: Cells = (
-        (Column("settled x, y, z", "deg/s", ".3f"), "settled_rate_deg_s"),
-        (Column("largest change", "deg/s", ".2g"), "settled_rate_change_deg_s"),
-        ("status", "status"),
-    )
-    stiffness: Cells = (
-        (Column("factor", form="g"), "factor"),
-        (Column("interface stiffness", "N/m³"), "interface_stiffness_n_m3"),
-        *settled,
-    )
-    size = f"{1e3 * document['coarse_size_m']:g} mm"
+    slides = ("element_size_m", "cells_per_edge", "frequency", "facets", "ripple", "background")
+    settled = ("settled_rate_deg_s", "settled_rate_change_deg_s", "status")
+    size = f"{1e3 * found.coarse_size_m:g} mm"
 
-    def fold(title: str, columns: Cells, rows: list[dict], *notes: str) -> list[Part]:
-        return [Fold(title, [Table.of(rows, columns, notes=notes)])] if rows else []
+    def fold(title: str, rows: Sequence[Any], *columns: str, notes: tuple = ()) -> list[Part]:
+        return [Fold(title, [Table.of_records(rows, *columns, notes=notes)])] if rows else []
 
     return [
-        *fold("Ripple of a constant contact force", slides, document["ripple"], _RIPPLE),
-        *fold(f"Interface stiffness, {size} elements", stiffness, document["interface_stiffness"]),
-        *fold(f"Contact cells, {size} elements", (cells, *settled), document["contact_cells"]),
+        *fold("Ripple of a constant contact force", found.ripple, *slides, notes=(_RIPPLE,)),
+        *fold(
+            f"Interface stiffness, {size} elements",
+            found.interface_stiffness,
+            *("factor", "interface_stiffness_n_m3", *settled),
+        ),
+        *fold(f"Contact cells, {size} elements", found.contact_cells, "cells_per_edge", *settled),
     ]

@@ -12,7 +12,8 @@ some hundred Hz. The same sum half-way between the multiples shows the leakage o
 ringing rail.
 """
 
-from typing import NamedTuple
+from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
@@ -23,7 +24,9 @@ from tipoff.highfi.run import Loop
 from tipoff.highfi.state.threads import processors
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.scenes.scene import Scene
+from tipoff.studies.render.column import Column
 
+CELLS = Column("contact cells along each edge of a pad")
 HARMONICS = 3
 _SPEED = 6.0  # m/s: a facet passes faster than the payload can follow it
 _LOAD = 1000.0  # N
@@ -36,17 +39,18 @@ _EVEN = 1e-3  # largest relative difference of facet lengths
 _FRICTIONLESS = {"static": 1e-9, "dynamic": 1e-9, "static_speed": 0.01, "dynamic_speed": 0.02}
 
 
-class Ripple(NamedTuple):
+@dataclass(frozen=True)
+class Ripple:
     """``ripple`` (1) of the face with the largest one, ``background`` (1) half-way between the
     multiples; ``frequency`` (Hz) of the first multiple, ``facets`` crossed, ``load`` (N) of that
     face, ``cells_per_edge`` of a pad."""
 
-    ripple: float
-    background: float
-    frequency: float
-    facets: int
+    ripple: Annotated[float, Column("ripple", "%", ".2g", 100.0)]
+    background: Annotated[float, Column("between multiples", "%", ".2g", 100.0)]
+    frequency: Annotated[float, Column("facet frequency", "Hz", ".4g")]
+    facets: Annotated[int, Column("facets")]
     load: float
-    cells_per_edge: int = 0  # not known to ``judge``
+    cells_per_edge: Annotated[int, CELLS] = 0  # not known to ``judge``
 
 
 def measure(scene: Scene, numerics: Numerics) -> Ripple | None:
@@ -66,7 +70,7 @@ def measure(scene: Scene, numerics: Numerics) -> Ripple | None:
     loop = Loop(pressed, system, choose(system, pressed, numerics), processors())
     force = slide(loop, round(facets * length / _SPEED / _INTERVAL))
     cells = int(system.surface.cells[:, 0].max())
-    return judge(force, _SPEED / length, facets)._replace(cells_per_edge=cells)
+    return replace(judge(force, _SPEED / length, facets), cells_per_edge=cells)
 
 
 def pressing(scene: Scene) -> Scene:

@@ -10,18 +10,22 @@ half a facet. A wall has at least one element through its thickness, so coarse m
 (``studies.agreement.equal_accuracy``)."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict
+from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Annotated, Any
 
 from tipoff.comparison.extrapolation import Estimate, estimate
 from tipoff.highfi.numerics import Numerics
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
-from tipoff.studies.agreement import equal_accuracy, interface, refined, verdicts
+from tipoff.studies.agreement import equal_accuracy, interface, refinement, verdicts
 from tipoff.studies.agreement.candidates import compliant
+from tipoff.studies.agreement.equal_accuracy import EqualAccuracy
 from tipoff.studies.convergence import contact_loads, ripple, statics, stresses
+from tipoff.studies.convergence.options import Options
 from tipoff.studies.convergence.quantities import RATE, quantities, settled_rate
+from tipoff.studies.convergence.ripple import CELLS, Ripple
+from tipoff.studies.render.column import Column
 from tipoff.workspace.progress import Board
 from tipoff.workspace.run import Run
 from tipoff.workspace.stage import Stage
@@ -34,57 +38,134 @@ _FEW_CELLS = 3  # along each edge of a pad: longer than the facets it slides ove
 _LONG = 60.0  # s, a run of the reference that is timed once only
 
 
-def run(study: Study, condition: str | None = None) -> dict:
-    """``quantities`` over element size and time step with order and uncertainty,
-    ``interface_stiffness``, ``contact_cells``, ``ripple`` and ``equal_accuracy``. Raises SceneError
-    for an unknown condition, StudyError where a mesh or a step fails."""
-    name = condition or (study.scene.agreement.refined or tuple(study.conditions))[0]
+@dataclass(frozen=True, kw_only=True)
+class Mesh:
+    """Elements, step and wall time of the reference on one mesh."""
+
+    element_size_m: float
+    elements: int
+    dt_s: float
+    wall_s: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Refined(Estimate):
+    """A quantity over the ``sizes`` of a refined ``parameter``, coarsest first; a value is None where a
+    run did not settle. ``nominal_uncertainty`` is that at the size that other stages use."""
+
+    quantity: str
+    unit: str
+    parameter: str
+    sizes: list[float]
+    size_unit: str
+    values: list[float | None]
+    nominal_size: float
+    nominal_uncertainty: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Change:
+    """Settled rates (deg/s) about x, y, z of a changed run, and the largest change of one against the
+    nominal run of the coarse mesh; None where it did not settle."""
+
+    status: Annotated[str, Column("status")]
+    settled_rate_deg_s: Annotated[list[float | None], Column("settled x, y, z", "deg/s", ".3f")]
+    settled_rate_change_deg_s: Annotated[float | None, Column("largest change", "deg/s", ".2g")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OtherStiffness(Change):
+    """The same with ``factor`` times the interface stiffness."""
+
+    factor: Annotated[float, Column("factor", form="g")]
+    interface_stiffness_n_m3: Annotated[float, Column("interface stiffness", "N/m³")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OtherCells(Change):
+    """The same with so many contact cells."""
+
+    cells_per_edge: Annotated[int, CELLS]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slide(Ripple):
+    """Ripple on a mesh."""
+
+    element_size_m: Annotated[float, Column("element size", "mm", "g", 1e3)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Convergence:
+    """``quantities`` over element size and time step with order and uncertainty; runs with other
+    ``interface_stiffness`` and ``contact_cells``, and the ``ripple`` by element size, the first with few
+    contact cells, none of them without contact; ``equal_accuracy`` None where nothing touches, or where
+    compliant contact or a mesh did not settle."""
+
+    condition: str
+    element_size_m: float
+    coarse_size_m: float
+    force_cutoff_hz: float
+    meshes: tuple[Mesh, ...]
+    quantities: tuple[Refined, ...]
+    interface_stiffness: tuple[OtherStiffness, ...]
+    contact_cells: tuple[OtherCells, ...]
+    ripple: tuple[Slide, ...]
+    equal_accuracy: EqualAccuracy | None
+
+    def refined(self, parameter: str, quantity: str = "") -> list[Refined]:
+        """The rows of a refined parameter whose quantity begins so."""
+        return [
+            row
+            for row in self.quantities
+            if row.parameter == parameter and row.quantity.startswith(quantity)
+        ]
+
+
+def run(study: Study, options: Options | None = None) -> dict:
+    """The content of ``Convergence``. Raises SceneError for an unknown condition, StudyError where a mesh
+    or a step fails."""
+    given = options and options.condition
+    name = given or (study.scene.agreement.refined or tuple(study.conditions))[0]
     scene = study.condition(name)
 
-    def make() -> tuple[dict, list[Path]]:
-        asked, sizes = refined.mesh_sizes(study, scene, study.settings.mesh_sizes, _LEAST)
+    def make() -> tuple[Convergence, list[Path]]:
+        asked, sizes = refinement.mesh_sizes(study, scene, study.settings.mesh_sizes, _LEAST)
         nominal = sizes[asked.index(study.settings.element_size)]
-        meshes = _finished(study, "convergence, meshes", refined.meshes(study, name, asked))
+        meshes = _finished(study, "convergence, meshes", refinement.meshes(study, name, asked))
         steps = _finished(
-            study, "convergence, steps", refined.steps(study, name, study.settings.safeties)
+            study, "convergence, steps", refinement.steps(study, name, study.settings.safeties)
         )
         by_mesh = [*quantities(scene, meshes), *statics.quantities(scene, asked)]
-        judged = [
-            *_judged(_Parameter("element size", "m", sizes, nominal), by_mesh),
-            *_judged(_time_step(steps), quantities(scene, steps)),
-        ]
-        interface_stiffness, contact_cells, ripples = (
-            _interfaces(study, name),
-            _cells(study, name),
-            _ripples(study, scene),
-        )
-        equal = _at_equal_accuracy(study, name, judged, dict(zip(sizes, meshes)))
-        return {
-            "condition": name,
-            "element_size_m": study.settings.element_size,
-            "coarse_size_m": study.settings.coarse_size,
-            "force_cutoff_hz": contact_loads.cutoff(scene),
-            "meshes": [
-                {
-                    "element_size_m": size,
-                    "elements": found.cost["elements"],
-                    "dt_s": found.cost["dt_s"],
-                    "wall_s": found.cost["wall_s"],
-                }
+        in_space = _judged("element size", "m", sizes, nominal, by_mesh)
+        dt = [found.cost["dt_s"] for found in steps]
+        in_time = _judged("time step", "s", dt, dt[0], quantities(scene, steps))
+        touching = scene.contact is not None
+        return Convergence(
+            condition=name,
+            element_size_m=study.settings.element_size,
+            coarse_size_m=study.settings.coarse_size,
+            force_cutoff_hz=contact_loads.cutoff(scene),
+            meshes=tuple(
+                Mesh(
+                    element_size_m=size,
+                    elements=int(found.cost["elements"]),
+                    dt_s=found.cost["dt_s"],
+                    wall_s=found.cost["wall_s"],
+                )
                 for size, found in zip(sizes, meshes)
-            ],
-            "quantities": judged,
-            "interface_stiffness": interface_stiffness,
-            "contact_cells": contact_cells,
-            "ripple": ripples,
-            "equal_accuracy": equal,
-        }, []
+            ),
+            quantities=(*in_space, *in_time),
+            interface_stiffness=_interfaces(study, name) if touching else (),
+            contact_cells=_cells(study, name) if touching else (),
+            ripple=_ripples(study, scene),
+            equal_accuracy=_at_equal_accuracy(study, name, in_space, dict(zip(sizes, meshes))),
+        ), []
 
     return STAGE.run(study, name, make)
 
 
-STAGE = Stage(NAME, __name__, str, field="condition")
-stored = STAGE.stored
+STAGE = Stage(NAME, __name__, str, field="condition", result=Convergence)
 
 
 def _finished(study: Study, title: str, wanted: list[Run]) -> list[Trajectory]:
@@ -95,103 +176,91 @@ def _finished(study: Study, title: str, wanted: list[Run]) -> list[Trajectory]:
     return runs
 
 
-class _Parameter(NamedTuple):
-    """What is refined: its name, unit, ``sizes``, coarsest first, and the ``nominal`` one, which all
-    other stages use."""
-
-    name: str
-    unit: str
-    sizes: list[float]
-    nominal: float
-
-
-def _time_step(steps: list[Trajectory]) -> _Parameter:
-    sizes = [found.cost["dt_s"] for found in steps]
-    return _Parameter("time step", "s", sizes, sizes[0])
-
-
 def _judged(
-    parameter: _Parameter, values_of: Iterable[tuple[str, str, Sequence[float | None]]]
-) -> list[dict]:
-    """One row a quantity. ``nominal_uncertainty`` is that at the nominal size."""
+    parameter: str,
+    unit: str,
+    sizes: list[float],
+    nominal: float,
+    values_of: Iterable[tuple[str, str, Sequence[float | None]]],
+) -> list[Refined]:
+    """One row a quantity over ``sizes``, coarsest first; other stages use the ``nominal`` one."""
     rows = []
     for quantity, its_unit, values in values_of:
-        found = estimate(parameter.sizes, values)
-        at_nominal, finest = values[parameter.sizes.index(parameter.nominal)], values[-1]
-        if quantity == stresses.PEAK and parameter.unit == "m":
+        found = estimate(sizes, values)
+        at_nominal, finest = values[sizes.index(nominal)], values[-1]
+        if quantity == stresses.PEAK and unit == "m":
             found = Estimate(found.order, None, None, stresses.SINGULAR)
         rows.append(
-            {
-                "quantity": quantity,
-                "unit": its_unit,
-                "parameter": parameter.name,
-                "sizes": parameter.sizes,
-                "size_unit": parameter.unit,
-                "values": list(values),
-                **asdict(found),
-                "nominal_size": parameter.nominal,
-                "nominal_uncertainty": None
+            Refined(
+                **vars(found),
+                quantity=quantity,
+                unit=its_unit,
+                parameter=parameter,
+                sizes=sizes,
+                size_unit=unit,
+                values=list(values),
+                nominal_size=nominal,
+                nominal_uncertainty=None
                 if found.uncertainty is None or at_nominal is None or finest is None
                 else found.uncertainty + abs(at_nominal - finest),
-            }
+            )
         )
     return rows
 
 
-def _interfaces(study: Study, name: str) -> list[dict]:
-    """Rows by interface stiffness; none without contact."""
+def _interfaces(study: Study, name: str) -> tuple[OtherStiffness, ...]:
     contact = study.condition(name).contact
-    if contact is None:
-        return []
+    assert contact is not None
     factors = study.settings.interface_stiffness_factors
-    heads = [
-        {"factor": factor, "interface_stiffness_n_m3": factor * contact.series_stiffness()}
-        for factor in factors
-    ]
     wanted = [interface.reference(study, name, factor) for factor in factors]
-    return _compared(study, "convergence, interface stiffness", name, heads, wanted)
+    found = _changes(study, "convergence, interface stiffness", name, wanted)
+    return tuple(
+        OtherStiffness(
+            factor=factor, interface_stiffness_n_m3=factor * contact.series_stiffness(), **change
+        )
+        for factor, change in zip(factors, found)
+    )
 
 
-def _cells(study: Study, name: str) -> list[dict]:
-    """Rows by contact cells along each edge of a pad; none without contact."""
-    if study.condition(name).contact is None:
-        return []
-    wanted = refined.contact_cells(study, name, study.settings.contact_cells)
-    heads = [{"cells_per_edge": count} for count in study.settings.contact_cells]
-    return _compared(study, "convergence, contact cells", name, heads, wanted)
+def _cells(study: Study, name: str) -> tuple[OtherCells, ...]:
+    counts = study.settings.contact_cells
+    wanted = refinement.contact_cells(study, name, counts)
+    found = _changes(study, "convergence, contact cells", name, wanted)
+    return tuple(OtherCells(cells_per_edge=count, **own) for count, own in zip(counts, found))
 
 
-def _ripples(study: Study, scene: Scene) -> list[dict]:
-    """Rows by element size, the first with few contact cells for comparison; none where
-    ``ripple.measure`` gives None."""
-    rows = []
-    for size, cells in (
-        (study.settings.coarse_size, _FEW_CELLS),
-        (study.settings.coarse_size, None),
-        (study.settings.element_size, None),
-    ):
-        numerics = Numerics(element_size=size, cells=cells)
-        if found := ripple.measure(scene, numerics):
-            rows.append(
-                {
-                    "element_size_m": size,
-                    **found._asdict(),
-                }
-            )
-    return rows
+def _changes(study: Study, title: str, name: str, wanted: list[Run]) -> list[dict[str, Any]]:
+    """The fields of a ``Change`` of each run."""
+    nominal, *runs = study.store.fill(title, [study.coarse(name), *wanted])
+    return [
+        {
+            "status": found.status,
+            "settled_rate_deg_s": settled_rate(found),
+            "settled_rate_change_deg_s": verdicts.settled_change(nominal, found),
+        }
+        for found in runs
+    ]
+
+
+def _ripples(study: Study, scene: Scene) -> tuple[Slide, ...]:
+    settings = study.settings
+    found = [
+        (size, ripple.measure(scene, Numerics(element_size=size, cells=cells)))
+        for size, cells in (
+            (settings.coarse_size, _FEW_CELLS),
+            (settings.coarse_size, None),
+            (settings.element_size, None),
+        )
+    ]
+    return tuple(Slide(element_size_m=size, **vars(own)) for size, own in found if own)
 
 
 def _at_equal_accuracy(
-    study: Study, name: str, judged: list[dict], meshes: dict[float, Trajectory]
-) -> dict | None:
-    """The speed-up of compliant contact over the coarsest mesh whose uncertainty is below its
-    error; None where nothing touches, or where it or a mesh did not settle."""
-    rates = [
-        row
-        for row in judged
-        if row["parameter"] == "element size" and row["quantity"].startswith(RATE)
-    ]
-    uncertainties = equal_accuracy.uncertainties(rates)
+    study: Study, name: str, judged: list[Refined], meshes: dict[float, Trajectory]
+) -> EqualAccuracy | None:
+    """The speed-up of compliant contact over the coarsest mesh whose uncertainty is below its error."""
+    rates = [row for row in judged if row.quantity.startswith(RATE)]
+    uncertainties = equal_accuracy.uncertainties([(row.values, row.uncertainty) for row in rates])
     if study.scene.contact is None or uncertainties is None:
         return None
     surrogate = compliant(study, [name]).request(study, name)
@@ -200,38 +269,21 @@ def _at_equal_accuracy(
     )
     if error is None:
         return None
-    mesh = equal_accuracy.coarsest(list(meshes), uncertainties, error)
-    wall = meshes[mesh.element_size].cost["wall_s"]
+    size, uncertainty = equal_accuracy.coarsest(list(meshes), uncertainties, error)
+    wall, words = meshes[size].cost["wall_s"], f"{1e3 * size:g} mm"
     with Board("speed at equal accuracy", 1) as board:
         (found,) = speedups(
-            study.highfi(name, element_size=mesh.element_size),
+            study.highfi(name, element_size=size),
             {"compliant": surrogate},
             1 if wall > _LONG else study.settings.highfi_repeats,
             study.settings.lowfi_repeats,
-            board.callback(f"{1e3 * mesh.element_size:g} mm"),
+            board.callback(words),
         ).values()
-        board.finished(f"{1e3 * mesh.element_size:g} mm", f"{found['ratio']:,.0f} times")
-    return found | {
-        "condition": name,
-        "error_deg_s": error,
-        "element_size_m": mesh.element_size,
-        "mesh_uncertainty_deg_s": mesh.uncertainty,
-        "surer": mesh.sufficient,
-    }
-
-
-def _compared(
-    study: Study, title: str, name: str, heads: list[dict], wanted: list[Run]
-) -> list[dict]:
-    """The rows with the settled rates of their runs and the largest change of one (deg/s) against
-    the nominal run of the coarse mesh."""
-    nominal, *runs = study.store.fill(title, [study.coarse(name), *wanted])
-    return [
-        head
-        | {
-            "status": found.status,
-            "settled_rate_deg_s": settled_rate(found),
-            "settled_rate_change_deg_s": verdicts.settled_change(nominal, found),
-        }
-        for head, found in zip(heads, runs)
-    ]
+        board.finished(words, f"{found.ratio:,.0f} times")
+    return EqualAccuracy(
+        **vars(found) | {"condition": name},
+        error_deg_s=error,
+        element_size_m=size,
+        mesh_uncertainty_deg_s=uncertainty,
+        surer=uncertainty < error,
+    )

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import NamedTuple
 
+from tipoff.studies.agreement.stage import Agreement
 from tipoff.studies.cost.results import Cost, Point
 from tipoff.workspace.settings import COARSER
 from tipoff.workspace.study import StudyError
@@ -42,7 +43,7 @@ class Choice(NamedTuple):
 def choose(
     cost: Cost,
     condition: str,
-    agreement: dict | None,
+    agreement: Agreement | None,
     accuracy: float | None = None,
     budget: float | None = None,
 ) -> Choice:
@@ -80,33 +81,29 @@ def _by_error(item: Trusted) -> tuple[float, float]:
     return item.bound_deg_s, item.point.wall_s
 
 
-def elsewhere(agreement: dict | None, condition: str) -> dict[str, float]:
+def elsewhere(agreement: Agreement | None, condition: str) -> dict[str, float]:
     """Error bounds (deg/s) of the models on a condition of the ``agreement`` study, infinite where
     unknown; empty without a study or its condition. ``coarsest_m`` (m) is the coarsest mesh with a
     known error."""
     if agreement is None:
         return {}
-    rows_of = {
-        "uncalibrated": agreement["uncalibrated"],
-        "calibrated": agreement["fitted"] + agreement["held_out"],
-        "compliant": agreement["compliant"],
-        "modal": agreement["modal"],
-    }
-    found = {
-        name: row for name, rows in rows_of.items() for row in rows if row["condition"] == condition
-    }
-    if not found:
+    own = next((row for row in agreement.compliant if row.condition == condition), None)
+    if own is None:
         return {}
-    uncertainty = _known(found["compliant"]["reference_uncertainty_deg_s"])
-    alone = next(
-        row
-        for row in agreement["simpler"]
-        if (row["condition"], row["patterns"], row["coupled"]) == (condition, 1, False)
-    )
+    uncertainty = _known(own.reference_uncertainty_deg_s)
+    alone = [row for row in agreement.simpler if row.patterns == 1 and not row.coupled]
     return {
-        name: max(uncertainty, _known(row["settled_rate_error_deg_s"]))
-        for name, row in (found | {"along": alone}).items()
-    } | {"highfi": uncertainty, "coarsest_m": COARSER * agreement["element_size_m"]}
+        name: max(uncertainty, _known(row.settled_rate_error_deg_s))
+        for name, rows in (
+            ("uncalibrated", agreement.uncalibrated),
+            ("calibrated", agreement.calibrated),
+            ("compliant", agreement.compliant),
+            ("modal", agreement.modal),
+            ("along", alone),
+        )
+        for row in rows
+        if row.condition == condition
+    } | {"highfi": uncertainty, "coarsest_m": COARSER * agreement.element_size_m}
 
 
 def trusted(

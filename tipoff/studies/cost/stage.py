@@ -22,7 +22,7 @@ from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.ablation import stage as ablation
-from tipoff.studies.agreement import refined, verdicts
+from tipoff.studies.agreement import refinement, verdicts
 from tipoff.studies.agreement.candidates import Candidate, candidates
 from tipoff.studies.agreement.verdicts import Context
 from tipoff.studies.calibration import stage as calibrate
@@ -108,9 +108,11 @@ def surrogates(study: Study, conditions: Iterable[str] | None = None) -> list[Ca
 def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None, list[Point]]:
     settings = study.settings
     sizes = (2.0 * settings.coarse_size, settings.coarse_size, settings.element_size)
-    wanted = refined.meshes(study, name, sizes)  # runs of the agreement study
+    wanted = refinement.meshes(study, name, sizes)  # runs of the agreement study
     coarsest, coarse, finest = study.store.fill("cost, meshes", wanted)
-    band = Context([], refined.refinements(study, [name]), {}).uncertainty(name)[0]
+    band = Context(
+        [], refinement.refinements(study, [name]), verdicts.gates(study.scene)
+    ).uncertainty(name)[0]
     points = [
         Point(
             model=FINITE_ELEMENTS,

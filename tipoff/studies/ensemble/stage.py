@@ -163,7 +163,7 @@ def _sensitivity(
 
 def _limit(study: Study) -> float:
     """Limit of agreement of the settled rates, deg/s: that of ``tipoff run``."""
-    return verdicts.gates(study.scene)["settled_rate_error_deg_s"]
+    return verdicts.gates(study.scene).settled_rate_error_deg_s
 
 
 def _agreement(study: Study, options: Options) -> str:

@@ -9,8 +9,8 @@ from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.agreement import stage as compare
-from tipoff.studies.agreement import verdicts
 from tipoff.studies.calibration import stage as calibrate
+from tipoff.studies.calibration.stage import Fit
 from tipoff.workspace.study import Study
 from tipoff.workspace.words import counted
 
@@ -55,11 +55,11 @@ class Margin:
     said: str
 
 
-def _residuals(found: dict) -> list[float]:
-    """Errors (deg/s) of the fitted conditions in the result of a calibration; none where one of them
-    did not settle."""
-    errors = [row["settled_rate_error_deg_s"] for row in found.get("residuals", {}).values()]
-    return [] if None in errors else [float(error) for error in errors]
+def _residuals(found: Fit | None) -> list[float]:
+    """Errors (deg/s) of the fitted conditions of a calibration; none where one of them did not settle."""
+    errors = [own["settled_rate_error_deg_s"] for own in found.residuals.values()] if found else []
+    known = [error for error in errors if error is not None]
+    return known if len(known) == len(errors) else []
 
 
 def margin(study: Study, model: str) -> Margin:
@@ -71,10 +71,11 @@ def margin(study: Study, model: str) -> Margin:
         return Margin(
             dict.fromkeys(("x", "y", "z", "total"), 0.0), "zero, because the scene has no contact"
         )
-    table = (compare.stored(study) or {}).get("compliant" if model == COMPLIANT else "held_out", [])
-    rows = [row for row in table if row["role"] == "held_out"]
-    judged = [row for row in rows if verdicts.is_judged_as_curve(row)]
-    found = [row["settled_rate_error_xyz_deg_s"] for row in judged]
+    table = compare.stored(study)
+    every = () if table is None else table.compliant if model == COMPLIANT else table.held_out
+    rows = [row for row in every if row.role == "held_out"]
+    judged = [row for row in rows if row.is_judged_as_curve]
+    found = [row.settled_rate_error_xyz_deg_s for row in judged]
     errors = [error for error in found if error is not None]
     if errors:
         largest = {
@@ -86,7 +87,8 @@ def margin(study: Study, model: str) -> Margin:
             f"largest of {counted(len(errors), 'held-out condition')}; not judged as curves: "
             f"{len(rows) - len(judged)}; not settled: {len(judged) - len(errors)}",
         )
-    left = _residuals(calibrate.stored(study) or {})
+    stored = calibrate.stored(study)
+    left = _residuals(calibrate.STAGE.read(stored) if stored else None)
     if model == COMPLIANT or not left:
         if not rows:
             return Margin(None, "not measured (tipoff compare measures it)")

@@ -59,7 +59,7 @@ def run(study: Study, options: Options) -> dict:
                 f"{settled} of {count} settled in both models; at least "
                 f"{control_variate.FEWEST} are needed"
             )
-        gate = verdicts.gates(study.scene)["settled_rate_error_deg_s"]
+        gate = verdicts.gates(study.scene).settled_rate_error_deg_s
         own = own_modes.run(study, model, rows)
         made = Tails(
             **population.answering(study, model),

@@ -11,8 +11,12 @@ from markupsafe import Markup
 
 from tipoff.scenes import provenance
 from tipoff.scenes.overrides import is_drop
-from tipoff.studies.agreement import verdicts
+from tipoff.studies.agreement import distribution_page, verdicts
+from tipoff.studies.agreement import stage as compare
+from tipoff.studies.agreement.distributions import Distribution
 from tipoff.studies.agreement.page import counts
+from tipoff.studies.agreement.stage import Agreement
+from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.nominal import page as nominal_page
 from tipoff.studies.nominal import stage as nominal_stage
 from tipoff.studies.populations.exceedance import TOTAL, Limit
@@ -27,7 +31,7 @@ from tipoff.studies.render.uncertain import (
     rounded,
     uncertain,
 )
-from tipoff.studies.report import drawing, inputs, neighbours
+from tipoff.studies.report import drawing, inputs
 from tipoff.studies.runs.results import Row, Settled, roll, transverse
 from tipoff.workspace.words import counted
 
@@ -38,6 +42,10 @@ _NOTE = (
     "Means over 2 ms after exit and burnout, by the finite elements. Velocity is in the initial "
     "scene axes. Rates are inertial, in payload body axes: roll about X, transverse across it. "
     "±: the largest uncertainty of the reference by mesh, step and contact cells."
+)
+_RANGE_NOTE = (
+    "A range in place of a value: from the smallest to the largest settled rate of the same launch with "
+    "payload and walls moved by less than 1 µm, by finite elements on the coarse mesh."
 )
 _HAND_NOTE = (
     "By hand: the same two rates of a rigid payload, from the moment impulse of the thrust over "
@@ -54,19 +62,20 @@ def draw(page: "Page") -> list[Part]:
     rows = page.rows()["highfi"]
     if not rows:
         return [*first, page.missing("highfi", "highfi"), drawing.launcher(page.scene)]
-    compared = {
-        row["condition"]: row
-        for row in (page.documents.get("agreement") or {}).get("compliant", [])
-    }
-    over_all = [KeyFigures(_figures(page, rows, compared))]
+    agreement = page.read(compare.STAGE)
+    compared = {row.condition: row for row in agreement.compliant} if agreement else {}
+    spreads = _spreads(agreement)
+    rates = [*_speed(page, rows), *_largest(rows, compared, spreads)]
+    figures = [*rates, *_limits(rows, page.limits), *_models(page, agreement)]
+    over_all = [KeyFigures(figures)]
     return [
         *first,
         *([Heading("Over all conditions"), *over_all] if first else over_all),
         Heading("How far it can be trusted"),
-        Bullets([*_numerics(compared), *_model(page, compared), *_inputs(page, compared)]),
+        Bullets([*_numerics(compared), *_model(compared), *_inputs(page, agreement)]),
         drawing.launcher(page.scene),
         Heading("Every condition"),
-        _conditions(page, rows, compared),
+        _conditions(page, rows, compared, spreads),
     ]
 
 
@@ -81,10 +90,11 @@ def above(settled: Settled, limits: Sequence[Limit]) -> list[str]:
     ]
 
 
-def _figures(page: "Page", rows: Sequence[Row], compared: dict[str, dict]) -> list[tuple[str, str]]:
-    spreads = neighbours.of(page.documents.get("agreement"))
-    rates = [*_speed(page, rows), *_largest(rows, compared, spreads)]
-    return [*rates, *_limits(rows, page.limits), *_models(page)]
+def _spreads(agreement: Agreement | None) -> dict[str, Distribution]:
+    """The distributions by condition; a range needs two neighbours that settled. A value with an
+    uncertainty larger than itself says nothing there."""
+    found = agreement.distributions if agreement else ()
+    return {item.condition: item for item in found if len(item.settled_deg_s) > 1}
 
 
 def _speed(page: "Page", rows: Sequence[Row]) -> list[tuple[str, str]]:
@@ -93,23 +103,21 @@ def _speed(page: "Page", rows: Sequence[Row]) -> list[tuple[str, str]]:
     if not speeds:
         return []
     low, high = (uncertain(speed, least=STEPS["m/s"]) for speed in (min(speeds), max(speeds)))
-    studied = page.documents.get("convergence") or {}
+    studied = page.read(convergence.STAGE)
     known = [
-        row["nominal_uncertainty"]
-        for row in studied.get("quantities", [])
-        if row["quantity"] == "settled axial velocity" and row["nominal_uncertainty"] is not None
+        row.nominal_uncertainty
+        for row in (studied.quantities if studied else ())
+        if row.quantity == "settled axial velocity" and row.nominal_uncertainty is not None
     ]
     shown = low if low == high else f"{low} to {high}"
     if not known:
         return [(shown, "v_x (m/s), uncertainty not measured (tipoff convergence)")]
     error = rounded(max(known), max(known), STEPS["m/s"])
-    return [
-        (shown, f"v_x (m/s), each ± {error} by mesh and step, measured on {studied['condition']}")
-    ]
+    return [(shown, f"v_x (m/s), each ± {error} by mesh and step, measured on {studied.condition}")]
 
 
 def _largest(
-    rows: Sequence[Row], compared: dict[str, dict], spreads: dict[str, neighbours.Spread]
+    rows: Sequence[Row], compared: dict[str, verdicts.Row], spreads: dict[str, Distribution]
 ) -> list[tuple[str, str]]:
     settled = {row.condition: row.settled for row in rows if row.settled}
     if not settled:
@@ -134,10 +142,10 @@ def _largest(
             ), name
 
         value, name = shown(settled)
-        sure = [one for one in settled if compared.get(one, {}).get("reference_converged", True)]
+        sure = [one for one in settled if one not in compared or compared[one].reference_converged]
         words = f"{words}: {name}"
         if name in spreads:
-            words += f", over {counted(spreads[name].settled, 'neighbour')} within 1 µm"
+            words += f", over {counted(len(spreads[name].settled_deg_s), 'neighbour')} within 1 µm"
         elif name not in sure:
             words += ", not converged"
             words += "; of the converged ones {} ({})".format(*shown(sure)) if sure else ""
@@ -147,8 +155,8 @@ def _largest(
     return [*figures, (number(off, ".2g", LEAST), f"largest angle off axis (deg): {name}")]
 
 
-def _uncertainty(row: dict | None) -> float | None:
-    return None if row is None else row["reference_uncertainty_deg_s"]
+def _uncertainty(row: verdicts.Row | None) -> float | None:
+    return None if row is None else row.reference_uncertainty_deg_s
 
 
 def _limits(rows: Sequence[Row], limits: Sequence[Limit]) -> list[tuple[str, str]]:
@@ -161,22 +169,27 @@ def _limits(rows: Sequence[Row], limits: Sequence[Limit]) -> list[tuple[str, str
     return [("fail" if failed else "pass", words)]
 
 
-def _models(page: "Page") -> list[tuple[str, str]]:
+def _models(page: "Page", agreement: Agreement | None) -> list[tuple[str, str]]:
     """Agreement and speed-up; empty before the comparison of both models."""
-    agreement = page.documents.get("agreement") or {}
-    if not (speed := agreement.get("speedup_compliant")):
+    if agreement is None:
         return []
-    agree, words = counts(agreement["compliant"])
+    agree, words = counts(agreement.compliant)
     found = [(agree, f"{words}: surrogate against finite elements")]
-    if equal := (page.documents.get("convergence") or {}).get("equal_accuracy"):
-        bound = "" if equal["surer"] else "at least, "
-        words = f"faster, {bound}at equal accuracy (mesh of {1e3 * equal['element_size_m']:g} mm)"
-        return [*found, (f"{equal['ratio']:,.0f} ×", words)]
-    walls = f"{speed['highfi_wall_s']:.2g} s against {1e3 * speed['lowfi_wall_s']:.2g} ms"
-    return [*found, (f"{speed['ratio']:,.0f} ×", f"faster ({walls}); not at equal accuracy")]
+    if equal := page.equal_accuracy:
+        bound = "" if equal.surer else "at least, "
+        words = f"faster, {bound}at equal accuracy (mesh of {1e3 * equal.element_size_m:g} mm)"
+        return [*found, (f"{equal.ratio:,.0f} ×", words)]
+    speed = agreement.speedup_compliant
+    walls = f"{speed.highfi_wall_s:.2g} s against {1e3 * speed.lowfi_wall_s:.2g} ms"
+    return [*found, (f"{speed.ratio:,.0f} ×", f"faster ({walls}); not at equal accuracy")]
 
 
-def _conditions(page: "Page", rows: Sequence[Row], compared: dict[str, dict]) -> Table:
+def _conditions(
+    page: "Page",
+    rows: Sequence[Row],
+    compared: dict[str, verdicts.Row],
+    spreads: dict[str, Distribution],
+) -> Table:
     columns: tuple[Column | str, ...] = (
         "condition",
         "what it changes",
@@ -190,7 +203,6 @@ def _conditions(page: "Page", rows: Sequence[Row], compared: dict[str, dict]) ->
         "verdict",
     )
     found, kinds = [], []
-    spreads = neighbours.of(page.documents.get("agreement"))
     for row in rows:
         settled, other = row.settled, compared.get(row.condition)
         found.append(
@@ -204,24 +216,21 @@ def _conditions(page: "Page", rows: Sequence[Row], compared: dict[str, dict]) ->
                 ),
                 *([_hand(row)] if _by_hand(rows) else []),
                 settled and settled.direction_error_deg,
-                other
-                and Measured(other["settled_rate_error_deg_s"], other["floor_deg_s"], apart=True),
+                other and Measured(other.settled_rate_error_deg_s, other.floor_deg_s, apart=True),
                 *([_words(settled, page.limits)] if page.limits else []),
-                other["verdict"] if other else row.status,
+                other.verdict if other else row.status,
             ]
         )
         kinds.append(_kind(other))
     notes = (
         _NOTE,
-        *([neighbours.NOTE] if spreads else []),
+        *([_RANGE_NOTE] if spreads else []),
         *([_HAND_NOTE] if _by_hand(rows) else []),
     )
     return Table(columns, found, notes=notes, kinds=kinds, name="answer-table")
 
 
-def _rates(
-    settled: Settled, uncertainty: float | None, spread: neighbours.Spread | None = None
-) -> list:
+def _rates(settled: Settled, uncertainty: float | None, spread: Distribution | None = None) -> list:
     if spread is not None:
         ranges = (spread.within(measure) for measure in (roll, transverse))
         return [settled.velocity_m_s[0], *(range_of(*ends) for ends in ranges)]
@@ -252,11 +261,8 @@ def _words(settled: Settled | None, limits: Sequence[Limit]) -> str:
     return f"✗ {', '.join(over)}".replace(" ", "\u00a0") if over else "✓ pass"
 
 
-def _kind(row: dict | None) -> str:
-    if row is None:
-        return ""
-    kinds = {verdicts.CANNOT: "doubt", verdicts.MISSES: "bad"}
-    return kinds.get(row["judgement"], "good")
+def _kind(row: verdicts.Row | None) -> str:
+    return "" if row is None else distribution_page.kind(row.judgement)
 
 
 def stated(page: "Page", name: str) -> str:
@@ -288,14 +294,14 @@ def _readable(value: Any) -> str:
 _LONG = re.compile(r"\d+\.\d{5,}(?![\d.eE])")
 
 
-def _numerics(compared: dict[str, dict]) -> list[str]:
+def _numerics(compared: dict[str, verdicts.Row]) -> list[str]:
     known = {
         name: value for name, row in compared.items() if (value := _uncertainty(row)) is not None
     }
     if not known:
         return ["numerics: the uncertainty of the reference is not measured"]
     name = max(known, key=lambda name: known[name])
-    open_ = [name for name, row in compared.items() if not row["reference_converged"]]
+    open_ = [name for name, row in compared.items() if not row.reference_converged]
     return [
         "numerics: the uncertainty of the reference by mesh, step and contact cells is at most "
         f"{number(known[name], '.2g', LEAST)} deg/s ({name})"
@@ -303,14 +309,14 @@ def _numerics(compared: dict[str, dict]) -> list[str]:
     ]
 
 
-def _model(page: "Page", compared: dict[str, dict]) -> list[str]:
+def _model(compared: dict[str, verdicts.Row]) -> list[str]:
     errors = [
-        row["settled_rate_error_deg_s"]
+        row.settled_rate_error_deg_s
         for row in compared.values()
-        if verdicts.is_judged_as_curve(row) and row["settled_rate_error_deg_s"] is not None
+        if row.is_judged_as_curve and row.settled_rate_error_deg_s is not None
     ]
-    chaotic = [row for row in compared.values() if row["judged_as"] == verdicts.DISTRIBUTION]
-    alike = sum(row["judgement"] == verdicts.AS_DISTRIBUTION for row in chaotic)
+    chaotic = [row for row in compared.values() if row.judged_as == verdicts.DISTRIBUTION]
+    alike = sum(row.judgement == verdicts.AS_DISTRIBUTION for row in chaotic)
     found = (
         "model: on conditions judged as curves, the surrogate is within "
         f"{number(max(errors), '.2g', LEAST)} deg/s of the finite elements; "
@@ -322,26 +328,23 @@ def _model(page: "Page", compared: dict[str, dict]) -> list[str]:
     return [f"{found}neither model was validated on a measured ejection"]
 
 
-def _inputs(page: "Page", compared: dict[str, dict]) -> list[str]:
+def _inputs(page: "Page", agreement: Agreement | None) -> list[str]:
     assumed, every = 0, 0
     for key, _, _, was_stated in inputs.values(page.scene):
         every += 1
         text = provenance.of(page.scene.provenance, key) or ""
         assumed += text.startswith("assumed") or (was_stated and not text)
-    floors = [row["floor_deg_s"] for row in compared.values() if row["floor_deg_s"] is not None]
-    moved = (
-        f"; 1 µm of clearance changes a rate by up to {number(max(floors), '.2g', LEAST)} deg/s"
-        if floors
-        else ""
-    )
-    interface = [
-        abs(row["reference_change_deg_s"])
-        for row in (page.documents.get("agreement") or {}).get("interface", [])
-        if row["reference_change_deg_s"] is not None
-    ]
-    if interface:
-        moved += (
-            f"; a quarter or four times the interface stiffness by up to "
-            f"{number(max(interface), '.2g', LEAST)} deg/s"
-        )
+    moved = ""
+    if agreement is not None:
+        floor = verdicts.largest(row.floor_deg_s for row in agreement.compliant)
+        change = verdicts.largest(row.reference_change_deg_s for row in agreement.interface)
+        if floor is not None:
+            moved += (
+                f"; 1 µm of clearance changes a rate by up to {number(floor, '.2g', LEAST)} deg/s"
+            )
+        if change is not None:
+            moved += (
+                f"; a quarter or four times the interface stiffness by up to "
+                f"{number(change, '.2g', LEAST)} deg/s"
+            )
     return [f"inputs: {assumed} of {every} values are assumed or have no stated source{moved}"]

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 
 from tipoff.mechanics.trajectory import versions
 from tipoff.scenes import plausibility
+from tipoff.studies.agreement import stage as compare
+from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.question import Section
 from tipoff.studies.registry import sections
 from tipoff.studies.render.document import Caption, Missing, Notice, Part
@@ -96,7 +98,8 @@ def _drawn(page: Page, item: Section, before: Sequence[Part] = ()) -> Drawn:
 
 
 def _promises(page: Page) -> list[Part]:
-    return [table(promises(page.rows(), page.documents)), Caption(_VALIDATION)]
+    agreement, calibration = page.read(compare.STAGE), page.read(calibrate.STAGE)
+    return [table(promises(page.rows(), agreement, calibration)), Caption(_VALIDATION)]
 
 
 def _inputs(page: Page) -> list[Part]:

@@ -3,10 +3,13 @@
 import shlex
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 from markupsafe import Markup
 
 from tipoff.scenes.scene import Scene
+from tipoff.studies.agreement.equal_accuracy import EqualAccuracy
+from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.render import document
 from tipoff.studies.render.chart import Chart, Picture, to_files
@@ -15,6 +18,7 @@ from tipoff.studies.render.palette import themed
 from tipoff.studies.runs import stage as runs
 from tipoff.studies.runs.figures import Runs
 from tipoff.studies.runs.results import Row
+from tipoff.workspace.stage import Stage
 
 
 class Page:
@@ -45,6 +49,17 @@ class Page:
         found = self.documents.get(result)
         return list(body(found)) if found else [self.missing(result, target)]
 
+    def read(self, stage: Stage) -> Any:
+        """The result of a stage; None where it is missing."""
+        found = self.documents.get(stage.name)
+        return stage.read(found) if found else None
+
+    @property
+    def equal_accuracy(self) -> EqualAccuracy | None:
+        """The speed-up at equal accuracy, where the convergence study measured it."""
+        found = self.read(convergence.STAGE)
+        return found.equal_accuracy if found else None
+
     def missing(self, stage: str, target: str) -> Notice | Missing:
         """The reason why a result is missing, or the command ``target`` that makes it."""
         if reason := self.problems.get(stage):
@@ -71,6 +86,6 @@ class Page:
     def rows(self) -> dict[str, Sequence[Row]]:
         """Conditions of both models."""
         return {
-            name: stage.read(found).conditions if (found := self.documents.get(name)) else ()
+            name: found.conditions if (found := self.read(stage)) else ()
             for name, stage in runs.STAGES.items()
         }

@@ -7,8 +7,11 @@ from typing import NamedTuple
 
 from tipoff.mechanics.promises import FINITE_ELEMENTS, RIGID
 from tipoff.studies.agreement import verdicts
+from tipoff.studies.agreement.stage import Agreement
+from tipoff.studies.calibration.stage import Fit
 from tipoff.studies.render.table import Table, number
 from tipoff.studies.runs.results import Row
+from tipoff.workspace.timing import Speedup
 from tipoff.workspace.words import counted
 
 
@@ -47,9 +50,12 @@ _NOT_MEASURED = (
 )
 
 
-def promises(rows: Mapping[str, Sequence[Row]], documents: dict[str, dict | None]) -> list[Promise]:
+def promises(
+    rows: Mapping[str, Sequence[Row]],
+    agreement: Agreement | None = None,
+    calibration: Fit | None = None,
+) -> list[Promise]:
     """All promises; ``rows`` are the condition rows of every run by fidelity."""
-    agreement, calibration = documents.get("agreement"), documents.get("calibration")
     found: list[Promise | None] = [
         _check(name, rows[fidelity], limit, words)
         for name, fidelity, limit, words in _CHECKS
@@ -62,7 +68,7 @@ def promises(rows: Mapping[str, Sequence[Row]], documents: dict[str, dict | None
         _finite(rows),
     ]
     if agreement:
-        found.append(_same_bits(agreement["speedup"]))
+        found.append(_same_bits(agreement.speedup))
     found.append(_calibration(calibration, agreement))
     return [item for item in found if item] + [
         Promise(words, "not measured by this report", "", None) for words in _NOT_MEASURED
@@ -163,26 +169,26 @@ def _is_finite(found) -> bool:
     return not isinstance(found, float) or math.isfinite(found)
 
 
-def _same_bits(speedup: dict) -> Promise:
-    same = speedup.get("repeats_identical")
-    counts = {"reference": speedup["highfi_repeats"], "surrogate": speedup["lowfi_repeats"]}
+def _same_bits(speedup: Speedup) -> Promise:
+    same = speedup.repeats_identical
+    counts = {"reference": speedup.highfi_repeats, "surrogate": speedup.lowfi_repeats}
     compared = [f"{count} {name} runs" for name, count in counts.items() if count > 1]
     words = f"{' and '.join(compared)} compared" if compared else "no repeats to compare"
     return Promise("same input, same bits", words, "identical", same if compared else None)
 
 
-def _calibration(calibration: dict | None, agreement: dict | None) -> Promise | None:
+def _calibration(calibration: Fit | None, agreement: Agreement | None) -> Promise | None:
     if not calibration:
         return None
-    held_out = agreement["held_out"] if agreement else []
-    judged = [row for row in held_out if row["judgement"] != verdicts.CANNOT]
-    informed = bool(calibration["information"])
+    held_out = agreement.held_out if agreement else ()
+    judged = [row for row in held_out if row.judgement != verdicts.CANNOT]
+    informed = bool(calibration.information)
     # without a judged condition no agreement is given, and without one compared it is not known
     reported = False if not informed else bool(judged) if held_out else None
     return Promise(
         "calibration reports its information matrix and weak directions; agreement is given on "
         "held-out conditions",
-        f"{counted(len(calibration['weak_directions']), 'weak direction')} named, "
+        f"{counted(len(calibration.weak_directions), 'weak direction')} named, "
         f"{len(judged)} of {counted(len(held_out), 'held-out condition')} judged",
         "",
         reported,

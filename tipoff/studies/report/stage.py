@@ -6,6 +6,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from pydantic_core import to_jsonable_python
+
 from tipoff import sources
 from tipoff.files import content_hash, write_text
 from tipoff.scenes.faults import InputError
@@ -79,7 +81,13 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
     }
     drawn = sources.digest("tipoff.studies.report.assembly")
     shown = study.key(__name__, drawn, study.scene.resolved().get("flight"), list(limits))
-    key = content_hash(keys, content_hash(made_at), content_hash(there), problems | absent, shown)
+    key = content_hash(
+        keys,
+        content_hash(made_at),
+        content_hash(to_jsonable_python(there)),
+        problems | absent,
+        shown,
+    )
     return study.stage("report", key, make)
 
 
@@ -98,9 +106,11 @@ def _verdict(agreement: dict | None) -> str:
         return ""
     from tipoff.studies.agreement import page
 
-    found = f"Compliant contact against finite elements: {page.summary(agreement['compliant'])}"
-    speed = agreement.get("speedup_compliant")
-    return found + (f"; {speed['ratio']:,.0f} times faster." if speed else ".")
+    found = compare.STAGE.read(agreement)
+    return (
+        f"Compliant contact against finite elements: {page.summary(found.compliant)}; "
+        f"{found.speedup_compliant.ratio:,.0f} times faster."
+    )
 
 
 def _made(study: Study, listed: list[Result]) -> tuple[dict[str, str], dict[str, str]]:

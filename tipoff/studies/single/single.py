@@ -157,7 +157,7 @@ def lines(row: Row, further: dict, made_with: str, study: Study) -> list[str]:
     text += _settled(row)
     text += _stress(row)
     if "disturbed" in further:
-        limit = verdicts.gates(study.scene)["settled_rate_error_deg_s"]
+        limit = verdicts.gates(study.scene).settled_rate_error_deg_s
         text += disturbed.lines(further["disturbed"], limit)
     if why := row.numerics.get("modes_why"):
         text.append(f"  rail modes    {why}")

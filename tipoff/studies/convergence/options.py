@@ -1,0 +1,12 @@
+"""Options of ``tipoff convergence``."""
+
+from dataclasses import dataclass
+
+from tipoff.studies.commands.options import RefinedCondition
+
+
+@dataclass(frozen=True)
+class Options:
+    """``condition`` None: the first refined one of the scene, or else the first one."""
+
+    condition: RefinedCondition = None
