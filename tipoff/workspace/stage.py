@@ -40,6 +40,7 @@ from tipoff.workspace import options as rules
 from tipoff.workspace.study import Study
 
 _AXES = ("x", "y", "z")
+_MOST = 12  # numbers that may stand in one row; more are a curve
 
 
 def _nothing(study: Study, options: Any) -> None:
@@ -127,10 +128,17 @@ class Stage:
 
 def csv_of(rows: list[dict]) -> str:
     """JSON ``rows`` as CSV: the keys as heads, several numbers in several columns, a list of words in one,
-    nothing where a value is missing."""
-    wide = {
-        name: max((len(_numbers(row[name])) for row in rows), default=0)
+    nothing where a value is missing; a record in a row has its own columns. Curves and matrices are left
+    out."""
+    rows = _flat(rows)
+    columns = {
+        name: [row.get(name) for row in rows]
         for name in dict.fromkeys(key for row in rows for key in row)
+    }
+    wide = {
+        name: max(map(len, map(_numbers, values)), default=0)
+        for name, values in columns.items()
+        if not any(map(_is_long, values))
     }
     stream = io.StringIO()
     table = csv.writer(stream, lineterminator="\n")
@@ -139,9 +147,33 @@ def csv_of(rows: list[dict]) -> str:
         table.writerow(
             cell
             for name, count in wide.items()
-            for cell in (_numbers(row[name]) or [_text(row[name])] * max(count, 1))
+            for cell in (_numbers(row.get(name)) or [_text(row.get(name))] * max(count, 1))
         )
     return stream.getvalue()
+
+
+def _flat(rows: list[dict]) -> list[dict]:
+    """The rows with the items of records in them beside the others, under the name of both."""
+    records = {name for row in rows for name, value in row.items() if isinstance(value, dict)}
+    if not records:
+        return rows
+    parts = [
+        [
+            (f"{name}_", value or {}) if name in records else ("", {name: value})
+            for name, value in row.items()
+        ]
+        for row in rows
+    ]
+    return _flat(
+        [{start + key: item for start, part in row for key, item in part.items()} for row in parts]
+    )
+
+
+def _is_long(value: Any) -> bool:
+    """Whether a value is no cell: a matrix, records, or a curve."""
+    return isinstance(value, list) and (
+        any(isinstance(item, (list, dict)) for item in value) or len(_numbers(value)) > _MOST
+    )
 
 
 def _heads(name: str, count: int) -> list[str]:

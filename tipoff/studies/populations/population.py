@@ -10,6 +10,7 @@ All cases have one number of rail modes. The pilot cases of the first population
 all that it runs beside it, so that two results never differ by modes.
 """
 
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -102,6 +103,36 @@ class Population(NamedTuple):
     def settled(self) -> np.ndarray:
         """Whether a case left the rail and settled (n,)."""
         return np.isfinite(self.results.exit_time)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answered:
+    """The items of ``answering`` in a result."""
+
+    model: str
+    modes: int | str
+    modes_why: str
+    agreement: str
+
+    @property
+    def model_words(self) -> str:
+        """The model, with its modes and why."""
+        return model_words(vars(self))
+
+    @property
+    def model_line(self) -> str:
+        """One line about the model."""
+        return model_line(vars(self))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Varied:
+    """What a population is drawn from: distributions in SI ``vary`` by dotted key."""
+
+    cases: int
+    seed: int
+    sampling: str
+    vary: dict[str, dict]
 
 
 def surrogate(study: Study, model: str | None = None, condition: str | None = None) -> Surrogate:

@@ -3,6 +3,7 @@ the convergence with the number of cases."""
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import ks_2samp
@@ -12,6 +13,16 @@ from tipoff.comparison import order_statistics
 SHARES = (0.0027, 0.05, 0.5, 0.95, 0.99, 0.9973)
 CONFIDENCE = 0.95
 _BINS = 80
+
+
+@dataclass(frozen=True)
+class Quantile:
+    """The ``value`` that a ``share`` of the cases is below, and its two bounds; None where there is none."""
+
+    share: float
+    value: float | None
+    low: float | None
+    high: float | None
 
 
 def quantiles(values: np.ndarray, shares: Sequence[float] = SHARES) -> list[dict]:

@@ -93,9 +93,10 @@ def span(low: float | None, high: float | None, form: str = ".3g") -> str:
     )
 
 
-def estimate(row: dict, form: str = ".3g") -> Any:
-    """The ``value`` of a row, with its bounds ``low`` and ``high`` as a remark where it has one; all
-    rounded to half the width between both bounds."""
+def estimate(row: Any, form: str = ".3g") -> Any:
+    """The ``value`` of a row, a record or a dictionary, with its bounds ``low`` and ``high`` as a remark
+    where it has one; all rounded to half the width between both bounds."""
+    row = row if isinstance(row, dict) else vars(row)
     low, high = row["low"], row["high"]
     if low is None and high is None:
         return row["value"]
