@@ -8,7 +8,7 @@ import numpy as np
 from tipoff.studies.droptest import judgement, power
 from tipoff.studies.droptest.judgement import MAGNITUDES
 from tipoff.studies.droptest.results import Cases, Compared, Droptest, Row
-from tipoff.studies.populations import answers, spread
+from tipoff.studies.populations import answers, population, spread
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Fold, Notice, Part
 from tipoff.studies.render.palette import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL, VERMILION
@@ -60,7 +60,7 @@ def terminal(found: Droptest) -> list[Part]:
         f"{found.scene}: {len(found.tests)} drop tests, {cases.settled:,} settled of "
         f"{cases.asked:,} simulated cases{condition}; errors of {request.vary}, seed "
         f"{found.varied.seed}",
-        found.model_line,
+        population.model_line(found),
         *_warning(found),
         _changes(found.tests),
         *table_of_comparison(found),

@@ -4,8 +4,9 @@ worth. Rates are in deg/s, in payload body axes."""
 from dataclasses import dataclass
 from typing import Annotated
 
+from tipoff.scenes.uncertainty import Varied
 from tipoff.studies.droptest.options import Options
-from tipoff.studies.populations.population import Answered, Varied
+from tipoff.studies.populations.population import Answering
 from tipoff.studies.populations.spread import Quantile
 from tipoff.studies.render.column import Column
 
@@ -147,11 +148,10 @@ class Compared:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Droptest(Compared, Answered):
+class Droptest(Compared, Answering):
     """The result of the study of a ``scene``; ``data``: the file of all signals."""
 
     scene: str
     request: Options
     varied: Varied
     data: str
-    failed: tuple[str, ...] = ()

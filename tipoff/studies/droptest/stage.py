@@ -24,7 +24,7 @@ from tipoff.studies.droptest.options import Options
 from tipoff.studies.droptest.reduction import COVERAGE
 from tipoff.studies.droptest.results import Cases, Compared, Curve, Droptest, Row, Together
 from tipoff.studies.populations import answers, population, spread
-from tipoff.studies.populations.population import Population, Varied
+from tipoff.studies.populations.population import Population
 from tipoff.studies.populations.spread import Quantile
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study, StudyError
@@ -62,7 +62,7 @@ def run(study: Study, options: Options = Options()) -> dict:
             **population.answering(study, cases.model, options.condition),
             scene=study.scene.name,
             request=options,
-            varied=Varied(**drawn.uncertainty.resolved()),
+            varied=uncertainty.Varied(**drawn.uncertainty.resolved()),
             data=study.relative(data),
         )
         found, pictures = with_figures(found, page.figures, study.path("figures"))

@@ -10,7 +10,7 @@ All cases have one number of rail modes. The pilot cases of the first population
 all that it runs beside it, so that two results never differ by modes.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -105,36 +105,6 @@ class Population(NamedTuple):
         return np.isfinite(self.results.exit_time)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Answered:
-    """The items of ``answering`` in a result."""
-
-    model: str
-    modes: int | str
-    modes_why: str
-    agreement: str
-
-    @property
-    def model_words(self) -> str:
-        """The model, with its modes and why."""
-        return model_words(vars(self))
-
-    @property
-    def model_line(self) -> str:
-        """One line about the model."""
-        return model_line(vars(self))
-
-
-@dataclass(frozen=True, kw_only=True)
-class Varied:
-    """What a population is drawn from: distributions in SI ``vary`` by dotted key."""
-
-    cases: int
-    seed: int
-    sampling: str
-    vary: dict[str, dict]
-
-
 def surrogate(study: Study, model: str | None = None, condition: str | None = None) -> Surrogate:
     """The surrogate of a ``model`` (None: the default) on a ``condition`` of a study (None: the
     scene). Its rail compliance or its calibration is computed unless it is stored.
@@ -172,9 +142,21 @@ def require_settling(*models: Surrogate) -> None:
     )
 
 
+@dataclass(frozen=True, kw_only=True)
+class Answering:
+    """The first fields of a result of many cases: the ``model``, the number of its ``modes`` and why
+    (empty where it can have none), and its ``agreement`` with the reference as text; ``failed``, a line
+    for what could not be drawn."""
+
+    model: str
+    modes: int | str
+    modes_why: str
+    agreement: str
+    failed: tuple[str, ...] = ()
+
+
 def answering(study: Study, model: Surrogate, condition: str | None = None) -> dict[str, Any]:
-    """The ``model``, the number of its ``modes`` and why (empty where it can have none), and its
-    ``agreement`` with the reference as text, for a result file."""
+    """The fields of ``Answering``."""
     return {
         "model": model.words,
         "modes": model.modes,
@@ -183,18 +165,26 @@ def answering(study: Study, model: Surrogate, condition: str | None = None) -> d
     }
 
 
-def model_words(found: dict) -> str:
-    """The model of a result that has the items of ``answering``, with its modes and why."""
-    if not found["modes_why"]:
-        return found["model"]
-    number = counted(found["modes"], "mode") if found["modes"] else "no modes"
-    _, _, reason = found["modes_why"].partition(": ")
-    return f"{found['model']} with {number} of each rail ({reason})"
+def model_words(found: Answering | dict) -> str:
+    """The model of a result, with its modes and why."""
+    found = _typed(found)
+    if not found.modes_why:
+        return found.model
+    number = counted(int(found.modes), "mode") if found.modes else "no modes"
+    _, _, reason = found.modes_why.partition(": ")
+    return f"{found.model} with {number} of each rail ({reason})"
 
 
-def model_line(found: dict) -> str:
-    """One line about the model of a result that has the items of ``answering``."""
-    return f"model {model_words(found)}; agreement: {found['agreement']}"
+def model_line(found: Answering | dict) -> str:
+    """One line about the model of a result."""
+    return f"model {model_words(found)}; agreement: {_typed(found).agreement}"
+
+
+def _typed(found: Answering | dict) -> Answering:
+    """The fields in a result that has no type yet."""
+    if isinstance(found, Answering):
+        return found
+    return Answering(**{item.name: found[item.name] for item in fields(Answering)[:-1]})
 
 
 def run(

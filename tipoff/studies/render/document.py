@@ -2,9 +2,8 @@
 Markdown and for the terminal."""
 
 import base64
-import dataclasses
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -15,8 +14,6 @@ from tipoff.studies.render import table as tables
 from tipoff.studies.render.chart import Chart, Picture
 from tipoff.studies.render.table import Table, inline
 from tipoff.workspace.attempt import attempt
-
-_Result = TypeVar("_Result")
 
 
 @dataclass(frozen=True)
@@ -171,23 +168,25 @@ def _data(path: Path) -> str:
     return f"data:{_MIME[path.suffix]};base64,{base64.b64encode(path.read_bytes()).decode()}"
 
 
+_Result = TypeVar("_Result")
+
+
 def with_figures(
     found: _Result, figures: Callable[[_Result], Iterable[Figure]], folder: Path
 ) -> tuple[_Result, list[Path]]:
-    """The result ``found`` of a stage, a dataclass with ``failed`` or a dictionary, and the PNG and SVG
-    files of its ``figures`` in ``folder``. Where they cannot be drawn, ``failed`` says why: hours of
-    runs are not lost."""
+    """The result ``found`` of a stage, and the PNG and SVG files of its ``figures`` in ``folder``.
+    Where they cannot be drawn, ``failed`` of the result says why: hours of runs are not lost."""
 
     def drawn() -> list[Path]:
         return [path for item in figures(found) for path in charts.to_files(item.chart, folder)]
 
     paths, reason = attempt("drawing the figures", drawn)
-    if paths is not None:
-        return found, paths
-    line = f"figures: {reason}"
-    if isinstance(found, dict):
-        return found | {"failed": [*found.get("failed", ()), line]}, []  # type: ignore[return-value]
-    return dataclasses.replace(found, failed=(*found.failed, line)), []  # type: ignore[type-var, attr-defined]
+    if paths is None:
+        line = f"figures: {reason}"
+        if isinstance(found, dict):
+            return found | {"failed": [*found.get("failed", ()), line]}, []  # type: ignore[return-value]
+        return replace(found, failed=(*found.failed, line)), []  # type: ignore[type-var, attr-defined]
+    return found, paths
 
 
 def markdown(parts: Sequence[Part]) -> str:

@@ -6,7 +6,7 @@ import shutil
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from numbers import Integral, Real
-from operator import attrgetter
+from operator import attrgetter, itemgetter
 from typing import Any
 
 from jinja2 import Environment
@@ -94,17 +94,17 @@ def span(low: float | None, high: float | None, form: str = ".3g") -> str:
 
 
 def estimate(row: Any, form: str = ".3g") -> Any:
-    """The ``value`` of a row, a record or a dictionary, with its bounds ``low`` and ``high`` as a remark
-    where it has one; all rounded to half the width between both bounds."""
-    row = row if isinstance(row, dict) else vars(row)
-    low, high = row["low"], row["high"]
+    """The ``value`` of a record, with its bounds ``low`` and ``high`` as a remark where it has one; all
+    rounded to half the width between both bounds."""
+    names = ("value", "low", "high")
+    value, low, high = itemgetter(*names)(row) if isinstance(row, dict) else attrgetter(*names)(row)
     if low is None and high is None:
-        return row["value"]
+        return value
     if low is None or high is None or high <= low:
-        return Noted(row["value"], span(low, high, form))
+        return Noted(value, span(low, high, form))
     half = 0.5 * (high - low)
     bounds = (rounded(bound, half, LEAST * half) for bound in (low, high))
-    return Noted(Measured(row["value"], half, apart=True), " to ".join(bounds))
+    return Noted(Measured(value, half, apart=True), " to ".join(bounds))
 
 
 def plain(value: Any, column: Column = Column("")) -> str:
