@@ -16,8 +16,8 @@ A stage of a study is written like this:
 
     STAGE = Stage("heavier", __name__, Options, result=Heavier)
 
-``run`` returns the content of the result file, and ``STAGE.read`` makes the ``Heavier`` of it. Each field
-whose values are dataclasses is a CSV file too. ``STAGE.stored(study)`` finds a result of the present
+``run`` returns the content of the result file, and ``STAGE.read`` makes the ``Heavier`` of it. Each tuple
+of dataclasses is a CSV file too. ``STAGE.stored(study)`` finds a result of the present
 scene, code and settings, with any options. ``studies/ablation`` is an example, ``studies/limits`` one
 with further ``inputs``.
 """

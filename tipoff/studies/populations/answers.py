@@ -8,7 +8,7 @@ attitude.
 """
 
 from collections.abc import Callable
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -34,7 +34,7 @@ class Quantity(NamedTuple):
     name: str
     label: str
     unit: str
-    of: Callable[[Left], np.ndarray]
+    of: Callable[[Any], np.ndarray]
 
 
 def _rate(axis: int) -> Callable[[Left], np.ndarray]:
