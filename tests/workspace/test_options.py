@@ -43,6 +43,12 @@ def test_an_option_of_another_type_is_a_fault():
         require(Options(limits=3))
 
 
+def test_rows_with_fewer_numbers_leave_the_last_columns_empty():
+    """Control: what follows stands below its own head."""
+    rows = [{"sizes": [4.0], "method": "one"}, {"sizes": [4.0, 2.0], "method": "two"}]
+    assert csv_of(rows) == "sizes_1,sizes_2,method\n4.0,,one\n4.0,2.0,two\n"
+
+
 def test_a_table_has_a_column_for_each_number():
     """Three numbers are axes, words stand in one cell, and a missing value in none."""
     rows = [

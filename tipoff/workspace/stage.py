@@ -145,11 +145,17 @@ def csv_of(rows: list[dict]) -> str:
     table.writerow(head for name, count in wide.items() for head in _heads(name, count))
     for row in rows:
         table.writerow(
-            cell
-            for name, count in wide.items()
-            for cell in (_numbers(row.get(name)) or [_text(row.get(name))] * max(count, 1))
+            cell for name, count in wide.items() for cell in _cells(row.get(name), count)
         )
     return stream.getvalue()
+
+
+def _cells(value: Any, count: int) -> list:
+    """A value in the columns of ``count`` numbers, or in one."""
+    numbers = _numbers(value)
+    if not numbers:
+        return [_text(value)] * max(count, 1)
+    return [*numbers, *[""] * (count - len(numbers))]
 
 
 def _flat(rows: list[dict]) -> list[dict]:
