@@ -231,7 +231,8 @@ def _together(tests: Sequence[Row], simulated: np.ndarray) -> Together:
 def _quantiles(values: np.ndarray, independent: bool) -> tuple[Quantile, ...]:
     """Of the values (n,) of settled cases; with bounds where draws are ``independent``."""
     nothing = {} if independent else {"low": None, "high": None}
-    return tuple(Quantile(**(row | nothing)) for row in spread.quantiles(values))
+    rows = (row if isinstance(row, dict) else vars(row) for row in spread.quantiles(values))
+    return tuple(Quantile(**(row | nothing)) for row in rows)
 
 
 def _doubts(study: Study, drop: Drop, exits: np.ndarray) -> list[str]:

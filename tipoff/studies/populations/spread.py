@@ -17,10 +17,11 @@ _BINS = 80
 
 @dataclass(frozen=True)
 class Quantile:
-    """The ``value`` that a ``share`` of the cases is below, and its two bounds; None where there is none."""
+    """The ``value`` that a ``share`` of all values is below, with two-sided bounds; a bound is None where
+    there are too few values."""
 
     share: float
-    value: float | None
+    value: float
     low: float | None
     high: float | None
 
