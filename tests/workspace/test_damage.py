@@ -97,17 +97,19 @@ def test_a_result_that_is_only_shown_is_not_shown_when_it_was_edited(study, caps
     assert told.count(f"{path} is damaged or was edited: repeat the command that wrote it") == 1
 
 
-def test_pictures_of_a_view_that_were_altered_are_not_shown(study, monkeypatch):
-    monkeypatch.setattr(view, "key_of", lambda *_: "k")
+def test_pictures_of_a_view_that_were_altered_are_not_shown(study):
     (study.folder / "view").mkdir(parents=True)
     picture = study.path("view/peak.png")
     picture.write_bytes(b"picture")
-
-    def make():
-        return {"condition": "phi15", "asked_frames": 2, "asked_factor": None}, [picture]
-
-    study.stage("view/phi15", "k", make)
-    assert len(view.stored(study)) == 1
+    point = (0.0, 0.0, 0.0)
+    peak = view.Peak(stress_pa=1.0, place_m=point, rail="", time_s=0.0, frame=0)
+    words = dict.fromkeys(("scene", "condition", "folder", "collection", "title"), "phi15")
+    numbers = {"element_size_m": 8e-3, "factor": 1.0, "bounds_m": (point, point)}
+    found = view.View(
+        **words, **numbers, frames=(), peak=peak, pictures={}, without_pictures="no pyvista"
+    )
+    view.stage_of("phi15").run(study, view.Options("phi15", 2), lambda: (found, [picture]))
+    assert view.stored(study) == [found]
     flip(picture, 3)
     assert view.stored(study) == []
 

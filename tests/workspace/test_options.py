@@ -60,3 +60,10 @@ def test_a_table_has_a_column_for_each_number():
         '"a, b",1.0,-2.5e-07,0.1,1,2,p q\n'
         "c,,,,3,4,\n"
     )
+
+
+def test_a_record_in_a_row_has_its_own_columns_and_a_curve_none():
+    """Also where another row lacks the record. Control: as many numbers as fit are columns."""
+    record = {"x_m": 1.0, "inner": {"y_m": 2.0}, "curve": list(range(13)), "both": [3, 4]}
+    rows = [{"name": "a", "of": record, "matrix": [[1.0]]}, {"name": "b", "of": None, "matrix": []}]
+    assert csv_of(rows) == "name,of_x_m,of_inner_y_m,of_both_1,of_both_2\na,1.0,2.0,3,4\nb,,,,\n"

@@ -15,6 +15,7 @@ key in the scene.
 """
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
@@ -56,6 +57,16 @@ class Uncertainty(NamedTuple):
                 for key, item in self.vary.items()
             }
         }
+
+
+@dataclass(frozen=True, kw_only=True)
+class Varied:
+    """``Uncertainty.resolved`` in a result."""
+
+    cases: int
+    seed: int
+    sampling: str
+    vary: dict[str, dict]
 
 
 def of_scene(scene: Scene, **changed: Any) -> Uncertainty | None:

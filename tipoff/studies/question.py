@@ -62,7 +62,9 @@ class Question(Entry):
     section and make target.
 
     ``text``: the help of the command. ``title``: of its section. ``link``: the text of the link to the
-    section. ``options``: the dataclass of its options; None without any. ``always``: whether each report
+    section. ``options``: the dataclass of its options; None without any. Where options of the
+    command belong to the study, its method ``asked`` returns the study of a request and the options of
+    the stage. ``always``: whether each report
     makes the result. ``own``: a command in place of the one with these ``options``.
 
     The package has a module ``stage`` with ``run`` and ``STAGE``, and ``stored`` if that is not the one of
@@ -87,7 +89,11 @@ class Question(Entry):
 
         def answer(request: Request, options: Any) -> Output:
             stage, page = modules()
-            found = stage.run(request.study(), *([] if options is None else [options]))
+            if hasattr(options, "asked"):
+                study, options = options.asked(request)
+            else:
+                study = request.study()
+            found = stage.run(study, *([] if options is None else [options]))
             shown = getattr(page, "terminal", page.draw)
             return Output(found, lambda found: shown(stage.STAGE.read(found)), request.out)
 

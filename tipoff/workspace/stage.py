@@ -17,7 +17,7 @@ A stage of a study is written like this:
     STAGE = Stage("heavier", __name__, Options, result=Heavier)
 
 ``run`` returns the content of the result file, and ``STAGE.read`` converts it to ``Heavier``. Each
-field with dataclasses as values is also written as a CSV file. ``STAGE.stored(study)`` finds a
+tuple of dataclasses is also written as a CSV file. ``STAGE.stored(study)`` finds a
 result of the present scene, code and settings, with any options. ``studies/ablation`` is an
 example, ``studies/limits`` one with further ``inputs``.
 """

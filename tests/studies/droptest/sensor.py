@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.studies.droptest.calibrated import sensitivity
+from tipoff.studies.droptest.log import sensitivity
 
 # times the record: flicker is drawn with frequencies below the lowest that the record resolves
 _LONGER = 4

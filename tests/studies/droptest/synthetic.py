@@ -4,9 +4,8 @@ surrogate and no file."""
 import numpy as np
 
 from tests.studies.droptest.sensor import Channel, Sensor, measured
-from tipoff.studies.droptest.calibrated import Calibrated
 from tipoff.studies.droptest.events import GRAVITY, Spans
-from tipoff.studies.droptest.log import Log
+from tipoff.studies.droptest.log import Calibrated, Log
 from tipoff.studies.droptest.sheet import Sheet
 
 INTERVAL, RELEASE, IGNITION, BURN, EXIT, END = 1e-3, 1.15, 1.5, 0.03, 0.04, 1.75

@@ -15,9 +15,8 @@ from tests.studies.droptest.synthetic import (
     sheet,
 )
 from tipoff.studies.droptest import analysis, events
-from tipoff.studies.droptest.calibrated import Calibrated
 from tipoff.studies.droptest.events import GRAVITY
-from tipoff.studies.droptest.log import Log, runs
+from tipoff.studies.droptest.log import Calibrated, Log, runs
 
 
 def knocked(noise, seed):

@@ -72,8 +72,9 @@ def test_magnitudes_do_not_know_the_angle_about_x():
         [[1.0, 0.0, 0.0], [0.0, np.cos(angle), -np.sin(angle)], [0.0, np.sin(angle), np.cos(angle)]]
     )
     one, other = (judgement.standing(cases, value, np.zeros(3)) for value in (test, turn @ test))
-    np.testing.assert_array_equal(one.magnitude_percentile, other.magnitude_percentile)
-    assert (one.percentile[1:] != other.percentile[1:]).all()
+    of = [[item.percentile for item in each.magnitudes.values()] for each in (one, other)]
+    assert of[0] == of[1]
+    assert all(one.percentile[axis] != other.percentile[axis] for axis in (1, 2))
     assert judgement.magnitudes(test).tolist() == pytest.approx([2.0, np.sqrt(26.0), np.sqrt(30.0)])
 
 
@@ -93,18 +94,17 @@ def test_spread_is_uniform_under_the_right_model_and_small_under_wrong_ones():
 def test_region_holds_the_next_draw():
     rng, held = np.random.default_rng(5), []
     for _ in range(800):
-        draws = heavy(rng, 60)[:, :2]
-        centre, covariance, radius = judgement.region(draws[:-1], 0.8)
-        away = draws[-1] - centre
-        held.append(away @ np.linalg.solve(covariance, away) <= radius)
+        draws = heavy(rng, 60)
+        found = judgement.region(draws[:-1], (0, 1), 0.8)
+        away = draws[-1, :2] - found.centre_deg_s
+        held.append(away @ np.linalg.solve(found.covariance, away) <= found.squared_radius)
     # The place is 48 of 60; mean and covariance are found without the next draw, which costs some 2
     # % with so few.
     assert np.mean(held) == pytest.approx(0.8, abs=0.03 + 3.3 * np.sqrt(0.16 / 800))
-    edge = judgement.outline(centre, covariance, radius)
-    np.testing.assert_allclose(
-        np.einsum("ni,ij,nj->n", edge - centre, np.linalg.inv(covariance), edge - centre), radius
-    )
-    assert judgement.region(draws[:5], 0.95)[2] == np.inf
+    away = judgement.outline(found) - found.centre_deg_s
+    squares = np.einsum("ni,ij,nj->n", away, np.linalg.inv(found.covariance), away)
+    np.testing.assert_allclose(squares, found.squared_radius)
+    assert judgement.region(draws[:5], (0, 1), 0.95).squared_radius is None
 
 
 def test_a_component_that_never_changes_asks_for_nothing():
@@ -113,7 +113,7 @@ def test_a_component_that_never_changes_asks_for_nothing():
     flat = rng.standard_normal((200, 3)) * [0.0, 1.0, 2.0]
     test = np.array([0.0, 2.0, 1.0])
     assert judgement.p_distance(flat, test) == judgement.p_distance(flat[:, 1:], test[1:])
-    edge = judgement.outline(*judgement.region(flat[:, :2]))
+    edge = judgement.outline(judgement.region(flat, (0, 1)))
     assert np.isfinite(edge).all() and np.ptp(edge[:, 0]) < 1e-6
 
 

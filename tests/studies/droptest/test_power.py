@@ -55,11 +55,10 @@ def test_power_of_the_spread_is_brute_force(factor):
 
 def test_table_has_a_row_for_every_factor():
     rows = power.table(np.random.default_rng(3).standard_normal((1000, 3)), 3)
-    assert [row["factor"] for row in rows] == list(power.FACTORS)
-    assert rows[2]["passes_in_cloud"] is None and rows[2]["passes_one_axis"] == power.inside_range(
-        1000, 3
-    )
-    assert all(row["passes_three_axes"] == row["passes_one_axis"] ** 3 for row in rows)
+    assert [row.factor for row in rows] == list(power.FACTORS)
+    assert rows[2].passes_in_cloud is None
+    assert rows[2].passes_one_axis == power.inside_range(1000, 3)
+    assert all(row.passes_three_axes == row.passes_one_axis**3 for row in rows)
 
 
 def test_in_a_normal_cloud_both_are_those_of_a_normal_distribution():

@@ -10,7 +10,7 @@ from tests.studies.droptest.sensor import Channel, Sensor
 from tests.studies.droptest.synthetic import INTERVAL, QUIET, log, motion, samples, sheet, spans
 from tipoff.scenes.faults import SceneError
 from tipoff.studies.droptest import analysis
-from tipoff.studies.droptest.calibrated import calibrated
+from tipoff.studies.droptest.log import calibrated
 from tipoff.studies.droptest.reduction import reduced
 
 SCALE, SKEW, BIAS_INSTABILITY, G, NOISE = 2e-3, 2e-3, 2e-4, 2e-5, 7e-5

@@ -7,8 +7,8 @@ from scipy.signal import lfilter
 
 from tests.studies.droptest.sensor import Channel, Sensor, exact, flicker, measured
 from tests.studies.droptest.synthetic import INTERVAL, QUIET, log, motion, sheet
-from tipoff.studies.droptest.calibrated import calibrated, sensitivity
-from tipoff.studies.droptest.noise import correlation_time, instability_variance
+from tipoff.studies.droptest.log import calibrated, sensitivity
+from tipoff.studies.droptest.reduction import correlation_time, instability_variance
 
 SKEW, SENSITIVE = (
     np.array([[0.0, 2e-3, -1e-3], [3e-3, 0.0, 1e-3], [-2e-3, 4e-3, 0.0]]),

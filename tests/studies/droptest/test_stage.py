@@ -91,7 +91,7 @@ def test_shipped_logs_from_command_to_page(tmp_path, fitted, figures):
         )
         is None
     )
-    drawn = html(page.draw(found))
+    drawn = html(page.draw(stage.STAGE.read(found)))
     assert drawn.count("<figure>droptest-") == 2
     # the warning, and every test
     assert drawn.count("SIMULATED") == 4 and "do not contradict" in drawn
@@ -198,7 +198,7 @@ def test_tests_are_judged_by_the_errors_condition_and_seed_that_are_asked_for(
     assert np.ptp(close[:, 1]) < 1e-3 < 0.05 < np.ptp(moved[:, 1])
     assert narrow["varied"]["seed"] == 4 and seeded["varied"]["seed"] == 5
     assert narrow["request"]["vary"] == str(errors) and other["request"]["condition"] == "phi60"
-    shown = document.terminal(page.terminal(other))
+    shown = document.terminal(page.terminal(stage.STAGE.read(other)))
     assert f"of condition phi60; errors of {errors}, seed 4" in shown
     study = Study(load("reference"), tmp_path / "reference", Settings())
     assert stage.STAGE.stored(study) == other
@@ -284,17 +284,13 @@ def test_cases_that_do_not_settle_are_left_out_and_counted_and_too_few_are_refus
     rates = np.random.default_rng(1).normal(0.0, 8.0, (100, 3))
     rates[:30] = np.nan
     found = stage.result(study, drops, population(rates))
-    assert found["cases"]["settled"] == 70 and np.isfinite(found["cases"]["shown_deg_s"]).all()
+    assert found.cases.settled == 70 and np.isfinite(found.cases.shown_deg_s).all()
     # 30 to 99 settled
     for name in ("lateral_velocity_mm_s", "direction_error_deg", "attitude_z_deg"):
-        middle = next(row for row in found["cases"]["quantiles"][name] if row["share"] == 0.5)
-        assert middle["value"] == pytest.approx(64.5) and middle["low"] < 64.5 < middle["high"]
-    dependent = stage.result(study, drops, population(rates), independent=False)["cases"][
-        "quantiles"
-    ]
-    assert all(
-        row["low"] is None and row["high"] is None for rows in dependent.values() for row in rows
-    )
+        middle = next(row for row in found.cases.quantiles[name] if row.share == 0.5)
+        assert middle.value == pytest.approx(64.5) and middle.low < 64.5 < middle.high
+    dependent = stage.result(study, drops, population(rates), independent=False).cases.quantiles
+    assert {(row.low, row.high) for rows in dependent.values() for row in rows} == {(None, None)}
     with pytest.raises(StudyError, match="only 10 of 40"):
         stage.result(study, drops, population(rates[:40]))
 
@@ -315,10 +311,9 @@ def test_verdict_for_models_that_fit_that_are_too_narrow_and_too_wide(tmp_path, 
         part for part in page.table_of_comparison(found) if part.heads[0] == "all tests together"
     )
     assert f"The tests {p} the" in table.notes[0]
-    assert [row[1] for row in table.rows] == [
-        found["together"][name] for name in ("p_distance", "p_spread", "p")
-    ]
-    assert found["together"]["inside_range"] is (width > 1.0)
+    both = found.together
+    assert [row[1] for row in table.rows] == [both.p_distance, both.p_spread, both.p]
+    assert both.inside_range is (width > 1.0)
 
 
 def test_what_does_not_match_the_scene_is_said(tmp_path):
@@ -326,7 +321,7 @@ def test_what_does_not_match_the_scene_is_said(tmp_path):
     found = stage.result(
         study, drops, population(np.random.default_rng(3).normal(0.0, 8.0, (100, 3)), exits=0.012)
     )
-    notes = " ".join(found["tests"][0]["notes"])
+    notes = " ".join(found.tests[0].notes)
     assert (
         "scene reference, the simulated cases to tiny" in notes
         and "simulated cases after 12 to 12 ms" in notes

@@ -6,9 +6,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from pydantic import TypeAdapter
 from typer.testing import CliRunner
 
-from tipoff.lowfi.ensemble import store as stores
+from tipoff import cache
 from tipoff.studies.cli import app
 from tipoff.studies.ensemble import page, sensitivity, stage
 from tipoff.studies.render import table as tables
@@ -40,7 +41,8 @@ def test_default_errors_run_and_are_kept(tmp_path):
     assert "300 cases = 300 ok + 0 refused + 0 failed" in first.stdout
     assert "truncated-normal" in first.stdout and "redraw" in first.stdout
     found = json.loads((tmp_path / "reference" / "ensemble.json").read_text())
-    assert tables.terminal(page.table_of_quantiles(found)) in first.stdout
+    shown = TypeAdapter(stage.Ran).validate_python(found)
+    assert tables.terminal(page.table_of_quantiles(shown)) in first.stdout
     assert (
         found["run"]["cases"] == found["settled"] == 300 and found["run"]["cpu_ms_per_case"] > 0.0
     )
@@ -77,7 +79,7 @@ def test_sensitivity_is_added_to_a_store_that_is_there(tmp_path, monkeypatch):
     monkeypatch.setattr(stage, "time", clock)
     options = ("--cases", 200, "--out", tmp_path)
     plain = json.loads(call(*options, "--json").stdout)
-    assert "sensitivity" not in plain and plain["run"]["wall_s"] == 1.0
+    assert plain["sensitivity"] is None and plain["run"]["wall_s"] == 1.0
     result = call(*options, "--sensitivity")
     found = json.loads((tmp_path / "reference" / "ensemble.json").read_text())
     assert found["run"]["cases"] == 0 and found["digest"] == plain["digest"]
@@ -135,12 +137,12 @@ def test_a_disturbed_run_that_does_not_settle_is_counted():
     found = sensitivity.of(
         store(rates), {"clearance": store(moved), "tolerance": store(rates)}, 0.1
     )
-    assert found["sensitive"] == 2
-    by = found["by"]["clearance"]
-    assert (by["above_limit"], by["unsettled"]) == (1, 1)
-    assert by["largest_deg_s"] == pytest.approx(0.2)
-    assert by["median_deg_s"] == pytest.approx(0.125)
-    assert found["by"]["tolerance"]["largest_deg_s"] == 0.0
+    assert found.sensitive == 2
+    by = found.by["clearance"]
+    assert (by.above_limit, by.unsettled) == (1, 1)
+    assert by.largest_deg_s == pytest.approx(0.2)
+    assert by.median_deg_s == pytest.approx(0.125)
+    assert found.by["tolerance"].largest_deg_s == 0.0
 
 
 def test_bad_rows_are_refused_alone(tmp_path):
@@ -192,7 +194,7 @@ def test_a_full_disk_is_exit_code_1_and_a_message(tmp_path, monkeypatch):
     def full(path, value):
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(stores, "write_json", full)
+    monkeypatch.setattr(cache, "write_json", full)
     result = call("--cases", 20, "--out", tmp_path)
     assert result.exit_code == 1
     assert (

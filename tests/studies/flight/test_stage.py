@@ -15,6 +15,7 @@ from tipoff.studies.cli import app
 from tipoff.studies.flight import page as section
 from tipoff.studies.flight import stage as flight
 from tipoff.studies.flight import summary
+from tipoff.studies.flight.results import Condition
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render.table import Noted
@@ -115,7 +116,7 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, figures
         folder / "flight.json", further | {"asked": further["asked"] | {"vary": "gone.toml"}}
     )
     assert flight.STAGE.stored(study) is None
-    drawn = html(section.draw(found))
+    drawn = html(section.draw(flight.STAGE.read(found)))
     assert "<figure>flight-miss</figure>" in drawn and "0 of 60 touch" in drawn
     # conditions, and quantiles of cases
     assert all(drawn.count(f"{item.label} ({item.unit})") == 2 for item in answers.ALL)
@@ -132,8 +133,7 @@ def test_without_an_exit_there_is_no_flight(tmp_path, uncalibrated):
 
 def test_limitations_are_remarked():
     def remarks(scene, limit_open):
-        found = {"flight": summary.orbit(load(scene)), "cases": {"limit_open": limit_open}}
-        return section.remarks(found)
+        return section.remarks(summary.orbit(load(scene)), limit_open)
 
     assert any("flight.envelope" in line for line in remarks("channel", 0))
     (line,) = remarks("reference", 3)
@@ -142,8 +142,7 @@ def test_limitations_are_remarked():
 
 
 def test_a_condition_without_a_flight_shows_its_status():
-    row = {"condition": "phi0", "status": "jammed", "flown": None}
-    table = section.table_of_conditions({"conditions": [row]}, ["miss_m"], [])
+    table = section.table_of_conditions([Condition("phi0", "jammed", None)], ["miss_m"], [])
     assert table.rows == [(Noted("phi0", "jammed"), None)]
 
 

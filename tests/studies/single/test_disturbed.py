@@ -1,5 +1,7 @@
 """How far small disturbances move a run: against runs made by hand, and the words."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,7 @@ from tipoff.workspace.run import Run
 REFERENCE = scenes.load("reference")
 
 
-def moved(condition: str, change: float = 1e-6) -> tuple[dict, Trajectory]:
+def moved(condition: str, change: float = 1e-6) -> tuple[disturbed.Disturbed, Trajectory]:
     """The result on springs, and the run itself."""
     scene = REFERENCE.condition(condition)
     run = Run("lowfi", condition, scene, lowfi.Numerics())
@@ -28,11 +30,11 @@ def test_changes_are_those_of_runs_made_by_hand():
     ]
     apart = np.degrees(np.abs(np.subtract(by_hand, nominal.outcome.rate)).max())
     assert apart > 1e-3
-    assert found["by_clearance_deg_s"] == pytest.approx(apart, rel=1e-12)
+    assert found.by_clearance_deg_s == pytest.approx(apart, rel=1e-12)
     finest = lowfi.run(scene, "springs", numerics=lowfi.Numerics(relative_tolerance=1e-10))
     apart = np.degrees(np.abs(np.subtract(finest.outcome.rate, nominal.outcome.rate)).max())
     assert 0.0 < apart < 1e-3
-    assert found["by_tolerance_deg_s"] == pytest.approx(apart, rel=1e-12)
+    assert found.by_tolerance_deg_s == pytest.approx(apart, rel=1e-12)
 
 
 def test_a_negative_clearance_is_left_out_and_free_flight_has_none():
@@ -40,10 +42,10 @@ def test_a_negative_clearance_is_left_out_and_free_flight_has_none():
     found = disturbed.of(
         Run("lowfi", "phi60", scene, lowfi.Numerics()), lowfi.run(scene, "springs"), 1e-6
     )
-    assert found["by_clearance_deg_s"] > 0.0
+    assert found.by_clearance_deg_s > 0.0
     free = REFERENCE.replace({"contact": None, "friction": None})
     found = disturbed.of(Run("lowfi", "free", free, lowfi.Numerics()), lowfi.run(free), 1e-6)
-    assert "by_clearance_deg_s" not in found and found["by_tolerance_deg_s"] < 1e-6
+    assert found.clearance_change_m is None and found.by_tolerance_deg_s < 1e-6
 
 
 def test_clearances_along_the_axes_are_disturbed_too():
@@ -53,8 +55,8 @@ def test_clearances_along_the_axes_are_disturbed_too():
     scene = REFERENCE.condition("phi60").replace(axes)
     nominal = lowfi.run(scene, "springs")
     found = disturbed.of(Run("lowfi", "phi60", scene, lowfi.Numerics()), nominal, 1e-6)
-    expected = moved("phi60")[0]["by_clearance_deg_s"]
-    assert found["by_clearance_deg_s"] == pytest.approx(expected, rel=0.05)
+    expected = moved("phi60")[0].by_clearance_deg_s
+    assert found.by_clearance_deg_s == pytest.approx(expected, rel=0.05)
 
 
 @pytest.mark.parametrize("condition, warned", [("phi60", False), ("h8", True)])
@@ -65,6 +67,6 @@ def test_a_sensitive_run_says_so(condition, warned):
 
 
 def test_a_disturbed_run_that_does_not_settle_is_a_warning():
-    words = disturbed.lines(moved("phi60")[0] | {"by_clearance_deg_s": None}, 0.1)
+    words = disturbed.lines(replace(moved("phi60")[0], by_clearance_deg_s=None), 0.1)
     assert "1 µm of clearance: does not settle" in words[0]
     assert "1 µm of clearance prevents the run from settling" in words[1]

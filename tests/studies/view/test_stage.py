@@ -4,6 +4,7 @@ pyvista, and the page."""
 import json
 from dataclasses import asdict, replace
 from pathlib import Path
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import meshio
@@ -26,6 +27,7 @@ from tipoff.studies.runs.figures import Runs
 from tipoff.studies.runs.stage import row
 from tipoff.studies.view import frames, vtk_files
 from tipoff.studies.view import stage as view
+from tipoff.studies.view.options import Options
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.study import Study
 
@@ -40,7 +42,7 @@ def viewed(tmp_path_factory):
         study = Study(
             scenes.load("tiny"), tmp_path_factory.mktemp("out") / "tiny", defaults("tiny")
         )
-        yield study, view.run(study, "phi15", 7)
+        yield study, view.run(study, Options("phi15", 7))
 
 
 @pytest.fixture(scope="module")
@@ -53,9 +55,9 @@ def touching():
 def test_without_pyvista_there_are_files_and_a_way_to_pictures(viewed):
     study, found = viewed
     assert found["pictures"] == {} and "pip install pyvista" in found["without_pictures"]
-    assert len(found["frames"]) == 7 and len(found["files"]) == 2 * 7 + 1
-    assert view.run(study, "phi15", 7) == found  # nothing changed, nothing made
-    assert view.stored(study) == [found]
+    assert len(found["frames"]) == 7 and len(found["files"]) == 2 * 7 + 2  # run.pvd, table
+    assert view.run(study, Options("phi15", 7)) == found  # nothing changed, nothing made
+    assert view.stored(study) == [view.read(found)]
 
 
 def test_the_list_names_every_file_at_its_time(viewed):
@@ -155,7 +157,7 @@ def test_fewer_frames_leave_no_old_ones(tmp_path):
 
 @pytest.mark.parametrize("largest, factor", [(1e-5, 500.0), (3e-5, 200.0), (0.02, 1.0), (0.0, 1.0)])
 def test_exaggeration_is_a_round_number_that_shows_the_deformation(largest, factor):
-    assert view.exaggeration([{"largest_displacement_m": largest}]) == factor
+    assert view.exaggeration([SimpleNamespace(largest_displacement_m=largest)]) == factor
 
 
 @pytest.mark.parametrize("value, end", [(12.9e6, 15e6), (1.0, 1.0), (0.0, 1.0), (9.1, 10.0)])
@@ -223,7 +225,7 @@ def test_page_shows_peaks_and_says_what_would_show_more(viewed):
     shown = html(section.draw(page))
     assert "+y +z" in shown and "503 MPa" in shown and ">3.98<" in shown
     assert "tipoff view --scene tiny --out" in shown and "notice" not in shown
-    page.documents["view"] = [found]
+    page.documents["view"] = view.stored(study)
     shown = html(section.draw(page))
     assert (
         "tipoff view" not in shown
@@ -248,9 +250,9 @@ def test_pictures_are_drawn_and_embedded(viewed, monkeypatch):
     monkeypatch.setattr(view, "pyvista_version", lambda: "there")
     study, found = viewed
     folder = study.path(found["folder"])
-    drawn, why = view.draw_pictures(
-        found | {"frames": found["frames"][:4], "peak": found["peak"] | {"frame": 3}}, folder
-    )
+    result = view.read(found)
+    short = replace(result, frames=result.frames[:4], peak=replace(result.peak, frame=3))
+    drawn, why = view.draw_pictures(short, folder)
     names = ["peak.png", "ejection.webp", "peak-dark.png", "ejection-dark.webp"]
     assert (drawn, why) == (names, "")
     for still, moving, paper in ([*names[:2], (255, 255, 255)], [*names[2:], (19, 24, 30)]):
@@ -260,6 +262,7 @@ def test_pictures_are_drawn_and_embedded(viewed, monkeypatch):
             assert film.n_frames >= 2
         assert (folder / moving).stat().st_size < 1_500_000
     pictures = {name.partition(".")[0]: f"{found['folder']}/{name}" for name in names}
-    shown = html(section.shown([known()], [found | {"pictures": pictures}], study.folder, "tiny"))
+    views = [replace(result, pictures=pictures)]
+    shown = html(section.shown([known()], views, study.folder, "tiny"))
     assert shown.count("data:image/") == 4 and shown.count("<picture>") == 2
     assert "times their deformation" in shown

@@ -4,7 +4,7 @@ import dataclasses
 import inspect
 import types
 import typing
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from inspect import Parameter
 from typing import Annotated, Any
 
@@ -13,11 +13,15 @@ from tipoff.studies.commands.running import Output
 
 
 def command(
-    name: str, text: str, options: type | None, answer: Callable[[Request, Any], Output]
+    name: str,
+    text: str,
+    options: type | None,
+    answer: Callable[[Request, Any], Output],
+    without: Collection[str] = (),
 ) -> Callable[..., None]:
     """The command ``name`` with the help ``text`` and a parameter for each field of ``options``, a frozen
     dataclass or None; ``answer`` gets the request and the options. Fields of ``kw_only`` stand last in
-    the help."""
+    the help; common options that are ``without`` use here are left out."""
 
     def function(request: Request, **given: Any) -> Output:
         return answer(request, options and _made(options, given))
@@ -27,7 +31,7 @@ def command(
     own.sort(key=lambda option: option.kind)
     function.__signature__ = inspect.Signature([request, *own])  # type: ignore[attr-defined]
     function.__name__, function.__doc__ = name, text
-    return scene_command()(function)
+    return scene_command(without)(function)
 
 
 def _fields(options: type) -> Iterator[tuple[dataclasses.Field, Any]]:

@@ -7,10 +7,9 @@ import numpy as np
 
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.droptest import events as finding
-from tipoff.studies.droptest.calibrated import Calibrated, calibrated, missing_information
 from tipoff.studies.droptest.channel_class import filtered
 from tipoff.studies.droptest.events import WINDOWS, Events, Spans, inside
-from tipoff.studies.droptest.log import Log, read
+from tipoff.studies.droptest.log import Calibrated, Log, calibrated, missing_information, read
 from tipoff.studies.droptest.reduction import Reduced, reduced
 from tipoff.studies.droptest.sheet import Sheet
 

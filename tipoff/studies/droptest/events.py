@@ -16,9 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.scenes.faults import Fault, SceneError
-from tipoff.studies.droptest.calibrated import Calibrated
 from tipoff.studies.droptest.channel_class import filtered, reach
-from tipoff.studies.droptest.log import runs
+from tipoff.studies.droptest.log import Calibrated, runs
 from tipoff.studies.droptest.sheet import Sheet
 
 GRAVITY = 9.80665

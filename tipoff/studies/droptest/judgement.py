@@ -15,26 +15,15 @@ is uniform (Barnard 1963; conformal prediction). Exactly so when
 The smallest p that N cases can show is 1 / (N + 1).
 """
 
-from typing import NamedTuple
-
 import numpy as np
 import scipy  # its parts load when they are first used
 
+from tipoff.studies.droptest.results import Magnitude, Region, Standing
+
+MAGNITUDES = ("roll", "transverse", "total")
 SHARE = 0.95  # of the prediction region
 _SEED = 20230
 _SUBSETS = 9999
-
-
-class Standing(NamedTuple):
-    """Of one test: ``percentile`` (3,) and two-sided ``p`` (3,) by component; distance ``p`` of all
-    three together; percentile and p of roll magnitude, transverse magnitude and total magnitude,
-    which need no angle about X."""
-
-    percentile: np.ndarray
-    p: np.ndarray
-    p_distance: float
-    magnitude_percentile: np.ndarray
-    magnitude_p: np.ndarray
 
 
 def standing(
@@ -44,9 +33,17 @@ def standing(
     simulated cases (n,3)."""
     drawn = measured(simulated, uncertainty, number)
     share, p = ranked(drawn, change)
-    sizes, size = magnitudes(drawn), magnitudes(change)
-    size_share, size_p = ranked(sizes, size)
-    return Standing(share, p, p_distance(drawn, change), size_share, size_p)
+    size = magnitudes(change)
+    sizes = zip(*map(np.ndarray.tolist, (size, *ranked(magnitudes(drawn), size))))
+    return Standing(
+        percentile=tuple(share.tolist()),
+        p=tuple(p.tolist()),
+        p_distance=p_distance(drawn, change),
+        magnitudes={
+            name: Magnitude(value_deg_s=value, percentile=place, p=chance)
+            for name, (value, place, chance) in zip(MAGNITUDES, sizes)
+        },
+    )
 
 
 def measured(simulated: np.ndarray, uncertainty: np.ndarray, number: int = 0) -> np.ndarray:
@@ -118,24 +115,27 @@ def spreads(
     return np.einsum("mki,ij,mkj->m", away, _inverse(covariance), away)
 
 
-def region(points: np.ndarray, share: float = SHARE) -> tuple[np.ndarray, np.ndarray, float]:
-    """Mean (k,), covariance (k,k) and squared radius of the ellipsoid that holds the next draw with
-    at least this probability: the ceil(share (n + 1))-th distance; infinite where n is too small
-    for it."""
-    ordered = np.sort(distances(points))
+def region(simulated: np.ndarray, pair: tuple[int, int], share: float = SHARE) -> Region:
+    """The ellipse that holds a ``pair`` of components of the next draw with at least this probability,
+    from draws (n,3): its squared radius is the ceil(share (n + 1))-th distance."""
+    points = simulated[:, pair]
     place = int(np.ceil(share * (len(points) + 1)))
-    return (
-        points.mean(axis=0),
-        np.cov(points.T),
-        float(ordered[place - 1]) if place <= len(points) else np.inf,
+    first, second = np.cov(points.T).tolist()
+    return Region(
+        components=("xyz"[pair[0]], "xyz"[pair[1]]),
+        share=share,
+        centre_deg_s=tuple(points.mean(axis=0).tolist()),
+        covariance=(tuple(first), tuple(second)),
+        squared_radius=(
+            float(np.sort(distances(points))[place - 1]) if place <= len(points) else None
+        ),
     )
 
 
-def outline(
-    centre: np.ndarray, covariance: np.ndarray, squared_radius: float, points: int = 181
-) -> np.ndarray:
-    """Closed curve (points,2) of an ellipse."""
+def outline(found: Region, points: int = 181) -> np.ndarray:
+    """Closed curve (points,2) of an ellipse with a radius."""
     angle = np.linspace(0.0, 2.0 * np.pi, points)
-    circle = np.sqrt(squared_radius) * np.column_stack([np.cos(angle), np.sin(angle)])
-    size, axes = np.linalg.eigh(covariance)
-    return centre + circle * np.sqrt(np.maximum(size, 0.0)) @ axes.T
+    assert found.squared_radius is not None
+    circle = np.sqrt(found.squared_radius) * np.column_stack([np.cos(angle), np.sin(angle)])
+    size, axes = np.linalg.eigh(found.covariance)
+    return found.centre_deg_s + circle * np.sqrt(np.maximum(size, 0.0)) @ axes.T

@@ -5,7 +5,14 @@ Every sample belongs to an instant of an even grid. Time that jitters by less th
 is interpolated onto it; one or two samples that are missing or not a number are bridged by a
 straight line; longer gaps and clipped rates are marked, so that no window that matters may hold
 them. A temperature, which drifts in seconds, is interpolated over gaps of any length. Each of these
-leaves a note; anything worse is a fault.
+leaves a note; anything worse is a fault. Raw samples then become rates in payload body axes, by the
+inverse of what a gyro triad does to the rate that it feels:
+
+    raw = (1 + diag s)(1 + E) w + b + G f + c (T - T0)          sensor axes
+    w_body = R [(1 + diag s)(1 + E)]^-1 (raw - b - G f - c (T - T0))
+
+s scale errors, E misalignments (rad), b biases, G sensitivity to the specific force f, c drift with
+temperature, R mounting.
 """
 
 from pathlib import Path
@@ -234,3 +241,47 @@ def runs(flags: np.ndarray) -> list[tuple[int, int]]:
     """First and one past the last place of every stretch of True in ``flags`` (n,)."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(int)))
     return list(zip(edges[::2].tolist(), edges[1::2].tolist()))
+
+
+class Calibrated(NamedTuple):
+    """time (n,) s; rate (n,3) rad/s and specific force (n,3) m/s2, or None, in body axes;
+    temperature (n,) K or None."""
+
+    time: np.ndarray
+    rate: np.ndarray
+    force: np.ndarray | None
+    temperature: np.ndarray | None
+
+
+def sensitivity(scale_error, misalignment) -> np.ndarray:
+    """(1 + diag s)(1 + E), (3,3)."""
+    return np.diag(1.0 + np.asarray(scale_error)) @ (np.eye(3) + np.asarray(misalignment))
+
+
+def calibrated(sheet: Sheet, log: Log) -> Calibrated:
+    """Rates and forces of a log, compensated and turned into body axes."""
+    gyro, turn = sheet.gyro, sheet.mounting
+    rate, force = log.rate - np.array(gyro.bias), None
+    if log.acceleration is not None:
+        assert sheet.accelerometer is not None  # as a sheet with accelerations has to have it
+        force = (log.acceleration - np.array(sheet.accelerometer.bias)) / (
+            1.0 + np.array(sheet.accelerometer.scale_error)
+        )
+        rate = rate - force @ np.array(gyro.g_sensitivity).T
+        force = force @ turn.T
+    if log.temperature is not None:
+        rate = rate - (log.temperature - gyro.reference_temperature)[:, None] * np.array(
+            gyro.temperature
+        )
+    inverse = np.linalg.inv(sensitivity(gyro.scale_error, gyro.misalignment))
+    return Calibrated(log.time, rate @ (turn @ inverse).T, force, log.temperature)
+
+
+def missing_information(sheet: Sheet, log: Log) -> list[str]:
+    """In words, what the sheet gives a coefficient for and the log has no column for."""
+    notes = []
+    if log.acceleration is None and np.any(sheet.gyro.g_sensitivity):
+        notes.append("g-sensitivity not compensated: the log has no accelerations")
+    if log.temperature is None and np.any(sheet.gyro.temperature):
+        notes.append("drift with temperature not compensated: the log has no temperature")
+    return notes

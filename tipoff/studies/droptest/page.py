@@ -1,12 +1,13 @@
 """Drop tests on the page and in the terminal: filtered rates, their change with uncertainty, and
 the tests among the simulated cases."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from tipoff.studies.droptest import judgement, power
-from tipoff.studies.droptest.results import MAGNITUDES, PAIRS
+from tipoff.studies.droptest.judgement import MAGNITUDES
+from tipoff.studies.droptest.results import Cases, Compared, Droptest, Row
 from tipoff.studies.populations import answers, population, spread
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Fold, Notice, Part
@@ -29,55 +30,62 @@ _SIMULATED = (
     "SIMULATED logs from a sensor model: they demonstrate the reduction and are no evidence for "
     "a launcher."
 )
+_POWER = (
+    "Probability that this number of tests is inside the range of this number of cases, and "
+    "probability that a two-sided 5 % test of their spread rejects the model. Row 1 is a "
+    "correct model and exact. The other rows are for a normal distribution (Monte Carlo). "
+    "This cloud: the truth is the simulated cloud, scaled about its mean."
+)
 
 
-def draw(found: dict) -> list[Part]:
+def draw(found: Droptest) -> list[Part]:
     """Everything in the section."""
     rates, cloud = figures(found)
     return [
         *_warning(found),
         rates,
-        _changes(found["tests"]),
+        _changes(found.tests),
         cloud,
         *table_of_comparison(found),
-        _budgets(found["tests"]),
-        *_notes(found["tests"]),
+        _budgets(found.tests),
+        *_notes(found.tests),
     ]
 
 
-def terminal(found: dict) -> list[Part]:
+def terminal(found: Droptest) -> list[Part]:
     """The tables of the tests and of their comparison with the simulated cases."""
-    request, cases = found["request"], found["cases"]
-    condition = f" of condition {request['condition']}" if request["condition"] else ""
+    request, cases = found.request, found.cases
+    condition = f" of condition {request.condition}" if request.condition else ""
     return [
-        f"{found['scene']}: {len(found['tests'])} drop tests, {cases['settled']:,} settled of "
-        f"{cases['asked']:,} simulated cases{condition}; errors of {request['vary']}, seed "
-        f"{found['varied']['seed']}",
+        f"{found.scene}: {len(found.tests)} drop tests, {cases.settled:,} settled of "
+        f"{cases.asked:,} simulated cases{condition}; errors of {request.vary}, seed "
+        f"{found.varied.seed}",
         population.model_line(found),
         *_warning(found),
-        _changes(found["tests"]),
+        _changes(found.tests),
         *table_of_comparison(found),
-        *_notes(found["tests"]),
+        *_notes(found.tests),
     ]
 
 
-def _warning(found: dict) -> list[Part]:
-    return [Notice(_SIMULATED)] if any(row["simulated"] for row in found["tests"]) else []
+def _warning(found: Droptest) -> list[Part]:
+    return [Notice(_SIMULATED)] if any(row.simulated for row in found.tests) else []
 
 
-def table_of_comparison(found: dict) -> list[Part]:
+def table_of_comparison(found: Compared) -> list[Part]:
     """Tables that compare the tests with the simulated cases."""
-    return [_standing(found), _together(found), _cases(found["cases"]), _power(found["power"])]
+    power_of = Table.of_records(found.power, notes=(_POWER,))
+    return [_standing(found), _together(found), _cases(found.cases), power_of]
 
 
-def figures(found: dict) -> tuple[Figure, Figure]:
+def figures(found: Droptest) -> tuple[Figure, Figure]:
     """Filtered rates of every test; the simulated cloud with the tests in it."""
-    panels = [panel for row in found["tests"] for panel in _rates(row)]
-    shown, settled = len(found["cases"]["shown_deg_s"]), found["cases"]["settled"]
+    panels = [panel for row in found.tests for panel in _rates(row)]
+    shown, settled = len(found.cases.shown_deg_s), found.cases.settled
     words = _CLOUD.format(
-        share=100.0 * found["regions"][0]["share"],
+        share=100.0 * found.regions[0].share,
         shown="" if shown == settled else f", the first {shown:,} of {settled:,},",
-        vary=found["request"]["vary"],
+        vary=found.request.vary,
     )
     return (
         Figure(Chart("droptest-rates", panels, columns=2, height=250), _RATES),
@@ -85,17 +93,15 @@ def figures(found: dict) -> tuple[Figure, Figure]:
     )
 
 
-def _rates(row: dict) -> list[Panel]:
-    ignition = row["ignition_s"]
-    time, rate = np.array(row["curve"]["time_s"]), np.array(row["curve"]["rate_deg_s"])
-    windows = [(begin - ignition, end - ignition) for begin, end in row["windows_s"].values()]
-    title = (
-        f"{row['test']}{', SIMULATED' if row['simulated'] else ''}; grey: rest, reference, settled"
-    )
+def _rates(row: Row) -> list[Panel]:
+    ignition = row.ignition_s
+    time, rate = np.array(row.curve.time_s), np.array(row.curve.rate_deg_s)
+    windows = [(begin - ignition, end - ignition) for begin, end in row.windows_s.values()]
+    title = f"{row.test}{', SIMULATED' if row.simulated else ''}; grey: rest, reference, settled"
     panels = []
     for words, factor, unit, begin, end in (
         (title, 1.0, "s", time[0], time[-1]),
-        (f"{row['test']}, around ignition", 1e3, "ms", -0.1, 0.16),
+        (f"{row.test}, around ignition", 1e3, "ms", -0.1, 0.16),
     ):
         near = (time >= begin) & (time <= end)
         low, high = rate[near].min(), rate[near].max()
@@ -112,7 +118,7 @@ def _rates(row: dict) -> list[Panel]:
         ]
         lines += [
             Line([factor * at] * 2, [low, high], "release, ignition", GREY, 1.6, ":")
-            for at in (row["release_s"] - ignition, 0.0)
+            for at in (row.release_s - ignition, 0.0)
             if begin <= at <= end
         ]
         spans = tuple(
@@ -126,42 +132,32 @@ def _rates(row: dict) -> list[Panel]:
     return panels
 
 
-def _clouds(found: dict) -> list[Panel]:
-    cases = np.array(found["cases"]["shown_deg_s"])
+def _clouds(found: Compared) -> list[Panel]:
+    cases = np.array(found.cases.shown_deg_s)
     panels = []
-    for pair, region in zip(PAIRS, found["regions"]):
-        first, second = (f"rate about {axis.upper()} (deg/s)" for axis in region["components"])
+    for region in found.regions:
+        pair = ["xyz".index(axis) for axis in region.components]
         lines = [_dots(cases[:, pair])]
-        if region["squared_radius"] is not None:
-            edge = judgement.outline(
-                np.array(region["centre_deg_s"]),
-                np.array(region["covariance"]),
-                region["squared_radius"],
-            )
-            words = f"{100.0 * region['share']:g} % prediction region"
+        if region.squared_radius is not None:
+            words = f"{100.0 * region.share:g} % prediction region"
+            edge = judgement.outline(region)
             lines.append(Line(edge[:, 0], edge[:, 1], words, NAVY, 1.8))
-        panels.append(
-            Panel(
-                "",
-                first,
-                second,
-                lines
-                + _tests(
-                    found,
-                    lambda row, pair=pair: (
-                        np.array(row["change_deg_s"])[list(pair)],
-                        np.array(row["expanded_uncertainty_deg_s"])[list(pair)],
-                    ),
-                ),
-            )
+        lines += _tests(
+            found,
+            [
+                (np.array(row.change_deg_s)[pair], np.array(row.expanded_uncertainty_deg_s)[pair])
+                for row in found.tests
+            ],
         )
+        first, second = (f"rate about {axis.upper()} (deg/s)" for axis in region.components)
+        panels.append(Panel("", first, second, lines))
     sizes = judgement.magnitudes(cases)[:, :2]
     marks = _tests(
         found,
-        lambda row: (
-            np.array([row["magnitudes"][name]["value_deg_s"] for name in MAGNITUDES[:2]]),
-            np.zeros(2),
-        ),
+        [
+            ([row.magnitudes[name].value_deg_s for name in MAGNITUDES[:2]], (0.0, 0.0))
+            for row in found.tests
+        ],
     )
     return [
         *panels,
@@ -182,51 +178,45 @@ def _dots(points: np.ndarray) -> Line:
     )
 
 
-def _tests(found: dict, of: Callable) -> list[Line]:
+def _tests(found: Compared, places: Sequence[tuple]) -> list[Line]:
+    """A symbol with bars for each test: its place (2,) and half the length of its bars (2,)."""
     lines = []
-    for number_, row in enumerate(found["tests"]):
+    for number_, (row, ((x, y), (dx, dy))) in enumerate(zip(found.tests, places)):
         colour, marker = _LOOKS[number_ % len(_LOOKS)]
-        (x, y), (dx, dy) = of(row)
         lines += [
             Line(*bar, "", colour, 1.6, legend=False)
             for bar in (([x - dx, x + dx], [y, y]), ([x, x], [y - dy, y + dy]))
         ]
-        name = f"{row['test']}{' (SIMULATED)' if row['simulated'] else ''}"
+        name = f"{row.test}{' (SIMULATED)' if row.simulated else ''}"
         lines.append(Line([x], [y], name, colour, dash="", marker=marker, size=10.0))
     return lines
 
 
-def _changes(tests: list[dict]) -> Table:
-    heads: tuple[Column | str, ...] = (
-        "test",
-        Column("release", "s", ".4f"),
-        Column("ignition", "s", ".4f"),
-        Column("CFC", "Hz", "g"),
-        "largest rate at rest (deg/s)",
-        *(Column(f"change {axis}", "deg/s") for axis in "xyz"),
-    )
-    rows = [
-        (
-            Noted(row["test"], "SIMULATED") if row["simulated"] else row["test"],
-            row["release_s"],
-            row["ignition_s"],
-            row["channel_class"],
-            f"{row['rest_deg_s']:.2g}, {'limit' if row['rest_kept'] else 'ABOVE'} "
-            f"{row['rest_limit_deg_s']:g}",
-            *(
-                f"{value:+.3f} ± {uncertainty:.3f}"
-                for value, uncertainty in zip(
-                    row["change_deg_s"], row["expanded_uncertainty_deg_s"]
-                )
-            ),
+def _changes(tests: Sequence[Row]) -> Table:
+    def change(place: int) -> Callable[[Row], str]:
+        return lambda row: (
+            f"{row.change_deg_s[place]:+.3f} ± {row.expanded_uncertainty_deg_s[place]:.3f}"
         )
-        for row in tests
-    ]
-    note = "Change: settled rate minus the rate before ignition, with expanded uncertainty (95 %)."
-    return Table(heads, rows, (note,))
+
+    return Table.of_records(
+        tests,
+        ("test", lambda row: Noted(row.test, "SIMULATED") if row.simulated else row.test),
+        "release_s",
+        "ignition_s",
+        "channel_class",
+        ("largest rate at rest (deg/s)", _rest),
+        *((Column(f"change {axis}", "deg/s"), change(place)) for place, axis in enumerate("xyz")),
+        notes=(
+            "Change: settled rate minus the rate before ignition, with expanded uncertainty (95 %).",
+        ),
+    )
 
 
-def _standing(found: dict) -> Table:
+def _rest(row: Row) -> str:
+    return f"{row.rest_deg_s:.2g}, {'limit' if row.rest_kept else 'ABOVE'} {row.rest_limit_deg_s:g}"
+
+
+def _standing(found: Compared) -> Table:
     heads: tuple[Column | str, ...] = (
         "test",
         *(f"{name}, percentile (p)" for name in "xyz"),
@@ -235,33 +225,33 @@ def _standing(found: dict) -> Table:
     )
     rows = [
         (
-            row["test"],
-            *map(_place, row["percentile"], row["p"]),
-            row["p_distance"],
-            *(_place(item["percentile"], item["p"]) for item in row["magnitudes"].values()),
+            row.test,
+            *map(_place, row.percentile, row.p),
+            row.p_distance,
+            *(_place(item.percentile, item.p) for item in row.magnitudes.values()),
         )
-        for row in found["tests"]
+        for row in found.tests
     ]
     note = (
         "Percentile of each test among the simulated cases with the same measurement errors. p is "
-        f"from ranks, (r + 1)/(N + 1), at least {found['together']['smallest_p']:.2g}; two-sided "
+        f"from ranks, (r + 1)/(N + 1), at least {found.together.smallest_p:.2g}; two-sided "
         "except for the Mahalanobis distance of x, y and z. Roll, transverse and total are "
         "magnitudes."
     )
     return Table(heads, rows, (note,))
 
 
-def _together(found: dict) -> Table:
-    together = found["together"]
-    verdict = "do not contradict" if together["p"] > power.LEVEL else "contradict"
+def _together(found: Compared) -> Table:
+    together = found.together
+    verdict = "do not contradict" if together.p > power.LEVEL else "contradict"
     rows = [
-        ("distance from the mean (Fisher)", together["p_distance"]),
-        ("spread, two-sided", together["p_spread"]),
-        ("both, twice the smaller p", together["p"]),
+        ("distance from the mean (Fisher)", together.p_distance),
+        ("spread, two-sided", together.p_spread),
+        ("both, twice the smaller p", together.p),
     ]
     note = (
         f"The tests {verdict} the simulated distribution at the {percent(power.LEVEL)} % level. "
-        f"{'All tests are' if together['inside_range'] else 'Not all tests are'} inside the "
+        f"{'All tests are' if together.inside_range else 'Not all tests are'} inside the "
         "range of the cases. This alone is no validation."
     )
     return Table(["all tests together", Column("p", form=".3f")], rows, (note,))
@@ -271,14 +261,14 @@ def _place(share: float, p: float) -> str:
     return f"{100.0 * share:.1f} ({p:.3f})"
 
 
-def _cases(cases: dict) -> Table:
-    shares = [row["share"] for row in cases["quantiles"][answers.TOTAL_RATE.name]]
+def _cases(cases: Cases) -> Table:
+    shares = [row.share for row in cases.quantiles[answers.TOTAL_RATE.name]]
     rows = [
-        (f"{item.label} ({item.unit})", *map(estimate, cases["quantiles"][item.name]))
+        (f"{item.label} ({item.unit})", *map(estimate, cases.quantiles[item.name]))
         for item in answers.ALL
     ]
     note = (
-        f"Exit state of {cases['settled']:,} simulated cases. Each share of the cases is below "
+        f"Exit state of {cases.settled:,} simulated cases. Each share of the cases is below "
         f"the value of its column. In brackets: bounds at {spread.CONFIDENCE:.0%} confidence, "
         "where the cases are independent and enough."
     )
@@ -286,46 +276,23 @@ def _cases(cases: dict) -> Table:
     return Table(heads, rows, (note,), dense=True)
 
 
-def _power(table: list[dict]) -> Table:
-    columns = {
-        "passes_one_axis": "inside the range, one axis",
-        "passes_three_axes": "inside the range, three axes",
-        "passes_in_cloud": "inside the range, this cloud",
-        "flagged_by_spread": "rejected by the spread",
-        "flagged_in_cloud": "rejected by the spread, this cloud",
-    }
-    heads: tuple[Column | str, ...] = (
-        Column("spread of the model over the truth", form=".3g"),
-        *(Column(title, "%", ".2f", 100.0) for title in columns.values()),
-    )
-    rows = [(row["factor"], *(row[name] for name in columns)) for row in table]
-    note = (
-        "Probability that this number of tests is inside the range of this number of cases, and "
-        "probability that a two-sided 5 % test of their spread rejects the model. Row 1 is a "
-        "correct model and exact. The other rows are for a normal distribution (Monte Carlo). "
-        "This cloud: the truth is the simulated cloud, scaled about its mean."
-    )
-    return Table(heads, rows, (note,))
-
-
-def _budgets(tests: list[dict]) -> Fold:
-    names = list(tests[0]["budget_deg_s"])
+def _budgets(tests: Sequence[Row]) -> Fold:
     rows = [
         (
-            row["test"],
+            row.test,
             axis,
-            *(row["budget_deg_s"][name][place] for name in names),
-            row["standard_uncertainty_deg_s"][place],
-            row["coverage_factor"][place],
+            *(part[place] for part in row.budget_deg_s.values()),
+            row.standard_uncertainty_deg_s[place],
+            row.coverage_factor[place],
         )
         for row in tests
         for place, axis in enumerate("xyz")
     ]
-    parts = [Column(name, form=".2g") for name in (*names, "combined")]
+    parts = [Column(name, form=".2g") for name in (*tests[0].budget_deg_s, "combined")]
     table = Table(["test", "axis", *parts, Column("k", form=".2f")], rows, dense=True)
     return Fold("Uncertainty budget: standard uncertainties in deg/s", [table])
 
 
-def _notes(tests: list[dict]) -> list[Part]:
-    rows = [(row["test"], words) for row in tests for words in row["notes"]]
+def _notes(tests: Sequence[Row]) -> list[Part]:
+    rows = [(row.test, words) for row in tests for words in row.notes]
     return [Table(["test", "repairs, omissions and doubts"], rows)] if rows else []

@@ -22,6 +22,7 @@ import numpy as np
 import scipy  # its parts load when they are first used
 
 from tipoff.studies.droptest.judgement import spreads
+from tipoff.studies.droptest.results import Power
 
 LEVEL = 0.05
 FACTORS = (1.0 / 3.0, 0.5, 1.0, 2.0, 3.0)  # spread of the model over that of the truth
@@ -71,7 +72,7 @@ def in_cloud(simulated: np.ndarray, tests: int, factor: float) -> tuple[float, f
     return float(held**tests), float(((found < low) | (found > high)).mean())
 
 
-def table(simulated: np.ndarray, tests: int) -> list[dict]:
+def table(simulated: np.ndarray, tests: int) -> tuple[Power, ...]:
     """One row for each of FACTORS. Probabilities to pass on one axis and on three independent ones,
     and to be flagged by the spread of all components; then to pass on all axes and to be flagged in
     the cloud (n,3) itself. ``passes_in_cloud`` is None for factor 1, where the value is exact."""
@@ -84,13 +85,13 @@ def table(simulated: np.ndarray, tests: int) -> list[dict]:
         )
         held, seen = in_cloud(simulated, tests, factor)
         rows.append(
-            {
-                "factor": factor,
-                "passes_one_axis": one,
-                "passes_three_axes": one**3,
-                "flagged_by_spread": flagged(tests, factor),
-                "passes_in_cloud": None if factor == 1.0 else held,
-                "flagged_in_cloud": seen,
-            }
+            Power(
+                factor=factor,
+                passes_one_axis=one,
+                passes_three_axes=one**3,
+                passes_in_cloud=None if factor == 1.0 else held,
+                flagged_by_spread=flagged(tests, factor),
+                flagged_in_cloud=seen,
+            )
         )
-    return rows
+    return tuple(rows)

@@ -9,7 +9,7 @@
 | part | standard uncertainty of component i | kind |
 |---|---|---|
 | noise | sigma sqrt(tau sum w^2), from residuals in both windows | A |
-| bias instability | from B and the weights (``studies.droptest.noise``) | B |
+| bias instability | from B and the weights (below) | B |
 | scale | u(s) abs(d_i) | B |
 | misalignment, mounting | u(E) sqrt(sum over j != i of d_j^2) | B |
 | g-sensitivity | u(G) times the change of specific force between the windows | B |
@@ -17,6 +17,16 @@
 | quantisation | q sqrt(tau sum w^2 / 12); q sqrt(2/12) where noise does not spread it | B |
 | bent line | a free tumble bends: w'' = 2 w'^2 / w for equations quadratic in w; rectangular | B |
 | instant | slope times u(exit) | B |
+
+The noise of d = sum_i w_i x_i, which is linear in the samples:
+
+* White and short-correlated noise: variance sigma^2 tau sum w^2, with the integrated correlation
+  time in samples tau = 1 + 2 sum_k rho_k, summed up to the first lag L >= 5 tau (Sokal) and not
+  taken below one. What was fitted to the samples takes tau/n off every rho, which the factor 1 + (2
+  L + 1)/n puts back (Wolff, Comput. Phys. Commun. 156, 2004).
+* Bias instability B: two-sided density B^2 / (2 pi f) (IEEE 952), so the variance is the integral
+  of density times |W(f)|^2, W being the transform of the weights; it is finite since a difference
+  has W(0) = 0.
 
 The samples are not filtered here: a mean needs no filter, which would only carry the burn into the
 windows.
@@ -28,9 +38,8 @@ import numpy as np
 import scipy  # its parts load when they are first used
 
 from tipoff.scenes.faults import Fault, SceneError
-from tipoff.studies.droptest import noise
-from tipoff.studies.droptest.calibrated import Calibrated
 from tipoff.studies.droptest.events import Spans, inside
+from tipoff.studies.droptest.log import Calibrated
 from tipoff.studies.droptest.sheet import Sheet
 
 COVERAGE = 0.95
@@ -38,6 +47,8 @@ _FITTED = 3  # parameters: a mean before, a straight line after
 _TINY = 1e-15  # rad/s; noise that is none
 # probability of so large a residual by chance: less, and something still moves the payload
 _UNSETTLED = 1e-5
+_OVER_TAU = 5.0
+_PADDED = 16  # times the span of the weights: how finely low frequencies are resolved
 
 
 class Reduced(NamedTuple):
@@ -66,7 +77,7 @@ def reduced(sheet: Sheet, found: Calibrated, spans: Spans, source: str) -> Reduc
     slope = away @ found.rate[settled] / spread
     after = middle + lever * slope
     residuals = [found.rate[calm] - before, found.rate[settled] - middle - np.outer(away, slope)]
-    tau = noise.correlation_time(residuals, _FITTED)
+    tau = correlation_time(residuals, _FITTED)
     freedom = max(1.0, calm.size + settled.size - _FITTED * tau)
     sigma = np.sqrt(sum((stretch**2).sum(axis=0) for stretch in residuals) / freedom)
     change, length = after - before, spans.settled[1] - spans.settled[0]
@@ -110,7 +121,7 @@ def _systematic(
 
     return {
         "bias instability": np.full(
-            3, np.sqrt(noise.instability_variance(weights, interval, sure.bias_instability))
+            3, np.sqrt(instability_variance(weights, interval, sure.bias_instability))
         ),
         "scale": sure.scale * np.abs(change),
         "misalignment": sure.misalignment * across,
@@ -148,3 +159,33 @@ def _require_settled(
             f"windows.exit too early?"
         )
         raise SceneError([Fault(source, "settled window", given, expected)])
+
+
+def correlation_time(residuals: list[np.ndarray], fitted: int = 1) -> float:
+    """tau, from several stretches (n_i,3) of residuals of one sensor from which ``fitted``
+    parameters were taken in all."""
+    count, scales = sum(map(len, residuals)), sum((stretch**2).sum(axis=0) for stretch in residuals)
+    if not scales.all():
+        return 1.0  # rounded to a constant: nothing to be seen
+    raw = tau = 1.0
+    for lag in range(1, max(map(len, residuals)) // 2):
+        pairs = sum(max(len(stretch) - lag, 0) for stretch in residuals)
+        rho = (
+            sum((stretch[lag:] * stretch[:-lag]).sum(axis=0) for stretch in residuals)
+            / pairs
+            / (scales / count)
+        )
+        raw += 2.0 * float(rho.mean())
+        tau = raw * (1.0 + fitted * (2.0 * lag + 1.0) / count)
+        if lag >= _OVER_TAU * tau:
+            break
+    return max(tau, 1.0)
+
+
+def instability_variance(weights: np.ndarray, interval: float, instability: float) -> float:
+    """Variance that bias instability (rad/s) gives a sum with ``weights`` (n,) of samples every
+    ``interval`` (s)."""
+    length = _PADDED * weights.size
+    frequency = np.fft.rfftfreq(length, interval)[1:]
+    power = np.abs(np.fft.rfft(weights, length)[1:]) ** 2
+    return float(2.0 * (instability**2 / (2.0 * np.pi * frequency) * power).sum() * frequency[0])

@@ -1,117 +1,157 @@
-"""Results of drop tests as plain values (deg/s), as result files hold them."""
+"""Result of drop tests: each test, its place among the simulated cases, and what that comparison is
+worth. Rates are in deg/s, in payload body axes."""
 
-import numpy as np
+from dataclasses import dataclass
+from typing import Annotated
 
-from tipoff.lowfi.ensemble.columns import Columns
-from tipoff.studies.droptest import judgement, power
-from tipoff.studies.droptest.analysis import Drop
-from tipoff.studies.droptest.events import WINDOWS
-from tipoff.studies.droptest.reduction import COVERAGE
-from tipoff.studies.populations import answers, spread
+from tipoff.scenes.uncertainty import Varied
+from tipoff.studies.droptest.options import Options
+from tipoff.studies.populations.population import Answering
+from tipoff.studies.populations.spread import Quantile
+from tipoff.studies.render.column import Column
 
-MAGNITUDES = ("roll", "transverse", "total")
-PAIRS = ((0, 1), (0, 2), (1, 2))
-_EVERY = 4  # curves of a result file hold every fourth sample
-_AROUND = 0.12  # s before and after ignition, where they hold all samples
-
-
-def row_of(number: int, drop: Drop, simulated: np.ndarray) -> dict:
-    """One test among simulated rates (n,3) deg/s."""
-    found, events, sheet = drop.reduced, drop.events, drop.sheet
-    change, uncertainty = np.degrees(found.change), np.degrees(found.combined)
-    place = judgement.standing(simulated, change, uncertainty, number)
-    return {
-        "test": drop.name,
-        "simulated": sheet.simulated,
-        "description": sheet.description,
-        "notes": list(drop.notes),
-        "channel_class": sheet.channel_class,
-        "interval_s": float(drop.samples.time[1] - drop.samples.time[0]),
-        "release_s": events.release,
-        "ignition_s": events.ignition,
-        "events_given": events.given,
-        "windows_s": {name: list(getattr(drop.spans, name)) for name in WINDOWS},
-        "instant_s": drop.spans.instant,
-        "rest_deg_s": float(np.degrees(drop.unrest)),
-        "rest_limit_deg_s": float(np.degrees(sheet.windows.rest_rate)),
-        "rest_kept": bool(drop.unrest <= sheet.windows.rest_rate),
-        "before_deg_s": np.degrees(found.before).tolist(),
-        "after_deg_s": np.degrees(found.after).tolist(),
-        "change_deg_s": change.tolist(),
-        "standard_uncertainty_deg_s": uncertainty.tolist(),
-        "coverage_factor": found.factor.tolist(),
-        "expanded_uncertainty_deg_s": (found.factor * uncertainty).tolist(),
-        "coverage": COVERAGE,
-        "budget_deg_s": {name: np.degrees(part).tolist() for name, part in found.parts.items()},
-        "noise_deg_s": np.degrees(found.noise).tolist(),
-        "correlation_samples": found.correlation,
-        "inside_range": (
-            (simulated.min(axis=0) <= change) & (change <= simulated.max(axis=0))
-        ).tolist(),
-        "percentile": place.percentile.tolist(),
-        "p": place.p.tolist(),
-        "p_distance": place.p_distance,
-        "magnitudes": {
-            name: {"value_deg_s": float(value), "percentile": float(share), "p": float(p)}
-            for name, value, share, p in zip(
-                MAGNITUDES,
-                judgement.magnitudes(change),
-                place.magnitude_percentile,
-                place.magnitude_p,
-            )
-        },
-        "curve": _curve(drop),
-    }
+Vector = tuple[float, float, float]  # about x, y, z
+Span = tuple[float, float]  # first and last instant, s of the log
 
 
-def _curve(drop: Drop) -> dict:
-    """Filtered rates over the time after ignition, all samples near it and every fourth
-    elsewhere."""
-    time = drop.samples.time - drop.events.ignition
-    keep = (np.abs(time) < _AROUND) | (np.arange(time.size) % _EVERY == 0)
-    return {
-        "time_s": np.round(time[keep], 6).tolist(),
-        "rate_deg_s": np.round(np.degrees(drop.filtered[keep]), 4).tolist(),
-    }
+@dataclass(frozen=True, kw_only=True)
+class Magnitude:
+    """Of a rate, which needs no angle about X; ``p`` is two-sided."""
+
+    value_deg_s: float
+    percentile: float
+    p: float
 
 
-def joint(tests: list[dict], simulated: np.ndarray) -> dict:
-    """``together``: p of all tests by distance and by spread, and the smaller after Bonferroni;
-    ``regions`` of prediction for each pair of components; ``power`` of both tests."""
-    changes = np.array([row["change_deg_s"] for row in tests])
-    uncertainty = np.array([row["standard_uncertainty_deg_s"] for row in tests])
-    regions = []
-    for pair in PAIRS:
-        centre, covariance, radius = judgement.region(simulated[:, pair])
-        regions.append(
-            {
-                "components": ["xyz"[place] for place in pair],
-                "share": judgement.SHARE,
-                "centre_deg_s": centre.tolist(),
-                "covariance": covariance.tolist(),
-                "squared_radius": radius if np.isfinite(radius) else None,
-            }
-        )
-    out, spread = (
-        judgement.combined([row["p_distance"] for row in tests]),
-        judgement.p_spread(simulated, changes, uncertainty),
-    )
-    return {
-        "together": {
-            "p_distance": out,
-            "p_spread": spread,
-            "p": min(1.0, 2.0 * min(out, spread)),
-            "smallest_p": 1.0 / (len(simulated) + 1),
-            "inside_range": all(all(row["inside_range"]) for row in tests),
-        },
-        "regions": regions,
-        "power": power.table(simulated, len(tests)),
-    }
+@dataclass(frozen=True, kw_only=True)
+class Standing:
+    """A test among the cases: by component, by the ``distance`` of all three, and by roll, transverse
+    and total magnitude."""
+
+    percentile: Vector
+    p: Vector  # two-sided
+    p_distance: float
+    magnitudes: dict[str, Magnitude]
 
 
-def quantiles(results: Columns, settled: np.ndarray, independent: bool) -> dict[str, list[dict]]:
-    """Quantiles of the exit state of the ``settled`` (n,) cases by name, in the units of the name;
-    with bounds where draws are ``independent``."""
-    found = {item.name: spread.quantiles(item.of(results)[settled]) for item in answers.ALL}
-    nothing = {} if independent else {"low": None, "high": None}
-    return {name: [vars(row) | nothing for row in rows] for name, rows in found.items()}
+@dataclass(frozen=True)
+class Curve:
+    """Filtered rates over the time after ignition, thinned."""
+
+    time_s: tuple[float, ...]
+    rate_deg_s: tuple[Vector, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Measured:
+    """A drop test. ``windows_s`` by name; ``instant_s`` of the settled rate; ``rest_deg_s``: largest rate
+    in the window at rest, and whether its limit was kept; ``budget_deg_s``: standard uncertainties by
+    name; noise of one sample, and its correlation time in samples; ``notes``: what was repaired, assumed
+    or left out."""
+
+    test: str
+    simulated: bool
+    description: str
+    notes: tuple[str, ...]
+    channel_class: Annotated[int, Column("CFC", "Hz", "g")]
+    interval_s: float
+    release_s: Annotated[float, Column("release", "s", ".4f")]
+    ignition_s: Annotated[float, Column("ignition", "s", ".4f")]
+    events_given: bool
+    windows_s: dict[str, Span]
+    instant_s: float
+    rest_deg_s: float
+    rest_limit_deg_s: float
+    rest_kept: bool
+    before_deg_s: Vector
+    after_deg_s: Vector
+    change_deg_s: Vector
+    standard_uncertainty_deg_s: Vector
+    coverage_factor: Vector
+    expanded_uncertainty_deg_s: Vector
+    coverage: float
+    budget_deg_s: dict[str, Vector]
+    noise_deg_s: Vector
+    correlation_samples: float
+    curve: Curve
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row(Standing, Measured):
+    """A drop test and its place; whether each component is inside the range of the cases."""
+
+    inside_range: tuple[bool, bool, bool]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Together:
+    """p of all tests by distance and by spread, and twice the smaller."""
+
+    p_distance: float
+    p_spread: float
+    p: float
+    smallest_p: float  # that the number of cases can show
+    inside_range: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Region:
+    """Ellipse that contains the next case with the probability ``share``: squared Mahalanobis radius,
+    None where there are too few cases for one."""
+
+    components: tuple[str, str]
+    share: float
+    centre_deg_s: tuple[float, float]
+    covariance: tuple[tuple[float, float], tuple[float, float]]  # (deg/s)^2
+    squared_radius: float | None
+
+
+_SHARE = {"unit": "%", "form": ".2f", "scale": 100.0}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Power:
+    """How often a model passes that is ``factor`` times as wide as the truth."""
+
+    factor: Annotated[float, Column("spread of the model over the truth")]
+    passes_one_axis: Annotated[float, Column("inside the range, one axis", **_SHARE)]
+    passes_three_axes: Annotated[float, Column("inside the range, three axes", **_SHARE)]
+    passes_in_cloud: Annotated[float | None, Column("inside the range, this cloud", **_SHARE)]
+    flagged_by_spread: Annotated[float, Column("rejected by the spread", **_SHARE)]
+    flagged_in_cloud: Annotated[float, Column("rejected by the spread, this cloud", **_SHARE)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cases:
+    """The simulated cases: their numbers, quantiles of ``answers.ALL`` by name, the first rates."""
+
+    asked: int
+    ok: int
+    refused: int
+    failed: int
+    settled: int
+    quantiles: dict[str, tuple[Quantile, ...]]
+    store: str
+    shown_deg_s: tuple[Vector, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Compared:
+    """Drop tests compared with cases."""
+
+    simulated_logs: bool
+    tests: tuple[Row, ...]
+    together: Together
+    regions: tuple[Region, ...]
+    power: tuple[Power, ...]
+    cases: Cases
+
+
+@dataclass(frozen=True, kw_only=True)
+class Droptest(Compared, Answering):
+    """The result of the study of a ``scene``; ``data``: the file of all signals."""
+
+    scene: str
+    request: Options
+    varied: Varied
+    data: str

@@ -8,6 +8,7 @@ and start at rest in free fall. ``studies.droptest.judgement`` ranks each test a
 import hashlib
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -16,23 +17,26 @@ from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.scenes import uncertainty
 from tipoff.scenes.faults import Fault, SceneError, together
 from tipoff.scenes.scene import Scene
-from tipoff.studies.droptest import sheet, signals
+from tipoff.studies.droptest import judgement, power, sheet, signals
 from tipoff.studies.droptest.analysis import Drop, analyse
+from tipoff.studies.droptest.events import WINDOWS
 from tipoff.studies.droptest.options import Options
-from tipoff.studies.droptest.results import joint, quantiles, row_of
-from tipoff.studies.populations import population
+from tipoff.studies.droptest.reduction import COVERAGE
+from tipoff.studies.droptest.results import Cases, Compared, Curve, Droptest, Row, Together
+from tipoff.studies.populations import answers, population, spread
 from tipoff.studies.populations.population import Population
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study, StudyError
 
 NAME = "droptest"
-CASES = 1000
 _FEWEST = 20  # settled cases for a useful covariance
 _SHOWN = 2000  # cases in the figure
+_EVERY = 4  # curves of a result file hold every fourth sample
+_AROUND = 0.12  # s before and after ignition, where they hold all samples
 
 
 def run(study: Study, options: Options = Options()) -> dict:
-    """``tests`` with their rates, uncertainty budgets and ranks, ``together``, ``power``.
+    """The content of ``Droptest``.
 
     Raises SceneError listing every fault of every log and of the distributions, StudyError where
     too few cases settle.
@@ -43,22 +47,25 @@ def run(study: Study, options: Options = Options()) -> dict:
     if options.logs:
         options = replace(options, logs=tuple(path.resolve() for path in options.logs))
 
-    def make() -> tuple[dict, list[Path]]:
+    def make() -> tuple[Droptest, list[Path]]:
         from tipoff.studies.droptest import page
         from tipoff.studies.render.document import with_figures
 
         model = population.surrogate(study, options.model, options.condition)
         cases = population.run(study, NAME, model, drawn)
-        found = result(study, drops, cases, drawn.uncertainty.sampling == "random")
-        found |= {
-            "request": STAGE.plain(options),
-            **population.answering(study, cases.model, options.condition),
-            "varied": drawn.uncertainty.resolved(),
-        }
         data = study.path(f"{NAME}.nc")
         signals.write(data, drops)
+        compared = result(study, drops, cases, drawn.uncertainty.sampling == "random")
+        found = Droptest(
+            **vars(compared),
+            **population.answering(study, cases.model, options.condition),
+            scene=study.scene.name,
+            request=options,
+            varied=uncertainty.Varied(**drawn.uncertainty.resolved()),
+            data=study.relative(data),
+        )
         found, pictures = with_figures(found, page.figures, study.path("figures"))
-        return found | {"data": study.relative(data)}, [data, *pictures]
+        return found, [data, *pictures]
 
     return STAGE.run(study, options, make)
 
@@ -70,7 +77,7 @@ def _inputs(study: Study, options: Options) -> list:
     return [digests, _drawn(study, options).uncertainty.resolved()]
 
 
-STAGE = Stage(NAME, __name__, Options, _inputs, "request")
+STAGE = Stage(NAME, __name__, Options, _inputs, "request", Droptest)
 
 
 def _drawn(study: Study, options: Options) -> Drawn:
@@ -123,31 +130,101 @@ def short_names(places: list[Path]) -> list[str]:
     return names
 
 
-def result(study: Study, drops: list[Drop], cases: Population, independent: bool = True) -> dict:
-    """The drops compared with the cases, as plain values; ``independent``: the cases are
-    independent draws. Raises StudyError where too few cases settle."""
+def result(
+    study: Study, drops: list[Drop], cases: Population, independent: bool = True
+) -> Compared:
+    """The drops compared with the cases; ``independent``: the cases are independent draws. Raises
+    StudyError where too few cases settle."""
     settled = cases.settled
     if settled.sum() < _FEWEST:
         raise StudyError(
             f"only {settled.sum()} of {settled.size} simulated cases left the rail and settled; "
             f"at least {_FEWEST} are needed"
         )
-    rates = np.degrees(cases.results.rate[settled])
-    tests = [row_of(number, drop, rates) for number, drop in enumerate(drops)]
-    for row, drop in zip(tests, drops):
-        row["notes"] += _doubts(study, drop, cases.results.exit_time[settled])
-    return {
-        "simulated_logs": all(drop.sheet.simulated for drop in drops),
-        "tests": tests,
-        **joint(tests, rates),
-        "cases": {
+    rates, exits = np.degrees(cases.results.rate[settled]), cases.results.exit_time[settled]
+    tests = tuple(
+        _row(number, drop, rates, _doubts(study, drop, exits)) for number, drop in enumerate(drops)
+    )
+    return Compared(
+        simulated_logs=all(row.simulated for row in tests),
+        tests=tests,
+        together=_together(tests, rates),
+        regions=tuple(judgement.region(rates, pair) for pair in combinations(range(3), 2)),
+        power=power.table(rates, len(tests)),
+        cases=Cases(
             **cases.counts,
-            "settled": int(settled.sum()),
-            "quantiles": quantiles(cases.results, settled, independent),
-            "store": cases.store,
-            "shown_deg_s": np.round(rates[:_SHOWN], 4).tolist(),
-        },
-    }
+            settled=len(rates),
+            quantiles={
+                item.name: spread.quantiles(item.of(cases.results)[settled], bounded=independent)
+                for item in answers.ALL
+            },
+            store=cases.store,
+            shown_deg_s=_plain(rates[:_SHOWN].round(4)),
+        ),
+    )
+
+
+def _row(number: int, drop: Drop, simulated: np.ndarray, doubts: list[str]) -> Row:
+    """One test among simulated rates (n,3) deg/s."""
+    found, events, sheet_, windows = drop.reduced, drop.events, drop.sheet, drop.sheet.windows
+    change, uncertainty = np.degrees(found.change), np.degrees(found.combined)
+    within = (simulated.min(axis=0) <= change) & (change <= simulated.max(axis=0))
+    return Row(
+        **vars(judgement.standing(simulated, change, uncertainty, number)),
+        test=drop.name,
+        simulated=sheet_.simulated,
+        description=sheet_.description,
+        notes=(*drop.notes, *doubts),
+        channel_class=sheet_.channel_class,
+        interval_s=float(drop.samples.time[1] - drop.samples.time[0]),
+        release_s=events.release,
+        ignition_s=events.ignition,
+        events_given=events.given,
+        windows_s={name: getattr(drop.spans, name) for name in WINDOWS},
+        instant_s=drop.spans.instant,
+        rest_deg_s=float(np.degrees(drop.unrest)),
+        rest_limit_deg_s=float(np.degrees(windows.rest_rate)),
+        rest_kept=bool(drop.unrest <= windows.rest_rate),
+        before_deg_s=_plain(np.degrees(found.before)),
+        after_deg_s=_plain(np.degrees(found.after)),
+        change_deg_s=_plain(change),
+        standard_uncertainty_deg_s=_plain(uncertainty),
+        coverage_factor=_plain(found.factor),
+        expanded_uncertainty_deg_s=_plain(found.factor * uncertainty),
+        coverage=COVERAGE,
+        budget_deg_s={name: _plain(np.degrees(part)) for name, part in found.parts.items()},
+        noise_deg_s=_plain(np.degrees(found.noise)),
+        correlation_samples=found.correlation,
+        inside_range=_plain(within),
+        curve=_curve(drop),
+    )
+
+
+def _plain(values: np.ndarray) -> tuple:
+    """An array (n,) or (n,k) as tuples."""
+    return tuple(tuple(each) if isinstance(each, list) else each for each in values.tolist())
+
+
+def _curve(drop: Drop) -> Curve:
+    """All samples near the ignition and every fourth elsewhere."""
+    time = drop.samples.time - drop.events.ignition
+    keep = (np.abs(time) < _AROUND) | (np.arange(time.size) % _EVERY == 0)
+    return Curve(_plain(time[keep].round(6)), _plain(np.degrees(drop.filtered[keep]).round(4)))
+
+
+def _together(tests: Sequence[Row], simulated: np.ndarray) -> Together:
+    """p by distance and by spread, and the smaller after Bonferroni."""
+    changes = np.array([row.change_deg_s for row in tests])
+    uncertainty = np.array([row.standard_uncertainty_deg_s for row in tests])
+    out = judgement.combined([row.p_distance for row in tests])
+    apart = judgement.p_spread(simulated, changes, uncertainty)
+    return Together(
+        p_distance=out,
+        p_spread=apart,
+        p=min(1.0, 2.0 * min(out, apart)),
+        smallest_p=1.0 / (len(simulated) + 1),
+        inside_range=all(all(row.inside_range) for row in tests),
+    )
 
 
 def _doubts(study: Study, drop: Drop, exits: np.ndarray) -> list[str]:

@@ -1,6 +1,51 @@
-"""Many varied cases of the surrogate, and their statistics."""
+"""Run the surrogate on thousands to millions of varied cases; writes ensemble.json and a zarr
+store.
 
-from tipoff.studies.ensemble import command
+A file of distributions defines the inputs that vary; --cases, --seed and --sampling override
+it:
+
+  \\[vary."payload.mass"]
+  distribution = "normal"
+  mean = "9.9 kg"
+  sd = "20 g"
+
+Other distributions: fixed (value), uniform and log-uniform (low, high), truncated-normal (mean,
+sd, low, high, rule "redraw" or "clip") and rayleigh (scale). A table has dotted keys in its
+first line, units in the second or in each cell, and one case in every further line.
+
+  tipoff ensemble --cases 1000000
+  tipoff ensemble --vary my_errors.toml --sampling sobol --cases 4096
+  tipoff ensemble --table cases.csv --store out/night
+  tipoff ensemble --cases 1000000 --case 1234    # that case alone, compared with the store
+  tipoff ensemble --sensitivity                  # count the sensitive cases too
+
+After an interruption or a full disk, the same command continues and gives the same bits. A case
+with bad input is refused, and the others run; the store lists it with its inputs and the reason
+(done/*.json). xarray.open_zarr(STORE + "/cases.zarr") reads the results.
+
+--sensitivity adds the variables rate_change_by_clearance and rate_change_by_tolerance (rad/s),
+also to an existing store. They are NaN if the case or its disturbed run does not settle. The
+change by clearance is 0 for a case without contact.
+"""
+
+from tipoff.studies.commands.declared import command
+from tipoff.studies.commands.request import Request
+from tipoff.studies.commands.running import Output
+from tipoff.studies.ensemble.options import Options
 from tipoff.studies.question import Entry
 
-ENTRY = Entry((command.ensemble,))
+
+def _answer(request: Request, options: Options) -> Output:
+    from tipoff.studies.ensemble import page, stage
+    from tipoff.workspace import models
+
+    models.require(options.chosen)
+    study = request.study()
+    if options.case is None:
+        found = stage.run(study, options)
+        return Output(found.plain, lambda _: page.summary(found), request.out)
+    one = stage.case(study, options, options.case)
+    return Output(one.plain, lambda _: page.case(one))
+
+
+ENTRY = Entry((command("ensemble", __doc__, Options, _answer),))

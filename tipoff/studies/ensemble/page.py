@@ -1,6 +1,7 @@
 """An ensemble for the terminal: quantiles with bounds, and the distributions of the inputs."""
 
 from tipoff.studies.ensemble.sensitivity import CAUSES
+from tipoff.studies.ensemble.stage import Cost, One, Ran, Sensitive
 from tipoff.studies.render.document import Bullets, Part
 from tipoff.studies.render.table import Table, estimate, percent
 from tipoff.studies.render.uncertain import LEAST, number
@@ -18,29 +19,27 @@ _STORED = {
 }
 
 
-def summary(found: dict) -> list[Part]:
+def summary(found: Ran) -> list[Part]:
     """Counts, failures, quantiles and the cost of the run."""
-    counts, cost = found["counts"], found["run"]
+    counts, cost = found.counts, found.run
     failures = [
         f"{item['status']}: case {item['case']}: {' '.join(item['reason'].split())}"
-        for item in found["failures"]
+        for item in found.failures
     ]
     run = [
-        f"{found['scene']}, model {found['model']}: {counted(counts['asked'], 'case')} = {counts['ok']:,} "
-        f"ok + {counts['refused']:,} refused + {counts['failed']:,} failed; {found['settled']:,} "
-        f"left the rail and settled{_others(found['statuses'])}",
-        f"agreement: {found['agreement']}",
+        f"{found.scene}, model {found.model}: {counted(counts['asked'], 'case')} = {counts['ok']:,} "
+        f"ok + {counts['refused']:,} refused + {counts['failed']:,} failed; {found.settled:,} "
+        f"left the rail and settled{_others(found.statuses)}",
+        f"agreement: {found.agreement}",
         *failures,
     ]
-    memory = f"{cost['peak_memory_bytes'] / 1e6:.0f} MB of memory at most"
-    tables = [table_of_quantiles(found)] if found["quantiles"] else []
     return [
         Bullets(run),
-        *_varied(found["cases"].get("vary", {})),
-        *tables,
-        f"run time: {_time(cost)}; {memory}",
-        *(_sensitivity(found["sensitivity"]) if "sensitivity" in found else []),
-        f"store: {found['store']}",
+        *_varied(found.cases.get("vary", {})),
+        *([table_of_quantiles(found)] if found.quantiles else []),
+        f"run time: {_time(cost)}; {(cost.peak_memory_bytes or 0) / 1e6:.0f} MB of memory at most",
+        *(_sensitivity(found.sensitivity) if found.sensitivity else []),
+        f"store: {found.store}",
     ]
 
 
@@ -51,34 +50,31 @@ def _others(statuses: dict[str, int]) -> str:
     return "".join(f", {text}" for text in found)
 
 
-def _time(cost: dict) -> str:
-    processor = (
-        f", {cost['cpu_ms_per_case']:.3f} ms of processor time per case"
-        if "cpu_ms_per_case" in cost
-        else ""
-    )
-    return f"{cost['wall_s']:.3g} s for {counted(cost['cases'], 'case')}{processor}"
+def _time(cost: Cost) -> str:
+    each = cost.cpu_ms_per_case
+    processor = "" if each is None else f", {each:.3f} ms of processor time per case"
+    return f"{cost.wall_s:.3g} s for {counted(cost.cases, 'case')}{processor}"
 
 
-def _sensitivity(found: dict) -> list[Part]:
+def _sensitivity(found: Sensitive) -> list[Part]:
     """How many cases are sensitive, the changes by cause, and what that took beside the cases."""
-    limit = f"{found['limit_deg_s']:.3g} deg/s"
+    limit = f"{found.limit_deg_s:.3g} deg/s"
     rows = [
         (
             CAUSES[cause],
             *(
-                "-" if item[name] is None else f"{item[name]:.2g}"
-                for name in ("median_deg_s", "q95_deg_s", "largest_deg_s")
+                "-" if value is None else f"{value:.2g}"
+                for value in (item.median_deg_s, item.q95_deg_s, item.largest_deg_s)
             ),
-            f"{item['above_limit']:,}",
-            f"{item['unsettled']:,}",
+            f"{item.above_limit:,}",
+            f"{item.unsettled:,}",
         )
-        for cause, item in found["by"].items()
+        for cause, item in found.by.items()
     ]
     heads = ["change by", "median (deg/s)", "95 % below", "largest", f"above {limit}", "unsettled"]
-    took = [f"{CAUSES[cause]}: {_time(cost)}" for cause, cost in found["run"].items()]
+    took = [f"{CAUSES[cause]}: {_time(cost)}" for cause, cost in found.run.items()]
     return [
-        f"sensitive: {counted(found['sensitive'], 'case')}. A settled rate changes by more than "
+        f"sensitive: {counted(found.sensitive, 'case')}. A settled rate changes by more than "
         f"{limit}, or the disturbed run does not settle.",
         Table(heads, rows),
         f"additional run time of the sensitivity: {'; '.join(took)}",
@@ -90,35 +86,30 @@ def _varied(vary: dict) -> list[Part]:
     return [Table(["varied input", "distribution", "beyond its bounds"], rows)] if rows else []
 
 
-def table_of_quantiles(found: dict) -> Table:
+def table_of_quantiles(found: Ran) -> Table:
     """Quantiles of each result with their bounds."""
-    rows = [
-        (_LABELS[name], *(estimate(row) for row in rows))
-        for name, rows in found["quantiles"].items()
-    ]
-    shares = [row["share"] for row in next(iter(found["quantiles"].values()))]
-    note = f"{found['confidence']:.0%} bounds: {found['bounds']}."
-    return Table(
-        ["quantity", *(f"{percent(share, 'g')} % below" for share in shares)], rows, (note,)
-    )
+    rows = [(_LABELS[name], *map(estimate, rows)) for name, rows in found.quantiles.items()]
+    shares = [row.share for row in next(iter(found.quantiles.values()))]
+    heads = ["quantity", *(f"{percent(share, 'g')} % below" for share in shares)]
+    return Table(heads, rows, (f"{found.confidence:.0%} bounds: {found.bounds}.",))
 
 
-def case(found: dict) -> list[Part]:
+def case(one: One) -> list[Part]:
     """One case: status, inputs, velocity and rate with all digits, and the comparison with the
     store."""
-    message = f" ({found['message']})" if found["message"] else ""
+    found = one.found
+    message, outcome = f" ({found.message})" if found.message else "", found.outcome
     parts: list[Part] = [
-        f"case {found['case']}: {found['status']}{message}",
-        Table(["input", "value"], list(found["inputs"].items())),
+        f"case {one.case}: {found.status}{message}",
+        Table(["input", "value"], list(one.inputs.items())),
     ]
-    if found["rate"] is not None:
-        vectors = (("velocity (m/s)", found["velocity"]), ("rate (rad/s)", found["rate"]))
+    if outcome.rate is not None and outcome.velocity is not None:
+        vectors = (("velocity (m/s)", outcome.velocity), ("rate (rad/s)", outcome.rate))
         rows = [(name, *(f"{value:.17g}" for value in vector)) for name, vector in vectors]
         parts.append(Table(["", "x", "y", "z"], rows))
-    if "sensitivity" in found:
-        parts += [
-            f"{CAUSES[cause]}: "
-            + ("does not settle" if change is None else f"{number(change, '.2g', LEAST)} deg/s")
-            for cause, change in found["sensitivity"]["by"].items()
-        ]
-    return [*parts, _STORED[found["stored"]]]
+    parts += [
+        f"{CAUSES[cause]}: "
+        + ("does not settle" if change is None else f"{number(change, '.2g', LEAST)} deg/s")
+        for cause, change in (one.changes or {}).items()
+    ]
+    return [*parts, _STORED[one.stored]]

@@ -5,6 +5,7 @@ moves a settled rate by more than the limit of agreement, or keeps the case from
 """
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,9 +20,31 @@ CAUSES = {
 }
 
 
-def of(store: Store, disturbed: Mapping[str, Store], limit: float) -> dict:
-    """Counts, and quantiles of the changes (deg/s) by cause, of a whole ``store`` and the stores of
-    its twins; ``limit`` (deg/s)."""
+@dataclass(frozen=True, kw_only=True)
+class Change:
+    """Changes of the settled rates by one cause: cases above the limit, cases whose twin does not
+    settle, quantiles (None without a change), digest of the twins."""
+
+    above_limit: int
+    unsettled: int
+    median_deg_s: float | None
+    q95_deg_s: float | None
+    largest_deg_s: float | None
+    digest: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sensitivity:
+    """How many cases are ``sensitive``, and the changes by cause."""
+
+    limit_deg_s: float
+    clearance_change_m: float
+    sensitive: int
+    by: dict[str, Change]
+
+
+def of(store: Store, disturbed: Mapping[str, Store], limit: float) -> Sensitivity:
+    """Of a whole ``store`` and the stores of its twins by cause; ``limit`` (deg/s)."""
     settled = np.isfinite(store.column("lateral_velocity"))
     beyond, found = np.zeros(store.asked, dtype=bool), {}
     for cause, twin in disturbed.items():
@@ -29,26 +52,21 @@ def of(store: Store, disturbed: Mapping[str, Store], limit: float) -> dict:
         known, large = np.isfinite(change), change > limit  # False where it is NaN
         lost = settled & ~known
         beyond |= large | lost
-        found[cause] = {
-            "above_limit": int(large.sum()),
-            "unsettled": int(lost.sum()),
-            **_quantiles(change[known]),
-            "digest": twin.digest(),
-        }
-    return {
-        "limit_deg_s": limit,
-        "clearance_change_m": twins.CLEARANCE_CHANGE,
-        "sensitive": int(beyond.sum()),
-        "by": found,
-    }
-
-
-def _quantiles(change: np.ndarray) -> dict[str, float | None]:
-    shares = {"median_deg_s": 0.5, "q95_deg_s": 0.95, "largest_deg_s": 1.0}
-    return {
-        name: float(np.quantile(change, share)) if change.size else None
-        for name, share in shares.items()
-    }
+        ends = np.quantile(change[known], (0.5, 0.95, 1.0)).tolist() if known.any() else [None] * 3
+        found[cause] = Change(
+            above_limit=int(large.sum()),
+            unsettled=int(lost.sum()),
+            median_deg_s=ends[0],
+            q95_deg_s=ends[1],
+            largest_deg_s=ends[2],
+            digest=twin.digest(),
+        )
+    return Sensitivity(
+        limit_deg_s=limit,
+        clearance_change_m=twins.CLEARANCE_CHANGE,
+        sensitive=int(beyond.sum()),
+        by=found,
+    )
 
 
 def of_case(ensemble: Ensemble, number: int, nominal: Case) -> dict[str, float | None]:

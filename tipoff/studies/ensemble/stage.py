@@ -3,7 +3,7 @@ results."""
 
 import resource
 import time
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from tipoff.files import write_json
 from tipoff.lowfi.ensemble import columns, pilot, twins
+from tipoff.lowfi.ensemble.batch import Case
 from tipoff.lowfi.ensemble.fill import fill
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.rows import Drawn
@@ -23,29 +24,76 @@ from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.ensemble import sensitivity, summary
-from tipoff.workspace import kernel_marks, machine, models, words
+from tipoff.studies.ensemble.options import Options
+from tipoff.studies.ensemble.sensitivity import Sensitivity
+from tipoff.studies.ensemble.summary import Statistics
+from tipoff.workspace import kernel_marks, machine, words
 from tipoff.workspace.progress import Board, say
 from tipoff.workspace.run import Run
 from tipoff.workspace.study import Study, StudyError
 from tipoff.workspace.words import counted
 
 
-@dataclass(frozen=True)
-class Options:
-    """Options of ``tipoff ensemble``; None: from the file of distributions, or the default. The file is
-    that of ``vary``, else of the errors that the scene states, else of the paper."""
+@dataclass(frozen=True, kw_only=True)
+class Cost:
+    """Of the cases that were run: time by the clock, and of the processor for each case, None on other
+    machines and without a case; peak memory of the process, None for twins."""
 
-    vary: str | None = None
-    table: Path | None = None
-    cases: int | None = None
-    seed: int | None = None
-    sampling: str | None = None
-    store: Path | None = None
-    tolerance: float = 1e-2
-    scheduler: str | None = None
-    workers: int | None = None
-    model: models.Options = models.Options()
-    sensitivity: bool = False
+    cases: int
+    wall_s: float
+    scheduler: str | None
+    cpu_ms_per_case: float | None
+    peak_memory_bytes: int | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sensitive(Sensitivity):
+    """The same with the cost of the twins by cause."""
+
+    run: dict[str, Cost]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ran(Statistics):
+    """The result: statistics of the ``store``; ``sensitivity`` None where it is not asked for."""
+
+    stage: str = "ensemble"
+    scene: str
+    quantities: str
+    implausible: list[str]
+    store: str
+    sensitivity: Sensitive | None
+    agreement: str
+    run: Cost
+    hardware: dict[str, Any]
+
+    @property
+    def plain(self) -> dict:
+        """The content of the result file."""
+        return asdict(self)
+
+
+@dataclass(frozen=True, kw_only=True)
+class One:
+    """One case run alone: inputs as text; changes of the rates by cause (deg/s), None where they are not
+    asked for; ``stored``: whether its store has the same bits, None without a stored result."""
+
+    case: int
+    inputs: dict[str, str]
+    found: Case
+    limit_deg_s: float
+    changes: dict[str, float | None] | None
+    stored: bool | None
+
+    @property
+    def plain(self) -> dict:
+        """The case as JSON values."""
+        found = {"case": self.case, "inputs": self.inputs, "stored": self.stored}
+        if self.changes is not None:
+            found["sensitivity"] = {"limit_deg_s": self.limit_deg_s, "by": self.changes}
+        run = self.found
+        whole = {"status": run.status, "message": run.message, "steps": run.steps}
+        return found | whole | run.outcome._asdict()
 
 
 def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
@@ -53,7 +101,7 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
     separate one for every ensemble. The number of modes is that of the store, or pilot cases choose
     it. Raises SceneError for bad input, before any rail compliance is computed, and StudyError where
     no model is named and the agreement table rejects the default."""
-    fitted = constants(options.model.calibration, options.model.model, study.scene.name)
+    fitted = constants(options.chosen.calibration, options.chosen.model, study.scene.name)
     changed = {
         name: value
         for name in ("cases", "seed", "sampling")
@@ -71,14 +119,14 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
         vary = options.vary or own or uncertainty.DEFAULT
         source = Drawn(uncertainty.load(vary, study.scene, **changed))
     try:
-        numerics = Numerics(relative_tolerance=options.tolerance, modes=options.model.asked)
+        numerics = Numerics(relative_tolerance=options.tolerance, modes=options.chosen.asked)
     except ValueError as fault:
-        given = f"{options.tolerance:g}, {options.model.modes}"
+        given = f"{options.tolerance:g}, {options.chosen.modes}"
         raise SceneError([Fault("--tolerance, --modes", "numerics", given, str(fault))]) from None
     if options.store is not None and options.store.exists() and not options.store.is_dir():
         raise SceneError([Fault("--store", "path", str(options.store), "a folder")])
-    kept.require_accepted(study, options.model.name)
-    springs = options.model.model == SPRINGS
+    kept.require_accepted(study, options.chosen.name)
+    springs = options.chosen.model == SPRINGS
     found = study.rigid_rails(study.scene) if springs else study.rail_compliance(study.scene)
     scene = study.scene
     if fitted is not None and not springs:  # before a case, which may vary a constant
@@ -93,7 +141,7 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
     return ensemble, path
 
 
-def run(study: Study, options: Options) -> dict:
+def run(study: Study, options: Options) -> Ran:
     """Run the cases that the store lacks, then their twins where the sensitivity is asked for.
     Returns the statistics, also written as ``ensemble.json``. Raises StudyError when the store
     fails."""
@@ -102,63 +150,58 @@ def run(study: Study, options: Options) -> dict:
         store = ensemble.store(path)
         ensemble.case(0)  # compiles, or loads the kernels from disk, before any clock runs
         with Board("ensemble", 3 if options.sensitivity else 1) as board:
-            cost = _filled(ensemble, store, counted(store.asked, "case"), options, board)
+            cost = _filled(study, ensemble, store, options, board)
             told = _sensitivity(study, ensemble, store, options, board)
     except StoreError as fault:
         raise StudyError(str(fault)) from fault
-    statistics = summary.of(ensemble, store, options.model.calibration is not None)
-    cost["peak_memory_bytes"] = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    found = {
-        "stage": "ensemble",
-        "scene": study.scene.name,
-        "quantities": words.QUANTITIES,
-        "implausible": plausibility.of_all_conditions(study.scene),
-        "store": str(path),
-        **statistics,
-        **told,
-        "agreement": _agreement(study, options),
-        "run": cost,
-        "hardware": machine.describe(),
-    }
-    write_json(study.path("ensemble.json"), found)
+    memory = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    found = Ran(
+        **vars(summary.of(ensemble, store, options.calibration is not None)),
+        scene=study.scene.name,
+        quantities=words.QUANTITIES,
+        implausible=plausibility.of_all_conditions(study.scene),
+        store=str(path),
+        sensitivity=told,
+        agreement=_agreement(study, options),
+        run=replace(cost, peak_memory_bytes=memory),
+        hardware=machine.describe(),
+    )
+    write_json(study.path("ensemble.json"), found.plain)
     return found
 
 
 def _filled(
-    ensemble: Ensemble, store: Store, label: str, options: Options, board: Board
-) -> dict[str, Any]:
-    """Run the cases that a store lacks. Returns their number and cost."""
+    study: Study, ensemble: Ensemble, store: Store, options: Options, board: Board, cause: str = ""
+) -> Cost:
+    """Run the cases that a store lacks; ``cause`` in words for twins."""
+    label = counted(store.asked, "case") + (cause and f", {cause}")
     report, began, processor = board.callback(label), time.perf_counter(), time.process_time()
     new = fill(
         ensemble,
         store,
-        options.workers,
+        study.settings.workers,
         options.scheduler,
         lambda stored: report(stored / store.asked),
     )
     wall, spent = time.perf_counter() - began, time.process_time() - processor
     board.finished(label, f"{new:,} run in {wall:.3g} s" if new else "all of them stored before")
-    cost = {"cases": new, "wall_s": wall, "scheduler": options.scheduler}
-    if new and not options.scheduler:
-        cost["cpu_ms_per_case"] = 1e3 * spent / new
-    return cost
+    each = 1e3 * spent / new if new and not options.scheduler else None
+    return Cost(cases=new, wall_s=wall, scheduler=options.scheduler, cpu_ms_per_case=each)
 
 
 def _sensitivity(
     study: Study, ensemble: Ensemble, store: Store, options: Options, board: Board
-) -> dict[str, Any]:
-    """How far the twins of the cases differ, and the cost of each; nothing where it is not asked
-    for."""
+) -> Sensitive | None:
+    """How far the twins of the cases differ, and the cost of each; None where it is not asked for."""
     if not options.sensitivity:
-        return {}
+        return None
     disturbed, costs = {}, {}
     for cause, twin in twins.of(ensemble).items():
         disturbed[cause] = twins.opened(twin, cause, store)
-        label = f"{counted(store.asked, 'case')}, {sensitivity.CAUSES[cause]}"
-        costs[cause] = _filled(twin, disturbed[cause], label, options, board)
+        words_ = sensitivity.CAUSES[cause]
+        costs[cause] = _filled(study, twin, disturbed[cause], options, board, words_)
         twins.add(store, cause, twin, disturbed[cause])
-    found = sensitivity.of(store, disturbed, _limit(study))
-    return {"sensitivity": found | {"run": costs}}
+    return Sensitive(**vars(sensitivity.of(store, disturbed, _limit(study))), run=costs)
 
 
 def _limit(study: Study) -> float:
@@ -167,47 +210,36 @@ def _limit(study: Study) -> float:
 
 
 def _agreement(study: Study, options: Options) -> str:
-    return kept.words(
-        study,
-        options.model.model,
-        None,
-        options.model.calibration is not None,
-        options.model.asked,
-    )
+    chosen, calibrated = options.chosen, options.calibration is not None
+    return kept.words(study, chosen.model, None, calibrated, chosen.asked)
 
 
-def case(study: Study, options: Options, number: int) -> dict:
-    """One case run alone, and whether its store has the same bits (None: no stored result). Raises
-    SceneError for a case that does not exist, and StudyError when the store fails."""
+def case(study: Study, options: Options, number: int) -> One:
+    """One case run alone. Raises SceneError for a case that does not exist, and StudyError when the
+    store fails."""
     ensemble, path = request(study, options)
     if not 0 <= number < ensemble.source.asked:
-        raise SceneError(
-            [Fault("--case", "number", str(number), f"0 to {ensemble.source.asked - 1}")]
-        )
+        expected = f"0 to {ensemble.source.asked - 1}"
+        raise SceneError([Fault("--case", "number", str(number), expected)])
     row, found = ensemble.case(number)
-    result = {
-        "case": number,
-        "inputs": {key: str(value) for key, value in row.items()},
-        "status": found.status,
-        "message": found.message,
-        "steps": found.steps,
-        **found.outcome._asdict(),
-        "stored": None,
-    }
-    if options.sensitivity:
-        result["sensitivity"] = {
-            "limit_deg_s": _limit(study),
-            "by": sensitivity.of_case(ensemble, number, found),
-        }
+    changes = sensitivity.of_case(ensemble, number, found) if options.sensitivity else None
+    kept_ = None
     if path.exists():
         try:
             store = ensemble.store(path)
-            stored = store.read(number, number + 1)[0] if store.holds(number) else None
+            kept_ = store.read(number, number + 1)[0] if store.holds(number) else None
         except StoreError as fault:
             raise StudyError(str(fault)) from fault
-        alone = columns.of([found])
-        if stored is not None:
-            result["stored"] = all(
-                np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(stored, alone)
-            )
-    return result
+    return One(
+        case=number,
+        inputs={key: str(value) for key, value in row.items()},
+        found=found,
+        limit_deg_s=_limit(study),
+        changes=changes,
+        stored=None if kept_ is None else _equal(kept_, columns.of([found])),
+    )
+
+
+def _equal(stored: columns.Columns, alone: columns.Columns) -> bool:
+    """Whether both have the same bits."""
+    return all(np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(stored, alone))

@@ -1,14 +1,17 @@
 """The statistics of an ensemble: counts, quantiles with their bounds, and how it was drawn."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from tipoff.comparison import order_statistics
 from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.lowfi.ensemble.store import Store
+from tipoff.studies.populations import spread
+from tipoff.studies.populations.spread import Quantile
 from tipoff.workspace import words
 
 SHARES = (0.05, 0.5, 0.95, 0.99, 0.9973)
@@ -21,43 +24,56 @@ _VALUES: dict[str, tuple[str, Callable[[np.ndarray], np.ndarray]]] = {
 }
 
 
-def of(ensemble: Ensemble, store: Store, calibrated: bool) -> dict:
-    """Counts, and quantiles of the settled values with the method of their bounds; the model, whose
-    constants are ``calibrated`` or the scene's. ``failed`` has the first reasons where no case is
-    ok."""
-    status, settled, failures = (
-        store.column("status"),
-        np.isfinite(store.column("exit_time")),
-        store.failures(),
-    )
+@dataclass(frozen=True, kw_only=True)
+class Statistics:
+    """Counts, and quantiles of the settled values with the method of their bounds. ``cases``: what they
+    are drawn from; ``provenance`` of the distributions by key; ``failures``: the first, with number,
+    status, reason and inputs; ``failed``: their reasons where no case is ok."""
+
+    model: str
+    counts: dict[str, int]
+    statuses: dict[str, int]
+    settled: int
+    confidence: float
+    bounds: str
+    quantiles: dict[str, tuple[Quantile, ...]]
+    cases: dict[str, Any]
+    provenance: dict[str, str]
+    numerics: dict[str, Any]
+    modes_why: str
+    failures: list[dict]
+    digest: str
+    failed: list[str]
+
+
+def of(ensemble: Ensemble, store: Store, calibrated: bool) -> Statistics:
+    """Statistics of a whole store; the constants of the model are ``calibrated`` or the scene's."""
+    status, settled = store.column("status"), np.isfinite(store.column("exit_time"))
+    failures = store.failures()[:_SHOWN]
     counts, unbounded = columns.counts(status), _no_bounds(ensemble.source)
-    values = (
-        {name: _values(store, *what)[settled] for name, what in _VALUES.items()}
-        if settled.any()
-        else {}
-    )
-    return {
-        "model": words.model(ensemble.scene, calibrated, ensemble.compliance),
-        "counts": counts,
-        "statuses": {
-            name: int((status == code).sum()) for code, name in enumerate(columns.STATUSES)
+    shown = _VALUES if settled.any() else {}
+    lines = [f"case {item['case']}: {item['status']}: {item['reason']}" for item in failures]
+    return Statistics(
+        model=words.model(ensemble.scene, calibrated, ensemble.compliance),
+        counts=counts,
+        statuses={name: int((status == code).sum()) for code, name in enumerate(columns.STATUSES)},
+        settled=int(settled.sum()),
+        confidence=CONFIDENCE,
+        bounds=unbounded or "order statistics of independent draws",
+        quantiles={
+            name: spread.quantiles(
+                _values(store, *what)[settled], SHARES, bounded=unbounded is None
+            )
+            for name, what in shown.items()
         },
-        "settled": int(settled.sum()),
-        "confidence": CONFIDENCE,
-        "bounds": unbounded or "order statistics of independent draws",
-        "quantiles": {name: _quantiles(found, unbounded is None) for name, found in values.items()},
-        "cases": ensemble.source.identity,
-        "provenance": _provenance(ensemble.source),
-        "numerics": ensemble.numerics.as_dict(),
-        "modes_why": ensemble.modes_why,
-        "failures": failures[:_SHOWN],
-        "digest": store.digest(),
-        "failed": []
-        if counts["ok"]
-        else [
-            f"case {item['case']}: {item['status']}: {item['reason']}" for item in failures[:_SHOWN]
-        ],
-    }
+        cases=ensemble.source.identity,
+        provenance=_provenance(ensemble.source),
+        numerics=ensemble.numerics.as_dict(),
+        modes_why=ensemble.modes_why,
+        failures=failures,
+        digest=store.digest(),
+        failed=[] if counts["ok"] else lines,
+    )
 
 
 def _values(store: Store, name: str, of: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
@@ -78,16 +94,6 @@ def _no_bounds(source) -> str | None:
             "random sampling has bounds"
         )
     return None
-
-
-def _quantiles(values: np.ndarray, bounded: bool) -> list[dict]:
-    rows = []
-    for share in SHARES:
-        low, high = order_statistics.bounds(values, share, CONFIDENCE) if bounded else (None, None)
-        rows.append(
-            {"share": share, "value": float(np.quantile(values, share)), "low": low, "high": high}
-        )
-    return rows
 
 
 def _provenance(source) -> dict[str, str]:

@@ -1,6 +1,21 @@
-"""Flight after separation: free rotation, relative motion in orbit, clearance of boxes."""
+"""Compute the flight of the payload in orbit: miss distance, pointing error, coning, and
+clearance to the platform.
 
-from tipoff.studies.flight import command
+Runs every condition and many cases with random errors; writes flight.json, flight.nc and
+figures. The scene defines the orbit and the target:
+
+  \\[flight]
+  altitude = "500 km"
+  range = "100 m"
+
+azimuth, elevation and roll turn the launch axis out of the flight direction. Options replace
+values of the table:
+
+  tipoff flight --range "1 km" --cases 10000
+  tipoff flight --scene my_launcher.toml --altitude "600 km" --range "200 m" --set flight.elevation="90 deg"
+"""
+
+from tipoff.studies.flight.options import Asked
 from tipoff.studies.question import Question
 
-QUESTION = Question(__name__, __doc__, "After separation", "Flight", own=command.flight)
+QUESTION = Question(__name__, __doc__, "After separation", "Flight", Asked)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from tipoff.lowfi.ensemble.columns import Columns
+from tipoff.lowfi.ensemble.columns import UNITS, Columns
 from tipoff.mechanics.outcome import Outcome
 from tipoff.scenes.body import tensor
 from tipoff.scenes.effects.flight import FlightTable
@@ -51,31 +51,14 @@ class Start(NamedTuple):
     platform_rate: np.ndarray
 
 
-class Exits(NamedTuple):
-    """Outcomes of n payloads that settled, as arrays, cases first."""
-
-    exit_time: np.ndarray
-    window_start: np.ndarray
-    velocity: np.ndarray
-    rate: np.ndarray
-    lateral_velocity: np.ndarray
-    direction_error: np.ndarray
-    exit_attitude: np.ndarray
-    exit_position: np.ndarray
-    exit_platform_position: np.ndarray
-    exit_platform_velocity: np.ndarray
-    exit_platform_attitude: np.ndarray
-    exit_platform_rate: np.ndarray
-
-
 def bodies(scenes: Iterable[Scene]) -> Bodies:
     """Bodies of every scene, all of them with as many boxes. Without boxes where a size is
     unknown."""
     return Bodies(*map(np.array, zip(*map(_bodies, scenes))))
 
 
-def start(found: Columns | Exits) -> Start:
-    """State of settled cases from columns of results, or from outcomes (``of_outcomes``)."""
+def start(found: Columns) -> Start:
+    """State of settled cases."""
     attitude, platform = (
         Rotation.from_rotvec(part).as_matrix()
         for part in (found.exit_attitude, found.exit_platform_attitude)
@@ -92,11 +75,11 @@ def start(found: Columns | Exits) -> Start:
     )
 
 
-def of_outcomes(outcomes: Sequence[Outcome]) -> Exits:
-    """Settled outcomes as arrays."""
-    return Exits(
-        **{name: np.array([getattr(each, name) for each in outcomes]) for name in Exits._fields}
-    )
+def of_outcomes(outcomes: Sequence[Outcome]) -> Columns:
+    """Settled outcomes as columns."""
+    none = np.zeros(len(outcomes), dtype=int)  # no status, no steps
+    values = {name: np.array([getattr(each, name) for each in outcomes]) for name in UNITS}
+    return Columns(status=none, **values, steps=none)
 
 
 def unknown_size(scene: Scene) -> str:

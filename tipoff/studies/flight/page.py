@@ -4,7 +4,8 @@ tables of conditions and cases."""
 import math
 from collections.abc import Callable, Sequence
 
-from tipoff.studies.flight.summary import WORDS
+from tipoff.studies.flight.results import Cases, Condition, Curves, Flight, Orbit
+from tipoff.studies.flight.summary import BY_NAME
 from tipoff.studies.populations import answers, population
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Part
@@ -58,92 +59,102 @@ _BOXES = (
 _CONE = "The cone angle is that between the payload's x axis and its angular momentum."
 
 
-def draw(found: dict) -> list[Part]:
+def draw(found: Flight) -> list[Part]:
     """The section."""
     return [
         _setup(found),
         *figures(found),
-        table_of_conditions(found, [item.name for item in answers.ALL], [_EXITS], ".4g"),
+        table_of_conditions(found.conditions, [item.name for item in answers.ALL], [_EXITS], ".4g"),
         *_flights(found),
-        _cases(found["cases"]),
+        _cases(found.cases),
     ]
 
 
-def terminal(found: dict) -> list[Part]:
+def terminal(found: Flight) -> list[Part]:
     """The tables of conditions and cases, and the names of the data."""
     return [
-        f"{found['scene']}: {_setup(found)}",
-        f"Agreement of the model: {found['agreement']}.",
+        f"{found.scene}: {_setup(found)}",
+        f"Agreement of the model: {found.agreement}.",
         *_flights(found),
-        _cases(found["cases"]),
-        f"Store {found['cases']['store']}, data {found['data']}.",
+        _cases(found.cases),
+        f"Store {found.cases.store}, data {found.data}.",
     ]
 
 
 def table_of_conditions(
-    found: dict, shown: Sequence[str], notes: Sequence[str], form=".3g"
+    conditions: Sequence[Condition], shown: Sequence[str], notes: Sequence[str], form=".3g"
 ) -> Table:
     """The quantities ``shown`` of every condition; a condition without a flight has its status."""
     rows = [
-        (row["condition"], *(row["flown"][name] for name in shown))
-        if row["flown"]
-        else (Noted(row["condition"], row["status"]), *[None] * len(shown))
-        for row in found["conditions"]
+        (row.condition, *(row.flown[name] for name in shown))
+        if row.flown
+        else (Noted(row.condition, row.status), *[None] * len(shown))
+        for row in conditions
     ]
-    columns = [Column(WORDS[name], form=form) for name in shown]
+    columns = [Column(BY_NAME[name].label, BY_NAME[name].unit, form) for name in shown]
     return Table(["condition", *columns], rows, tuple(notes), dense=True)
 
 
-def _flights(found: dict) -> list[Part]:
+def _flights(found: Flight) -> list[Part]:
     """Tables of the flight of every condition."""
-    notes = [_BOXES] * (not found["flight"]["no_clearance"]) + remarks(found)
+    notes = [_BOXES] * (not found.flight.no_clearance) + remarks(
+        found.flight, found.cases.limit_open
+    )
     return [
-        table_of_conditions(found, _TARGET, notes),
-        table_of_conditions(found, _ROTATION, [_CONE]),
+        table_of_conditions(found.conditions, _TARGET, notes),
+        table_of_conditions(found.conditions, _ROTATION, [_CONE]),
     ]
 
 
-def _cases(many: dict) -> Table:
-    judged = many["quantiles"]
-    shares = [row["share"] for row in next(iter(judged.values()), [])]
-    counts = many["counts"]
+def _cases(many: Cases) -> Table:
+    shares = [row.share for row in next(iter(many.quantiles.values()), ())]
+    counts = many.counts
     notes = (
         f"{counted(counts['asked'], 'case')}: {counts['ok']:,} ok, {counts['refused']:,} refused, "
-        f"{counts['failed']:,} failed; {many['settled']:,} flown.{_touching(many)}",
+        f"{counts['failed']:,} failed; {many.settled:,} flown.{_touching(many)}",
         "Each share of the cases is below the value of its column. In brackets: bounds at "
-        f"{many['confidence']:.0%} confidence ({many['bounds']}).",
+        f"{many.confidence:.0%} confidence ({many.bounds}).",
     )
     rows = [
-        (WORDS[name], *("never" if row["value"] is None else estimate(row) for row in quantiles))
-        for name, quantiles in judged.items()
+        (
+            f"{BY_NAME[name].label} ({BY_NAME[name].unit})",
+            *("never" if row.value is None else estimate(row) for row in quantiles),
+        )
+        for name, quantiles in many.quantiles.items()
     ]
     heads = ["quantity", *(f"{percent(share, '.4g')} %" for share in shares)]
     return Table(heads, rows, notes, dense=True)
 
 
-def figures(found: dict) -> list[Figure]:
+def figures(found: Flight) -> list[Figure]:
     """Charts with their captions."""
-    curves, flight = found["curves"], found["flight"]
-    drawn = [Figure(_paths(curves, flight), _PATHS), Figure(_axes(curves), _AXES)]
-    if any(curve.get("clearance_s") for curve in curves):
-        drawn.append(Figure(_clearance(curves), _CLEARANCE))
-    if found["cases"]["points_m"]:
-        drawn.append(Figure(_scatter(found), _SCATTER))
+    curves = found.curves
+    drawn = [Figure(_paths(curves, found.flight), _PATHS), Figure(_axes(curves), _AXES)]
+    if near := [curve for curve in curves if curve.clearance_s]:
+        drawn.append(Figure(_clearance(near), _CLEARANCE))
+    if found.cases.points_m:
+        drawn.append(Figure(_scatter(found.cases), _SCATTER))
     return drawn
 
 
-def _lines(curves: list[dict], x: Callable[[dict], list], y: Callable[[dict], list]) -> list[Line]:
+_Axis = Callable[[Curves], Sequence[float]]
+
+
+def _lines(curves: Sequence[Curves], x: _Axis, y: _Axis) -> list[Line]:
     return [
-        Line(x(curve), y(curve), curve["condition"], colour, 1.8, dash)
+        Line(x(curve), y(curve), curve.condition, colour, 1.8, dash)
         for curve, (colour, dash, _) in zip(curves, _LOOKS)
     ]
 
 
-def _paths(curves: list[dict], flight: dict) -> Chart:
-    def column(key: str, index: int, scale: float = 1.0) -> Callable[[dict], list]:
-        return lambda curve: [scale * row[index] for row in curve[key]]
+def _paths(curves: Sequence[Curves], flight: Orbit) -> Chart:
+    def path(index: int) -> _Axis:
+        return lambda curve: [row[index] for row in curve.to_target_m]
 
-    target = Line([flight["range_m"]], [0.0], "target", "#000000", 1.0, "", marker="D")
+    def apart(index: int) -> _Axis:
+        return lambda curve: [1e-3 * row[index] for row in curve.orbit_m]
+
+    target = Line([flight.range_m], [0.0], "target", "#000000", 1.0, "", marker="D")
     platform = Line([0.0], [0.0], "platform", "#000000", 1.0, "", marker="s")
     along = "along the launch axis (m)"
     return Chart(
@@ -153,19 +164,19 @@ def _paths(curves: list[dict], flight: dict) -> Chart:
                 "to the target, sideways",
                 along,
                 "y (m)",
-                [*_lines(curves, column("to_target_m", 0), column("to_target_m", 1)), target],
+                [*_lines(curves, path(0), path(1)), target],
             ),
             Panel(
                 "to the target, up",
                 along,
                 "z (m)",
-                [*_lines(curves, column("to_target_m", 0), column("to_target_m", 2)), target],
+                [*_lines(curves, path(0), path(2)), target],
             ),
             Panel(
-                f"{flight['duration_s'] / 60.0:.3g} min, from the platform",
+                f"{flight.duration_s / 60.0:.3g} min, from the platform",
                 "along the orbit (km)",
                 "radially outwards (km)",
-                [*_lines(curves, column("orbit_m", 1, 1e-3), column("orbit_m", 0, 1e-3)), platform],
+                [*_lines(curves, apart(1), apart(0)), platform],
             ),
         ],
         columns=3,
@@ -173,18 +184,18 @@ def _paths(curves: list[dict], flight: dict) -> Chart:
     )
 
 
-def _axes(curves: list[dict]) -> Chart:
-    ends = [curve["axis_at_target_deg"] for curve in curves]
+def _axes(curves: Sequence[Curves]) -> Chart:
     passed = [
-        Line([end[0]], [end[1]], curve["condition"], colour, 1.0, "", marker=marker, legend=False)
-        for curve, end, (colour, _, marker) in zip(curves, ends, _LOOKS)
+        Line([y], [z], curve.condition, colour, 1.0, "", marker=marker, legend=False)
+        for curve, (colour, _, marker) in zip(curves, _LOOKS)
+        for y, z in [curve.axis_at_target_deg]
     ]
     around = _lines(
         curves,
-        lambda curve: [end[0] for end in curve["axis_deg"]],
-        lambda curve: [end[1] for end in curve["axis_deg"]],
+        lambda curve: [y for y, _ in curve.axis_deg],
+        lambda curve: [z for _, z in curve.axis_deg],
     )
-    angle = _lines(curves, lambda curve: curve["time_s"], lambda curve: curve["pointing_deg"])
+    angle = _lines(curves, lambda curve: curve.time_s, lambda curve: curve.pointing_deg)
     return Chart(
         "flight-axis",
         [
@@ -196,11 +207,11 @@ def _axes(curves: list[dict]) -> Chart:
     )
 
 
-def _clearance(curves: list[dict]) -> Chart:
+def _clearance(curves: Sequence[Curves]) -> Chart:
     lines = _lines(
-        [curve for curve in curves if curve.get("clearance_s")],
-        lambda c: [1e3 * time for time in c["clearance_s"]],
-        lambda c: [1e3 * gap for gap in c["clearance_m"]],
+        curves,
+        lambda curve: [1e3 * time for time in curve.clearance_s],
+        lambda curve: [1e3 * gap for gap in curve.clearance_m],
     )
     ends = (min(line.x[0] for line in lines), max(line.x[-1] for line in lines))
     return Chart(
@@ -217,10 +228,9 @@ def _clearance(curves: list[dict]) -> Chart:
     )
 
 
-def _scatter(found: dict) -> Chart:
-    many = found["cases"]
-    y, z, orbital_y, orbital_z = zip(*many["points_m"])
-    errors = [math.hypot(a - c, b - d) for a, b, c, d in many["points_m"]]
+def _scatter(many: Cases) -> Chart:
+    y, z, orbital_y, orbital_z = zip(*many.points_m)
+    errors = [math.hypot(a - c, b - d) for a, b, c, d in many.points_m]
     shares = [
         *_exceeded(many, "miss_m", list(map(math.hypot, y, z)), "total", NAVY, "-"),
         *_exceeded(many, "tip_off_miss_m", errors, "ejection errors alone", AMBER, "--"),
@@ -234,7 +244,7 @@ def _scatter(found: dict) -> Chart:
         "flight-miss",
         [
             Panel(
-                f"{len(y):,} of {many['settled']:,} cases in the plane of the target",
+                f"{len(y):,} of {many.settled:,} cases in the plane of the target",
                 "y (m)",
                 "z (m)",
                 marks,
@@ -247,15 +257,14 @@ def _scatter(found: dict) -> Chart:
 
 
 def _exceeded(
-    many: dict, name: str, values: list[float], words: str, colour: str, dash: str
+    many: Cases, name: str, values: list[float], words: str, colour: str, dash: str
 ) -> list[Line]:
     """Share of cases above each value, and bounds of the quantiles."""
     above = [100.0 * (1.0 - (index + 1) / len(values)) for index in range(len(values))]
-    rows = [row for row in many["quantiles"].get(name, []) if None not in (row["low"], row["high"])]
     bounds = [
         Line(
-            [row["low"], row["high"]],
-            [100.0 * (1.0 - row["share"])] * 2,
+            [row.low, row.high],
+            [100.0 * (1.0 - row.share)] * 2,
             "bounds",
             VERMILION,
             2.5,
@@ -263,39 +272,36 @@ def _exceeded(
             marker="D",
             size=5.0,
         )
-        for row in rows
+        for row in many.quantiles.get(name, ())
+        if row.low is not None and row.high is not None
     ]
     return [Line(sorted(values), above, words, colour, 2.0, dash), *bounds]
 
 
-def _setup(found: dict) -> str:
-    flight = found["flight"]
-    limit = flight["pointing_limit_deg"]
+def _setup(found: Flight) -> str:
+    flight, limit = found.flight, found.flight.pointing_limit_deg
     return (
-        f"Target {flight['range_m']:g} m along the launch axis, at rest relative to a circular "
-        f"orbit of {flight['period_s'] / 60.0:.4g} min; model {population.model_words(found)}. Gravity alone acts "
+        f"Target {flight.range_m:g} m along the launch axis, at rest relative to a circular "
+        f"orbit of {flight.period_s / 60.0:.4g} min; model {population.model_words(found)}. Gravity alone acts "
         f"after the exit.{'' if limit is None else f' The pointing limit is {limit:g} deg.'}"
     )
 
 
-def remarks(found: dict) -> list[str]:
+def remarks(flight: Orbit, limit_open: int) -> list[str]:
     """Limitations of the result, one sentence each."""
-    flight, left = found["flight"], found["cases"]["limit_open"]
     lines = {
-        f"No clearance is computed: {flight['no_clearance']}.": flight["no_clearance"],
+        f"No clearance is computed: {flight.no_clearance}.": flight.no_clearance,
         "The rails come from a file: the clearance includes only those that `flight.envelope` "
-        "lists.": flight["rails_listed"],
-        f"{counted(left, 'case')} {'does' if left == 1 else 'do'} not show whether the pointing limit is "
-        "reached; not counted.": left,
+        "lists.": flight.rails_listed,
+        f"{counted(limit_open, 'case')} {'does' if limit_open == 1 else 'do'} not show whether the "
+        "pointing limit is reached; not counted.": limit_open,
     }
     return [line for line, holds in lines.items() if holds]
 
 
-def _touching(many: dict) -> str:
-    share = many["touch"]
+def _touching(many: Cases) -> str:
+    share = many.touch
     if share is None:
         return ""
-    ends = (
-        "" if share["low"] is None else f" ({percent(share['low'])} to {percent(share['high'])} %)"
-    )
-    return f" {share['count']:,} of {share['of']:,} touch the platform again{ends}."
+    ends = "" if share.low is None else f" ({percent(share.low)} to {percent(share.high)} %)"
+    return f" {share.count:,} of {share.of:,} touch the platform again{ends}."

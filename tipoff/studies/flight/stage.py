@@ -1,7 +1,6 @@
 """Stage ``flight``: flight of the payload after its exit, for every condition and for many cases
 with random errors."""
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -10,12 +9,12 @@ from tipoff.files import write_netcdf
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.scenes import uncertainty
-from tipoff.scenes.effects.flight import FlightTable
 from tipoff.scenes.effects.registry import body_forces
 from tipoff.scenes.faults import Fault, SceneError
-from tipoff.scenes.scene import Scene
 from tipoff.scenes.variation import Variations
 from tipoff.studies.flight import bodies, curves, flown, summary
+from tipoff.studies.flight.options import Options
+from tipoff.studies.flight.results import Condition, Curves, Flight
 from tipoff.studies.populations import population
 from tipoff.studies.populations.population import Population
 from tipoff.workspace.progress import Board
@@ -26,20 +25,8 @@ from tipoff.workspace.words import counted
 NAME = "flight"
 
 
-@dataclass(frozen=True)
-class Options:
-    """Options of ``tipoff flight``: ``vary``, the distributions; number of ``cases`` and their
-    ``seed``, None: those of the file; ``model`` by name, None: the default."""
-
-    vary: str = uncertainty.DEFAULT
-    cases: int | None = None
-    seed: int | None = None
-    model: str | None = None
-
-
 def run(study: Study, options: Options = Options()) -> dict:
-    """``conditions``, rows as ``studies.flight.summary`` has them; ``cases``, their distributions;
-    ``curves`` of the first conditions. Raises SceneError for a scene without ``[flight]``."""
+    """The content of ``Flight``. Raises SceneError for a scene without ``[flight]``."""
     _require(study)
     changed = {
         name: value
@@ -53,28 +40,27 @@ def run(study: Study, options: Options = Options()) -> dict:
             [Fault(options.vary, f"vary.{key}", "a distribution", expected) for key in wrong]
         )
 
-    def make() -> tuple[dict, list[Path]]:
+    def make() -> tuple[Flight, list[Path]]:
         from tipoff.studies.flight import page
         from tipoff.studies.render.document import with_figures
 
         rows, shapes, single, exits = _conditions(study, options)
         whole = population.run(study, NAME, population.surrogate(study, options.model), drawn)
-        cases, many, left = _cases(study, whole, drawn)
-        found = {
-            "asked": STAGE.plain(options),
-            **population.answering(study, whole.model),
-            "flight": summary.orbit(study.scene),
-            "conditions": rows,
-            "curves": shapes,
-            "cases": cases,
-        }
+        many, left = _cases(study, whole, drawn)
         data = study.path(f"{NAME}.nc")
-        labelled = summary.dataset(
-            [row["condition"] for row in rows if row["flown"]], single, exits, many, left
+        names = [row.condition for row in rows if row.flown]
+        write_netcdf(data, summary.dataset(names, single, exits, many, left))
+        found = Flight(
+            **population.answering(study, whole.model),
+            scene=study.scene.name,
+            flight=summary.orbit(study.scene),
+            conditions=tuple(rows),
+            curves=shapes,
+            cases=summary.cases(many, whole, drawn.uncertainty),
+            data=study.relative(data),
         )
-        write_netcdf(data, labelled)
         found, pictures = with_figures(found, page.figures, study.path("figures"))
-        return found | {"data": study.relative(data)}, [data, *pictures]
+        return found, [data, *pictures]
 
     return STAGE.run(study, options, make)
 
@@ -87,16 +73,11 @@ def _inputs(study: Study, options: Options) -> list:
         for name, scene in study.conditions.items()
     }
     varied = uncertainty.load(options.vary, study.scene).resolved()
-    own = _flight(study.scene).model_dump(mode="json")
+    own = bodies.table_of(study.scene).model_dump(mode="json")
     return [own, tables, varied, study.settings.element_size]
 
 
-STAGE = Stage(NAME, __name__, Options, _inputs)
-
-
-def _flight(scene: Scene) -> FlightTable:
-    assert scene.flight is not None  # which is required of every scene
-    return scene.flight
+STAGE = Stage(NAME, __name__, Options, _inputs, result=Flight)
 
 
 def _require(study: Study) -> None:
@@ -119,7 +100,7 @@ def _require(study: Study) -> None:
 
 def _conditions(
     study: Study, options: Options
-) -> tuple[list[dict], list[dict], flown.Flown | None, bodies.Exits | None]:
+) -> tuple[list[Condition], list[Curves], flown.Flown | None, Columns | None]:
     """A row for every condition, curves of the first that settled, flights of all that settled, and
     their outcomes as arrays."""
     runs = []
@@ -131,7 +112,7 @@ def _conditions(
     exits = {name: bodies.of_outcomes([ended[name].outcome]) for name in settled}
     pairs = {
         name: flown.pair(
-            _flight(study.conditions[name]).record(),
+            bodies.table_of(study.conditions[name]).record(),
             bodies.bodies([study.conditions[name]]),
             bodies.start(exits[name]),
         )
@@ -140,32 +121,23 @@ def _conditions(
     single = [flown.found(both) for both in pairs.values()]
     values = dict(zip(settled, single))
     rows = [
-        {
-            "condition": name,
-            "status": ended[name].status,
-            "flown": summary.row(values[name], exits[name], 0) if name in values else None,
-        }
+        Condition(
+            name,
+            ended[name].status,
+            summary.row(values[name], exits[name], 0) if name in values else None,
+        )
         for name in ended
     ]
     first = [name for name in study.scene.agreement.fitted if name in pairs] or settled
-    shapes = [
-        {"condition": name, **curves.of(pairs[name], values[name])}
-        for name in first[: curves.SHOWN]
-    ]
-    return (
-        rows,
-        shapes,
-        *(
-            (flown.joined(single), bodies.of_outcomes([ended[name].outcome for name in settled]))
-            if single
-            else (None, None)
-        ),
-    )
+    shapes = [curves.of(name, pairs[name], values[name]) for name in first[: curves.SHOWN]]
+    if not single:
+        return rows, shapes, None, None
+    together = bodies.of_outcomes([ended[name].outcome for name in settled])
+    return rows, shapes, flown.joined(single), together
 
 
-def _cases(study: Study, cases: Population, drawn: Drawn) -> tuple[dict, flown.Flown, Columns]:
-    """Distributions over the ``cases`` of ``drawn``, flights of those that settled, and their exit
-    states."""
+def _cases(study: Study, cases: Population, drawn: Drawn) -> tuple[flown.Flown, Columns]:
+    """Flights of those ``cases`` of ``drawn`` that settled, and their exit states."""
     which = np.flatnonzero(cases.settled)
     if not len(which):
         raise StudyError(
@@ -177,7 +149,7 @@ def _cases(study: Study, cases: Population, drawn: Drawn) -> tuple[dict, flown.F
         label = counted(len(which), "flight")
         left = Columns(*(part[which] for part in cases.results))
         many = flown.fly(
-            _flight(study.scene).record(), parted, bodies.start(left), board.callback(label)
+            bodies.table_of(study.scene).record(), parted, bodies.start(left), board.callback(label)
         )
         board.finished(label, "flown")
-    return summary.cases(many, cases, drawn.uncertainty), many, left
+    return many, left

@@ -1,7 +1,9 @@
 """The mesh on the page."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from tipoff.studies.mesh.stage import STAGE, Mesh
 from tipoff.studies.render.document import Caption, Image, Notice, Part
 from tipoff.studies.render.table import Column, Table
 
@@ -11,36 +13,35 @@ if TYPE_CHECKING:
 
 def draw(page: "Page") -> list[Part]:
     """The picture of the mesh, its figures, and its surfaces."""
-    found = page.documents.get("mesh")
-    if not found:
-        return [page.missing("mesh", "mesh")]
-    return [
-        Image(
-            page.folder / found["picture"],
-            "mesh of the rails",
-            page.folder / found["dark_picture"],
-        ),
-        Caption(
-            f"{found['elements']:,} {found['kind']}, {found['nodes']:,} nodes, elements of about "
-            f"{1e3 * found['element_size_m']:g} mm. Edges: {1e3 * found['shortest_edge_m']:.3g} to "
-            f"{1e3 * found['longest_edge_m']:.3g} mm. Smallest scaled Jacobian: "
-            f"{found['smallest_scaled_jacobian']:.3f} (1 for a brick and for a regular "
-            "tetrahedron)."
-        ),
-        surfaces(found),
-        *map(Notice, found["warnings"]),
-    ]
+
+    def body(content: dict) -> list[Part]:
+        found: Mesh = STAGE.read(content)
+        pictures = (page.folder / found.picture, page.folder / found.dark_picture)
+        return [
+            Image(pictures[0], "mesh of the rails", pictures[1]),
+            Caption(
+                f"{found.elements:,} {found.kind}, {found.nodes:,} nodes, elements of about "
+                f"{1e3 * found.element_size_m:g} mm. Edges: {1e3 * found.shortest_edge_m:.3g} to "
+                f"{1e3 * found.longest_edge_m:.3g} mm. Smallest scaled Jacobian: "
+                f"{found.smallest_scaled_jacobian:.3f} (1 for a brick and for a regular "
+                "tetrahedron)."
+            ),
+            *terminal(content),
+            *map(Notice, found.warnings),
+        ]
+
+    return page.shown("mesh", body, "mesh")
 
 
-def surfaces(found: dict) -> Table:
+def terminal(content: dict) -> list[Part]:
     """The named surfaces: their facets, their area, and for a solid the area of its own faces."""
-    columns: list[Column | str] = ["surface", "facets", Column("area", "mm²", ".5g", 1e6)]
-    rows = [
-        [name.replace("_", " "), item["facets"], item["area_m2"]]
-        for name, item in found["surfaces"].items()
+    surfaces = STAGE.read(content).surfaces
+    columns: list[tuple[Column | str, Callable]] = [
+        ("surface", lambda item: item[0].replace("_", " ")),
+        ("facets", lambda item: item[1].facets),
+        (Column("area", "mm²", ".5g", 1e6), lambda item: item[1].area_m2),
     ]
-    drawn = [item["drawn_area_m2"] for item in found["surfaces"].values()]
-    if None not in drawn:
-        columns.append(Column("area in the drawing", "mm²", ".5g", 1e6))
-        rows = [[*row, area] for row, area in zip(rows, drawn)]
-    return Table(columns, rows)
+    if all(item.drawn_area_m2 is not None for item in surfaces.values()):
+        drawn = Column("area in the drawing", "mm²", ".5g", 1e6)
+        columns.append((drawn, lambda item: item[1].drawn_area_m2))
+    return [Table.of(surfaces.items(), columns)]

@@ -1,20 +1,56 @@
 """Stage ``mesh``: the mesh of the rails for the reference, its size and quality, and pictures."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from tipoff.files import replacing
 from tipoff.workspace.progress import say
+from tipoff.workspace.run import Run
+from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study
 
 
-def run(study: Study) -> dict:
-    """Elements, nodes, areas of named surfaces, quality; writes ``mesh.vtu`` and pictures."""
-    name = next(iter(study.conditions))
-    request = study.highfi(name)
+@dataclass(frozen=True)
+class Surface:
+    """A named surface; the area of the same faces of a solid, None without one."""
 
-    def make() -> tuple[dict, list[Path]]:
+    facets: int
+    area_m2: float
+    drawn_area_m2: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mesh:
+    """``surfaces`` by name; ``mesh`` and pictures are files in the folder of the scene."""
+
+    element_size_m: float
+    elements: int
+    kind: str
+    nodes: int
+    shortest_edge_m: float
+    longest_edge_m: float
+    smallest_scaled_jacobian: float
+    warnings: tuple[str, ...]
+    surfaces: dict[str, Surface]
+    mesh: str
+    picture: str
+    dark_picture: str
+
+
+def _request(study: Study) -> Run:
+    return study.highfi(next(iter(study.conditions)))
+
+
+STAGE = Stage("mesh", __name__, inputs=lambda study, _: _request(study).key, result=Mesh)
+
+
+def run(study: Study) -> dict:
+    """The content of ``Mesh``; writes ``mesh.vtu`` and pictures."""
+    request = _request(study)
+
+    def make() -> tuple[Mesh, list[Path]]:
         from tipoff import highfi
         from tipoff.highfi.mesh import cells as checks
         from tipoff.highfi.mesh import facets
@@ -32,29 +68,30 @@ def run(study: Study) -> dict:
         lengths = checks.edge_lengths(mesh.points, mesh.cells)
         _, scaled = checks.jacobians(mesh.points, mesh.cells)
         surfaces = {
-            name: {
-                "facets": len(group),
-                "area_m2": facets.area(mesh.points, group),
-                "drawn_area_m2": mesh.drawn[name] if mesh.drawn else None,
-            }
+            name: Surface(
+                len(group),
+                facets.area(mesh.points, group),
+                mesh.drawn[name] if mesh.drawn else None,
+            )
             for name, group in mesh.surfaces.items()
         }
-        return {
-            "element_size_m": request.numerics.element_size,
-            "elements": len(mesh.cells),
-            "kind": checks.kind(mesh.cells).name,
-            "nodes": len(mesh.points),
-            "shortest_edge_m": float(lengths.min()),
-            "longest_edge_m": float(lengths.max()),
-            "smallest_scaled_jacobian": float(scaled.min()),
-            "warnings": list(mesh.warnings),
-            "surfaces": surfaces,
-            "mesh": study.relative(path),
-            "picture": study.relative(pictures[0]),
-            "dark_picture": study.relative(pictures[1]),
-        }, [path, *pictures]
+        found = Mesh(
+            element_size_m=request.numerics.element_size,
+            elements=len(mesh.cells),
+            kind=checks.kind(mesh.cells).name,
+            nodes=len(mesh.points),
+            shortest_edge_m=float(lengths.min()),
+            longest_edge_m=float(lengths.max()),
+            smallest_scaled_jacobian=float(scaled.min()),
+            warnings=tuple(mesh.warnings),
+            surfaces=surfaces,
+            mesh=study.relative(path),
+            picture=study.relative(pictures[0]),
+            dark_picture=study.relative(pictures[1]),
+        )
+        return found, [path, *pictures]
 
-    return study.stage("mesh", study.key(__name__, request.key), make)
+    return STAGE.run(study, None, make)
 
 
 def _save(mesh, path: Path) -> None:

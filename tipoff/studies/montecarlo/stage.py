@@ -29,7 +29,6 @@ from tipoff.studies.montecarlo.results import (
 from tipoff.studies.populations import answers, exceedance, population, random_factors, spread
 from tipoff.studies.populations.population import Population
 from tipoff.studies.populations.random_factors import READINGS
-from tipoff.studies.populations.spread import Quantile
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study, StudyError
 
@@ -102,20 +101,14 @@ def _settled(quantity: answers.Quantity, found: Population, first: int | None = 
     return quantity.of(found.results)[:first][found.settled[:first]]
 
 
-def _quantiles(
-    values: np.ndarray, shares: tuple[float, ...] = spread.SHARES
-) -> tuple[Quantile, ...]:
-    return tuple(spread.quantiles(values, shares))
-
-
 def distribution(quantity: answers.Quantity, found: Population) -> Distribution:
     """The distribution of ``quantity`` over the settled cases."""
     values, first = _settled(quantity, found), _settled(quantity, found, PAPER)
     return Distribution(
         **vars(spread.moments(values)),
         **quantity.named,
-        quantiles=_quantiles(values),
-        first=_quantiles(first) if first.size else None,
+        quantiles=spread.quantiles(values),
+        first=spread.quantiles(first) if first.size else None,
         histogram=spread.histograms(first, values),
     )
 
@@ -151,7 +144,7 @@ def _readings(study: Study, options: Cases, found: Population) -> Iterator[Readi
             spread.apart(here, values) if enough and here[0].size >= _FEWEST else (None, None)
         )
         rates = (
-            Spread(**vars(spread.moments(each)), name=item.name, quantiles=_quantiles(each))
+            Spread(**vars(spread.moments(each)), name=item.name, quantiles=spread.quantiles(each))
             for item, each in zip(_RATES, values)
         )
         yield ReadingRow(
@@ -211,8 +204,8 @@ def _difference(item: answers.Quantity, values: dict[str, np.ndarray]) -> Differ
     return Difference(
         **item.named,
         root_mean_square=float(np.sqrt((apart**2).mean())),
-        quantiles=_quantiles(apart, _SHARES),
+        quantiles=spread.quantiles(apart, _SHARES),
         most=float(apart.max()),
-        springs=_quantiles(values[SPRINGS], _SHARES),
-        compliant=_quantiles(values[COMPLIANT], _SHARES),
+        springs=spread.quantiles(values[SPRINGS], _SHARES),
+        compliant=spread.quantiles(values[COMPLIANT], _SHARES),
     )

@@ -49,7 +49,7 @@ class Quantity(NamedTuple):
     name: str
     label: str
     unit: str
-    of: Callable[[Left], np.ndarray]
+    of: Callable[[Any], np.ndarray]
 
     @property
     def named(self) -> dict[str, Any]:

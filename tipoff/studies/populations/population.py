@@ -10,7 +10,7 @@ All cases have one number of rail modes. The pilot cases of the first population
 all that it runs beside it, so that two results never differ by modes.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -165,9 +165,8 @@ def answering(study: Study, model: Surrogate, condition: str | None = None) -> d
     }
 
 
-def model_words(found: Answering | dict) -> str:
+def model_words(found: Answering) -> str:
     """The model of a result, with its modes and why."""
-    found = _typed(found)
     return with_modes(found.model, found.modes, found.modes_why)
 
 
@@ -179,16 +178,9 @@ def with_modes(model: str, modes: int | str, why: str) -> str:
     return f"{model} with {number} of each rail ({why.partition(': ')[2]})"
 
 
-def model_line(found: Answering | dict) -> str:
+def model_line(found: Answering) -> str:
     """One line about the model of a result."""
-    return f"model {model_words(found)}; agreement: {_typed(found).agreement}"
-
-
-def _typed(found: Answering | dict) -> Answering:
-    """The fields in a result that has no type yet."""
-    if isinstance(found, Answering):
-        return found
-    return Answering(**{item.name: found[item.name] for item in fields(Answering)[:-1]})
+    return f"model {model_words(found)}; agreement: {found.agreement}"
 
 
 def run(

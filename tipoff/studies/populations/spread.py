@@ -17,7 +17,8 @@ _BINS = 80
 
 @dataclass(frozen=True)
 class Quantile:
-    """The ``value`` that a ``share`` of the cases is below, and its two bounds; None where there is none."""
+    """The ``value`` that a ``share`` of the cases is below, and its two bounds; None where there is none:
+    a value that is an event of a case that never comes, a bound of few or dependent cases."""
 
     share: float
     value: float | None
@@ -25,14 +26,18 @@ class Quantile:
     high: float | None
 
 
-def quantiles(values: np.ndarray, shares: Sequence[float] = SHARES) -> list[Quantile]:
-    """The quantile of each of ``shares`` of values (n,)."""
-    found = zip(
-        shares,
-        np.quantile(values, shares),
-        (order_statistics.bounds(values, share, CONFIDENCE) for share in shares),
+def quantiles(
+    values: np.ndarray, shares: Sequence[float] = SHARES, bounded: bool = True
+) -> tuple[Quantile, ...]:
+    """The quantile of each of ``shares`` of values (n,), with its bounds where it is ``bounded``."""
+
+    def bounds(share: float) -> tuple[float | None, float | None]:
+        return order_statistics.bounds(values, share, CONFIDENCE) if bounded else (None, None)
+
+    return tuple(
+        Quantile(share, float(value), *bounds(share))
+        for share, value in zip(shares, np.quantile(values, shares))
     )
-    return [Quantile(share, float(value), *bounds) for share, value, bounds in found]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,7 +6,7 @@ import shutil
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from numbers import Integral, Real
-from operator import attrgetter, itemgetter
+from operator import attrgetter
 from typing import Any
 
 from jinja2 import Environment
@@ -96,9 +96,7 @@ def span(low: float | None, high: float | None, form: str = ".3g") -> str:
 def estimate(row: Any, form: str = ".3g") -> Any:
     """The ``value`` of a record, with its bounds ``low`` and ``high`` as a remark where it has one; all
     rounded to half the width between both bounds."""
-    names = ("value", "low", "high")
-    value, low, high = itemgetter(*names)(row) if isinstance(row, dict) else attrgetter(*names)(row)
-    return bounded(value, low, high, form)
+    return bounded(row.value, row.low, row.high, form)
 
 
 def bounded(value: float, low: float | None, high: float | None, form: str = ".3g") -> Any:

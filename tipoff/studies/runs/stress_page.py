@@ -13,6 +13,7 @@ from tipoff.workspace.words import counted
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
+    from tipoff.studies.view.stage import View
 
 
 def draw(page: "Page") -> list[Part]:
@@ -23,7 +24,7 @@ def draw(page: "Page") -> list[Part]:
     return shown(rows, page.documents.get("view") or [], page.folder, page.command("view"))
 
 
-def shown(rows: Sequence[Row], views: list[dict], folder: Path, command: str) -> list[Part]:
+def shown(rows: Sequence[Row], views: "Sequence[View]", folder: Path, command: str) -> list[Part]:
     """The section: ``rows`` of highfi.json, ``views`` results of the stage ``view``, whose files
     are below ``folder``, ``command`` the one that makes them."""
     measured = [row for row in rows if row.peak_stress_pa is not None]
@@ -69,22 +70,22 @@ def _rotation(row: Row) -> float | None:
     return row.largest_rotation_rad and math.degrees(row.largest_rotation_rad)
 
 
-def _pictures(view: dict, folder: Path) -> Iterator[Part]:
+def _pictures(view: "View", folder: Path) -> Iterator[Part]:
     """The pictures of one condition, or how to make them."""
-    name = view["condition"]
+    name = view.condition
     yield (
-        f"Condition {name}: {counted(len(view['frames']), 'frame')} for ParaView in `{view['collection']}`. "
-        f"{view['without_pictures']}"
+        f"Condition {name}: {counted(len(view.frames), 'frame')} for ParaView in `{view.collection}`. "
+        f"{view.without_pictures}"
     )
-    if not view["pictures"]:
+    if not view.pictures:
         return
     for kind in ("peak", "ejection"):
-        light, dark = (folder / view["pictures"][key] for key in (kind, f"{kind}-dark"))
+        light, dark = (folder / view.pictures[key] for key in (kind, f"{kind}-dark"))
         yield Image(light, f"{kind} of {name}", dark)
     yield Caption(
-        f"Condition {name}, elements of {1e3 * view['element_size_m']:g} mm, seen from the "
+        f"Condition {name}, elements of {1e3 * view.element_size_m:g} mm, seen from the "
         f"platform. Above: the instant of the peak stress. Below: the ejection. The rails are drawn "
-        f"with {view['factor']:g} times their deformation, payload and pads to scale, so pads can "
+        f"with {view.factor:g} times their deformation, payload and pads to scale, so pads can "
         "appear inside a rail."
     )
 

@@ -2,9 +2,8 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from functools import partial
-from typing import Any
 
 from pydantic import TypeAdapter
 
@@ -20,11 +19,23 @@ from tipoff.studies.render.uncertain import uncertain
 from tipoff.studies.runs.results import Row
 from tipoff.studies.runs.stage import failure, row
 from tipoff.studies.single import disturbed
+from tipoff.studies.single.disturbed import Disturbed
 from tipoff.workspace import kernel_marks, models, words
 from tipoff.workspace.attempt import attempt
 from tipoff.workspace.progress import say
 from tipoff.workspace.run import Run
 from tipoff.workspace.study import Study, StudyError
+
+
+@dataclass(frozen=True, kw_only=True)
+class Single(Row):
+    """A run alone: its ``agreement`` as text, how it changes when ``disturbed`` (None for the reference
+    and where it does not settle), and ``failed``, a line where it is no success."""
+
+    implausible: tuple[str, ...]
+    agreement: str
+    disturbed: Disturbed | None
+    failed: tuple[str, ...]
 
 
 def run(
@@ -110,16 +121,19 @@ def result_of(study: Study, condition: str, request: Run, quiet: bool) -> dict:
         found = study.store.get(request)
         kernel_marks.remember(request)
     calibrated, modes = request.calibration is not None, getattr(request.numerics, "modes", AUTO)
-    made = row(condition, found, study.relative(study.store.path(request)), request)
-    further: dict[str, Any] = {
-        "implausible": request.scene.warnings,
-        "agreement": kept.words(study, request.model, condition, calibrated, modes),
-    }
+    moved = None
     if request.fidelity == "lowfi" and found.outcome.rate is not None:
-        further["disturbed"] = disturbed.of(request, found, study.settings.clearance_change)
+        moved = disturbed.of(request, found, study.settings.clearance_change)
+    made = Single(
+        **vars(row(condition, found, study.relative(study.store.path(request)), request)),
+        implausible=tuple(request.scene.warnings),
+        agreement=kept.words(study, request.model, condition, calibrated, modes),
+        disturbed=moved,
+        failed=tuple(failure(condition, request, found)),
+    )
     if not quiet:
-        print("\n".join(lines(made, further, model(request), study)))
-    return asdict(made) | further | {"failed": failure(condition, request, found)}
+        print("\n".join(lines(made, model(request), study)))
+    return asdict(made)
 
 
 def ranged(study: Study, condition: str, quiet: bool = False) -> dict:
@@ -146,8 +160,8 @@ def model(request: Run) -> str:
     )
 
 
-def lines(row: Row, further: dict, made_with: str, study: Study) -> list[str]:
-    """A run as lines of text with units; ``further`` has its ``agreement`` and what has ``disturbed`` it."""
+def lines(row: Single, made_with: str, study: Study) -> list[str]:
+    """A run as lines of text with units."""
     said = f" ({row.message})" if row.message else ""
     text = [f"{study.scene.name} / {row.condition}, model {made_with}: {row.status}{said}"]
     if row.thrust:
@@ -156,14 +170,14 @@ def lines(row: Row, further: dict, made_with: str, study: Study) -> list[str]:
         text.append(f"  exit          {1e3 * row.exit_time_s:.4g} ms after ignition")
     text += _settled(row)
     text += _stress(row)
-    if "disturbed" in further:
+    if row.disturbed:
         limit = verdicts.gates(study.scene).settled_rate_error_deg_s
-        text += disturbed.lines(further["disturbed"], limit)
+        text += disturbed.lines(row.disturbed, limit)
     if why := row.numerics.get("modes_why"):
         text.append(f"  rail modes    {why}")
     if row.rail_compliance:
         text.append(f"  rails         {row.rail_compliance['words']}")
-    text.append(f"  agreement     {further['agreement']}")
+    text.append(f"  agreement     {row.agreement}")
     text.append(f"  took          {row.wall_s:.3g} s, {row.steps} steps")
     text.append(f"  trajectory    {study.path(row.trajectory)}")
     return text

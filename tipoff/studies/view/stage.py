@@ -11,84 +11,117 @@ import math
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.scene import NOMINAL
+from tipoff.studies.view.options import Options
 from tipoff.workspace.progress import Board, say
 from tipoff.workspace.run import Run
-from tipoff.workspace.study import Study, read, require_success
+from tipoff.workspace.stage import Stage
+from tipoff.workspace.study import Study, require_success
 from tipoff.workspace.words import counted
 
 if TYPE_CHECKING:
     from tipoff.studies.view.frames import Camera
 
-FRAMES = 60
 _SHOWN = 8e-3  # m, the size of the largest deformation in a picture
 _HOW = "pictures need pyvista (0.6 GB): pip install pyvista; in a clone, make pictures"
 
 
-def run(
-    study: Study, condition: str | None = None, frames: int = FRAMES, factor: float | None = None
-) -> dict:
-    """Times and files of the frames, the collection for ParaView, the peak stress, the
-    exaggeration, and the pictures or the reason why there are none.
+Vector = tuple[float, float, float]
 
-    Raises SceneError for an unknown condition or fewer than two frames, StudyError where the run
-    fails.
-    """
-    if frames < 2:
-        raise SceneError([Fault("--frames", "value", str(frames), "2 or more")])
-    name = condition or (study.scene.agreement.refined or tuple(study.conditions))[0]
+
+@dataclass(frozen=True, kw_only=True)
+class Instant:
+    """A frame: its files, and largest values."""
+
+    time_s: float
+    rails: str
+    bodies: str
+    largest_stress_pa: float
+    largest_mean_stress_pa: float  # of means over the elements that meet at a node
+    largest_displacement_m: float
+    largest_pressure_pa: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Peak:
+    """The peak stress of the run, and the number of the frame nearest to it."""
+
+    stress_pa: float
+    place_m: Vector
+    rail: str
+    time_s: float
+    frame: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class View:
+    """Frames of a ``condition`` in a ``folder``; ``collection``: the list for ParaView; ``factor``: the
+    exaggeration; ``pictures`` by name, or why there are none."""
+
+    scene: str
+    condition: str
+    folder: str
+    collection: str
+    frames: tuple[Instant, ...]
+    peak: Peak
+    bounds_m: tuple[Vector, Vector]
+    element_size_m: float
+    factor: float
+    title: str
+    pictures: dict[str, str]
+    without_pictures: str
+
+
+def run(study: Study, options: Options = Options()) -> dict:
+    """The content of ``View``. Raises SceneError for an unknown condition or fewer than two frames,
+    StudyError where the run fails."""
+    name = options.condition or (study.scene.agreement.refined or tuple(study.conditions))[0]
+    options = replace(options, condition=name)
     request = study.highfi(name)
 
-    def make() -> tuple[dict, list[Path]]:
+    def make() -> tuple[View, list[Path]]:
         original = study.store.get(request)
         require_success({name: original}, "show the run")
-        folder = _folder(study, name)
-        taken = _take(study, request, original, folder, frames)
-        document, files = _document(study, request, original, folder, taken, factor)
-        drawn, why = draw_pictures(document, folder)
-        document |= {"asked_frames": frames, "asked_factor": factor}
-        document["pictures"] = {
-            Path(picture).stem: study.relative(folder / picture) for picture in drawn
-        }
-        document["without_pictures"] = why
+        folder = study.folder / "view" / name
+        taken = _take(study, request, original, folder, options.frames)
+        found, files = _view(study, request, original, folder, taken, options.exaggeration)
+        drawn, why = draw_pictures(found, folder)
         if why:
             say(f"view: {why}")
-        return document, [*files, *(folder / picture for picture in drawn)]
+        pictures = {Path(picture).stem: study.relative(folder / picture) for picture in drawn}
+        found = replace(found, pictures=pictures, without_pictures=why)
+        return found, [*files, *(folder / picture for picture in drawn)]
 
-    return study.stage(f"view/{name}", key_of(study, request, frames, factor), make)
+    return stage_of(name).run(study, options, make)
 
 
-def stored(study: Study) -> list[dict]:
+def stage_of(condition: str) -> Stage:
+    """The stage of a condition."""
+
+    def inputs(study: Study, _: Options) -> list:
+        return [study.highfi(condition).key, pyvista_version()]
+
+    return Stage(f"view/{condition}", __name__, Options, inputs, result=View)
+
+
+def read(found: dict) -> View:
+    """The result in the content of its file."""
+    return stage_of(found["condition"]).read(found)
+
+
+def stored(study: Study) -> list[View]:
     """The stored results of the present scene, code and settings."""
-    found = [
-        item
-        for path in sorted((study.folder / "view").glob("*.json"))
-        if (item := read(path)) is not None
-    ]
-    conditions = {
-        **{name: study.condition(name) for name in study.scene.conditions},
-        "nominal": study.scene,
-    }
-    return [
-        item
-        for item in found
-        if item["condition"] in conditions
-        and item["key"]
-        == key_of(
-            study, study.highfi(item["condition"]), item["asked_frames"], item["asked_factor"]
-        )
-        and study.whole(item, "the report does without it until tipoff view makes it again")
-    ]
-
-
-def key_of(study: Study, request: Run, frames: int, factor: float | None) -> str:
-    return study.key(__name__, request.key, frames, factor, pyvista_version())
+    again = "the report does without it until tipoff view makes it again"
+    found = [stage_of(name).stored(study) for name in sorted([*study.scene.conditions, NOMINAL])]
+    return [read(item) for item in found if item and study.whole(item, again)]
 
 
 def pyvista_version() -> str | None:
@@ -97,10 +130,6 @@ def pyvista_version() -> str | None:
         return importlib.metadata.version("pyvista")
     except importlib.metadata.PackageNotFoundError:
         return None
-
-
-def _folder(study: Study, name: str) -> Path:
-    return study.folder / "view" / name
 
 
 def chosen(frames: int, original: Trajectory) -> list[int]:
@@ -120,7 +149,7 @@ class _Observer:
     def __init__(self, folder: Path, samples: list[int]):
         self.folder, self.samples = folder, set(samples)
         self.shared: tuple[Camera, np.ndarray, np.ndarray] | None = None
-        self.frames: list[dict] = []
+        self.frames: list[Instant] = []
         self.low, self.high = np.full(3, np.inf), np.full(3, -np.inf)
 
     def __call__(self, loop) -> None:
@@ -137,15 +166,15 @@ class _Observer:
         self._widen(mesh.points)
         self._widen((boxes @ frame.turn.T + frame.centre).reshape(-1, 3))
         self.frames.append(
-            {
-                "time_s": frame.time,
-                "rails": paths[0].name,
-                "bodies": paths[1].name,
-                "largest_stress_pa": float(frame.worst.max()),
-                "largest_mean_stress_pa": float(frame.von_mises.max()),
-                "largest_displacement_m": float(np.linalg.norm(frame.displacement, axis=1).max()),
-                "largest_pressure_pa": float(frame.pressure.max()),
-            }
+            Instant(
+                time_s=frame.time,
+                rails=paths[0].name,
+                bodies=paths[1].name,
+                largest_stress_pa=float(frame.worst.max()),
+                largest_mean_stress_pa=float(frame.von_mises.max()),
+                largest_displacement_m=float(np.linalg.norm(frame.displacement, axis=1).max()),
+                largest_pressure_pa=float(frame.pressure.max()),
+            )
         )
 
     def _widen(self, points: np.ndarray) -> None:
@@ -179,52 +208,52 @@ def _take(study: Study, request: Run, original: Trajectory, folder: Path, frames
     return observer
 
 
-def _document(
+def _view(
     study: Study,
     request: Run,
     original: Trajectory,
     folder: Path,
     taken: _Observer,
     factor: float | None,
-) -> tuple[dict, list[Path]]:
+) -> tuple[View, list[Path]]:
+    """The result without pictures, and its files."""
     from tipoff.studies.view import vtk_files
 
-    paths = [[folder / frame["rails"], folder / frame["bodies"]] for frame in taken.frames]
+    paths = [[folder / frame.rails, folder / frame.bodies] for frame in taken.frames]
     files = [path for pair in paths for path in pair]
-    files.append(
-        vtk_files.write_collection(folder, [frame["time_s"] for frame in taken.frames], paths)
-    )
+    files.append(vtk_files.write_collection(folder, [each.time_s for each in taken.frames], paths))
     vtk_files.discard_others(folder, files)
     stress = original.stress
     assert stress is not None  # by which the frames were chosen
-    at_peak = min(
-        range(len(taken.frames)),
-        key=lambda index: abs(taken.frames[index]["time_s"] - stress["peak_stress_time_s"]),
+    apart = [abs(frame.time_s - stress["peak_stress_time_s"]) for frame in taken.frames]
+    peak = Peak(
+        stress_pa=stress["peak_stress_pa"],
+        place_m=tuple(stress["peak_stress_place_m"]),
+        rail=stress["peak_stress_rail"],
+        time_s=stress["peak_stress_time_s"],
+        frame=int(np.argmin(apart)),
     )
-    peak = {
-        "stress_pa": stress["peak_stress_pa"],
-        "place_m": stress["peak_stress_place_m"],
-        "rail": stress["peak_stress_rail"],
-        "time_s": stress["peak_stress_time_s"],
-        "frame": at_peak,
-    }
-    return {
-        "condition": request.label,
-        "folder": study.relative(folder),
-        "collection": study.relative(files[-1]),
-        "frames": taken.frames,
-        "peak": peak,
-        "bounds_m": [taken.low.tolist(), taken.high.tolist()],
-        "element_size_m": request.numerics.element_size,
-        "factor": factor or exaggeration(taken.frames),
-        "title": f"{study.scene.name} / {request.label}",
-    }, files
+    found = View(
+        scene=study.scene.name,
+        condition=request.label,
+        folder=study.relative(folder),
+        collection=study.relative(files[-1]),
+        frames=tuple(taken.frames),
+        peak=peak,
+        bounds_m=(tuple(taken.low.tolist()), tuple(taken.high.tolist())),
+        element_size_m=request.numerics.element_size,
+        factor=factor or exaggeration(taken.frames),
+        title=f"{study.scene.name} / {request.label}",
+        pictures={},
+        without_pictures="",
+    )
+    return found, files
 
 
-def exaggeration(frames: list[dict]) -> float:
+def exaggeration(frames: Sequence[Instant]) -> float:
     """Factor, 1, 2 or 5 times a power of ten, at which the largest deformation has the size
     ``_SHOWN``; 1 without deformation."""
-    largest = max(frame["largest_displacement_m"] for frame in frames)
+    largest = max(frame.largest_displacement_m for frame in frames)
     if largest <= 0.0:
         return 1.0
     ratio = max(1.0, _SHOWN / largest)
@@ -240,21 +269,19 @@ def rounded_up(value: float) -> float:
     return next(step * power for step in steps if value <= step * power * (1.0 + 1e-9))
 
 
-def draw_pictures(document: dict, folder: Path) -> tuple[list[str], str]:
+def draw_pictures(found: View, folder: Path) -> tuple[list[str], str]:
     """Names of the pictures, and the reason where there are none."""
     if pyvista_version() is None:
         return [], _HOW
     order = {
         "folder": str(folder.resolve()),
-        "frames": document["frames"],
-        "factor": document["factor"],
-        "bounds": document["bounds_m"],
-        "peak": document["peak"],
-        "title": document["title"],
-        "mesh": f"elements of {1e3 * document['element_size_m']:g} mm",
-        "scale_pa": rounded_up(
-            max(frame["largest_mean_stress_pa"] for frame in document["frames"])
-        ),
+        "frames": [asdict(frame) for frame in found.frames],
+        "factor": found.factor,
+        "bounds": found.bounds_m,
+        "peak": asdict(found.peak),
+        "title": found.title,
+        "mesh": f"elements of {1e3 * found.element_size_m:g} mm",
+        "scale_pa": rounded_up(max(frame.largest_mean_stress_pa for frame in found.frames)),
     }
     # Complaints go to a file: a full pipe that nobody reads would stop the child.
     with Board("view", 1) as board, tempfile.TemporaryFile("w+") as complaints:

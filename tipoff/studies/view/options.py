@@ -1,0 +1,34 @@
+"""Options of ``tipoff view``."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import typer
+
+from tipoff.studies.commands.options import RefinedCondition
+from tipoff.workspace.options import between
+
+
+@dataclass(frozen=True)
+class Options:
+    """``condition`` None: the first refined one; ``exaggeration`` None: one that shows the largest
+    deformation."""
+
+    condition: RefinedCondition = None
+    frames: Annotated[
+        int,
+        between(2),
+        typer.Option(
+            "--frames", metavar="N", min=2, help="Number of frames, evenly spread over the run."
+        ),
+    ] = 60
+    exaggeration: Annotated[
+        float | None,
+        typer.Option(
+            "--exaggeration",
+            metavar="X",
+            min=1e-6,
+            help="Factor of the deformation of the rail in pictures; default: one that makes the "
+            "largest deformation visible.",
+        ),
+    ] = None
