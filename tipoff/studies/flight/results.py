@@ -65,13 +65,6 @@ class Share:
     high: float | None
 
 
-@dataclass(frozen=True)
-class Reached(Quantile):
-    """The ``value`` is that of a case; None where that case never reaches the event."""
-
-    value: float | None  # type: ignore[assignment]
-
-
 @dataclass(frozen=True, kw_only=True)
 class Cases:
     """Many cases: numbers, quantiles by quantity and whence their ``bounds``, those that do not show
@@ -84,7 +77,7 @@ class Cases:
     confidence: float
     varied: Varied
     bounds: str
-    quantiles: dict[str, tuple[Reached, ...]]
+    quantiles: dict[str, tuple[Quantile, ...]]
     limit_open: int
     touch: Share | None
     not_reached: Share | None

@@ -13,10 +13,11 @@ from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty, Varied
 from tipoff.studies.flight import bodies
 from tipoff.studies.flight.flown import Flown
-from tipoff.studies.flight.results import Cases, Orbit, Reached, Share
+from tipoff.studies.flight.results import Cases, Orbit, Share
 from tipoff.studies.populations import answers, exceedance
 from tipoff.studies.populations.answers import Left, Quantity
 from tipoff.studies.populations.population import Population
+from tipoff.studies.populations.spread import Quantile
 
 if TYPE_CHECKING:
     import xarray
@@ -148,13 +149,13 @@ def plain(values: np.ndarray) -> tuple:
     return tuple(float(f"{value:.6g}") for value in values)
 
 
-def _quantiles(values: np.ndarray, independent: bool) -> list[Reached]:
+def _quantiles(values: np.ndarray, independent: bool) -> list[Quantile]:
     """Quantiles that are values of cases; None where that case never reaches the event."""
     rows = []
     for share in SHARES:
         ends = order_statistics.bounds(values, share, CONFIDENCE) if independent else (None, None)
         value = np.quantile(values, share, method="inverted_cdf")
-        rows.append(Reached(share, *map(_finite, (value, *ends))))
+        rows.append(Quantile(share, *map(_finite, (value, *ends))))
     return rows
 
 

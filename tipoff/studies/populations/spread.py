@@ -17,11 +17,10 @@ _BINS = 80
 
 @dataclass(frozen=True)
 class Quantile:
-    """The ``value`` that a ``share`` of all values is below, with two-sided bounds; a bound is None where
-    there are too few values."""
+    """The ``value`` that a ``share`` of the cases is below, and its two bounds; None where there is none."""
 
     share: float
-    value: float
+    value: float | None
     low: float | None
     high: float | None
 
