@@ -163,7 +163,7 @@ def _said(monkeypatch, tmp_path, seconds: float) -> list[str]:
 def test_a_long_wait_says_how_long_it_takes(monkeypatch, tmp_path):
     """Four minutes; control: four seconds say nothing."""
     first, *left, last, _ = _said(monkeypatch, tmp_path / "long", 60.0)
-    assert "rail compliance, once" in first and "found in 240 s" in last
+    assert "rail compliance, once" in first and "computed in 240 s" in last
     assert left == [
         "  50 %, about 2 min left; coarser elements take less",
         "  75 %, about 60 s left",

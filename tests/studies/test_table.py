@@ -2,6 +2,7 @@
 
 import pytest
 
+from tipoff.studies.populations.spread import Quantile
 from tipoff.studies.render import document
 from tipoff.studies.render.chart import Chart
 from tipoff.studies.render.document import Bullets, Caption, Figure, Fold, Heading, Notice
@@ -94,11 +95,9 @@ def test_a_value_carries_its_uncertainty():
 
 
 def test_estimates_are_rounded_to_their_interval():
-    shown = markdown(
-        Table(["rate"], [[estimate({"value": 5.0712, "low": 4.961, "high": 5.311})], [None]])
-    )
+    shown = markdown(Table(["rate"], [[estimate(Quantile(0.5, 5.0712, 4.961, 5.311))], [None]]))
     assert "| 5.07 (4.96 to 5.31) |" in shown
-    assert estimate({"value": 2.0, "low": None, "high": None}) == 2.0
+    assert estimate(Quantile(0.5, 2.0, None, None)) == 2.0
 
 
 def test_percent_and_span():

@@ -259,5 +259,5 @@ def test_no_modes_chosen_is_no_modes_asked_for(study, watch):
         np.testing.assert_array_equal(one, other)
     assert chosen.model.modes_why and not asked.model.modes_why
     springs = population.run(study, "springs", Surrogate(REFERENCE, None, None), rows)
-    found = population.answering(study, springs.model)
-    assert found["modes"] == 0 and population.model_words(found) == found["model"]
+    found = population.Answering(**population.answering(study, springs.model))
+    assert found.modes == 0 and population.model_words(found) == found.model

@@ -2,6 +2,7 @@
 
 import pytest
 import typer
+from markupsafe import Markup
 
 from tipoff import scenes
 from tipoff.scenes.faults import Fault, SceneError
@@ -28,8 +29,8 @@ CURVES = {
 
 @pytest.fixture
 def quick(monkeypatch):
-    """Pages without the library of charts and without files of figures."""
-    monkeypatch.setattr("tipoff.studies.report.page.to_files", lambda *_: [])
+    """Pages without figures."""
+    monkeypatch.setattr(Page, "figure", lambda *_: Markup())
 
 
 def page(folder, scene=None):
