@@ -22,7 +22,7 @@ import numpy as np
 
 from tests.written_names import ARRAYS_OF_REFERENCE
 from tipoff import calibration, highfi, lowfi, scenes
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from validation.bench.surrogate import varied

@@ -37,7 +37,7 @@ from tipoff.files import DamageError, content_hash, require_whole, write_sealed
 from tipoff.mechanics import compliance_arrays, joint_terms
 from tipoff.mechanics.compliance_shown import Shown
 from tipoff.mechanics.joint_terms import LEAST, MOST, JointTerms
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
