@@ -9,10 +9,12 @@ compares the texts.
 """
 
 import json
+import os
 import shutil
 import sys
 from collections.abc import Iterator
 from importlib import import_module
+from inspect import signature
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -33,6 +35,7 @@ from tipoff.workspace.study import Study
 
 FOLDER = Path(__file__).parent / "kept" / "tiny"
 TEXTS = FOLDER.parent / "texts"
+OUT = Path("out/tiny")
 # their stages; those without a section have no text
 STAGES = (
     "ablation.stage",
@@ -83,21 +86,25 @@ def documents() -> dict[str, Any]:
         }
 
 
+@mock.patch.dict(os.environ, COLUMNS="120")
 def texts() -> dict[str, str]:
     """All texts, by the names of their files."""
-    page = Page(study().scene, Path("out/tiny"), documents(), Runs({}, {}), {})
+    page = Page(study().scene, OUT, documents(), Runs({}, {}), {})
     found = {
         f"page/{section.anchor}.md": document.markdown([*_heading(section), *section.draw(page)])
         for section in registry.sections()
     }
     for module, stage in modules():
         shown = import_module(f"{module.__package__}.page")
-        draw = getattr(shown, "terminal", None)
+        draw = getattr(shown, "terminal", None) if module.__name__.endswith(".stage") else None
         if draw is not None and (result := page.documents.get(stage.name)):
-            found[f"terminal/{stage.name}.txt"] = document.terminal(draw(stage.read(result)))
+            place = [OUT] * (len(signature(draw).parameters) - 1)  # where the files are said to lie
+            found[f"terminal/{stage.name}.txt"] = document.terminal(
+                draw(stage.read(result), *place)
+            )
     group: Any = typer.main.get_command(cli.app)
     for name in sorted(group.commands):
-        asked = CliRunner().invoke(cli.app, [name, "--help"], env={"COLUMNS": "100"})
+        asked = CliRunner().invoke(cli.app, [name, "--help"])
         found[f"help/{name}.txt"] = "\n".join(map(str.rstrip, asked.output.splitlines()))
     return {name: text.strip() + "\n" for name, text in found.items() if text.strip()}
 
