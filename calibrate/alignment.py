@@ -19,7 +19,7 @@ import math
 import numpy as np
 
 from tipoff.calibration.parameters import Parameter
-from tipoff.mechanics import model as models
+from tipoff.mechanics import model as scene_model
 from tipoff.scenes.body import tensor
 from tipoff.scenes.scene import Scene
 
@@ -64,7 +64,7 @@ def _change(name: str, unit: str, bound: float, justification: str) -> Parameter
 def _initial(scene: Scene) -> list[Parameter]:
     if scene.contact is None:
         return []
-    faces, gaps = models.built(scene).nominal, np.array(scene.contact.gaps())
+    faces, gaps = scene_model.built(scene).nominal, np.array(scene.contact.gaps())
     found = [
         _change(
             f"initial.position.{name}",

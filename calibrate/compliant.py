@@ -7,7 +7,7 @@ rail compliance comes from the finite elements and is not fitted.
 """
 
 from tipoff.calibration.parameters import Parameter, friction
-from tipoff.mechanics.joint_terms import LEAST, MOST
+from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST
 from tipoff.scenes.effects.contact import ContactTable
 from tipoff.scenes.scene import Scene
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from tipoff.calibration.curves import Curves
-from tipoff.mechanics.models import SPRINGS
+from tipoff.mechanics.model_names import SPRINGS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.effects import thrust
 from tipoff.scenes.faults import Fault, InputError, SceneError, kind_of

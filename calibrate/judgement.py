@@ -42,7 +42,7 @@ from tipoff.calibration.misfit import (
 from tipoff.calibration.objective import Objective, Target, sampled
 from tipoff.calibration.offset import Offset, estimate
 from tipoff.calibration.posterior import Posterior
-from tipoff.mechanics.models import COMPLIANT
+from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.mechanics.trajectory import Trajectory
 
 HALF = math.sqrt(0.5)  # misfit above which more is unexplained than explained

@@ -27,7 +27,7 @@ from tipoff.calibration import alignment
 from tipoff.calibration.curves import Curves
 from tipoff.calibration.faults import CalibrationError
 from tipoff.calibration.parameters import Parameter, overrides
-from tipoff.mechanics.models import COMPLIANT
+from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import changes as added

@@ -24,7 +24,7 @@ from tipoff.calibration.offset import Offset
 from tipoff.calibration.parameters import Parameter
 from tipoff.calibration.search import Found, Plan, search
 from tipoff.lowfi.models import require
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration

@@ -37,8 +37,8 @@ from tipoff.highfi.statics import assembly, inputs, joint_terms, thermal, vibrat
 from tipoff.highfi.statics.pressure import Pressed, pressed
 from tipoff.highfi.statics.solve import Clamped, one_thread
 from tipoff.mechanics import model as scene_model
-from tipoff.mechanics.joint_terms import JointTerms
 from tipoff.mechanics.rail_compliance import MODES, PATTERNS, RailCompliance, digest
+from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from tipoff.scenes.effects.thermal import FIELDS
 from tipoff.scenes.rail import MaterialTable, SectionTable

@@ -6,7 +6,7 @@ import numpy as np
 from tipoff.highfi.dynamics import ending, samples
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.stress import monitor
-from tipoff.mechanics import comoving, ledger, models, outcome
+from tipoff.mechanics import comoving, ledger, model_names, outcome
 from tipoff.mechanics.promises import FINITE_ELEMENTS, broken
 from tipoff.mechanics.trajectory import Trajectory
 
@@ -38,7 +38,7 @@ def trajectory(loop, cost: dict, numerics: Numerics) -> Trajectory:
     message = "; ".join(filter(None, [loop.message, exceeded, pressed]))
     seen_from = comoving.frame(loop.system.model)
     return Trajectory(
-        model=models.FINITE_ELEMENTS,
+        model=model_names.FINITE_ELEMENTS,
         status=status,
         message=message,
         **comoving.motion(seen_from, moved)._asdict(),

@@ -2,7 +2,7 @@
 
 from tipoff.lowfi.contact import thermal_offset
 from tipoff.lowfi.numerics import Numerics
-from tipoff.mechanics.models import COMPLIANT, SURROGATES
+from tipoff.mechanics.model_names import COMPLIANT, SURROGATES
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError

@@ -8,7 +8,7 @@ from tipoff.lowfi import modes
 from tipoff.lowfi.models import require
 from tipoff.lowfi.numerics import AUTO, Numerics
 from tipoff.lowfi.single_run import Run, integrated
-from tipoff.mechanics.models import COMPLIANT
+from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.mechanics.rail_compliance import RailCompliance, may_vibrate
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration

@@ -14,7 +14,7 @@ from tipoff.lowfi.dynamics.loop import Sampling
 from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
 from tipoff.lowfi.numerics import Numerics, promises_of
 from tipoff.mechanics import comoving, ending, outcome, promises
-from tipoff.mechanics import model as models
+from tipoff.mechanics import model as scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
@@ -51,7 +51,7 @@ class Run:
         self.watches, self.modes = watches, numerics.count
         self.promised = promises_of(numerics)
         self.used = used = finer or numerics
-        self.model = model = models.build(scene)
+        self.model = model = scene_model.build(scene)
         self.marks = outcome.milestones(scene, model)
         self.interval = scene.output.interval
         self.end = scene.output.last(scene.time_limit)

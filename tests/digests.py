@@ -4,7 +4,6 @@ shown to change no number.
     python -m tests.digests > before.txt                      every catalogue scene, every model
     python -m tests.digests --against before.txt              exit 1 and the lines that differ
     python -m tests.digests --results out > stages.txt        numbers in the stage results below a folder
-    python -m tests.digests --pages out > pages.txt           text of pages of these results, and every --help
 
 A line is a name and the first 16 hexadecimal digits of a SHA-256. Times, the machine, versions, and
 digests of code are left out.
@@ -18,24 +17,14 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
-from unittest import mock
 
 import numpy as np
-import typer
-from typer.testing import CliRunner
 
 from tests.written_names import ARRAYS_OF_REFERENCE
 from tipoff import calibration, highfi, lowfi, scenes
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.studies import cli, registry
-from tipoff.studies.commands.running import study_of
-from tipoff.studies.render import document
-from tipoff.studies.report.page import Page
-from tipoff.studies.runs.figures import Runs
-from tipoff.workspace.study import Study, read
-from validation import STUDIES
 from validation.bench.surrogate import varied
 
 CATALOG = ("channel", "paper_like", "reference", "sensitive", "thin", "tiny", "titanium")
@@ -131,38 +120,6 @@ def results(folder: Path) -> Iterator[str]:
                 yield line(f"{path.relative_to(folder)}:{entry}", digest(stable(value)))
 
 
-def pages(out: Path) -> Iterator[str]:
-    """A line for the Markdown of each section of the page of each scene below ``out``, whatever code
-    made its results, and for the help of each command."""
-    registry.add(*STUDIES)
-    for folder in sorted(path.parent for path in out.glob("*/mesh.json")):
-        study = study_of(folder.name, out, None)
-        page = Page(study.scene, folder, _documents(study), Runs({}, {}), {})
-        for section in registry.sections():
-            text = document.markdown(section.draw(page))
-            yield line(f"{folder.name}/page/{section.anchor}", digest(section.title, text))
-    cli.add("", STUDIES)
-    group = typer.main.get_command(cli.app)
-    for name in sorted(group.commands):
-        shown = CliRunner().invoke(cli.app, [name, "--help"], env={"COLUMNS": "100"}).output
-        yield line(f"help/{name}", digest(shown))
-
-
-def _documents(study: Study) -> dict[str, Any]:
-    """The results of all studies in the folder of ``study``, with any key."""
-
-    def of_any_key(study: Study, name: str, key: Any) -> dict | None:
-        return read(study.path(f"{name}.json"))
-
-    with mock.patch.object(Study, "stored", of_any_key):
-        return {
-            result.name: (
-                result.stored(study) if result.stored else read(study.path(f"{result.name}.json"))
-            )
-            for result in registry.results()
-        }
-
-
 def stable(value: Any) -> Any:
     """``value`` without the entries that differ from run to run."""
     if isinstance(value, dict):
@@ -199,12 +156,6 @@ def main(arguments: list[str] | None = None) -> int:
         "--results", type=Path, help="a folder of stage results, instead of solving anything"
     )
     parser.add_argument(
-        "--pages",
-        type=Path,
-        metavar="OUT",
-        help="results of scenes, whose pages and the help of all commands are compared instead",
-    )
-    parser.add_argument(
         "--against",
         type=Path,
         help="digests printed before; lines that differ are shown, and the exit code is 1",
@@ -213,8 +164,6 @@ def main(arguments: list[str] | None = None) -> int:
     found = []
     if asked.results:
         lines = results(asked.results)
-    elif asked.pages:
-        lines = pages(asked.pages)
     else:
         lines = itertools.chain(trajectories(tuple(asked.scenes)), ensembles())
     for item in lines:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tipoff import scenes, sources
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
+from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import (

@@ -18,7 +18,7 @@ from tipoff.kernels.jit import kernel, njit
 from tipoff.lowfi.contact import thermal_offset
 from tipoff.lowfi.faces import BACK, NUMBER, SIDE_MIDDLE, SIDE_REACH
 from tipoff.lowfi.system import System, build
-from tipoff.mechanics import model as models
+from tipoff.mechanics import model as scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.effects import contact as law
 from tipoff.scenes.effects.body_force import acceleration
@@ -88,7 +88,7 @@ def prepared(
     Raises SceneError for friction that sticks.
     """
     require_two_step(scene)
-    model = models.build(scene)
+    model = scene_model.build(scene)
     platform_inertia = model.platform.inertia if model.platform is not None else np.eye(3)
     rows = np.zeros((samples + 1, _SIZE))
     rows[0] = _start(model)

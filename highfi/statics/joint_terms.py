@@ -1,4 +1,4 @@
-"""Solutions that ``mechanics.joint_terms`` needs for the compliance of a rail on joints with any
+"""Solutions that ``mechanics.rail_compliance.joint_terms`` needs for the compliance of a rail on joints with any
 factor of their stiffness."""
 
 from collections.abc import Iterable
@@ -12,7 +12,7 @@ from scipy.sparse import csc_array
 from tipoff.highfi.statics import vibration
 from tipoff.highfi.statics.assembly import Operator
 from tipoff.highfi.statics.solve import Clamped
-from tipoff.mechanics.joint_terms import LEAST, MOST, TERMS, JointTerms
+from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST, TERMS, JointTerms
 
 _BATCH = 64  # loads solved for at once; bounds the memory
 

@@ -18,7 +18,7 @@ from tipoff.lowfi.faces import CENTRE
 from tipoff.lowfi.numerics import AUTO, Numerics, promises_of
 from tipoff.lowfi.run import solved
 from tipoff.mechanics import comoving, ending, outcome
-from tipoff.mechanics import model as models
+from tipoff.mechanics import model as scene_model
 from tipoff.mechanics.model import Built
 from tipoff.mechanics.rail_compliance import RailCompliance, may_vibrate
 from tipoff.scenes import changes
@@ -45,7 +45,7 @@ class _Group(NamedTuple):
     marks: outcome.Milestones
     plan: Plan
     rows: list[tuple[int, Mapping[str, Any]]]  # number and overrides of each case
-    models: list[models.Model]  # of each case
+    models: list[scene_model.Model]  # of each case
 
 
 class Family:
@@ -72,7 +72,7 @@ class Family:
         self.variations = Variations(calibrated)
         self.changes = calibration.changes if calibration else {}
         self.stated = Variations(scene) if self.changes else None
-        self.base = models.built(calibrated)
+        self.base = scene_model.built(calibrated)
         self.marks = outcome.milestones(calibrated, self.base.model)
 
     def jobs(
@@ -103,7 +103,7 @@ class Family:
                 alone.append((number, row))
                 continue
             try:
-                built = models.built(self._scene(row), self.base)
+                built = scene_model.built(self._scene(row), self.base)
                 self._require_compliance(built)
             except SceneError as error:
                 alone.append((number, _refused(error)))
@@ -220,7 +220,7 @@ class Family:
         return [(number, item if isinstance(item, Case) else self._run_whole(item))]
 
     def _case(
-        self, model: models.Model, row: Mapping[str, Any], result: np.ndarray, share: float
+        self, model: scene_model.Model, row: Mapping[str, Any], result: np.ndarray, share: float
     ) -> Case:
         if result[cases.LEFT_OPEN]:
             return self._run_whole(row)

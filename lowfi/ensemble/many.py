@@ -17,7 +17,7 @@ from tipoff.lowfi.ensemble.rows import Drawn, Listed
 from tipoff.lowfi.ensemble.threads import PIECE, completed
 from tipoff.lowfi.models import require
 from tipoff.lowfi.numerics import Numerics
-from tipoff.mechanics.models import COMPLIANT
+from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene

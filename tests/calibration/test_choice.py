@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from tipoff import calibration, lowfi, scenes
 from tipoff.calibration import Curves, alignment, choice, compliant
 from tipoff.calibration.search import Plan
-from tipoff.mechanics import model as models
+from tipoff.mechanics import model as scene_model
 from validation.recovery.draws import LOCAL, noisy
 
 CONDITIONS = ("phi15", "phi35")
@@ -97,7 +97,7 @@ def test_bounds_of_a_start_are_where_pads_touch():
     beyond. Clearances along the axes differ, so that the smaller one counts."""
     scene = SCENE.replace({"contact.clearance_z": 0.1e-3})
     bounds = {item.name: item.upper for item in alignment.free(scene)}
-    faces = models.built(scene).nominal
+    faces = scene_model.built(scene).nominal
     gaps = np.where(faces.axis == 1, 0.25e-3, 0.1e-3)
     for name in (name for name in alignment.NAMES if name.startswith("initial.")):
         way = bounds[name] * np.eye(3)["xyz".index(name[-1])]

@@ -22,7 +22,7 @@ from tipoff.highfi.mesh.rail_mesh import read
 from tipoff.highfi.rail import fit, solid_process, step_cost
 from tipoff.lowfi.ensemble.table import TableFile
 from tipoff.mechanics import model
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.meshes import generator
 from tipoff.scenes import plausibility, reading, uncertainty
 from tipoff.scenes.faults import InputError

@@ -16,7 +16,7 @@ from tipoff.lowfi import system as systems
 from tipoff.lowfi.contact import springs
 from tipoff.lowfi.contact.compliant import record
 from tipoff.lowfi.dynamics import equations
-from tipoff.mechanics import model as models
+from tipoff.mechanics import model as scene_model
 from tipoff.mechanics.rail_compliance import PATTERNS, POWERS, RailCompliance, digest
 from tipoff.scenes.scene import Scene
 
@@ -35,7 +35,7 @@ def reference_compliance() -> RailCompliance:
 def handmade(scene: Scene, entries: dict, rail=None) -> RailCompliance:
     """Walls whose flexibility is zero except for ``entries``: (face, pattern, face, pattern) ->
     m/N, the same everywhere; one rail holds all faces, or ``rail`` (f,) gives the rail of each."""
-    faces = models.build(scene).faces
+    faces = scene_model.build(scene).faces
     count = faces.axis.size
     flexibility = np.zeros((2, count, PATTERNS, count, PATTERNS))
     for (i, a, j, b), value in entries.items():
@@ -144,7 +144,7 @@ def add_compliant_contact(system, touching, state, out):
 
 def pressed(scene: Scene, compliance: RailCompliance, modes: int = 0):
     """Model and records of ``scene`` with a ``compliance``."""
-    model = models.build(scene)
+    model = scene_model.build(scene)
     damping = scene.rail.damping and scene.rail.damping.record()
     return model, systems.build(
         model, compliance=record.build(compliance, model, modes=modes, damping=damping)

@@ -10,7 +10,7 @@ import pytest
 from tests.loops import COARSE
 from tipoff import highfi, lowfi, scenes
 from tipoff.calibration import rail_compliance
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.scene import Scene
 

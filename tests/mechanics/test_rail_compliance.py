@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tipoff import lowfi, scenes
-from tipoff.mechanics.joint_terms import JointTerms
 from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest
+from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 from tipoff.scenes.effects.thermal import FIELDS
 from tipoff.scenes.faults import SceneError
 

@@ -11,7 +11,7 @@ from tests.scenes.test_calibration import CALIBRATION
 from tipoff import lowfi
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.rows import Listed
-from tipoff.mechanics import model as models
+from tipoff.mechanics import model as scene_model
 from tipoff.scenes import SceneError, changes, load
 from tipoff.workspace.run import Run
 
@@ -98,11 +98,11 @@ def test_a_case_of_an_ensemble_replaces_constants_and_gets_the_changes():
 
 def test_a_clearance_along_one_axis_is_that_of_its_faces():
     scene = SCENE.replace({"contact.clearance_z": 0.1e-3})
-    faces = models.built(scene).nominal
-    origin = np.array(models.build(scene).platform.mass_centre)
+    faces = scene_model.built(scene).nominal
+    origin = np.array(scene_model.build(scene).platform.mass_centre)
     gap = faces.sign * (faces.wall + origin[faces.axis] - faces.centre[range(16), faces.axis])
     np.testing.assert_allclose(gap, np.where(faces.axis == 1, 0.25e-3, 0.1e-3), rtol=1e-9)
-    np.testing.assert_array_equal(faces.wall, models.built(SCENE).nominal.wall)
+    np.testing.assert_array_equal(faces.wall, scene_model.built(SCENE).nominal.wall)
 
 
 def test_one_clearance_along_both_axes_is_the_clearance():

@@ -281,9 +281,9 @@ def test_blind_conditions_are_judged_beside_what_was_made(pipeline):
     )
     assert all(AGREEMENT_ROW <= set(row) and row["role"] == "held_out" for row in kept["compliant"])
     assert (pipeline[0] / "calibration.toml").stat().st_mtime_ns == fitted
-    from tipoff.studies.blind import page as blind
+    from tipoff.studies.blind import page, stage
 
-    assert "blind2" in html(blind.draw(kept))
+    assert "blind2" in html(page.draw(stage.STAGE.read(kept)))
 
 
 @pytest.mark.parametrize("condition", ["phi15", "h1", "nominal"])

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from tests.studies.agreement.made import ROW, table
 from tipoff import scenes
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
+from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
 from tipoff.scenes.faults import SceneError
 from tipoff.studies.agreement import kept
 from tipoff.studies.cli import app

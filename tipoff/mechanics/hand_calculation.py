@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tipoff.kernels import rotation
-from tipoff.mechanics import model as models
+from tipoff.mechanics import model as scene_model
 from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.scene import Scene
 
@@ -38,7 +38,7 @@ def rates(scene: Scene, run: "Trajectory") -> ByHand | None:
     samples, or if it did not settle."""
     if run.outcome.rate is None:
         return None
-    model = models.build(scene)
+    model = scene_model.build(scene)
     touching = np.flatnonzero((run.pad_force != 0.0).any(axis=(0, 2)))
     pads = sorted(set(model.faces.pad[touching].tolist()))
     if len(pads) > 1:

@@ -19,7 +19,7 @@ from tipoff import sources
 from tipoff.cards import Carded
 from tipoff.files import DamageError, require_whole, write_csv, write_netcdf
 from tipoff.mechanics import ledger, outcome, shown
-from tipoff.mechanics.models import MODELS
+from tipoff.mechanics.model_names import MODELS
 
 if TYPE_CHECKING:
     import xarray
@@ -83,7 +83,7 @@ class Trajectory(Carded):
         True
     """
 
-    #: One of ``mechanics.models.MODELS``.
+    #: One of ``mechanics.model_names.MODELS``.
     model: str
     status: str
     #: (n,) s.

@@ -14,14 +14,10 @@ An absent table counts as zero.
 import math
 from collections.abc import Mapping
 
+from tipoff.scenes import polar
 from tipoff.scenes.scene import Scene
 
-# whether the clock angle is counted from +Y towards +Z, or from +Z towards +Y
-POLAR = {
-    "thrust_offset.misalignment": True,
-    "thrust_offset.eccentricity": False,
-    "mass_offset.eccentricity": False,
-}
+_POLAR = (polar.MISALIGNMENT, *polar.ECCENTRICITIES)  # tables
 
 
 def overrides(scene: Scene, changes: Mapping[str, float]) -> dict[str, float]:
@@ -30,14 +26,12 @@ def overrides(scene: Scene, changes: Mapping[str, float]) -> dict[str, float]:
     found: dict[str, float] = {}
     for key in changes:
         table, _, _ = key.rpartition(".")
-        if table not in POLAR:
+        if table not in _POLAR:
             found[key] = stated(scene, key) + changes[key]
         elif f"{table}.axial" not in found:
             axial, radial = stated(scene, f"{table}.axial"), stated(scene, f"{table}.radial")
             first, second = axial * math.cos(radial), axial * math.sin(radial)
-            along, aside = (
-                (f"{table}.y", f"{table}.z") if POLAR[table] else (f"{table}.z", f"{table}.y")
-            )
+            along, aside = (f"{table}.{axis}" for axis in polar.axes(table))
             first, second = first + changes.get(along, 0.0), second + changes.get(aside, 0.0)
             found[f"{table}.axial"] = math.hypot(first, second)
             found[f"{table}.radial"] = math.atan2(second, first)

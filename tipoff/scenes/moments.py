@@ -15,6 +15,8 @@ from functools import reduce
 
 import numpy as np
 
+from tipoff.scenes import polar
+
 Inputs = Mapping[str, np.ndarray]
 
 
@@ -35,15 +37,15 @@ def moment_impulses(scene, inputs: Inputs, impulse: np.ndarray | float) -> np.nd
         size, angle = (
             column(scene, inputs, f"{table}.eccentricity.{name}") for name in ("axial", "radial")
         )
-        return size * np.sin(angle), size * np.cos(angle)
+        return polar.offset(size, angle, np)
 
     (thrust_y, thrust_z), (centre_y, centre_z) = offset("thrust_offset"), offset("mass_offset")
     tilt, turn = (
         column(scene, inputs, f"thrust_offset.misalignment.{name}") for name in ("axial", "radial")
     )
-    arm, sine = column(scene, inputs, "thrust.arm"), np.sin(tilt)
+    arm = column(scene, inputs, "thrust.arm")
     place = np.broadcast_arrays(-arm, thrust_y - centre_y, thrust_z - centre_z)
-    direction = np.broadcast_arrays(np.cos(tilt), sine * np.cos(turn), sine * np.sin(turn))
+    direction = np.broadcast_arrays(*polar.direction(tilt, turn, np))
     return np.asarray(impulse)[..., None] * np.cross(
         np.stack(place, axis=-1), np.stack(direction, axis=-1)
     )

@@ -13,7 +13,7 @@ from tipoff import cache, sources
 from tipoff.files import content_hash
 from tipoff.kernels.cached import kernel_digest
 from tipoff.lowfi.numerics import AUTO
-from tipoff.mechanics.models import COMPLIANT
+from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.scenes.scene import Scene
 from tipoff.workspace.progress import say

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tipoff.lowfi.numerics import AUTO
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SURROGATES
+from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, MODELS, SURROGATES
 from tipoff.scenes.faults import Fault, SceneError
 
 _OWNERS = {

@@ -17,20 +17,10 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Rule:
-    """Allowed numbers of an option. None means not given."""
+    """Allowed numbers of an option. An option that is None is not given, and breaks no rule."""
 
     holds: Callable[[float], bool]
     words: str  # the same as text
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: Callable[[Any], Any]) -> Any:
-        from pydantic_core import core_schema  # slow to load
-
-        return core_schema.no_info_after_validator_function(self._checked, handler(source))
-
-    def _checked(self, value: float | None) -> float | None:
-        if value is not None and not self.holds(value):
-            raise ValueError(self.words)
-        return value
 
 
 def between(
@@ -58,31 +48,55 @@ def between(
 
 
 def require(options: Any) -> None:
-    """Raise SceneError with a fault for each of the ``options`` that breaks its rule."""
+    """Raise SceneError with a fault for each of the ``options`` that has another type or breaks its
+    rule."""
     from pydantic import TypeAdapter, ValidationError  # slow to load, as the scenes are
 
-    from tipoff.scenes.faults import SceneError, faults_of
+    from tipoff.scenes.faults import Fault, SceneError, faults_of
 
+    given = [
+        (path, flag(path.rpartition(".")[2], hint), hint, value)
+        for path, hint, value in _each(options)
+    ]
     try:
         TypeAdapter(type(options)).validate_python(dataclasses.asdict(options))
     except ValidationError as error:
-        names = dict(_flags(type(options)))
+        names = {path: name for path, name, *_ in given}
         raise SceneError(
             [
                 fault._replace(source=names.get(fault.key, fault.key), key="value")
                 for fault in faults_of(error, "")
             ]
         ) from None
+    faults = [
+        Fault(name, "value", value, rule.words)
+        for _, name, hint, value in given
+        for rule in rules(hint)
+        if value is not None and not rule.holds(value)
+    ]
+    if faults:
+        raise SceneError(faults)
 
 
-def _flags(kind: type, prefix: str = "") -> typing.Iterator[tuple[str, str]]:
-    """(dotted name, flag of the command) of each option of ``kind``."""
-    for name, hint in typing.get_type_hints(kind, include_extras=True).items():
-        if dataclasses.is_dataclass(hint):
-            assert isinstance(hint, type)
-            yield from _flags(hint, f"{prefix}{name}.")
+def rules(hint: Any) -> typing.Iterator[Rule]:
+    """The rules in the type ``hint`` of an option; the least and the largest number that a
+    ``typer.Option`` names are one too."""
+    for note in getattr(hint, "__metadata__", ()):
+        least, most = getattr(note, "min", None), getattr(note, "max", None)
+        if isinstance(note, Rule):
+            yield note
+        elif least is not None or most is not None:
+            yield between(least, most)
+
+
+def _each(options: Any, prefix: str = "") -> typing.Iterator[tuple[str, Any, Any]]:
+    """(dotted name, type, value) of each of the ``options``."""
+    for name, hint in typing.get_type_hints(type(options), include_extras=True).items():
+        value = getattr(options, name)
+        if dataclasses.is_dataclass(value):
+            yield from _each(value, f"{prefix}{name}.")
         else:
-            yield prefix + name, flag(name, hint)
+            yield prefix + name, hint, value
 
 
 def flag(name: str, hint: Any) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 
 from tipoff import sources
 from tipoff.files import content_hash
-from tipoff.mechanics.models import FINITE_ELEMENTS
+from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration

@@ -85,7 +85,7 @@ class Stage:
             found, files = make()
             if self.result is None:
                 return found, files
-            plain = _adapter(self.result).dump_python(found, mode="json", by_alias=True)
+            plain = self.content(found)
             asked = {} if self.options is None else {self.field: self.plain(options)}
             return asked | plain, [*files, *self._tables(study, plain)]
 
@@ -94,6 +94,10 @@ class Stage:
     def read(self, found: dict) -> Any:
         """The ``result`` in the content of a result file. Raises ValueError if it is missing."""
         return found if self.result is None else _adapter(self.result).validate_python(found)
+
+    def content(self, result: Any) -> dict:
+        """A ``result`` as JSON values."""
+        return _adapter(self.result).dump_python(result, mode="json", by_alias=True)
 
     def asked(self, found: dict) -> Any:
         """The options of a stored result. Raises ValueError if they are not valid now."""

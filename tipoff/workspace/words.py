@@ -1,6 +1,6 @@
 """Text that all commands share: the name of a model, counts, and the units of results."""
 
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.scene import Scene
 

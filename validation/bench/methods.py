@@ -9,9 +9,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
-from tipoff.mechanics import model as models
+from tipoff.mechanics import model as scene_model
 from tipoff.mechanics import outcome
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.scene import Scene
 
@@ -64,7 +64,7 @@ class Population:
         tight = self.many(rows, Numerics(relative_tolerance=_TIGHT, modes=self.modes))
         self.rates = tight.rate.values
         self.scenes = [base.replace(row) for row in rows]
-        marks = outcome.milestones(base, models.build(base))
+        marks = outcome.milestones(base, scene_model.build(base))
         self.starts = [outcome.window_start(float(at), marks) for at in tight.exit_time.values]
 
     def many(self, rows, numerics):

@@ -19,7 +19,7 @@ from pathlib import Path
 
 from tipoff.files import write_json
 from tipoff.lowfi.numerics import AUTO
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.scenes.scene import load
 from tipoff.workspace import machine
 from tipoff.workspace.progress import say

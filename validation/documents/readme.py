@@ -12,7 +12,7 @@ from operator import attrgetter
 from pathlib import Path
 
 from tipoff.files import read_json, write_text
-from tipoff.mechanics.models import FINITE_ELEMENTS
+from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.studies.agreement import growth_page, other_rails, verdicts
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.agreement.growth import Growth

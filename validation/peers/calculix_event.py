@@ -15,7 +15,7 @@ from tipoff import highfi
 from tipoff.highfi.mesh import pieces
 from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
 from tipoff.kernels import rotation
-from tipoff.mechanics import model as models
+from tipoff.mechanics import model as scene_model
 from tipoff.meshes import bricks
 from tipoff.scenes.scene import Scene, load
 from validation.peers import calculix
@@ -121,7 +121,7 @@ def _rail() -> RailMesh:
 def _box() -> Body:
     """One element along the principal axes with the payload's inertia: m (b^2 + c^2) / 12 about
     the first one."""
-    payload = models.build(scene()).payload
+    payload = scene_model.build(scene()).payload
     principal, axes = np.linalg.eigh(payload.inertia)
     size = np.sqrt(6.0 / payload.mass * (principal.sum() - 2.0 * principal))
     axes = axes * [1.0, 1.0, np.linalg.det(axes)]
@@ -130,7 +130,7 @@ def _box() -> Body:
 
 def _pad() -> tuple[Body, np.ndarray]:
     """A plate whose outer side is the crowned face, and the facets of that side."""
-    faces = models.build(scene()).faces
+    faces = scene_model.build(scene()).faces
     centre = faces.centre[FACE]
     half = np.array([faces.half_length[FACE], faces.half_width[FACE]])
     lines = [

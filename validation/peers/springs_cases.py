@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 
 from tipoff import lowfi
-from tipoff.mechanics.models import SPRINGS
+from tipoff.mechanics.model_names import SPRINGS
 from validation.peers import exudyn_model, mujoco_model
 from validation.peers.case import OURS, Case, Point
 from validation.peers.springs_problem import (

@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff import lowfi
-from tipoff.mechanics import model as models
+from tipoff.mechanics import model as scene_model
 from tipoff.mechanics import outcome
-from tipoff.mechanics.models import SPRINGS
+from tipoff.mechanics.model_names import SPRINGS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene, load
 
@@ -72,7 +72,7 @@ def scene(condition: str, law: str, friction: bool) -> Scene:
 def problem(condition: str, law: str, friction: bool) -> Problem:
     """The numbers of a condition."""
     chosen = scene(condition, law, friction)
-    model = models.build(chosen)
+    model = scene_model.build(chosen)
     faces, platform, pulses = model.faces, model.platform, model.thrust.pulses
     assert platform is not None and pulses is not None and pulses.peaks.size == 1
     normals = faces.sign[:, None] * np.eye(3)[faces.axis]

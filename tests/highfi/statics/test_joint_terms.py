@@ -5,8 +5,8 @@ import pytest
 
 from tests.highfi.support import tiny
 from tipoff import highfi
-from tipoff.mechanics.joint_terms import LEAST, MOST
 from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST
 from tipoff.scenes import SceneError
 
 SIZE, KEY = 8e-3, "rail.mount_stiffness.factor"

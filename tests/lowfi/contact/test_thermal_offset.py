@@ -12,7 +12,7 @@ from tipoff import lowfi
 from tipoff.lowfi import Numerics
 from tipoff.lowfi import system as systems
 from tipoff.lowfi.contact import springs, thermal_offset
-from tipoff.mechanics import model as models
+from tipoff.mechanics import model as scene_model
 from tipoff.mechanics.rail_compliance import GRAM, PATTERNS
 from tipoff.scenes.effects.thermal import FIELDS
 from validation import oracle
@@ -43,7 +43,7 @@ def test_places_of_the_walls():
     """The mean over a face of the six patterns, as a spline of its place, straight beyond the
     ends."""
     scene, compliance = REFERENCE.replace(WARM), reference_compliance().rigid()
-    model = models.build(scene)
+    model = scene_model.build(scene)
     record = thermal_offset.under_pads(scene, model, compliance)
     wanted = CubicSpline(
         compliance.travel,
@@ -62,7 +62,7 @@ def test_places_of_the_walls():
             assert thermal_offset.offset_and_slope(
                 record, face, start + end + over
             ) == pytest.approx(beyond, rel=1e-9, abs=1e-15)
-    assert thermal_offset.under_pads(REFERENCE, models.build(REFERENCE), None) is None
+    assert thermal_offset.under_pads(REFERENCE, scene_model.build(REFERENCE), None) is None
     # compliant contact holds the offset itself
     assert thermal_offset.under_pads(scene, model, reference_compliance()) is None
 
@@ -71,7 +71,7 @@ def test_force_is_along_the_gradient_of_the_penetration():
     """Differences of the penetration over the place of the payload; the straight wall's normal
     would leave out what is along the rail."""
     scene = REFERENCE.replace({"thermal.mean": MEAN})
-    model, x = models.build(scene), np.linspace(0.0, 0.23, 9)
+    model, x = scene_model.build(scene), np.linspace(0.0, 0.23, 9)
     system = systems.build(
         model,
         thermal_offset=thermal_offset.under_pads(

@@ -7,7 +7,7 @@ import pytest
 from tests.lowfi.support import PAPER_PAD, corners, scene, unwatched
 from tipoff import lowfi
 from tipoff.kernels import rotation
-from tipoff.mechanics import model as models
+from tipoff.mechanics import model as scene_model
 from validation import oracle
 
 # Undamped pads and little friction, so that the payload goes on rattling in a rail that has no end.
@@ -35,7 +35,7 @@ RATTLING = {
 def angular_momentum(asked, rows: np.ndarray) -> np.ndarray:
     """Total angular momentum (n,3) about the scene's origin of states (n,26) of the plain
     rewrite."""
-    model, total = models.build(asked), 0.0
+    model, total = scene_model.build(asked), 0.0
     for body, row in ((model.payload, rows[:, :13]), (model.platform, rows[:, 13:])):
         spin = np.einsum(
             "nij,jk,nk->ni", rotation.matrices(row[:, 6:10]), body.inertia, row[:, 10:13]

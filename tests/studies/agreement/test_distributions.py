@@ -9,7 +9,7 @@ import pytest
 
 from tests.studies.agreement.made import ROW
 from tests.studies.synthetic import flight
-from tipoff.mechanics.models import FINITE_ELEMENTS
+from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.scenes import load
 from tipoff.studies.agreement import distribution_page, distributions, growth, interface, verdicts
 from tipoff.studies.agreement.candidates import Candidate

@@ -8,7 +8,7 @@ import pytest
 
 from tests.studies.synthetic import flight
 from tipoff import scenes
-from tipoff.mechanics.models import FINITE_ELEMENTS
+from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.scenes.faults import SceneError
 from tipoff.studies.agreement import distributions, refinement, verdicts
 from tipoff.studies.agreement.verdicts import Context

@@ -3,7 +3,7 @@
 import pytest
 
 from tests.fuzz.cases import CALIBRATION
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.scenes import SceneError
 from tipoff.studies.calibration.files import constants
 

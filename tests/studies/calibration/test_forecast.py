@@ -12,7 +12,7 @@ from tests.studies.calibration.test_page import FIT
 from tipoff import scenes
 from tipoff.calibration import parameters, refine, search
 from tipoff.files import sealed, write_json
-from tipoff.mechanics.models import COMPLIANT
+from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.studies.calibration import forecast, page, stage
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.study import Study

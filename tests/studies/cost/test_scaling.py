@@ -8,7 +8,7 @@ import pytest
 from tests.studies.shown import html
 from tipoff import scenes
 from tipoff.mechanics.model import build
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.studies.ablation.stage import Ablation, Row
 from tipoff.studies.cost import scaling
 from tipoff.studies.cost import scaling_page as page

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 import tipoff
 from tests.studies import free_flight
 from tests.studies.shown import html
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
+from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes.scene import NOMINAL
 from tipoff.studies.cli import app
 from tipoff.studies.nominal import page, spread, stage

@@ -11,7 +11,7 @@ from tests.studies.agreement.made import ROW, table
 from tipoff import lowfi
 from tipoff.lowfi.ensemble.rows import Listed
 from tipoff.lowfi.numerics import Numerics
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.scenes import load
 from tipoff.studies.limits import stage as limits
 from tipoff.studies.montecarlo import stage as montecarlo

@@ -4,7 +4,7 @@ scene."""
 import numpy as np
 import pytest
 
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.scenes import load
 from tipoff.studies import published
 from tipoff.studies.sensitivity import contact_table

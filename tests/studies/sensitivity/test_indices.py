@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from tipoff.lowfi.ensemble.rows import numbers
-from tipoff.mechanics.models import SPRINGS
+from tipoff.mechanics.model_names import SPRINGS
 from tipoff.scenes import load
 from tipoff.scenes.effects import thrust_offset
 from tipoff.studies.sensitivity import indices, tolerances

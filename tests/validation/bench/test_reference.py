@@ -14,7 +14,7 @@ from tipoff import highfi, lowfi
 from tipoff.highfi import Numerics
 from tipoff.highfi.statics import assembly
 from tipoff.lowfi.dynamics import cases
-from tipoff.mechanics.models import COMPLIANT
+from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.scenes import load
 from tipoff.studies import registry
 from tipoff.studies.report.assembly import render

@@ -6,8 +6,7 @@ mass centre change by ``-l``. The inertia is about the actual mass centre and do
 Absent table: the centres coincide.
 """
 
-import math
-
+from tipoff.scenes import polar
 from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import Angle, NonNegativeLength
@@ -31,7 +30,7 @@ class Eccentricity(Table):
 
     def offset(self) -> tuple[float, float, float]:
         """Offset (m) in body axes."""
-        return (0.0, self.axial * math.sin(self.radial), self.axial * math.cos(self.radial))
+        return (0.0, *polar.offset(self.axial, self.radial))
 
 
 class MassOffsetTable(Table):

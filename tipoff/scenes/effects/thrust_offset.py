@@ -1,13 +1,12 @@
 """Thrust misalignment and eccentricity: direction and line of action of the thrust in body axes.
 
-Misalignment theta from +X, phi from +Y towards +Z: ``F (cos t, sin t cos p, sin t sin p)``.
-Eccentricity r at angle a: ``l_z = r cos a``, ``l_y = r sin a``, measured from the nominal centre.
+Angles are counted as in ``scenes.polar``; the eccentricity is measured from the nominal centre.
 Absent table: a centred axial force.
 """
 
-import math
 from typing import NamedTuple
 
+from tipoff.scenes import polar
 from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.effects.mass_offset import Eccentricity
 from tipoff.scenes.table import Table
@@ -32,8 +31,7 @@ class Misalignment(Table):
 
     def direction(self) -> tuple[float, float, float]:
         """Unit vector of the thrust in body axes."""
-        sine = math.sin(self.axial)
-        return (math.cos(self.axial), sine * math.cos(self.radial), sine * math.sin(self.radial))
+        return polar.direction(self.axial, self.radial)
 
 
 class ThrustOffsetTable(Table):

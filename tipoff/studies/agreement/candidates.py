@@ -5,7 +5,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from tipoff.lowfi.numerics import AUTO
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
 from tipoff.studies.calibration import stage as calibrate

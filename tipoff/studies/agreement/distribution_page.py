@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from operator import attrgetter
 from typing import Any
 
-from tipoff.mechanics.models import FINITE_ELEMENTS
+from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.distributions import Distribution, Verdict
 from tipoff.studies.agreement.equivalence import AXES, CONFIDENCE, MARGIN_SHARE, Comparison

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tipoff import lowfi
-from tipoff.mechanics.models import FINITE_ELEMENTS
+from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.agreement import equivalence, neighbours, verdicts
 from tipoff.studies.agreement.candidates import Candidate

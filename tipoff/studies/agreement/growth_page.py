@@ -4,7 +4,7 @@ the time up to which curves can be compared."""
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from tipoff.mechanics.models import FINITE_ELEMENTS
+from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.studies.agreement import stage
 from tipoff.studies.agreement.growth import Growth
 from tipoff.studies.render.chart import Chart, Line, Panel

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from tipoff.lowfi.numerics import AUTO
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
+from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes.scene import NOMINAL
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.verdicts import Row

@@ -82,7 +82,7 @@ def calibrate(
     rail), rate_x, rate_y and rate_z (inertial, in payload body axes). Units are in the header,
     rate_x \\[deg/s], or in the second line. Other columns are ignored.
     """
-    from tipoff.mechanics.models import COMPLIANT, SPRINGS
+    from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
     from tipoff.studies.calibration import page, stage
 
     start = quantity("--settled-from", settled_from, "s", "44 ms")

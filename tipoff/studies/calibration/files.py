@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from tipoff.files import tell
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
 

@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 from tipoff import sources
 from tipoff.files import read_json, require_whole
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
 from tipoff.workspace.run import Run

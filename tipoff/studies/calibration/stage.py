@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError

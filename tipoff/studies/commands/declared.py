@@ -21,7 +21,8 @@ def command(
 ) -> Callable[..., None]:
     """The command ``name`` with the help ``text`` and a parameter for each field of ``options``, a frozen
     dataclass or None; ``answer`` gets the request and the options. Fields of ``kw_only`` stand last in
-    the help; common options that are ``without`` use here are left out."""
+    the help; common options that are ``without`` use here are left out. The attribute ``options`` of
+    the command is the dataclass."""
 
     def function(request: Request, **given: Any) -> Output:
         return answer(request, options and _made(options, given))
@@ -31,7 +32,9 @@ def command(
     own.sort(key=lambda option: option.kind)
     function.__signature__ = inspect.Signature([request, *own])  # type: ignore[attr-defined]
     function.__name__, function.__doc__ = name, text
-    return scene_command(without)(function)
+    made = scene_command(without)(function)
+    made.options = options  # type: ignore[attr-defined]
+    return made
 
 
 def _fields(options: type) -> Iterator[tuple[dataclasses.Field, Any]]:

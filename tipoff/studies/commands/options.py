@@ -108,7 +108,7 @@ RefinedCondition = Annotated[
         help="Named condition; default: the first in agreement.refined of the scene.",
     ),
 ]
-# The names of ``mechanics.models``, repeated because its import would slow ``--help`` down.
+# The names of ``mechanics.model_names``, repeated because its import would slow ``--help`` down.
 ModelName = Literal["compliant", "springs", "finite-elements"]
 SurrogateName = Literal["compliant", "springs"]
 _COMPLIANT = (

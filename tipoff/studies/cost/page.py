@@ -4,7 +4,7 @@ from collections.abc import Callable
 from operator import attrgetter, itemgetter
 from typing import Any
 
-from tipoff.mechanics.models import FINITE_ELEMENTS
+from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.cost import choice, scaling_page
 from tipoff.studies.cost.results import Cost, Match, Point

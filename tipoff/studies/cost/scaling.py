@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.rail import MeshTable
 from tipoff.scenes.scene import Scene

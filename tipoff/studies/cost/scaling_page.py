@@ -4,7 +4,7 @@ the time of effects."""
 import math
 from collections.abc import Sequence
 
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.studies.cost.results import (
     EffectTime,
     EffectTimes,

@@ -19,7 +19,7 @@ from pathlib import Path
 from tipoff.comparison.metrics import compare
 from tipoff.files import write_text
 from tipoff.lowfi.numerics import Numerics
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
+from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.ablation import stage as ablation
 from tipoff.studies.agreement import refinement, verdicts

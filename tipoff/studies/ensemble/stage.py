@@ -18,7 +18,7 @@ from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.lowfi.ensemble.store import Store, StoreError
 from tipoff.lowfi.ensemble.table import TableFile
 from tipoff.lowfi.numerics import Numerics
-from tipoff.mechanics.models import SPRINGS
+from tipoff.mechanics.model_names import SPRINGS
 from tipoff.scenes import plausibility, uncertainty
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.agreement import kept, verdicts

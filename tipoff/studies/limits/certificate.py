@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.mechanics.models import FINITE_ELEMENTS
+from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.scenes.scene import NOMINAL, Scene
 from tipoff.studies.limits.options import Options
 from tipoff.studies.limits.within import Cases

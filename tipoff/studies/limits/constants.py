@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from tipoff.lowfi.ensemble.derived import law
 from tipoff.lowfi.ensemble.sampling import Points
-from tipoff.mechanics.models import COMPLIANT
+from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty

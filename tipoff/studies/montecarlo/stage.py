@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.scenes.faults import together
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.limits import within

@@ -2,7 +2,7 @@
 
 import math
 
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
+from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
 from tipoff.studies.nominal.spread import QUANTITIES, Range, Spread
 from tipoff.studies.nominal.stage import Nominal
 from tipoff.studies.populations.answers import RATES, TOTAL_RATE, Quantity

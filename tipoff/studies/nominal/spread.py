@@ -14,7 +14,7 @@ import numpy as np
 
 from tipoff.comparison import order_statistics
 from tipoff.lowfi.ensemble.rows import Drawn
-from tipoff.mechanics.models import COMPLIANT
+from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.scenes import uncertainty
 from tipoff.scenes.scene import Scene
 from tipoff.studies.populations import answers, population

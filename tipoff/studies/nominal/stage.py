@@ -5,7 +5,7 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
+from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes import uncertainty
 from tipoff.scenes.scene import NOMINAL
 from tipoff.studies.nominal import spread

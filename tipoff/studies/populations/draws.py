@@ -19,7 +19,7 @@ from tipoff.lowfi.ensemble.batch import Case, Family
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.lowfi.ensemble.threads import completed
 from tipoff.lowfi.numerics import Numerics
-from tipoff.mechanics.models import COMPLIANT
+from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import NOMINAL, Scene
 from tipoff.studies.agreement import growth

@@ -23,7 +23,7 @@ from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.store import StoreError
 from tipoff.lowfi.numerics import AUTO, Numerics
 from tipoff.mechanics import unfinished
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from tipoff.mechanics import hand_calculation, unfinished
-from tipoff.mechanics.models import FINITE_ELEMENTS
+from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.mechanics.outcome import Outcome
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.convergence import stresses

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.mechanics.models import COMPLIANT
+from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.scenes.scene import Scene
 from tipoff.studies import published
 

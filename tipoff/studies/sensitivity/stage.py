@@ -8,7 +8,7 @@ import numpy as np
 
 from tipoff.lowfi.ensemble.rows import Listed
 from tipoff.lowfi.numerics import Numerics
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.scenes.faults import together
 from tipoff.studies import published
 from tipoff.studies.populations import answers, population

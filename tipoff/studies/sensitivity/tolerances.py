@@ -24,7 +24,7 @@ from pydantic import ValidationError
 from tipoff.calibration.parameters import REFERENCE_PENETRATION
 from tipoff.files import content_hash
 from tipoff.lowfi.ensemble.derived import friction
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.scenes import overrides as keys
 from tipoff.scenes import reading
 from tipoff.scenes.distributions import BY_NAME, Distribution

@@ -8,7 +8,7 @@ from functools import partial
 from pydantic import TypeAdapter
 
 from tipoff.lowfi.numerics import AUTO
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.scenes.faults import InputError
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.agreement import stage as compare

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.lowfi.ensemble.rows import Listed, numbers
-from tipoff.mechanics import model as models
+from tipoff.mechanics import model as scene_model
 from tipoff.scenes import moments
 from tipoff.scenes.effects import thrust
 from tipoff.scenes.scene import Scene
@@ -68,5 +68,5 @@ def free_rates(scene: Scene, rows: list[dict[str, float]]) -> np.ndarray:
     impulse = float(thrust.impulse(scene.thrust.record(), scene.time_limit))
     return (
         moments.moment_impulses(scene, inputs, impulse)
-        @ models.build(scene).payload.inverse_inertia.T
+        @ scene_model.build(scene).payload.inverse_inertia.T
     )

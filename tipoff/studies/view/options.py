@@ -6,7 +6,6 @@ from typing import Annotated
 import typer
 
 from tipoff.studies.commands.options import RefinedCondition
-from tipoff.workspace.options import between
 
 
 @dataclass(frozen=True)
@@ -17,7 +16,6 @@ class Options:
     condition: RefinedCondition = None
     frames: Annotated[
         int,
-        between(2),
         typer.Option(
             "--frames", metavar="N", min=2, help="Number of frames, evenly spread over the run."
         ),

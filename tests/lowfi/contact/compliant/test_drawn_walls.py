@@ -21,7 +21,7 @@ from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant import cells
 from tipoff.lowfi.faces import WALL
 from tipoff.mechanics import drawn_walls
-from tipoff.mechanics import model as models
+from tipoff.mechanics import model as scene_model
 
 PLACES = drawn_walls.grid(REFERENCE.rail.start, REFERENCE.rail.end)
 
@@ -73,7 +73,9 @@ def test_a_constant_offset_is_another_clearance():
 
     def answer(compliance, moved):
         model, system = pressed(REFERENCE.replace(SMOOTH), compliance)
-        pose = pose_of(models.build(REFERENCE.replace(SMOOTH)), name, BASES["moved and turned"])
+        pose = pose_of(
+            scene_model.build(REFERENCE.replace(SMOOTH)), name, BASES["moved and turned"]
+        )
         system.faces[:, WALL] += moved
         return energy(system, model, pose), derivative(system, model, pose, twist)
 
@@ -98,7 +100,7 @@ SHAPES = {
 def pressed_alone(shape, travel):
     """Model and records with walls of a ``shape`` around the middle of each face after ``travel`` (m),
     those of all but one face on the first leg 1 mm farther away."""
-    model, flexible, face = models.build(REFERENCE), reference_compliance(), 12
+    model, flexible, face = scene_model.build(REFERENCE), reference_compliance(), 12
     middle = model.payload.mass_centre[0] - model.platform.mass_centre[0] + travel
     places = drawn_walls.grid(model.rail_start, model.rail_end)
     drawn = np.full((places.size, flexible.rail.size, 3), 1e-3)

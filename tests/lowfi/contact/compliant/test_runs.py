@@ -20,7 +20,7 @@ from tipoff.highfi import compliance
 from tipoff.lowfi import Numerics
 from tipoff.lowfi.contact.compliant import loads
 from tipoff.mechanics import ledger
-from tipoff.mechanics import model as models
+from tipoff.mechanics import model as scene_model
 from tipoff.scenes.scene import load, parse
 
 AREA = 0.016**2  # m2, of a pad face
@@ -287,7 +287,7 @@ def test_order_of_the_pads(size):
     backwards = asked.model_copy(update={"pads": asked.pads[::-1]})
     there, back = (rates(each, compliance.condense(each, size)) for each in (asked, backwards))
     assert back == pytest.approx(there, rel=1e-12)
-    assert models.build(backwards).faces.sign[0] != models.build(asked).faces.sign[0]
+    assert scene_model.build(backwards).faces.sign[0] != scene_model.build(asked).faces.sign[0]
 
 
 def test_no_step_above_the_proven_limit():

@@ -25,7 +25,7 @@ from tipoff.highfi.statics import assembly
 from tipoff.kernels import rotation
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant import cells, loads, record, solution, step_limit
-from tipoff.mechanics import model as models
+from tipoff.mechanics import model as scene_model
 from tipoff.mechanics.rail_compliance import PATTERNS
 
 CLEARANCE = REFERENCE.contact.clearance
@@ -267,7 +267,7 @@ def pressed_elements(scene, face, travel, aside=0.0, points_per_edge=4):
     elements of 4 mm, ``aside`` (m) of where it stands midway between the rails: interface stiffness
     at Gauss points of each facet, each one's pressure felt at every other, by Newton's rule with
     the points that touch."""
-    nominal = models.built(scene).nominal
+    nominal = scene_model.built(scene).nominal
     faces = nominal._replace(
         wall=nominal.wall + np.array(scene.platform.record().mass_centre)[nominal.axis]
     )

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from tipoff.mechanics import drawn_walls
-from tipoff.mechanics.joint_terms import LEAST, MOST
+from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST
 from tipoff.scenes.effects.thermal import FIELDS
 
 _ROUNDING = 1e-6

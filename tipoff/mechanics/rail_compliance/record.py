@@ -1,28 +1,4 @@
-"""Static compliance of the rails under the pads: condensed once from the finite elements, used by
-the surrogate as compliant contact.
-
-On pad face i, with xi along the rail and eta across it in [-1, 1], a pressure p displaces the wall
-away from the payload by u::
-
-    u_i = sum_a U_ia phi_a(xi, eta),   P_jb = integral over face j of p phi_b dA,   U_ia = sum_jb F_iajb(travel) P_jb
-    phi = 1, xi, eta, xi^2, xi eta, eta^2
-
-F is the flexibility of linear statics, symmetric and positive definite, at every station along the
-rail. Near an end of the rail a face keeps the last station where it is completely over the wall,
-and xi continues beyond.
-
-The lowest modes of the rail, mass-normalised and with frequencies omega_m, are a part of it. The
-rest is static::
-
-    U = F_res P + W q,   F_res = F - sum_m W_m W_m' / omega_m^2,   W_iam(travel) the displacement in mode m
-
-F_res is positive semidefinite: it is the part of the other modes. A warm rail
-(``scenes.effects.thermal``) has the thermal offset T = sum_t amount_t warm_t in the same patterns,
-to which U is added. Walls from a file that are not straight have a further offset W
-(``mechanics.drawn_walls``). Warm and rigid walls have T and W but no F. On joints of finite
-stiffness this holds for the nominal stiffness, and ``RailCompliance.of`` gives it for the factor of
-a scene (``mechanics.joint_terms``).
-"""
+"""The record of a rail compliance: its fields, its file, the models that it allows."""
 
 import hashlib
 import io
@@ -34,10 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from tipoff.files import DamageError, content_hash, require_whole, write_sealed
-from tipoff.mechanics import compliance_arrays, joint_terms
-from tipoff.mechanics.compliance_shown import Shown
-from tipoff.mechanics.joint_terms import LEAST, MOST, JointTerms
-from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
+from tipoff.mechanics.rail_compliance import array_checks, joint_terms
+from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST, JointTerms
+from tipoff.mechanics.rail_compliance.shown import Shown
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
@@ -59,7 +35,7 @@ GRAM = np.where((_TOGETHER % 2 == 0).all(axis=2), 1.0 / (_TOGETHER + 1.0).prod(a
 @dataclass(frozen=True, eq=False, repr=False)
 class RailCompliance(Shown):
     """Static compliance of the rails under the pads, with their lowest modes; rigid walls have no
-    flexibility. Fields on its elements are in ``mechanics.elements_stated``.
+    flexibility. Fields on its elements are in ``mechanics.rail_compliance.elements_stated``.
 
     Example:
         >>> rail = tipoff.compliance(tipoff.load("tiny"), 8e-3)
@@ -189,7 +165,7 @@ class RailCompliance(Shown):
 
     @cached_property
     def hash(self) -> str:
-        """Hexadecimal SHA-256 of all fields except ``mechanics.elements_stated``."""
+        """Hexadecimal SHA-256 of all fields except ``mechanics.rail_compliance.elements_stated``."""
         digest = hashlib.sha256(self.made_for.encode())
         for array in (
             self.travel,
@@ -309,7 +285,7 @@ class RailCompliance(Shown):
             compliance = cls(
                 **arrays | {name: arrays[name].item() for name in {*_PLAIN} & {*arrays}}
             )
-            compliance_arrays.require(compliance, PATTERNS)
+            array_checks.require(compliance, PATTERNS)
         except DamageError as fault:
             raise ValueError(f"{path}: not a file of rail compliance: it {fault.reason}") from fault
         except FileNotFoundError:

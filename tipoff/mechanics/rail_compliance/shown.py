@@ -7,7 +7,7 @@ import numpy as np
 
 from tipoff.cards import Carded
 from tipoff.files import write_csv
-from tipoff.mechanics.elements_stated import Elements
+from tipoff.mechanics.rail_compliance.elements_stated import Elements
 
 if TYPE_CHECKING:
     from tipoff.plots import Figure

@@ -1,0 +1,99 @@
+"""What each study promises, over the registry: a typed result, a text that is kept, options that are
+checked before anything is run."""
+
+import dataclasses
+import json
+import typing
+
+import pytest
+from typer.testing import CliRunner
+
+from tests.studies import kept
+from tipoff.scenes.faults import SceneError
+from tipoff.studies import registry
+from tipoff.studies.cli import app
+from tipoff.workspace import options as rules
+
+ENTRIES = (*registry.COMPARISON, *registry.ON_DEMAND, *registry.QUESTIONS)
+COMMANDS = [
+    command for entry in ENTRIES for command in entry.commands if getattr(command, "options", None)
+]
+TEXTS = kept.texts()
+# what every result file has beside the result
+ENVELOPE = {"stage", "scene", "quantities", "made", "key", "sha256", "files", "implausible"}
+
+
+def ruled(kind, path=()):
+    """(path, flag, rule) of each option of a dataclass that has one."""
+    for name, hint in typing.get_type_hints(kind, include_extras=True).items():
+        if dataclasses.is_dataclass(hint):
+            yield from ruled(hint, (*path, name))
+        else:
+            for rule in rules.rules(hint):
+                yield (*path, name), rules.flag(name, hint), rule
+
+
+def beyond(rule):
+    """A number that breaks a rule."""
+    return next(value for value in (-1, 0, 10**12) if not rule.holds(value))
+
+
+def changed(options, path, value):
+    """``options`` with another ``value`` at a ``path`` of names."""
+    if len(path) > 1:
+        value = changed(getattr(options, path[0]), path[1:], value)
+    return dataclasses.replace(options, **{path[0]: value})
+
+
+CASES = [
+    pytest.param(command, path, flag, beyond(rule), rule.words, id=f"{command.__name__} {flag}")
+    for command in COMMANDS
+    for path, flag, rule in ruled(command.options)
+]
+
+
+def test_there_are_options_with_rules():
+    """Control: the next test is not empty."""
+    assert len(COMMANDS) > 10 and len(CASES) > 15
+
+
+@pytest.mark.parametrize("command, path, flag, value, words", CASES)
+def test_an_option_beyond_its_rule_is_bad_input(command, path, flag, value, words, tmp_path):
+    out = tmp_path / "out"
+    asked = [command.__name__, "--scene", "tiny", "--out", str(out), f"{flag}={value}"]
+    found = CliRunner().invoke(app, asked, catch_exceptions=False)
+    assert found.exit_code == 2 and flag in found.stderr, found.output
+    assert not out.exists()
+    with pytest.raises(SceneError) as fault:
+        rules.require(changed(command.options(), path, value))
+    assert [(one.source, one.expected) for one in fault.value.faults] == [(flag, words)]
+
+
+@pytest.mark.parametrize("stage", [stage for _, stage in kept.modules()], ids=lambda one: one.name)
+def test_a_result_has_the_fields_of_its_type(stage):
+    """Read and written again, a result is the same, and has nothing that its type does not know.
+    Control: a result without one of its fields is refused."""
+    found = json.loads((kept.FOLDER / f"{stage.name}.json").read_text())
+    read = stage.read(found)
+    again = stage.content(read)
+    own = {name: value for name, value in found.items() if name in again}
+    assert json.loads(json.dumps(again)) == own
+    assert set(found) - set(again) <= ENVELOPE | {stage.field}
+    for needed in stage.schema().get("required", [])[:1]:
+        with pytest.raises(ValueError, match=needed):
+            stage.read({name: value for name, value in found.items() if name != needed})
+
+
+def test_each_study_with_a_section_has_kept_results():
+    shown = {name.partition("/")[2] for name in TEXTS if name.startswith("page/")}
+    assert {f"{section.anchor}.md" for section in registry.sections()} == shown
+
+
+@pytest.mark.parametrize("name", sorted(TEXTS))
+def test_a_text_is_as_it_was(name):
+    """`python -m tests.studies.kept` writes the texts again."""
+    assert (kept.TEXTS / name).read_text(encoding="utf-8") == TEXTS[name]
+
+
+def test_no_text_is_left_of_what_is_gone():
+    assert {str(path.relative_to(kept.TEXTS)) for path in kept.TEXTS.rglob("*.*")} == set(TEXTS)

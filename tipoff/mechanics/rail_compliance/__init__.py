@@ -1,0 +1,53 @@
+"""Static compliance of the rails under the pads: condensed once from the finite elements, used by
+the surrogate as compliant contact.
+
+On pad face i, with xi along the rail and eta across it in [-1, 1], a pressure p displaces the wall
+away from the payload by u::
+
+    u_i = sum_a U_ia phi_a(xi, eta),   P_jb = integral over face j of p phi_b dA,   U_ia = sum_jb F_iajb(travel) P_jb
+    phi = 1, xi, eta, xi^2, xi eta, eta^2
+
+F is the flexibility of linear statics, symmetric and positive definite, at every station along the
+rail. Near an end of the rail a face keeps the last station where it is completely over the wall,
+and xi continues beyond.
+
+The lowest modes of the rail, mass-normalised and with frequencies omega_m, are a part of it. The
+rest is static::
+
+    U = F_res P + W q,   F_res = F - sum_m W_m W_m' / omega_m^2,   W_iam(travel) the displacement in mode m
+
+F_res is positive semidefinite: it is the part of the other modes. A warm rail
+(``scenes.effects.thermal``) has the thermal offset T = sum_t amount_t warm_t in the same patterns,
+to which U is added. Walls from a file that are not straight have a further offset W
+(``mechanics.drawn_walls``). Warm and rigid walls have T and W but no F. On joints of finite
+stiffness this holds for the nominal stiffness, and ``RailCompliance.of`` gives it for the factor of
+a scene (``mechanics.rail_compliance.joint_terms``).
+"""
+
+from tipoff.mechanics.rail_compliance.record import (
+    GRAM,
+    MODES,
+    PATTERNS,
+    POWERS,
+    RailCompliance,
+    content,
+    cubic,
+    digest,
+    may_vibrate,
+    model_of,
+    require_modes,
+)
+
+__all__ = [
+    "GRAM",
+    "MODES",
+    "PATTERNS",
+    "POWERS",
+    "RailCompliance",
+    "content",
+    "cubic",
+    "digest",
+    "may_vibrate",
+    "model_of",
+    "require_modes",
+]
