@@ -21,6 +21,10 @@ from tipoff.scenes.scene import Scene
 from tipoff.scenes.studies import element_size as own_size
 
 _SAID: set[Path] = set()  # files whose uncertainty was reported
+# Tables that determine ``made_from``, and its last values: a loop over scenes asks for each.
+_DECIDES = {"rail", "pads", "contact", "platform"}
+_DIGESTS: dict[tuple, str] = {}
+_MOST = 64
 _PLACES = 4  # stations along the rail at which meshes are compared
 # A loop over scenes with one rail reads it once.
 KEPT: cache.Cache[RailCompliance] = cache.binary(content, RailCompliance.load, cache.Held)
@@ -121,7 +125,13 @@ def made_from(scene: Scene) -> str:
     """Hexadecimal digest of all inputs of the compliance from ``scene``, including the clearance,
     and of its rail and pads. Scenes with the same digest share a compliance. Raises SceneError if
     the built-in section does not fit the pads."""
-    return content_hash(digest(scene), inputs.of(statics.nominal(scene)).digest())
+    text = scene.model_dump_json(include=_DECIDES)
+    key = text, *scene.rail.contents().items()
+    while len(_DIGESTS) > _MOST:
+        _DIGESTS.pop(next(iter(_DIGESTS)), None)
+    if key not in _DIGESTS:
+        _DIGESTS[key] = content_hash(digest(scene), inputs.of(statics.nominal(scene)).digest())
+    return _DIGESTS[key]
 
 
 def direct(scene: Scene, element_size: float) -> np.ndarray:

@@ -30,9 +30,11 @@ _DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 def cache_folder() -> Path:
     """Folder of compiled kernels and digests of sources: ``NUMBA_CACHE_DIR`` if it is set, else
     ``tipoff`` in the user's cache folder."""
-    chosen = os.environ.get("NUMBA_CACHE_DIR")
-    caches = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
-    return Path(chosen) if chosen else caches / "tipoff"
+    chosen, caches = os.environ.get("NUMBA_CACHE_DIR"), os.environ.get("XDG_CACHE_HOME")
+    return _folder(chosen or os.path.join(caches or os.path.expanduser("~/.cache"), PACKAGE))
+
+
+_folder = functools.cache(Path)  # a call of the surrogate asks several times
 
 
 class Source(NamedTuple):

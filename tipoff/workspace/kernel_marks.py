@@ -5,9 +5,11 @@ A surrogate run that chooses its modes of the rails begins with kernels without 
 with modes are separate: they are compiled only if the run needs them, and have their own mark.
 """
 
+import functools
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 from tipoff import cache, sources
 from tipoff.files import content_hash
@@ -82,7 +84,8 @@ def are_there(run: Run, chosen: bool = False, many: bool = False) -> bool:
 
 def mark(run: Run, chosen: bool = False, many: bool = False) -> tuple[Path, str]:
     """The file of the mark of the kernels of ``run``, or of ``many`` cases like it, and its key."""
-    key = content_hash(
+    return _mark(
+        sources.cache_folder() / "kernels",
         kernel_digest(f"tipoff.{run.fidelity}"),
         run.model,
         _not_compiled(run.scene),
@@ -91,15 +94,22 @@ def mark(run: Run, chosen: bool = False, many: bool = False) -> tuple[Path, str]
         # many cases that choose their modes need the kernels without and with modes
         many and not chosen and _modes(run) == AUTO,
     )
-    return cache.file(sources.cache_folder() / "kernels", "compiled", key, ".json"), key
 
 
-def _not_compiled(scene: Scene) -> list[str]:
+@functools.cache  # a run of the surrogate asks three times
+def _mark(folder: Path, *kernels: Any) -> tuple[Path, str]:
+    key = content_hash(*kernels)
+    return cache.file(folder, "compiled", key, ".json"), key
+
+
+def _not_compiled(scene: Scene) -> tuple[str, ...]:
     """Effects without code in the kernels of ``scene``: absent ones, and body forces if a free
     platform falls with the payload (``mechanics.comoving``)."""
     falls = scene.platform is not None
     absent = scene.absent_effects()
-    return [item.key for item in EFFECTS if item.key in absent or (falls and item.is_body_force)]
+    return tuple(
+        item.key for item in EFFECTS if item.key in absent or (falls and item.is_body_force)
+    )
 
 
 def _vibrates(run: Run, chosen: bool) -> bool:

@@ -2,9 +2,10 @@
 
 import hashlib
 import io
+import json
 import threading
 from dataclasses import MISSING, dataclass, fields, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -350,8 +351,15 @@ def digest(scene: Scene) -> str:
     compliance serves the cases of a population, whose clearances vary around that of their scene. A
     compliance is stored under all its inputs, including the clearance
     (``calibration.rail_compliance.made_from``)."""
-    described = scene.model_dump(mode="json", include={"rail", "pads"})
-    described["rail"] |= scene.rail.contents()
+    text = scene.model_dump_json(include={"rail", "pads"})
+    return _digest(text, tuple(scene.rail.contents().items()))
+
+
+@lru_cache(maxsize=64)  # a run of the surrogate asks three times
+def _digest(text: str, contents: tuple[tuple[str, str], ...]) -> str:
+    """``digest`` of the JSON of rail and pads, and of the ``contents`` of the files of the rail."""
+    described = json.loads(text)
+    described["rail"] |= dict(contents)
     described["rail"].pop("damping", None)  # statics do not use it
     described["rail"].get("mount_stiffness", {}).pop("factor", None)  # see ``RailCompliance.of``
     described["rail"]["material"].pop("expansion", None)  # the offset is per unit of each field
