@@ -3,6 +3,7 @@
 import pytest
 
 from tests.scenes.support import refused, small, write
+from tipoff.scenes import csv_file, parse
 
 pytestmark = pytest.mark.case("X19")
 
@@ -45,3 +46,19 @@ def test_curve_files_that_are_no_text(tmp_path):
         (fault,) = refused(small(thrust={"kind": "measured", "file": str(file)}))
         assert fault.key == "thrust.file"
         assert "CSV file" in fault.expected
+
+
+def test_the_rows_of_a_curve_are_read_once(tmp_path, monkeypatch):
+    """By scene, conditions and variations; each has arrays of its own. Control: other content in the
+    same file is read."""
+    read, listed = [], csv_file.listed
+    monkeypatch.setattr(csv_file, "listed", lambda *file: read.append(file) or listed(*file))
+    path = write(tmp_path, "curve.csv", "time_s,force_N\n0,0\n0.004,30125\n0.009,0\n")
+    scene = parse(small(thrust={"kind": "measured", "file": str(path)}))
+    heavier = scene.replace({"payload.mass": "11 kg"})
+    assert len(read) == 1
+    scene.thrust.curve().force[1] = 0.0
+    assert heavier.thrust.curve().force[1] == 30125.0
+    write(tmp_path, "curve.csv", "time_s,force_N\n0,0\n0.004,30250\n0.009,0\n")
+    parse(small(thrust={"kind": "measured", "file": str(path)}))
+    assert len(read) == 2
