@@ -89,6 +89,7 @@ flight: $(READY) ## after separation: miss of a target in orbit, pointing, conin
 
 bench: $(READY) ## speed of the solvers against what one would write today: OUT/bench
 	$(EVIDENCE) bench --out $(OUT)
+	$(EVIDENCE) waits --out $(OUT)
 
 report: $(READY) ## mesh to ablation, made where out of date, with all other studies that were made: OUT/SCENE/report.html
 	$(TIPOFF) report $(ASKED)

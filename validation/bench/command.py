@@ -1,4 +1,4 @@
-"""``python -m validation bench``."""
+"""``python -m validation bench`` and ``python -m validation waits``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -57,5 +57,36 @@ def bench(
             "surrogate": surrogate.run(out, cases=cases, repeats=repeats),
         }
         return Output(found, shown)
+
+    guarded(work, json_)
+
+
+def waits(
+    out: Out = Path("out"),
+    repeats: Annotated[
+        int, typer.Option(metavar="N", min=1, help="Timed repeats; the result is the median.")
+    ] = 15,
+    length: Annotated[
+        list[float] | None,
+        typer.Option(
+            metavar="M", help="Length of a rail (m), repeatable; default: 0.25, 0.5 and 1."
+        ),
+    ] = None,
+    against: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="waits.json of an earlier state, shown beside."),
+    ] = None,
+    json_: Json = False,
+) -> None:
+    """Measure how long a person waits for calls, files, statics and commands; writes
+    bench/waits.json."""
+
+    def work() -> Output:
+        from tipoff.files import read_json
+        from validation.bench import waits
+
+        earlier = read_json(against) if against else None
+        found = waits.run(out, repeats, tuple(length) if length else waits.LENGTHS)
+        return Output(found, lambda found: [waits.table(found, earlier)])
 
     guarded(work, json_)

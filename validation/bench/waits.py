@@ -1,0 +1,166 @@
+"""How long a person waits: calls from Python, statics of rails by their length, files, the shell.
+
+Each row is a call that is made once unseen, so that its kernels are compiled and its caches are warm,
+and then ``repeats`` times by turns with the calls of its group. The result is the median: wall time,
+and processor time of this process with its threads, which other programs on the machine disturb less.
+"""
+
+import os
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from tipoff.files import write_json
+from tipoff.scenes.scene import Scene, load
+from tipoff.studies.render.table import Column, Table
+from tipoff.workspace import machine
+from tipoff.workspace.progress import say
+from validation.bench.methods import varied
+
+LENGTHS = (0.25, 0.5, 1.0)  # m, of rails whose compliance is timed
+_ELEMENT = 2e-3  # m, of these rails
+_LOG_ROWS = 100_000
+_CASES = 2000
+
+
+@dataclass(frozen=True)
+class Wait:
+    """One row."""
+
+    call: str
+    wall_ms: float
+    cpu_ms: float | None  # None for another process
+    repeats: int
+
+
+def run(out: Path, repeats: int = 15, lengths: tuple[float, ...] = LENGTHS) -> dict:
+    """``rows``, one for each call; writes ``out``/bench/waits.json."""
+    rows: list[Wait] = []
+    for group in (_calls, _files, _shell):
+        with TemporaryDirectory() as folder:
+            rows += _by_turns(group(Path(folder)), repeats)
+    for length in lengths:
+        rows.append(_rail(length))
+    found = {"rows": [asdict(row) for row in rows], "hardware": machine.describe()}
+    write_json(Path(out) / "bench" / "waits.json", found)
+    return found
+
+
+def _by_turns(calls: dict[str, Callable[[], object]], repeats: int) -> list[Wait]:
+    times: dict[str, list[tuple[float, float]]] = {name: [] for name in calls}
+    for call in calls.values():
+        call()
+    for _ in range(repeats):
+        for name, call in calls.items():
+            wall, processor = time.perf_counter(), time.process_time()
+            call()
+            times[name].append((time.perf_counter() - wall, time.process_time() - processor))
+    found = []
+    for name, pairs in times.items():
+        wall, processor = (1e3 * statistics.median(each) for each in zip(*pairs))
+        found.append(Wait(name, wall, None if name.startswith("shell") else processor, repeats))
+        say(f"  {name}: {wall:.3g} ms")
+    return found
+
+
+def _calls(folder: Path) -> dict[str, Callable[[], object]]:
+    """Single runs and an ensemble; 20 scenes are a loop over them, one after another."""
+    import tipoff
+
+    scene = load("reference").condition("phi35")
+    rail = tipoff.compliance(scene)
+    scenes = [load("reference").replace(row) for row in varied(20)]
+    every, cases = iter(()), varied(_CASES, seed=7)
+
+    def next_scene() -> Scene:
+        nonlocal every
+        found = next(every, None)
+        if found is None:
+            every = iter(scenes)
+            found = next(every)
+        return found
+
+    return {
+        "run": lambda: tipoff.run(scene),
+        "run of another of 20 scenes": lambda: tipoff.run(next_scene()),
+        "run, compliance given": lambda: tipoff.run(scene, compliance=rail),
+        "run, compliance given, no modes": lambda: tipoff.run(scene, compliance=rail, modes=0),
+        "run on springs": lambda: tipoff.run(scene, "springs"),
+        f"ensemble of {_CASES:,}": lambda: tipoff.ensemble(load("reference"), cases, "compliant"),
+    }
+
+
+def _files(folder: Path) -> dict[str, Callable[[], object]]:
+    """Files of results and of a thrust log."""
+    import tipoff
+
+    ended = tipoff.run(load("reference").condition("phi35"), "springs")
+    path, log = folder / "run.nc", folder / "thrust.csv"
+    at = np.linspace(0.0, 0.05, _LOG_ROWS)
+    force = 3e4 * np.exp(-0.5 * ((at - 0.012) / 0.004) ** 2)
+    rows = (f"{time:.9f},{newton:.6f}\n" for time, newton in zip(at, force))
+    log.write_text("time_s,force_N\n" + "".join(rows), encoding="utf-8")
+    thrust = {"thrust": {"kind": "measured", "file": str(log)}}
+    return {
+        "Trajectory.save": lambda: ended.save(path),
+        "Trajectory.load": lambda: tipoff.Trajectory.load(path),
+        f"scene with a thrust log of {_LOG_ROWS:,} rows": lambda: load("tiny").replace(thrust),
+    }
+
+
+def _shell(folder: Path) -> dict[str, Callable[[], object]]:
+    """Commands in processes of their own, made before: nothing changed."""
+    words = [sys.executable, "-m", "tipoff", "run", "--scene", "tiny", "--out", str(folder)]
+
+    def again() -> None:
+        subprocess.run(words, check=True, capture_output=True, env=os.environ)
+
+    return {"shell: tipoff run, nothing changed": again}
+
+
+def _rail(length: float) -> Wait:
+    """Compliance of a rail of the reference of this ``length`` (m), with its uncertainty."""
+    from tipoff.calibration import rail_compliance
+
+    scene = long_rail(length)
+    wall, processor = time.perf_counter(), time.process_time()
+    rail_compliance.compliance(scene, _ELEMENT)
+    wall, processor = 1e3 * (time.perf_counter() - wall), 1e3 * (time.process_time() - processor)
+    say(f"  compliance of a rail of {length:g} m: {1e-3 * wall:.3g} s")
+    return Wait(f"compliance, {length:g} m in {1e3 * _ELEMENT:g} mm elements", wall, processor, 1)
+
+
+def long_rail(length: float) -> Scene:
+    """The reference scene on rails of this ``length`` (m), with mounts every 0.1 m."""
+    scene = load("reference")
+    first, *_ = scene.rail.mounts
+    starts = np.arange(first.start, scene.rail.start + length - 0.02, 0.1)
+    mounts = [{"start": float(start), "end": float(start) + 0.02} for start in starts]
+    return scene.replace({"rail.end": scene.rail.start + length, "rail.mounts": mounts})
+
+
+def table(found: dict, earlier: dict | None = None) -> Table:
+    """The rows, beside those of an ``earlier`` result on the same machine."""
+    before = {row["call"]: row for row in (earlier or {}).get("rows", ())}
+    rows = [
+        row | {"before_ms": before.get(row["call"], {}).get("wall_ms")} for row in found["rows"]
+    ]
+    columns = (
+        ("what is awaited", "call"),
+        *((((Column("before", "ms", ".3g")), "before_ms"),) if before else ()),
+        (Column("wall", "ms", ".3g"), "wall_ms"),
+        (Column("processor", "ms", ".3g"), "cpu_ms"),
+        (Column("repeats", form="d"), "repeats"),
+    )
+    note = (
+        "Medians of calls by turns, kernels compiled and caches warm; a compliance is computed "
+        f"once. Machine: {found['hardware']['cores']} cores of {found['hardware']['processor']}."
+    )
+    return Table.of(rows, columns, notes=(note,))
