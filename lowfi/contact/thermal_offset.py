@@ -15,7 +15,7 @@ It continues straight beyond its ends.
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+import scipy  # its parts load when they are first used
 
 from tipoff.kernels.jit import kernel
 from tipoff.kernels.reference import by_reference
@@ -52,7 +52,7 @@ def under_pads(
         mean = compliance.of(scene).moved(model.thermal.amounts) @ GRAM[0]
     if compliance.drawn is not None:
         fine = drawn_walls.grid(travel[0], travel[-1])
-        warm = 0.0 if mean is None else CubicSpline(travel, mean)(fine)
+        warm = 0.0 if mean is None else scipy.interpolate.CubicSpline(travel, mean)(fine)
         travel, mean = fine, warm + _drawn_mean(compliance.drawn, model, fine, origin)
     if mean is None:
         return None

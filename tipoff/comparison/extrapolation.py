@@ -30,7 +30,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from scipy.optimize import brentq
+import scipy  # its parts load when they are first used
 
 SAFETY_FACTOR = 1.25
 CAUTIOUS_FACTOR = 3.0
@@ -66,7 +66,7 @@ def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float | N
 
     if miss(-_STEEPEST) < 0.0 or miss(_STEEPEST) > 0.0:
         return None
-    return float(brentq(miss, -_STEEPEST, _STEEPEST, xtol=1e-12))
+    return float(scipy.optimize.brentq(miss, -_STEEPEST, _STEEPEST, xtol=1e-12))
 
 
 def estimate(sizes: Sequence[float], values: Sequence[float | None]) -> Estimate:
