@@ -44,7 +44,7 @@ def summary(found: Ran) -> list[Part]:
 
 
 def _others(statuses: dict[str, int]) -> str:
-    """How the cases ended that neither left the rail nor failed: jammed, or at the time limit."""
+    """Cases that neither left the rail nor failed: jammed, or at the time limit."""
     words = {"jammed": "jammed", "time_limit": "reached the time limit"}
     found = [f"{statuses[name]:,} {text}" for name, text in words.items() if statuses.get(name)]
     return "".join(f", {text}" for text in found)
@@ -57,7 +57,7 @@ def _time(cost: Cost) -> str:
 
 
 def _sensitivity(found: Sensitive) -> list[Part]:
-    """How many cases are sensitive, the changes by cause, and what that took beside the cases."""
+    """How many cases are sensitive, the changes by cause, and the additional run time."""
     limit = f"{found.limit_deg_s:.3g} deg/s"
     rows = [
         (
