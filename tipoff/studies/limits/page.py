@@ -119,7 +119,7 @@ def _uncertain(found: Limits) -> str:
 
 
 def _certified(found: Limits) -> list[str]:
-    """What the runs of the reference show, in sentences; none where they were not asked for."""
+    """The result of the runs of the reference, in sentences; empty if they were not requested."""
     if found.asked.certify is None:
         return []
     if (shown := found.certificate) is None:
@@ -177,7 +177,7 @@ def _kept(advised: Advised) -> str:
 
 
 def _odd(row: Row) -> list[str]:
-    """Where the number of cases above a limit does not grow with the tolerance."""
+    """The tolerances between which the number of cases above a limit does not grow."""
     unit, lines = _unit(row.unit), []
     if row.nominal.again:
         sizes = ", ".join(f"{size:.3g}" for size in row.nominal.again)

@@ -27,19 +27,19 @@ class Trial(NamedTuple):
 @dataclass(frozen=True)
 class Found:
     """``tolerance`` is the largest certified one below ``fails``, the first that fails. ``state``:
-    FOUND; ALL, none of the ``trials`` fails; SMALL, all fail except zero; NONE, zero fails too; LOST, no
-    search, because the model error exceeds a limit. ``again``: certified beyond the first that fails;
-    ``falls``: neighbouring trials of which the larger has fewer cases above a limit."""
+    FOUND; ALL, none of the ``trials`` fails; SMALL, all fail except zero; NONE, zero fails too;
+    LOST, no search, because the model error exceeds a limit."""
 
     state: str
     tolerance: float | None = None
     fails: float | None = None
-    again: tuple[float, ...] = ()
+    again: tuple[float, ...] = ()  # certified beyond the first that fails
+    # neighbouring trials of which the larger has fewer cases above a limit
     falls: tuple[tuple[float, float], ...] = ()
     trials: tuple[Trial, ...] = ()
 
     def times(self, size: float) -> "Found":
-        """The same with tolerances in another unit, of which scale one is ``size``."""
+        """The same in another unit, in which scale one is ``size``."""
         return Found(
             self.state,
             None if self.tolerance is None else size * self.tolerance,
