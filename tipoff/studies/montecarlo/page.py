@@ -99,7 +99,7 @@ def _run(found: MonteCarlo) -> list[str]:
 
 
 def _different(readings: Sequence[ReadingRow]) -> list[str]:
-    """Readings whose rates differ from those of the study, and those with too few cases to tell."""
+    """Readings with other rates than the study, and readings with too few cases to compare."""
     others = [row for row in readings if not row.same]
     few = [row.reading for row in others if row.distance is None]
     different = [
@@ -115,7 +115,7 @@ def _different(readings: Sequence[ReadingRow]) -> list[str]:
 
 
 def _model_error(found: MonteCarlo) -> list[str]:
-    """The difference between springs and compliant contact in the rates, or why it is not known."""
+    """The difference of the rates between springs and compliant contact, or why it is not known."""
     if not (models := found.models):
         return [f"springs against compliant contact: not compared, {found.models_missing}"]
     compliant = population.with_modes("compliant contact", models.modes, models.modes_why)
@@ -228,7 +228,7 @@ def _name_and_sd(item: Distribution) -> tuple[str, str]:
 
 
 def _quantiles(found: MonteCarlo) -> Table:
-    """Of all cases, and in a second row of the paper's number of cases."""
+    """A row of all cases, and a row of the paper's number of cases."""
     shares = [row.share for row in found.quantities[0].quantiles[1:]]
     rows = []
     for item in found.quantities:
@@ -263,7 +263,7 @@ def _readings(found: MonteCarlo) -> Table:
     shares = (0.5, 0.95, 0.99, 0.9973)
     rows: list[tuple] = []
     for item in found.readings:
-        name = item.reading + (" (that of the study, drawn again)" if item.same else "")
+        name = item.reading + (" (reading of the study, drawn again)" if item.same else "")
         if item.rates is None:
             settled = f"{item.settled or 'none'} settled"
             rows.append((name, settled, *[""] * (4 + len(shares))))

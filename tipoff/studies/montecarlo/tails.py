@@ -32,7 +32,7 @@ from tipoff.workspace.study import Study, StudyError
 from tipoff.workspace.words import counted
 
 NAME = "tails"
-FEWEST = 10  # draws; fewer have no useful interval
+FEWEST = 10  # draws; fewer give no useful interval
 
 
 def run(study: Study, options: Options) -> dict:
