@@ -85,7 +85,7 @@ _BEFORE: tuple[tuple[Column | str, Callable[[Shown], Any]], ...] = (
 
 
 def summary(found: Sequence[Distribution], name: str = "distributions") -> Table:
-    """One row for each condition and model: the comparison that decides."""
+    """One row for each condition and model: the comparison with the largest bound."""
     columns = (
         *_BEFORE,
         ("rate, quantile", _of_worst(lambda item: f"{item.axis}, {100.0 * item.share:g} %")),

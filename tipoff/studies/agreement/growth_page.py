@@ -27,13 +27,13 @@ _NOTES = (
     "deg/s). Chaotic: sensitive, and the factor is above the number of contacts. Without "
     "growth, the factor equals the number of contacts.",
 )
-_SHOWN = 1e-4  # of the gate; nothing below matters to a comparison
+_SHOWN = 1e-4  # of the gate; smaller differences do not affect a comparison
 _LOOKS = ((NAVY, 5.0, "-", 0.35), (VERMILION, 1.5, "-", 1.0))
 _MARKERS = "Do"
 
 
 def draw(page: "Page") -> list[Part]:
-    """The section, where a pad touches a rail."""
+    """The section; empty if no pad touches a rail."""
     found = page.read(stage.STAGE)
     if found is None or not found.growth:
         return []
@@ -65,7 +65,7 @@ def picture(found: Sequence[Growth]) -> Chart:
 
 
 def _lines(item: Growth, look: tuple[str, float, str, float], marker: str) -> list[Line]:
-    """The curve of one model and its horizon; nothing where the twins do not separate."""
+    """The curve of one model and its horizon; nothing if the twins do not separate."""
     points = [
         (1e3 * time, apart)
         for time, apart in zip(item.time_s, item.separation_deg_s)
@@ -92,7 +92,7 @@ def _lines(item: Growth, look: tuple[str, float, str, float], marker: str) -> li
 
 
 def tables(found: Sequence[Growth]) -> list[Part]:
-    """Up to when curves can be compared, and the growth over the contacts."""
+    """The time up to which curves can be compared, and the growth over the contacts."""
     columns = (
         *("condition", "model"),
         ("contacts", lambda item: len(item.contacts)),
@@ -123,7 +123,7 @@ def _sentences(found: Sequence[Growth]) -> list[str]:
 
 
 def sentence(item: Growth) -> str:
-    """Up to when curves of one condition can be compared."""
+    """The time up to which curves of one condition can be compared."""
     horizon = f"{1e3 * item.end_s:.1f}" if item.horizon_s is None else _horizon(item)
     return f"{item.condition}: {item.verdict}; curves can be compared up to {horizon} ms"
 
