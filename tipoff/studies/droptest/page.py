@@ -53,7 +53,7 @@ def draw(found: Droptest) -> list[Part]:
 
 
 def terminal(found: Droptest) -> list[Part]:
-    """The tables of the tests and of their comparison with the simulated cases."""
+    """Tables of the tests and of their comparison with the simulated cases."""
     request, cases = found.request, found.cases
     condition = f" of condition {request.condition}" if request.condition else ""
     return [
@@ -79,7 +79,7 @@ def table_of_comparison(found: Compared) -> list[Part]:
 
 
 def figures(found: Droptest) -> tuple[Figure, Figure]:
-    """Filtered rates of every test; the simulated cloud with the tests in it."""
+    """Filtered rates of every test, and the tests in the simulated cloud."""
     panels = [panel for row in found.tests for panel in _rates(row)]
     shown, settled = len(found.cases.shown_deg_s), found.cases.settled
     words = _CLOUD.format(
