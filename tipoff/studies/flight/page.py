@@ -84,7 +84,7 @@ def terminal(found: Flight) -> list[Part]:
 def table_of_conditions(
     conditions: Sequence[Condition], shown: Sequence[str], notes: Sequence[str], form=".3g"
 ) -> Table:
-    """The quantities ``shown`` of every condition; a condition without a flight has its status."""
+    """The quantities ``shown`` of every condition, or its status if it has no flight."""
     rows = [
         (row.condition, *(row.flown[name] for name in shown))
         if row.flown
