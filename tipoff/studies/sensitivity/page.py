@@ -165,7 +165,7 @@ def _change(value: float | None) -> float | str | None:
 
 
 def _used(sobol: Sobol) -> str:
-    """How many cases the indices are from."""
+    """The number of cases of the indices."""
     return (
         f"{sobol.cases['asked']:,} cases of {counted(len(sobol.inputs), 'input')}, "
         f"{sobol.not_settled:,} did not settle; {sobol.used:,} of {sobol.base_points:,} "
