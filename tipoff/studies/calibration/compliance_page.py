@@ -21,13 +21,13 @@ _CAPTION = (
     "under a force on the other; negative values are towards the payload."
 )
 _DIRECT, _CROSS = (NAVY, VERMILION, TEAL), (AMBER, GREY)
-# The walls of a symmetric section have equal compliance. The first line is broad and pale, so that
+# The walls of a symmetric section have equal compliance, so the first line is broad and pale and
 # the next one is visible on it.
 _LOOKS = ((5.0, "-", 0.35), (1.5, "-", 1.0), (1.5, ":", 1.0))  # width, dash, opacity
 
 
 def draw(page: "Page") -> list[Part]:
-    """The curves and their extremes; nothing for a scene without contact."""
+    """The curves and their extremes; empty for a scene without contact."""
     found = page.read(compliance.STAGE)
     if found is None or (under := found.under_a_pad) is None:
         return []
