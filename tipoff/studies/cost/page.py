@@ -47,7 +47,7 @@ def draw(found: Cost) -> list[Part]:
 
 
 def _of_point(name: str) -> tuple[Column, Callable[[Point], Any]]:
-    """The column of an error; that of the reference itself is called so."""
+    """The column of an error; the cell of the reference is "reference"."""
     return POINT[name], lambda point: "reference" if point.reference else getattr(point, name)
 
 
@@ -65,7 +65,7 @@ _MATCHES = (
 
 
 def terminal(found: Cost) -> list[Part]:
-    """The points of the Pareto front: each the fastest with its accuracy."""
+    """The points of the Pareto front: each is the fastest with its accuracy."""
     best = sorted((point for point in found.points if point.pareto), key=lambda item: item.wall_s)
     title = (
         f"The fastest model of each accuracy, condition {found.condition}, "
@@ -75,7 +75,7 @@ def terminal(found: Cost) -> list[Part]:
 
 
 def tables(found: Cost) -> list[Part]:
-    """Errors and wall times of all points, and meshes with the error of each surrogate."""
+    """Errors and wall times of all points, and for each surrogate the mesh with the same error."""
     kinds = ["best" if point.pareto else "" for point in found.points]
     notes = ("Bold: points of the Pareto front.",)
     columns = (*_POINTS, "integration_error_deg_s")
@@ -156,7 +156,7 @@ def _recommended(cost: Cost) -> list[Line]:
 
 
 def _front(cost: Cost) -> Line:
-    """Steps along the Pareto front; errors below the band count as the band."""
+    """The Pareto front as a step line; errors below the band count as the band."""
     front = sorted(
         (point.wall_s, bound)
         for point, bound in choice.trusted(cost.points, cost.band_deg_s)
@@ -185,12 +185,13 @@ def _cost_line(
     look: tuple[str, str, str],
     beside: str,
 ) -> Line:
-    """One model, with its name at its slowest point; meshes and numbers of modes have their own labels."""
+    """One model, with its name at its slowest point; meshes and numbers of modes have labels of
+    their own."""
     colour, marker, dash = look
     varied = any(point.modes is not None for point in points)
     labels = [str(point.modes) if varied else point.numerics.split(",")[0] for point in points]
     if model != FINITE_ELEMENTS and not varied:
-        # right of the slowest point no other surrogate is in the way
+        # to the right of the slowest point there is no other surrogate
         named = max(points, key=lambda point: point.wall_s, default=None)
         labels = [model.split(" of ")[0] if point is named else "" for point in points]
     return Line(

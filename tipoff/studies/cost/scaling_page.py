@@ -105,7 +105,7 @@ def tables(found: Scaling) -> list[Part]:
 
 
 def exponent(law: PowerLaw) -> str:
-    """An exponent with its standard error; a dash where sizes do not differ."""
+    """An exponent with its standard error; a dash for a single size."""
     error = law.standard_error
     if law.exponent is None:
         return "–"
@@ -178,5 +178,5 @@ def _time(item: Rung | EffectTime, model: EffectTimes) -> Noted:
 
 
 def _milliseconds(seconds: float) -> str:
-    """Three digits, or all before the point, because times span three powers of ten."""
+    """Three digits, or all digits before the point, because times span three powers of ten."""
     return f"{1e3 * seconds:,.0f}" if abs(seconds) >= 0.1 else f"{1e3 * seconds:.3g}"
