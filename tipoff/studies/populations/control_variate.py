@@ -9,7 +9,7 @@ The reference gives y on n draws. The surrogate gives x on the same n draws and 
 
 b is the optimal coefficient (Ng and Willcox, Int. J. Numer. Methods Eng. 100 (2014) 746). The logarithm
 keeps the standard deviation positive. Intervals: the variance of the n draws by the jackknife, which
-includes the error of b, that of the N draws by the delta method, and Student's t.
+includes the error of b; the variance of the N draws by the delta method; Student's t.
 """
 
 import math
@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.stats import t as student
 
-FEWEST = 4  # draws: a coefficient and a variance need three
+FEWEST = 4  # draws; a coefficient and a variance need three
 
 
 class Pairs(NamedTuple):
@@ -36,7 +36,7 @@ class Pairs(NamedTuple):
 class Estimate:
     """The corrected ``value`` with its bounds ``low`` and ``high``; the same from the reference
     alone, ``plain`` with ``plain_low`` and ``plain_high``; ``surrogate``, the uncorrected value of
-    the population. None where there is none."""
+    the population. None if it does not exist."""
 
     value: float
     low: float | None
@@ -48,7 +48,7 @@ class Estimate:
 
 
 def correlation(one: np.ndarray, other: np.ndarray) -> float | None:
-    """Correlation of two columns (n,); None where one is constant."""
+    """Correlation of two columns (n,); None if one is constant."""
     spread = one.std() * other.std()
     if not spread > 0.0:
         return None
@@ -56,8 +56,9 @@ def correlation(one: np.ndarray, other: np.ndarray) -> float | None:
 
 
 def equivalent_runs(found: Estimate, runs: int) -> float | None:
-    """Number of runs of the reference alone, with which the interval is as narrow as that of
-    ``found`` from ``runs``, since widths fall as 1/sqrt(n). None without both intervals."""
+    """Number of runs of the reference alone that would give an interval as narrow as that of
+    ``found`` from ``runs``, since widths are proportional to 1/sqrt(n). None without both
+    intervals."""
     width, plain = _width(found.low, found.high), _width(found.plain_low, found.plain_high)
     return runs * (plain / width) ** 2 if width and plain is not None else None
 
@@ -82,8 +83,8 @@ def mean(pairs: Pairs, confidence: float = 0.95) -> Estimate:
 
 
 def standard_deviation(pairs: Pairs, confidence: float = 0.95) -> Estimate:
-    """The standard deviation. One that is zero in the reference has no interval, and one that is
-    zero in the surrogate is not corrected."""
+    """The standard deviation. If it is zero in the reference, it has no interval. If it is zero in
+    the surrogate, it is not corrected."""
     reference, surrogate, population = pairs
     far, plain = (float(values.std(ddof=1)) for values in (population, reference))
     if not plain > 0.0:
@@ -109,7 +110,7 @@ def standard_deviation(pairs: Pairs, confidence: float = 0.95) -> Estimate:
 
 
 def _exponentials(bounds: tuple[float, float]) -> tuple[float | None, float | None]:
-    """None in place of bounds that are not finite: one draw alone made the values differ."""
+    """None in place of infinite bounds, which occur if a single draw differs from all others."""
     low, high = (math.exp(each) if math.isfinite(each) else None for each in bounds)
     return low, high
 
@@ -126,7 +127,7 @@ def _slope(values: np.ndarray, control: np.ndarray) -> np.ndarray:
 
 
 def _squares(values: np.ndarray) -> np.ndarray:
-    """Squared deviations over their mean; zero where nothing deviates."""
+    """Squared deviations over their mean; zero if all values are equal."""
     squares = (values - _mean(values)) ** 2
     mean_square = np.broadcast_to(_mean(squares), squares.shape)
     return np.divide(squares, mean_square, out=np.zeros_like(squares), where=mean_square > 0.0)
