@@ -29,7 +29,7 @@ class Runs(NamedTuple):
 
 
 # In the order of the legend. Width, dash, opacity: the reference is a broad pale line under the
-# thin ones of the surrogate.
+# thin lines of the surrogate.
 _STYLES = {
     "highfi": ("finite elements", 5.0, "-", 0.35),
     "compliant": ("compliant", 1.5, "-", 1.0),
@@ -48,8 +48,9 @@ def thrust_curve(scene: Scene) -> Chart:
 
 
 def figure6(runs: Runs, conditions: list[str]) -> Chart:
-    """Figure 6 of the paper: v_x of each condition and its three rates, all models, with what the
-    surrogates differ from the reference beside them. The colour is the axis, the line the model."""
+    """Figure 6 of the paper: v_x and the three rates of each condition, all models; beside them the
+    differences of the surrogates from the reference. The colour shows the axis, the line the model.
+    """
     first = conditions[0]
     speed = [
         _line(found.time, found.velocity[:, 0], NAVY, kind, legend=False)
@@ -98,8 +99,8 @@ def _differences(
     colours: Mapping[str, str],
     factor: float = 1.0,
 ) -> list[Line]:
-    """Surrogates minus reference, as long as both have samples; uncalibrated springs, which differ
-    most, are left out."""
+    """Surrogates minus reference, up to the end of the shorter run; uncalibrated springs, which
+    differ most, are left out."""
     found = _of(runs, name)
     if (reference := found.get("highfi")) is None:
         return []
