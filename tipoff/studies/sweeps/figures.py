@@ -15,8 +15,8 @@ _LOOKS = {
     "rate_y_deg_s": ("y", "s", "-"),
     "rate_z_deg_s": ("z", "^", "--"),
 }
-_APART = 0.018  # shift, as a share of the axis: points of three axes do not hide each other
-_WALLS = {"-y": NAVY, "+y": TEAL, "-z": AMBER, "+z": "#dfe3e8"}  # darker to lighter
+_APART = 0.018  # shift as a share of the axis, so that points of three axes do not hide each other
+_WALLS = {"-y": NAVY, "+y": TEAL, "-z": AMBER, "+z": "#dfe3e8"}  # dark to light
 _FIGURES = {"misalignment": 11, "thrust_eccentricity": 13, "mass_eccentricity": 15}
 _ANGLE = {
     "misalignment": "phi, from +y towards +z",
@@ -54,7 +54,7 @@ def figures(found: Sweeps) -> list[Figure]:
 
 
 def _jumps(jumps: tuple[float | None, float | None]) -> str:
-    """The change of the rates where the most loaded face changes, and elsewhere."""
+    """The change of the rates between neighbours with another most loaded face, and between others."""
     if None in jumps:
         return (
             "The most loaded face never changes."
@@ -109,7 +109,7 @@ def _grown(launch: Launch, factor: Swept) -> Panel:
             spans.append((bent.low, bent.high))
     for name, (axis, _, dash) in _LOOKS.items():
         free = np.array(factor.free[name])
-        # a free payload may turn much faster, and would flatten the other lines
+        # a free payload may rotate much faster, which would flatten the other lines
         shown = free <= 1.15 * top
         place, named = (np.array(sizes)[shown], free[shown]), axis == "y"
         lines.append(Line(*place, "free payload", GREY, 0.9, dash, legend=named))
@@ -203,7 +203,7 @@ def _side_map(
     from matplotlib.colors import ListedColormap
 
     walls = list(_WALLS)
-    # the last for no contact, which is -1
+    # the last is for no contact, -1
     code = np.array([walls.index(name.split()[1]) for name in names] + [len(walls)])[faces]
     colours = ListedColormap([*_WALLS.values(), "white"])
     axes.pcolormesh(

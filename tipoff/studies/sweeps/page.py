@@ -91,7 +91,7 @@ def table_of_verdicts(launch: Launch) -> Table:
 
 
 def _judged(launch: Launch) -> Iterator[tuple[Swept, bool, str, Growth]]:
-    """Factor, whether its rate is the first one, the rate, and its growth."""
+    """Factor, whether the rate is the first of the factor, the rate, and its growth."""
     for factor in launch.factors:
         judged = [(name, bent) for name, bent in factor.growth.items() if bent]
         for name, bent in judged:
@@ -113,7 +113,7 @@ def table_of_largest(launch: Launch) -> Table:
 
 
 def _details(launch: Launch) -> list[Part]:
-    """Slopes, and every quantity at every size, in magnitude."""
+    """Slopes, and the magnitude of every quantity at every size."""
     slopes = [
         (
             *((factor.title, factor.departs_from_free_at) if first else ("", "")),
