@@ -39,7 +39,7 @@ def details(folder: Path) -> str:
 
 
 def distributions(found: Sequence[Distribution]) -> list[Part]:
-    """Verdicts on conditions that no single run can judge; nothing where there is none."""
+    """Verdicts on conditions that no single run can judge; empty without such conditions."""
     if not found:
         return []
     table = distribution_page.verdicts_of(found)
@@ -129,7 +129,7 @@ def _convergence(found: Convergence) -> list[Part]:
 
 
 def _changes(found: Convergence) -> Table:
-    """Changes by interface stiffness and contact cells."""
+    """Changes by interface stiffness and by contact cells."""
     changed = [
         (f"{row.interface_stiffness_n_m3:.3g} N/m³, {row.factor:g} times the scene's", row)
         for row in found.interface_stiffness
