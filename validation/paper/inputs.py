@@ -1,14 +1,12 @@
 """The inputs that the paper does not print, as points of the unit cube: bounds with their reasons,
 and the overrides of a scene.
 
-The inertia is that of a mass distribution, so that every point of the cube is a possible body:
-with P_i = m g_i^2 the second moments about the mass centre (g the radii along the
-axes) and P_ij = r_ij sqrt(P_i P_j),
+The inertia belongs to a mass distribution, so every point of the cube is a possible body. With the second
+moments P_i = m g_i^2 about the mass centre (radii g along the axes) and P_ij = r_ij sqrt(P_i P_j):
 
     I_xx = P_y + P_z,  I_yy = P_x + P_z,  I_zz = P_x + P_y,  I_ij = -P_ij
 
-P is positive definite where the correlations r are small. A cuboid of edge L filled evenly has g =
-L / sqrt(12).
+P is positive definite if the correlations r are small. A uniform cuboid of edge L has g = L / sqrt(12).
 """
 
 import math
@@ -114,7 +112,7 @@ UNKNOWNS = (
 NAMES = tuple(item.name for item in UNKNOWNS)
 STIFFNESS, DAMPING, DEPTH = 70000.0, 60e3, 0.3e-3  # N/mm^e, N s/m, m: the paper's Table 2 baseline
 _CENTRE = 3.0  # widths before the peak of the thrust
-_MOUNTS = ((0.05, 0.15), (0.45, 0.55), (0.85, 0.95))  # shares of the rail, which is rigid here
+_MOUNTS = ((0.05, 0.15), (0.45, 0.55), (0.85, 0.95))  # shares of the rail; the rail is rigid here
 
 
 def values(shares: np.ndarray) -> dict[str, float]:
@@ -187,8 +185,8 @@ def stiffness(printed: float, exponent: float) -> float:
 
 
 def duration(found: dict[str, float]) -> float:
-    """Time (s) in which the body leaves the rail and settles: burnout, or the distance at half the
-    final speed, whichever is longer."""
+    """Time (s) in which the body leaves the rail and settles: the longer of the burn time and the
+    time for the distance at half the final speed."""
     distance = found["rear"] + found["front"] + found["guided"] + 0.016
     return (
         max(

@@ -1,5 +1,5 @@
-"""The paper's numbers on the page and in the terminal: its Table 2 and headline and ours, and the
-inferred inputs."""
+"""The paper's numbers on the page and in the terminal: its Table 2 and speed-up beside our values, and
+the inferred inputs."""
 
 import numpy as np
 
@@ -110,7 +110,7 @@ def _admissible(found: dict) -> list[str]:
 
 
 def _outside(found: dict) -> str:
-    """A further sentence where the best set is not admissible."""
+    """A further sentence if the best set is not admissible."""
     best = found["searches"][found["best"]]
     missed = max(best["largest_error_deg_s"], best["largest_deviation_error_deg_s"])
     note = " The best set is not among them: its misfit includes conditions 1 and 5."
@@ -134,7 +134,7 @@ def figures(found: dict) -> tuple[Figure, Figure]:
 
 
 def _traded(found: dict, title: str, across: tuple[str, str], upwards: tuple[str, str]) -> Panel:
-    """Panel of two measures (key, label) of every search; with the Pareto front where it has these
+    """Panel of two measures (key, label) of every search, with the Pareto front if it is of these
     two."""
     front, best = np.array(found["front"]), found["searches"][found["best"]]
     lines = (
@@ -240,7 +240,7 @@ def _deviations(best: dict) -> list[Part]:
 
 
 def table_at_exit(found: dict) -> Table:
-    """Exit state with the best set by condition; a dash where it did not settle."""
+    """Exit state with the best set by condition; a dash if it did not settle."""
     conditions = [
         Column(
             f"{row['condition']} at {row['radial_misalignment_deg']:g} deg"
@@ -281,7 +281,7 @@ def _verdict(found: dict) -> str:
 
 
 def _headline(found: dict) -> list[Part]:
-    """Cost of one case in both fidelities, the paper's and ours."""
+    """Cost of one case in both fidelities, in the paper and here."""
     printed, ours = found["headline"], found["ours"]
     springs = "springs, calibrated"
     rows = [
