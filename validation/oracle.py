@@ -68,10 +68,10 @@ def solve(
     return Samples(
         np.arange(len(rows)) * interval,
         rows[:, 0:3],
-        rows[:, 3:6],
-        rows[:, 6:10],
-        rows[:, 10:13],
-        4 * steps_per_sample * (len(rows) - 1),
+        velocity=rows[:, 3:6],
+        quaternion=rows[:, 6:10],
+        rate=rows[:, 10:13],
+        evaluations=4 * steps_per_sample * (len(rows) - 1),
     )
 
 

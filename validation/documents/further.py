@@ -96,8 +96,8 @@ def _scaling(found: Scaling) -> Table:
     return Table(
         ["over", "model", "p of a run", "p of a step"],
         rows,
-        (f"{step}Time with all effects over time without: {prices}.",),
-        "How time grows (`make cost`, one processor): t = c n^p. Expected over elements: 1 for "
+        notes=(f"{step}Time with all effects over time without: {prices}.",),
+        title="How time grows (`make cost`, one processor): t = c n^p. Expected over elements: 1 for "
         "a step, 4/3 for a run, because its steps\nbecome shorter too.",
     )
 

@@ -93,7 +93,7 @@ def _fit(found: dict) -> Table:
         else f"The best set is not the scene {kept['name']} of the catalogue, which is from "
         "another run."
     )
-    return Table(["inputs", *_MEASURES.values()], rows, (_verdict(found), same))
+    return Table(["inputs", *_MEASURES.values()], rows, notes=(_verdict(found), same))
 
 
 def _admissible(found: dict) -> list[str]:
@@ -138,7 +138,7 @@ def _traded(found: dict, title: str, across: tuple[str, str], upwards: tuple[str
     two."""
     front, best = np.array(found["front"]), found["searches"][found["best"]]
     lines = (
-        [Line(front[:, 0], front[:, 1], "Pareto front", TEAL)]
+        [Line(front[:, 0], front[:, 1], name="Pareto front", colour=TEAL)]
         if (across, upwards) == (_NINE, _QUIET)
         else []
     )
@@ -148,7 +148,7 @@ def _traded(found: dict, title: str, across: tuple[str, str], upwards: tuple[str
         (known, f"scene {known['name']}", TEAL, "^", 11.0),
     ):
         place = [own[across[0]]], [own[upwards[0]]]
-        lines.append(Line(*place, name, colour, dash="", marker=marker, size=size))
+        lines.append(Line(*place, name=name, colour=colour, dash="", marker=marker, size=size))
     for all_five, name, colour, marker in (
         (False, "search over three conditions", GREY, "s"),
         (True, "search over five conditions", NAVY, "o"),
@@ -160,8 +160,8 @@ def _traded(found: dict, title: str, across: tuple[str, str], upwards: tuple[str
         ]
         if ends:
             x, y = zip(*ends)
-            lines.append(Line(x, y, name, colour, dash="", marker=marker))
-    return Panel(title, across[1], upwards[1], lines, log=True)
+            lines.append(Line(x, y, name=name, colour=colour, dash="", marker=marker))
+    return Panel(title, across[1], y_label=upwards[1], lines=lines, log=True)
 
 
 def _against(title: str, printed: np.ndarray, ours: np.ndarray) -> Panel:
@@ -171,14 +171,19 @@ def _against(title: str, printed: np.ndarray, ours: np.ndarray) -> Panel:
         Line(
             printed[..., axis].ravel(),
             ours[..., axis].ravel(),
-            f"about {name}",
-            colour,
+            name=f"about {name}",
+            colour=colour,
             dash="",
             marker=marker,
         )
         for axis, (name, colour, marker) in enumerate(_AXES)
     ]
-    return Panel(title, "printed", "found", [Line(ends, ends, "equal", GREY, dash="--"), *points])
+    return Panel(
+        title,
+        "printed",
+        y_label="found",
+        lines=[Line(ends, ends, name="equal", colour=GREY, dash="--"), *points],
+    )
 
 
 def _table2(best: dict) -> Fold:
@@ -253,7 +258,7 @@ def table_at_exit(found: dict) -> Table:
         (f"{item.label} ({item.unit})", *(row[item.name] for row in found["conditions"]))
         for item in answers.ALL
     ]
-    return Table(["exit state, condition", *conditions], rows, (_AT_EXIT.format(**found),))
+    return Table(["exit state, condition", *conditions], rows, notes=(_AT_EXIT.format(**found),))
 
 
 def _verdict(found: dict) -> str:
@@ -308,7 +313,7 @@ def _headline(found: dict) -> list[Part]:
         Column("speed-up", form=",.0f"),
     )
     missing = f"Not measured here yet; `tipoff compare --scene {found['scene']}` measures it."
-    return [Table(heads, rows, () if ours else (missing,))]
+    return [Table(heads, rows, notes=() if ours else (missing,))]
 
 
 def table_of_inputs(found: dict) -> Table:

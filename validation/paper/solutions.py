@@ -110,11 +110,11 @@ def run(
     return Search(
         stress,
         seed,
-        best,
-        fine.rates(best),
-        fine.changed(best),
-        walk.admissible(plan.kept),
-        front(walk.errors, walk.sizes),
+        shares=best,
+        rates=fine.rates(best),
+        changed=fine.changed(best),
+        admissible=walk.admissible(plan.kept),
+        front=front(walk.errors, walk.sizes),
     )
 
 

@@ -240,7 +240,7 @@ def _searches(study: Study, base: Scene, options: Options) -> list[solutions.Sea
     return [future.result() for future in pending]
 
 
-STAGE = Stage(NAME, __name__, Options)
+STAGE = Stage(NAME, __name__, options=Options)
 
 
 def _with_present(study: Study, found: dict) -> dict:

@@ -150,15 +150,17 @@ def picture(peers: list[dict]) -> Chart:
                     Line(
                         [point["cpu_s"] for point in points],
                         [point["error"] for point in points],
-                        code,
-                        colour,
+                        name=code,
+                        colour=colour,
                         marker=marker,
                         labels=tuple(point["setting"] for point in points),
                     )
                 )
             if lines:
                 title = case["error_of"]
-                panels.append(Panel(title, "CPU time (s)", "error (%)", lines, log=True))
+                panels.append(
+                    Panel(title, "CPU time (s)", y_label="error (%)", lines=lines, log=True)
+                )
     return Chart("peers", panels, columns=2, height=380)
 
 

@@ -68,7 +68,7 @@ def bar(size: float) -> Bar:
         grid[i, j] = number[chosen]
         grids.append(grid)
     inner = csr_array(stiffness)[free][:, free]
-    return Bar(inner, 1.0 / mass[free], xs, ys, grids[0], grids[1])
+    return Bar(inner, 1.0 / mass[free], x=xs, y=ys, across=grids[0], along=grids[1])
 
 
 def _at(place: np.ndarray, value: float) -> np.ndarray:

@@ -57,7 +57,7 @@ def run(study: Study, options: Options = Options()) -> dict:
     return STAGE.run(study, options, make)
 
 
-STAGE = Stage("recovery", __name__, Options)
+STAGE = Stage("recovery", __name__, options=Options)
 
 
 def _drawn(study: Study, options: Options) -> dict:

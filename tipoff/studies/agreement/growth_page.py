@@ -55,8 +55,8 @@ def picture(found: Sequence[Growth]) -> Chart:
                 Panel(
                     condition,
                     "time after ignition (ms)",
-                    "separation (deg/s)",
-                    lines,
+                    y_label="separation (deg/s)",
+                    lines=lines,
                     band=(own[0].gate_deg_s, "below the limit of agreement"),
                     log_y=True,
                 )
@@ -74,7 +74,16 @@ def _lines(item: Growth, look: tuple[str, float, str, float], marker: str) -> li
     if not points:
         return []
     times, separations = zip(*points)
-    curve = Line(times, separations, item.model, *look)
+    colour, width, dash, opacity = look
+    curve = Line(
+        times,
+        separations,
+        name=item.model,
+        colour=colour,
+        width=width,
+        dash=dash,
+        opacity=opacity,
+    )
     if item.horizon_s is None:
         return [curve]
     return [
@@ -82,10 +91,10 @@ def _lines(item: Growth, look: tuple[str, float, str, float], marker: str) -> li
         Line(
             [1e3 * item.horizon_s],
             [item.gate_deg_s],
-            f"horizon, {item.model}",
-            look[0],
-            1.0,
-            "",
+            name=f"horizon, {item.model}",
+            colour=colour,
+            width=1.0,
+            dash="",
             marker=marker,
         ),
     ]

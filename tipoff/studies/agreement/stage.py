@@ -135,7 +135,7 @@ def _inputs(study: Study, _: Options) -> list:
     return [calibrate.constants(study), asdict(verdicts.gates(study.scene))]
 
 
-STAGE = Stage("agreement", __name__, Options, inputs=_inputs, result=Agreement)
+STAGE = Stage("agreement", __name__, options=Options, inputs=_inputs, result=Agreement)
 
 
 def stored(study: Study) -> Agreement | None:

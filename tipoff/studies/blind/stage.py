@@ -107,4 +107,4 @@ def _inputs(study: Study, options: Options) -> list:
     return [conditions, calibrate.constants(study), asdict(verdicts.gates(study.scene))]
 
 
-STAGE = Stage(NAME, __name__, Options, _inputs, result=Blind)
+STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, result=Blind)

@@ -41,24 +41,42 @@ def picture(found: UnderPad) -> Chart:
     """Compliance over the place of the pad, mounts shaded."""
     place = 1e3 * np.array(found.place_m)
     lines = [
-        Line(place, 1e9 * np.array(values), f"{name} wall, force on itself", colour, *look)
-        for (name, values), colour, look in zip(found.direct_m_per_n.items(), _DIRECT, _LOOKS)
+        Line(
+            place,
+            1e9 * np.array(values),
+            name=f"{name} wall, force on itself",
+            colour=colour,
+            width=width,
+            dash=dash,
+            opacity=opacity,
+        )
+        for (name, values), colour, (width, dash, opacity) in zip(
+            found.direct_m_per_n.items(), _DIRECT, _LOOKS
+        )
     ]
     lines += [
         Line(
             place,
             1e9 * np.array(values),
-            f"{' wall, force on '.join(name.split())}",
-            colour,
-            2.0,
-            "--",
+            name=f"{' wall, force on '.join(name.split())}",
+            colour=colour,
+            width=2.0,
+            dash="--",
         )
         for (name, values), colour in zip(found.cross_m_per_n.items(), _CROSS)
     ]
     mounts = tuple((1e3 * low, 1e3 * high) for low, high in found.mounts_m)
     return Chart(
         "compliance",
-        [Panel("", "middle of the pad along X (mm)", "compliance (nm/N)", lines, spans=mounts)],
+        [
+            Panel(
+                "",
+                "middle of the pad along X (mm)",
+                y_label="compliance (nm/N)",
+                lines=lines,
+                spans=mounts,
+            )
+        ],
         height=320,
     )
 

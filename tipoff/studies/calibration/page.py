@@ -59,7 +59,7 @@ def terminal(found: Fit, folder: Path) -> list[Part]:
     notes += [f"Verdict: {found.verdict}"] if found.verdict else []
     heads, cells = zip(*columns)
     return [
-        Table(heads, list(zip(*cells)), tuple(notes), title),
+        Table(heads, list(zip(*cells)), notes=tuple(notes), title=title),
         _residuals(found),
         f"  {folder / found.calibration}",
     ]
@@ -122,7 +122,7 @@ def calibration(found: Fit) -> list[Part]:
     matrix = [(name, *row) for name, row in zip(found.parameters, found.information)]
     return [
         f"Fitted to {', '.join(found.conditions)} together; objective {found.objective:.4g}.",
-        Table(list(columns), list(zip(*columns.values())), (_INTERVALS,)),
+        Table(list(columns), list(zip(*columns.values())), notes=(_INTERVALS,)),
         Table(("weak directions, and constants that the curves do not determine",), weak),
         Fold(
             "Constants of the surrogate (SI)",

@@ -121,15 +121,20 @@ def picture(found: Convergence) -> Chart:
         values = [value for value in row.values if value is not None]
         if len(values) < len(sizes):
             continue
-        lines = [Line(sizes, values, "finite elements", colour, marker="o", legend=False)]
+        lines = [
+            Line(sizes, values, name="finite elements", colour=colour, marker="o", legend=False)
+        ]
         if row.uncertainty is not None:
             bounds = values[-1] - row.uncertainty, values[-1] + row.uncertainty
             words = "uncertainty of the finest mesh"
             lines = [
-                *(Line([0.0, sizes[0]], [end, end], words, GREY, 1.1, ":") for end in bounds),
+                *(
+                    Line([0.0, sizes[0]], [end, end], name=words, colour=GREY, width=1.1, dash=":")
+                    for end in bounds
+                ),
                 *lines,
             ]
-        panels.append(Panel(row.quantity, "element size (mm)", "rate (deg/s)", lines))
+        panels.append(Panel(row.quantity, "element size (mm)", y_label="rate (deg/s)", lines=lines))
     return Chart("convergence", panels, columns=3, height=300)
 
 

@@ -149,7 +149,11 @@ def judge(force: np.ndarray, frequency: float, facets: int) -> Ripple:
     )
     worst = int(at.max(axis=0).argmax())
     return Ripple(
-        float(at.max()), float(between.max()), frequency, facets, float(mean[loaded[worst]])
+        float(at.max()),
+        float(between.max()),
+        frequency=frequency,
+        facets=facets,
+        load=float(mean[loaded[worst]]),
     )
 
 

@@ -165,7 +165,7 @@ def run(study: Study, options: Options | None = None) -> dict:
     return STAGE.run(study, name, make)
 
 
-STAGE = Stage(NAME, __name__, str, field="condition", result=Convergence)
+STAGE = Stage(NAME, __name__, options=str, field="condition", result=Convergence)
 
 
 def _finished(study: Study, title: str, wanted: list[Run]) -> list[Trajectory]:

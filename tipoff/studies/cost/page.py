@@ -124,7 +124,11 @@ def picture(cost: Cost) -> Chart:
         ]
         front = [_front(cost), *_recommended(cost)] if shaded else []
         shown = [line for line in front + lines if len(line.x)]
-        panels.append(Panel(title, "wall time of one run (s)", label, shown, True, shaded))
+        panels.append(
+            Panel(
+                title, "wall time of one run (s)", y_label=label, lines=shown, log=True, band=shaded
+            )
+        )
     return Chart("cost", [panel for panel in panels if panel.lines], columns=2, height=420)
 
 
@@ -152,7 +156,7 @@ def _recommended(cost: Cost) -> list[Line]:
         return []
     name = f"recommended: {point.model}, {point.numerics}"
     place = [point.wall_s], [point.error_deg_s]
-    return [Line(*place, name, "#000000", 1.6, "", marker="x", size=16.0)]
+    return [Line(*place, name=name, colour="#000000", dash="", marker="x", size=16.0)]
 
 
 def _front(cost: Cost) -> Line:
@@ -170,10 +174,10 @@ def _front(cost: Cost) -> Line:
             for wall in pair
         ],
         [error for error in errors for _ in range(2)],
-        "Pareto front",
-        "#000000",
-        3.0,
-        "-",
+        name="Pareto front",
+        colour="#000000",
+        width=3.0,
+        dash="-",
         opacity=0.25,
     )
 
@@ -197,10 +201,10 @@ def _cost_line(
     return Line(
         [p.wall_s for p in points],
         [error(p) for p in points],
-        model,
-        colour,
-        1.6,
-        dash,
+        name=model,
+        colour=colour,
+        width=1.6,
+        dash=dash,
         marker=marker,
         labels=tuple(labels),
         beside="top center" if varied or model == FINITE_ELEMENTS else beside,

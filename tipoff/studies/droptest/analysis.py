@@ -49,14 +49,14 @@ def of(sheet: Sheet, log: Log, source: str) -> Drop:
     return Drop(
         Path(source).stem,
         sheet,
-        samples,
-        smooth,
-        log.doubtful | log.clipped,
-        events,
-        spans,
-        result,
-        unrest,
-        _notes(sheet, log, events, unrest),
+        samples=samples,
+        filtered=smooth,
+        doubtful=log.doubtful | log.clipped,
+        events=events,
+        spans=spans,
+        reduced=result,
+        unrest=unrest,
+        notes=_notes(sheet, log, events, unrest),
     )
 
 

@@ -224,7 +224,15 @@ def _marked(sheet: Sheet, filled: dict, doubtful: np.ndarray, notes: list[str]) 
             where = _level(force, pushed, largest, "m/s2")
             notes.append(f"acceleration: {counted(clipped.sum(), 'sample')} clipped at {where}")
     gone = doubtful | at_end.any(axis=1)
-    return Log(filled["time"], rate, force, temperature, gone, clipped, notes)
+    return Log(
+        filled["time"],
+        rate,
+        acceleration=force,
+        temperature=temperature,
+        doubtful=gone,
+        clipped=clipped,
+        notes=notes,
+    )
 
 
 def _level(values: np.ndarray, at_end: np.ndarray, largest: float, unit: str) -> str:

@@ -98,12 +98,12 @@ def reduced(sheet: Sheet, found: Calibrated, spans: Spans, source: str) -> Reduc
     return Reduced(
         before,
         after,
-        change,
-        parts,
-        combined,
-        scipy.stats.t.ppf(0.5 + 0.5 * COVERAGE, effective),
-        sigma,
-        tau,
+        change=change,
+        parts=parts,
+        combined=combined,
+        factor=scipy.stats.t.ppf(0.5 + 0.5 * COVERAGE, effective),
+        noise=sigma,
+        correlation=tau,
     )
 
 

@@ -77,7 +77,7 @@ def _inputs(study: Study, options: Options) -> list:
     return [digests, _drawn(study, options).uncertainty.resolved()]
 
 
-STAGE = Stage(NAME, __name__, Options, _inputs, "request", Droptest)
+STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, field="request", result=Droptest)
 
 
 def _drawn(study: Study, options: Options) -> Drawn:

@@ -91,7 +91,7 @@ def table_of_quantiles(found: Ran) -> Table:
     rows = [(_LABELS[name], *map(estimate, rows)) for name, rows in found.quantiles.items()]
     shares = [row.share for row in next(iter(found.quantiles.values()))]
     heads = ["quantity", *(f"{percent(share, 'g')} % below" for share in shares)]
-    return Table(heads, rows, (f"{found.confidence:.0%} bounds: {found.bounds}.",))
+    return Table(heads, rows, notes=(f"{found.confidence:.0%} bounds: {found.bounds}.",))
 
 
 def case(one: One) -> list[Part]:

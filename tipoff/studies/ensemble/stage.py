@@ -131,9 +131,11 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
     scene = study.scene
     if fitted is not None and not springs:  # before a case, which may vary a constant
         scene, fitted = fitted.split(scene)
-    asked = Ensemble(scene, source, fitted, numerics, found)
+    asked = Ensemble(scene, source, calibration=fitted, numerics=numerics, compliance=found)
     path = options.store or study.path(f"ensemble-{asked.key[:8]}")
-    like = Run("lowfi", "ensemble", scene, numerics, fitted, found)
+    like = Run(
+        "lowfi", "ensemble", scene=scene, numerics=numerics, calibration=fitted, compliance=found
+    )
     with kernel_marks.first_use(like, many=True):
         ensemble = pilot.settled(asked, path)
     if ensemble.modes_why:

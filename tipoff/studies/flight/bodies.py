@@ -64,12 +64,12 @@ def start(found: Columns) -> Start:
     return Start(
         found.exit_position,
         found.velocity,
-        attitude,
-        found.rate,
-        found.exit_platform_position,
-        found.exit_platform_velocity,
-        platform,
-        found.exit_platform_rate,
+        turn=attitude,
+        rate=found.rate,
+        platform_place=found.exit_platform_position,
+        platform_velocity=found.exit_platform_velocity,
+        platform_turn=platform,
+        platform_rate=found.exit_platform_rate,
     )
 
 

@@ -93,11 +93,13 @@ def pair(flight: Flight, bodies: Bodies, start: Start) -> Pair:
     return Pair(
         orbit.state(n, axes, start.place - bodies.origin, start.velocity),
         orbit.state(n, axes, start.platform_place - bodies.origin, start.platform_velocity),
-        rotation.free(bodies.inertia, start.turn, start.rate),
-        rotation.free(bodies.platform_inertia, start.platform_turn, start.platform_rate),
-        bodies,
-        start,
-        flight,
+        payload_turn=rotation.free(bodies.inertia, start.turn, start.rate),
+        platform_turn=rotation.free(
+            bodies.platform_inertia, start.platform_turn, start.platform_rate
+        ),
+        bodies=bodies,
+        start=start,
+        flight=flight,
     )
 
 
@@ -116,15 +118,15 @@ def found(both: Pair) -> Flown:
     return Flown(
         passes,
         miss,
-        orbital,
-        np.where(np.isfinite(passes), pointing, np.nan),
-        _limit(both, passes),
-        np.stack([least, largest], axis=1),
-        coning,
-        rotation.nutation_period(both.payload_turn),
-        clearance,
-        closest,
-        returns,
+        orbital=orbital,
+        pointing=np.where(np.isfinite(passes), pointing, np.nan),
+        limit=_limit(both, passes),
+        cone=np.stack([least, largest], axis=1),
+        coning=coning,
+        nutation=rotation.nutation_period(both.payload_turn),
+        clearance=clearance,
+        closest=closest,
+        returns=returns,
     )
 
 

@@ -84,17 +84,17 @@ def free(inertia: np.ndarray, turn: np.ndarray, rate: np.ndarray) -> Free:
     body = Free(
         axes,
         moments,
-        amplitude,
-        speed,
-        phase,
-        quarter,
-        parameter,
-        complement,
-        -i3 * d21 / (i1 * d32),
-        momentum,
-        precession,
-        np.zeros_like(speed),
-        axes,
+        amplitude=amplitude,
+        speed=speed,
+        phase=phase,
+        quarter=quarter,
+        parameter=parameter,
+        complement=complement,
+        characteristic=-i3 * d21 / (i1 * d32),
+        momentum=momentum,
+        precession=precession,
+        start=np.zeros_like(speed),
+        frame=axes,
     )
     body = body._replace(start=_course(body, phase)[-1])
     begin, _ = _at_momentum(body, np.zeros_like(speed))

@@ -77,7 +77,7 @@ def _inputs(study: Study, options: Options) -> list:
     return [own, tables, varied, study.settings.element_size]
 
 
-STAGE = Stage(NAME, __name__, Options, _inputs, result=Flight)
+STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, result=Flight)
 
 
 def _require(study: Study) -> None:

@@ -43,10 +43,10 @@ class Found:
         return Found(
             self.state,
             None if self.tolerance is None else size * self.tolerance,
-            None if self.fails is None else size * self.fails,
-            tuple(size * scale for scale in self.again),
-            tuple((size * one, size * two) for one, two in self.falls),
-            tuple(Trial(size * trial.tolerance, trial.above) for trial in self.trials),
+            fails=None if self.fails is None else size * self.fails,
+            again=tuple(size * scale for scale in self.again),
+            falls=tuple((size * one, size * two) for one, two in self.falls),
+            trials=tuple(Trial(size * trial.tolerance, trial.above) for trial in self.trials),
         )
 
 
@@ -114,4 +114,4 @@ def _found(
         if two.above < one.above
     )
     again = tuple(each for each in fine if fails is not None and each > fails)
-    return Found(state, scale, fails, again, tuple(falls), trials)
+    return Found(state, scale, fails=fails, again=again, falls=tuple(falls), trials=trials)

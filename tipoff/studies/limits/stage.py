@@ -70,7 +70,7 @@ def _inputs(study: Study, options: Options) -> dict:
     return vars(constants.margin(study, options.model or COMPLIANT))
 
 
-STAGE = Stage(NAME, __name__, Options, _inputs, result=Limits)
+STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, result=Limits)
 
 
 def checked(options: Options) -> tuple[list[Limit], int]:

@@ -140,10 +140,19 @@ def _histograms(found: MonteCarlo) -> Chart:
             np.pad(np.repeat(bars, 2), 1) for bars in (item.histogram.first, item.histogram.all)
         )
         lines = [
-            Line(edges, first, f"first {found.paper_cases:,} cases", AMBER, 4.0, opacity=0.55),
-            Line(edges, whole, f"all {found.counts['asked']:,} cases", NAVY, 1.4),
+            Line(
+                edges,
+                first,
+                name=f"first {found.paper_cases:,} cases",
+                colour=AMBER,
+                width=4.0,
+                opacity=0.55,
+            ),
+            Line(edges, whole, name=f"all {found.counts['asked']:,} cases", colour=NAVY, width=1.4),
         ]
-        panels.append(Panel(item.label, item.title, f"density (1/({item.unit}))", lines))
+        panels.append(
+            Panel(item.label, item.title, y_label=f"density (1/({item.unit}))", lines=lines)
+        )
     return Chart("montecarlo-histograms", panels, columns=2, height=280)
 
 
@@ -182,7 +191,7 @@ def _converging(label: str, found: list[Converging]) -> list[Panel]:
         ]
         counts = [count for count, _, _ in bounded]
         values += [
-            Line(counts, ends, "", colour, 1.0, ":", legend=False)
+            Line(counts, ends, name="", colour=colour, width=1.0, dash=":", legend=False)
             for ends in ([low for _, low, _ in bounded], [high for _, _, high in bounded])
         ]
         halves = [0.5 * (high - low) for _, low, high in bounded]
@@ -190,10 +199,22 @@ def _converging(label: str, found: list[Converging]) -> list[Panel]:
         if halves:
             ends = [counts[0], counts[-1]]
             falling = [halves[-1] * (counts[-1] / count) ** 0.5 for count in ends]
-            widths.append(Line(ends, falling, "falling as 1/√n", GREY, 1.0))
+            widths.append(Line(ends, falling, name="falling as 1/√n", colour=GREY, width=1.0))
     return [
-        Panel(f"Quantiles of the {label}", "cases", f"{label} (deg/s)", values, log_x=True),
-        Panel("Half the width of the bounds", "cases", "half width (deg/s)", widths, log=True),
+        Panel(
+            f"Quantiles of the {label}",
+            "cases",
+            y_label=f"{label} (deg/s)",
+            lines=values,
+            log_x=True,
+        ),
+        Panel(
+            "Half the width of the bounds",
+            "cases",
+            y_label="half width (deg/s)",
+            lines=widths,
+            log=True,
+        ),
     ]
 
 
@@ -205,10 +226,10 @@ def _models(models: Compared) -> Chart:
         low, high = min(map(min, pair.values())), max(map(max, pair.values()))
         both = pair["springs"], pair["compliant"]
         lines = [
-            Line([low, high], [low, high], "both agree", GREY, 1.2),
-            Line(*both, "a case", NAVY, dash="", marker="o", size=3.5, opacity=0.45),
+            Line([low, high], [low, high], name="both agree", colour=GREY, width=1.2),
+            Line(*both, name="a case", colour=NAVY, dash="", marker="o", size=3.5, opacity=0.45),
         ]
-        panels.append(Panel(label, "springs (deg/s)", "compliant (deg/s)", lines))
+        panels.append(Panel(label, "springs (deg/s)", y_label="compliant (deg/s)", lines=lines))
     return Chart("montecarlo-models", panels, columns=3, height=300)
 
 
@@ -220,7 +241,7 @@ def table_of_quantities(found: MonteCarlo) -> Table:
         shown = [estimate(quantiles[share]) for share in _LOOKS]
         rows.append((*_name_and_sd(item), *shown))
     below = [f"{percent(share, 'g')} % below" for share in _LOOKS]
-    return Table(["quantity", "sd", *below], rows, (_BOUNDS,))
+    return Table(["quantity", "sd", *below], rows, notes=(_BOUNDS,))
 
 
 def _name_and_sd(item: Distribution) -> tuple[str, str]:
@@ -243,7 +264,7 @@ def _quantiles(found: MonteCarlo) -> Table:
             ("", found.paper_cases, "", *first),
         ]
     below = [f"{percent(share, 'g')} % below" for share in shares]
-    return Table(["quantity", "cases", "sd", *below], rows, (_BOUNDS,), dense=True)
+    return Table(["quantity", "cases", "sd", *below], rows, notes=(_BOUNDS,), dense=True)
 
 
 def table_of_tails(found: MonteCarlo) -> Table:
@@ -287,7 +308,7 @@ def _readings(found: MonteCarlo) -> Table:
         "by chance",
     )
     note = _READINGS.format(cases=found.readings[0].cases)
-    return Table(heads, rows, (note,), dense=True)
+    return Table(heads, rows, notes=(note,), dense=True)
 
 
 def _apart(found: MonteCarlo) -> list[Part]:

@@ -97,7 +97,7 @@ def run(study: Study, options: Options) -> dict:
     return STAGE.run(study, options, make)
 
 
-STAGE = Stage(NAME, __name__, Options, montecarlo.fitted, result=Tails)
+STAGE = Stage(NAME, __name__, options=Options, inputs=montecarlo.fitted, result=Tails)
 
 
 def checked(study: Study, options: Options) -> tuple[list[exceedance.Limit], Derived, int]:

@@ -63,6 +63,25 @@ def equivalent_runs(found: Estimate, runs: int) -> float | None:
     return runs * (plain / width) ** 2 if width and plain is not None else None
 
 
+_Bounds = tuple[float | None, float | None]
+
+
+def _estimate(
+    value: float, bounds: _Bounds, plain: float, plain_bounds: _Bounds, surrogate: float
+) -> Estimate:
+    low, high = bounds
+    plain_low, plain_high = plain_bounds
+    return Estimate(
+        value,
+        low,
+        high=high,
+        plain=plain,
+        plain_low=plain_low,
+        plain_high=plain_high,
+        surrogate=surrogate,
+    )
+
+
 def _width(low: float | None, high: float | None) -> float | None:
     return None if low is None or high is None else high - low
 
@@ -77,9 +96,10 @@ def mean(pairs: Pairs, confidence: float = 0.95) -> Estimate:
     def corrected(own: np.ndarray, beside: np.ndarray) -> np.ndarray:
         return _mean(own)[..., 0] + _slope(own, beside) * (far - _mean(beside)[..., 0])
 
-    low, high = _interval(corrected, pairs, error, confidence)
+    corrected_bounds = _interval(corrected, pairs, error, confidence)
     bounds = _interval(lambda own, _: _mean(own)[..., 0], pairs, 0.0, confidence)
-    return Estimate(float(corrected(reference, surrogate)), low, high, plain, *bounds, far)
+    value = float(corrected(reference, surrogate))
+    return _estimate(value, corrected_bounds, plain, bounds, far)
 
 
 def standard_deviation(pairs: Pairs, confidence: float = 0.95) -> Estimate:
@@ -88,7 +108,7 @@ def standard_deviation(pairs: Pairs, confidence: float = 0.95) -> Estimate:
     reference, surrogate, population = pairs
     far, plain = (float(values.std(ddof=1)) for values in (population, reference))
     if not plain > 0.0:
-        return Estimate(0.0, None, None, 0.0, None, None, far)
+        return _estimate(0.0, (None, None), 0.0, (None, None), far)
 
     def logarithm(own: np.ndarray, _: np.ndarray) -> np.ndarray:
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -100,16 +120,16 @@ def standard_deviation(pairs: Pairs, confidence: float = 0.95) -> Estimate:
 
     plain_bounds = _exponentials(_interval(logarithm, pairs, 0.0, confidence))
     if not (far > 0.0 and surrogate.std() > 0.0):
-        return Estimate(plain, *plain_bounds, plain, *plain_bounds, far)
+        return _estimate(plain, plain_bounds, plain, plain_bounds, far)
     share = float(_slope(_squares(reference), _squares(surrogate)))
     squares = (population - population.mean()) ** 2
     error = share**2 * float(squares.var()) / (4.0 * far**4 * population.size)
     bounds = _exponentials(_interval(corrected, pairs, error, confidence))
     value = math.exp(corrected(reference, surrogate))
-    return Estimate(value, *bounds, plain, *plain_bounds, far)
+    return _estimate(value, bounds, plain, plain_bounds, far)
 
 
-def _exponentials(bounds: tuple[float, float]) -> tuple[float | None, float | None]:
+def _exponentials(bounds: tuple[float, float]) -> _Bounds:
     """None in place of infinite bounds, which occur if a single draw differs from all others."""
     low, high = (math.exp(each) if math.isfinite(each) else None for each in bounds)
     return low, high

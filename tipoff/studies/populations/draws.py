@@ -65,13 +65,13 @@ def run(study: Study, model: Surrogate, rows: Rows, fine: int) -> Draws:
     return Draws(
         results(many),
         results(surrogate),
-        results(few),
-        np.array([each.contacts for each in surrogate]),
-        [*lost(coarse, many), *lost(finer, few)],
-        statistics.median(each.cpu_s for each in many),
-        statistics.median(each.cpu_s for each in few),
-        many[0].elements,
-        few[0].elements,
+        fine=results(few),
+        contacts=np.array([each.contacts for each in surrogate]),
+        lost=[*lost(coarse, many), *lost(finer, few)],
+        reference_cpu_s=statistics.median(each.cpu_s for each in many),
+        fine_cpu_s=statistics.median(each.cpu_s for each in few),
+        elements=many[0].elements,
+        fine_elements=few[0].elements,
     )
 
 
@@ -100,7 +100,14 @@ def beside(
     if model.name == COMPLIANT and study.scene.contact is not None:
         under = study.rail_compliance(study.scene, element_size=study.settings.coarse_size)
     return [
-        Run("lowfi", f"{label}-{model.name}{tag}", model.at(dict(row)).scene, numerics, None, under)
+        Run(
+            "lowfi",
+            f"{label}-{model.name}{tag}",
+            scene=model.at(dict(row)).scene,
+            numerics=numerics,
+            calibration=None,
+            compliance=under,
+        )
         for label, row in zip(_labels(rows), rows)
     ]
 
@@ -125,7 +132,14 @@ def seconds_per_case(model: Surrogate, rows: Rows) -> float:
         list(completed(family, [part], 1))
         return (time.process_time() - began) / len(part)
 
-    like = Run("lowfi", "timed", model.scene, numerics, None, model.compliance)
+    like = Run(
+        "lowfi",
+        "timed",
+        scene=model.scene,
+        numerics=numerics,
+        calibration=None,
+        compliance=model.compliance,
+    )
     with kernel_marks.first_use(like, many=True):
         once(rows[:1])
     return statistics.median(once(rows) for _ in range(_REPEATS))

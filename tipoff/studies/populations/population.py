@@ -73,7 +73,12 @@ class Surrogate(NamedTuple):
         """The cases of ``source`` (``lowfi.ensemble.rows``) on this model."""
         numerics = Numerics(relative_tolerance=tolerance, modes=self.modes)
         return Ensemble(
-            self.scene, source, None, numerics, self.compliance, modes_why=self.modes_why
+            self.scene,
+            source,
+            calibration=None,
+            numerics=numerics,
+            compliance=self.compliance,
+            modes_why=self.modes_why,
         )
 
     @property
@@ -191,7 +196,14 @@ def run(
     StudyError when the store fails."""
     asked = model.ensemble(source, tolerance)
     path = study.path(f"{name}-{asked.key[:8]}")
-    like = Run("lowfi", name, model.scene, asked.numerics, None, model.compliance)
+    like = Run(
+        "lowfi",
+        name,
+        scene=model.scene,
+        numerics=asked.numerics,
+        calibration=None,
+        compliance=model.compliance,
+    )
     with kernel_marks.first_use(like, many=True):
         ensemble = pilot.settled(asked, path)
     try:

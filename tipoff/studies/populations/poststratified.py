@@ -47,7 +47,15 @@ def probability(
     found = _combined(inside, outside, np.array([share]), cases, confidence)
     alone = wilson(inside.events + outside.events, inside.draws + outside.draws, confidence)
     value, low, high, plain, plain_low, plain_high = (float(each[0]) for each in (*found, *alone))
-    return Estimate(value, low, high, plain, plain_low, plain_high, share)
+    return Estimate(
+        value,
+        low,
+        high=high,
+        plain=plain,
+        plain_low=plain_low,
+        plain_high=plain_high,
+        surrogate=share,
+    )
 
 
 def quantile(pairs: Pairs, share: float, confidence: float = 0.95) -> Estimate:
@@ -69,7 +77,13 @@ def quantile(pairs: Pairs, share: float, confidence: float = 0.95) -> Estimate:
     )
     assert value is not None  # the function is one at the largest value
     return Estimate(
-        value, low, high, plain, plain_low, plain_high, float(np.quantile(ordered, share))
+        value,
+        low,
+        high=high,
+        plain=plain,
+        plain_low=plain_low,
+        plain_high=plain_high,
+        surrogate=float(np.quantile(ordered, share)),
     )
 
 

@@ -46,7 +46,12 @@ class Column:
         if self.least or self.unit or not row or not (unit := _unit(row[0])):
             return self
         return _InRow(
-            self.title, self.unit, self.form, self.scale, self.nothing, STEPS.get(unit, 0.0)
+            self.title,
+            self.unit,
+            form=self.form,
+            scale=self.scale,
+            nothing=self.nothing,
+            own=STEPS.get(unit, 0.0),
         )
 
     def measured(self, cell: Measured) -> str:

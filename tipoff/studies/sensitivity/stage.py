@@ -70,7 +70,7 @@ def _varied(study: Study, options: Options) -> str:
     return tolerances.digest(options.vary or tolerances.DEFAULT)
 
 
-STAGE = Stage(NAME, __name__, Options, _varied, result=Sensitivity)
+STAGE = Stage(NAME, __name__, options=Options, inputs=_varied, result=Sensitivity)
 
 
 def tables(study: Study, model: Surrogate) -> list[Constants]:

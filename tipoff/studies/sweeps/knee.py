@@ -100,14 +100,16 @@ def growth(
     return Growth(
         str(law),
         verdicts[0],
-        float(fit.scanned[0]) if bent else None,
-        None if low is None else float(low),
-        None if high is None else float(high),
-        before,
-        after,
-        _misfit(fit, curves[0], 0),
-        float(np.mean([each == "plateau" for each in verdicts[1:]])) if len(curves) > 1 else 0.0,
-        {name: float(item.criterion[0]) for name, item in fits.items()},
+        knee=float(fit.scanned[0]) if bent else None,
+        low=None if low is None else float(low),
+        high=None if high is None else float(high),
+        slope_before=before,
+        slope_after=after,
+        misfit=_misfit(fit, curves[0], 0),
+        plateau_share=float(np.mean([each == "plateau" for each in verdicts[1:]]))
+        if len(curves) > 1
+        else 0.0,
+        criteria={name: float(item.criterion[0]) for name, item in fits.items()},
     )
 
 

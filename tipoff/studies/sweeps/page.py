@@ -87,7 +87,7 @@ def table_of_verdicts(launch: Launch) -> Table:
         )
         for factor, first, rate, bent in _judged(launch)
     ]
-    return Table(_VERDICT, rows, (_INTERVAL,))
+    return Table(_VERDICT, rows, notes=(_INTERVAL,))
 
 
 def _judged(launch: Launch) -> Iterator[tuple[Swept, bool, str, Growth]]:
@@ -109,7 +109,7 @@ def table_of_largest(launch: Launch) -> Table:
         for item in answers.ALL
     ]
     note = "Largest magnitude of the settled cases, over all sizes and directions."
-    return Table(["largest", *(factor.label for factor in launch.factors)], rows, (note,))
+    return Table(["largest", *(factor.label for factor in launch.factors)], rows, notes=(note,))
 
 
 def _details(launch: Launch) -> list[Part]:
@@ -132,7 +132,7 @@ def _details(launch: Launch) -> list[Part]:
         for factor in launch.factors
     ]
     note = Caption("Largest magnitude of the settled cases, over all directions.")
-    return [Table(_SLOPES, slopes, (_FREE,), dense=True), *tables, note]
+    return [Table(_SLOPES, slopes, notes=(_FREE,), dense=True), *tables, note]
 
 
 def _why(launches: Sequence[Launch]) -> list[Part]:

@@ -53,7 +53,7 @@ def run(study: Study, options: Options = Options()) -> dict:
     return STAGE.run(study, options, make)
 
 
-STAGE = Stage(NAME, __name__, Options, result=Sweeps)
+STAGE = Stage(NAME, __name__, options=Options, result=Sweeps)
 
 
 def _launch(

@@ -65,11 +65,11 @@ class Camera:
         return Frame(
             loop.steps * loop.stepping.dt_s,
             displacement,
-            hexahedral_recovery.von_mises(mean),
-            worst,
-            self._pressure(displacement, turn, centre),
-            turn,
-            centre + system.origin,
+            von_mises=hexahedral_recovery.von_mises(mean),
+            worst=worst,
+            pressure=self._pressure(displacement, turn, centre),
+            turn=turn,
+            centre=centre + system.origin,
         )
 
     def _stresses(self, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

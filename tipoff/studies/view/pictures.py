@@ -44,8 +44,18 @@ class Look(NamedTuple):
     mark: str  # of the worst node
 
 
-LIGHT = Look("", "#ffffff", "#24292f", "#8a96a3", "#39434e", "#5b6570", "#1b6ca8")
-DARK = Look("-dark", "#13181e", "#e6e8eb", "#8a96a3", "#78848f", "#5b6570", "#6db3ea")
+LIGHT = Look(
+    "", "#ffffff", ink="#24292f", body="#8a96a3", pads="#39434e", edge="#5b6570", mark="#1b6ca8"
+)
+DARK = Look(
+    "-dark",
+    "#13181e",
+    ink="#e6e8eb",
+    body="#8a96a3",
+    pads="#78848f",
+    edge="#5b6570",
+    mark="#6db3ea",
+)
 
 
 class Drawing:

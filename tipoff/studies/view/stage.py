@@ -109,7 +109,7 @@ def stage_of(condition: str) -> Stage:
     def inputs(study: Study, _: Options) -> list:
         return [study.highfi(condition).key, pyvista_version()]
 
-    return Stage(f"view/{condition}", __name__, Options, inputs, result=View)
+    return Stage(f"view/{condition}", __name__, options=Options, inputs=inputs, result=View)
 
 
 def read(found: dict) -> View:
