@@ -40,7 +40,7 @@ class Fit:
     changes: dict[str, float]
     verdict: str
     parameters: list[str]
-    values: list[float]
+    values: list[float]  # SI, in the order of the parameters
     fitted: list[float]
     intervals: list[Ends]
     with_model_error: list[Ends]
@@ -52,7 +52,7 @@ class Fit:
     weak_directions: list[str]
     residuals: dict[str, dict[str, float | None]]
     conditions: list[str]
-    objective: float
+    objective: float  # at the fitted values
     provenance: dict[str, str]
     calibration: str
 

@@ -58,7 +58,7 @@ class Refined(Estimate):
     parameter: str
     sizes: list[float]
     size_unit: str
-    values: list[float | None]
+    values: list[float | None]  # in the unit of the quantity
     nominal_size: float
     nominal_uncertainty: float | None
 

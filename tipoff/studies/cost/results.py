@@ -49,7 +49,7 @@ class Match:
 class PowerLaw:
     """t = c n^p: ``exponent`` p, None for a single size, and its standard error, None for two points."""
 
-    exponent: float | None
+    exponent: float | None  # p of t = c n^p
     standard_error: float | None
 
 
@@ -112,7 +112,7 @@ class EffectTime:
 
     effect: str
     time_s: float
-    of_none: float
+    of_none: float  # relative to the time without any effect
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,7 +125,7 @@ class EffectTimes:
     all_s: float
     ratio: float
     ladder: tuple[Rung, ...]
-    asked: tuple[int, float]
+    asked: tuple[int, float]  # number of effects of the scene, and time (s)
     effects: tuple[EffectTime, ...]
 
 

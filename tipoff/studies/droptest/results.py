@@ -69,7 +69,7 @@ class Measured:
     standard_uncertainty_deg_s: Vector
     coverage_factor: Vector
     expanded_uncertainty_deg_s: Vector
-    coverage: float
+    coverage: float  # probability of the expanded uncertainty
     budget_deg_s: dict[str, Vector]
     noise_deg_s: Vector
     correlation_samples: float
@@ -87,7 +87,7 @@ class Row(Standing, Measured):
 class Together:
     """p of all tests by distance and by spread, and twice the smaller."""
 
-    p_distance: float
+    p_distance: float  # Fisher's combined p
     p_spread: float
     p: float
     smallest_p: float  # smallest possible with this number of cases
@@ -100,7 +100,7 @@ class Region:
     None where there are too few cases for one."""
 
     components: tuple[str, str]
-    share: float
+    share: float  # probability that the next case is inside
     centre_deg_s: tuple[float, float]
     covariance: tuple[tuple[float, float], tuple[float, float]]  # (deg/s)^2
     squared_radius: float | None

@@ -49,7 +49,7 @@ class Row:
 class Pair:
     """Certified tolerances of both factors of a map, on one ray."""
 
-    tolerances: tuple[float, float]
+    tolerances: tuple[float, float]  # in the units of the map
     state: str  # as in ``search.Found``
 
 
@@ -60,7 +60,7 @@ class Map:
     names: tuple[str, str]
     words: tuple[str, str]
     units: tuple[str, str]
-    advised: tuple[float, float]
+    advised: tuple[float, float]  # in ``units``
     points: tuple[Pair, ...]
 
 

@@ -73,7 +73,7 @@ class ReadingRow:
 class Difference(Named):
     """How much the surrogates differ in a quantity: quantiles of 50, 95 and 99 % of magnitudes."""
 
-    root_mean_square: float
+    root_mean_square: float  # in the unit of the quantity
     quantiles: tuple[Quantile, ...]  # of the difference
     most: float  # the largest difference
     springs: tuple[Quantile, ...]  # of the quantity itself
@@ -121,7 +121,7 @@ class Apart:
     median: float  # of the magnitude
     most_95: Annotated[float, Field(alias="95")]  # 95 % quantile of the magnitude
     most: float  # the largest magnitude
-    correlation: float | None
+    correlation: float | None  # of both series
 
 
 @dataclass(frozen=True, kw_only=True)

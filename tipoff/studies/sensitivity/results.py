@@ -41,7 +41,7 @@ class Varied:
     key: Annotated[str, Column("input")]
     unit: str
     nominal: Annotated[float | None, Column("nominal", form=".4g")]
-    low: float
+    low: float  # SI, or a factor
     high: float
     factor: bool
     distribution: str
@@ -53,9 +53,9 @@ class Step:
     """Indices of the first ``base_points``; None if the quantity does not vary there."""
 
     base_points: int
-    first: tuple[float, ...] | None = None
+    first: tuple[float, ...] | None = None  # first-order indices, by input
     first_half_width: tuple[float, ...] | None = None
-    total: tuple[float, ...] | None = None
+    total: tuple[float, ...] | None = None  # total indices, by input
     total_half_width: tuple[float, ...] | None = None
     points: int | None = None
 

@@ -33,7 +33,7 @@ class Swept:
     name: str
     label: str
     unit: str
-    paper: float
+    paper: float  # in ``unit``, as ``sizes``
     sizes: tuple[float, ...]
     angles_deg: tuple[float, ...]
     values: dict[str, tuple[Curve, ...]]

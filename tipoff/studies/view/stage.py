@@ -74,7 +74,7 @@ class View:
     peak: Peak
     bounds_m: tuple[Vector, Vector]
     element_size_m: float
-    factor: float
+    factor: float  # of the deformation in pictures
     title: str
     pictures: dict[str, str]
     without_pictures: str
