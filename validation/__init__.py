@@ -1,4 +1,4 @@
-"""Evidence about tipoff, beside the package: the same cases in other codes, speeds, the search for the
+"""Evidence about tipoff, outside the package: the same cases in other codes, speeds, the search for the
 inputs that the paper does not print, and the recovery of hidden values.
 
 `python -m validation` is `tipoff` with these studies. They have sections of their own on the page.

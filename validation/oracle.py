@@ -3,10 +3,10 @@ Newton's and Euler's equations.
 
     m v' = F,    I w' = M - w x I w    (w and M in body axes, M about the body's own mass centre),    q' = q w / 2
 
-It shares only the laws in ``scenes.effects``, the thermal offset
-(``lowfi.contact.thermal_offset``) and the rotations with the fast solver: other state variables,
-another integrator, no events, no error control, and it continues where a pad strikes an edge of a
-wall. Tests compare the fast solver with it; benchmarks take it as the baseline.
+It shares only the laws in ``scenes.effects``, the thermal offset (``lowfi.contact.thermal_offset``) and
+the rotations with the fast solver. It has other state variables, another integrator, no events and no
+error control, and it continues after a pad strikes an edge of a wall. Tests compare the fast solver with
+it; benchmarks use it as the baseline.
 """
 
 from typing import NamedTuple
@@ -38,7 +38,7 @@ class Samples(NamedTuple):
     velocity: np.ndarray  # (n, 3) m/s, scene axes
     quaternion: np.ndarray  # (n, 4)
     rate: np.ndarray  # (n, 3) rad/s, body axes
-    evaluations: int  # of the right-hand side
+    evaluations: int  # evaluations of the right-hand side
 
 
 class Motion(NamedTuple):
@@ -68,10 +68,10 @@ def solve(
     return Samples(
         np.arange(len(rows)) * interval,
         rows[:, 0:3],
-        rows[:, 3:6],
-        rows[:, 6:10],
-        rows[:, 10:13],
-        4 * steps_per_sample * (len(rows) - 1),
+        velocity=rows[:, 3:6],
+        quaternion=rows[:, 6:10],
+        rate=rows[:, 10:13],
+        evaluations=4 * steps_per_sample * (len(rows) - 1),
     )
 
 
@@ -82,8 +82,8 @@ def prepared(
     interval: float,
     compliance: RailCompliance | None = None,
 ) -> tuple[tuple[System, np.ndarray, np.ndarray, float, int], np.ndarray]:
-    """Arguments of ``integrate`` but the last, and the last: rows (samples + 1, 26) of which only
-    the first is filled.
+    """All arguments of ``integrate`` but the last, and the last argument: rows (samples + 1, 26),
+    with only the first row filled.
 
     Raises SceneError for friction that sticks.
     """
@@ -157,8 +157,8 @@ def slope(system, inertia, platform_inertia, time, state, out):
     body, base = _motion(state, 0), _motion(state, _BODY)
     r, R = body.place, base.place
     force, moment = thrust(system.thrust, system.thrust_offset, time, body.turn)
-    # The wrench on the platform about its own mass centre: the reverse of that on the payload,
-    # where it acts.
+    # The wrench on the platform about its own mass centre is opposite to that on the payload and
+    # acts at the same points.
     reacts = system.reacts_on_platform
     F = (-force[0], -force[1], -force[2]) if reacts else (0.0, 0.0, 0.0)
     M = _reversed(force, moment, r, R) if reacts else (0.0, 0.0, 0.0)
@@ -227,7 +227,7 @@ def pad_contact(laws, system, face, place, axes, body, base):
     """Force (N) of one face on the payload and its arm from the payload's mass centre (m), scene
     axes.
 
-    ``place`` (m) and ``axes`` (nine numbers) are the payload's as the platform sees them.
+    ``place`` (m) and ``axes`` (nine numbers) of the payload are in platform axes.
     """
     force, arm = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     if laws is not None:

@@ -2,12 +2,12 @@
 
 This takes the place of ``numba.njit(cache=True)``, which keeps wrong code (Numba 0.68):
 
-- Its cache sees an edit of the file of a kernel, but not of the files that the kernel calls into.
-  Here a folder is named by the digest of the code that a module depends on (``sources``).
-- It numbers the files of a kernel in an index that processes overwrite. Processes compiled one
-  function at the same time, each for other types: 3 of 80 later calls ran the code of other types,
-  11 compiled again. Here the name of a file follows from the types.
-- It runs a file in which a byte is damaged. Here such a file counts as missing.
+- Its cache notices an edit of the file of a kernel, but not of other files that the kernel calls.
+  Here the name of a folder is the digest of all code that a module depends on (``sources``).
+- It numbers the files of a kernel in an index, and parallel processes overwrite the index. In a
+  trial, processes compiled one function at the same time for different types: 3 of 80 later calls
+  ran the code of other types, 11 compiled again. Here the name of a file follows from the types.
+- It runs a file with a damaged byte. Here such a file counts as missing.
 - A full disk ends the program. Here the kernel is not kept.
 """
 
@@ -25,7 +25,7 @@ from numba.core.serialize import dumps
 from tipoff import sources
 from tipoff.cache import Cache, binary
 
-# Numba names its settings while it loads, where no type checker sees them.
+# Numba defines its settings at run time, so a type checker does not know them.
 _settings: Any = numba.config
 # Numba's own format is a pickle.
 _FILES: Cache[tuple] = binary(dumps, lambda path: cloudpickle.loads(path.read_bytes()))
@@ -39,8 +39,8 @@ def kernel_digest(module: str) -> str:
 
 
 class KernelCache:
-    """The compiled code of one ``function`` of a module of the project. Has what a dispatcher of
-    Numba asks of its cache."""
+    """The compiled code of one ``function`` of a module of the project, with the interface of a
+    cache of Numba's dispatcher."""
 
     def __init__(self, function: Callable):
         module = function.__module__
@@ -53,20 +53,21 @@ class KernelCache:
         return str(self._folder)
 
     def stored(self, types: tuple, codegen: Any) -> Any:
-        """What Numba needs to rebuild the code for arguments of ``types``, or None."""
+        """The data from which Numba rebuilds the code for arguments of ``types``, or None."""
         key = _key(types, codegen)
         found = _FILES.get(*self._place(key), "the kernel is compiled again")
-        # types may differ although their names do not
+        # different types can have the same name
         return found[1] if found is not None and found[0] == key else None
 
     def load_overload(self, types: tuple, context: Any) -> Any:
         """The code for ``types``, ready to run in this process, or None."""
-        context.refresh()  # Numba defines functions of its own when they are first needed
+        context.refresh()  # Numba defines its own functions at first use
         code = self.stored(types, context.codegen())
         return None if code is None else CompileResult._rebuild(context, *code)
 
     def save_overload(self, types: tuple, compiled: Any) -> None:
-        """Keep ``compiled`` code, unless it has an address of this process or the disk is full."""
+        """Keep ``compiled`` code, unless it contains an address of this process or the disk is
+        full."""
         if compiled.library.has_dynamic_globals:
             return
         key = _key(types, compiled.codegen)
@@ -74,7 +75,7 @@ class KernelCache:
             _FILES.put(*self._place(key), (key, compiled._reduce()))
 
     def _place(self, key: tuple) -> tuple[Path, str]:
-        """The file, and the digest that it has."""
+        """The file, and its digest."""
         digest = hashlib.sha256(repr(key).encode()).hexdigest()
         return self._folder / f"{self._name}-{digest[:16]}.nbc", digest
 

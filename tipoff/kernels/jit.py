@@ -1,4 +1,4 @@
-"""Decorators that make compiled kernels of functions, and what a compiled kernel contains."""
+"""Decorators that make compiled kernels of functions, and a test of the content of a compiled kernel."""
 
 import functools
 from collections.abc import Callable
@@ -33,10 +33,10 @@ class Decorator(Protocol):
 
 
 class _PartLibrary(JITCodeLibrary):
-    """LLVM code of a kernel that only kernels call, neither optimised nor made machine code.
+    """LLVM code of a kernel that only kernels call. It is not optimised, and has no machine code.
 
-    Numba would do both for every kernel on the way to the one that Python calls: 245 s and 1250 MB
-    instead of 100 s and 610 MB for the loops of the surrogate, 79 s instead of 49 s for that of finite
+    Numba would do both for every kernel below the one that Python calls: 245 s and 1250 MB instead
+    of 100 s and 610 MB for the loops of the surrogate, 79 s instead of 49 s for the loop of finite
     elements.
     """
 
@@ -45,10 +45,10 @@ class _PartLibrary(JITCodeLibrary):
         self._finalized = True
 
     def _get_module_for_linking(self):
-        """The code with all that it calls, each part once."""
+        """The code with all code that it calls, each part once."""
         if self._shared_module is None:
             self._shared_module = self._final_module.clone()
-            # at first all parts: a definition that nothing calls yet would be left out otherwise
+            # all parts first, because LLVM drops a definition that nothing calls yet
             libraries = sorted(self._called(), key=lambda one: not isinstance(one, _PartLibrary))
             for library in libraries:
                 part = isinstance(library, _PartLibrary)
@@ -56,7 +56,8 @@ class _PartLibrary(JITCodeLibrary):
                 self._shared_module.link_in(code, preserve=True)
             for function in self._shared_module.functions:
                 if not function.is_declaration and function.linkage == Linkage.external:
-                    function.linkage = "linkonce_odr"  # as Numba's own: others link it too
+                    # as Numba does, because other libraries link it too
+                    function.linkage = "linkonce_odr"
         return self._shared_module
 
     def _called(self) -> list[JITCodeLibrary]:
@@ -76,28 +77,29 @@ class _PartLibrary(JITCodeLibrary):
 
     @property
     def codegen(self):
-        """Code generator for those that ask for one: without machine code there is no place for
-        the environment of the function."""
+        """Code generator. Without machine code there is no place for the environment of the
+        function."""
         return SimpleNamespace(set_env=lambda name, environment: None)
 
 
 class _EntryLibrary(JITCodeLibrary):
-    """Machine code of a kernel that Python calls, with all kernels that it calls. These are private to
-    it, so that LLVM may inline them and change their arguments: 4.7 ms instead of 5.9 ms for a run of
-    the surrogate. A private function has no symbol: the loader resolves symbols by name across all
-    machine code of a process, and would call it in the place of one with other arguments."""
+    """Machine code of a kernel that Python calls, with all kernels that it calls. The called
+    kernels are private, so LLVM can inline them and change their arguments: 4.7 ms instead of 5.9
+    ms for a run of the surrogate. A private function has no symbol. The loader resolves symbols by
+    name in all machine code of a process, so a symbol could replace a function with other
+    arguments."""
 
     def _optimize_final_module(self) -> None:
         for function in self._final_module.functions:
             if function.linkage == Linkage.linkonce_odr:
                 function.linkage = "private"
-        # Numba would optimise twice, the first time to remove reference counts, and at level 3
+        # Numba would optimise twice, first to remove reference counts, then at level 3
         passes, options = self._codegen._module_pass_manager(opt=2)
         passes.run(self._final_module, options)
 
 
 class _PartCompiler(Compiler):
-    """Numba's compiler, which lowers to the library that is set here."""
+    """Numba's compiler with the library that is set here."""
 
     library: type[JITCodeLibrary] = _PartLibrary
 
@@ -110,13 +112,13 @@ class _PartCompiler(Compiler):
 
 
 class _EntryCompiler(_PartCompiler):
-    """The same for what Python calls."""
+    """The same for a kernel that Python calls."""
 
     library = _EntryLibrary
 
 
 class _Part(CPUDispatcher):
-    """A kernel that only kernels call. A call from Python, as in a test, compiles a caller."""
+    """A kernel that only kernels call. A call from Python, as in a test, compiles a caller for it."""
 
     def __init__(self, function: Callable, **options: Any):
         flags = {"nopython": True, "no_cpython_wrapper": True}
@@ -133,7 +135,7 @@ class _Part(CPUDispatcher):
 
 
 def _caller(part: _Part) -> Callable:
-    """What Python calls in the place of a ``part``; on disk it is a function of the same module."""
+    """The caller of a ``part`` for Python; on disk it is a function of the same module."""
 
     def call(*arguments):
         return part(*arguments)
@@ -148,7 +150,7 @@ def _njit(function: Callable | None = None, **options: Any) -> Callable:
     if function is None:
         return functools.partial(_njit, **options)
     made: Any = numba.njit(function, **_OPTIONS | options)
-    # a function within a function has other variables of that in each call
+    # an inner function has other variables of the outer one in each call
     of_module = "<locals>" not in function.__qualname__
     if of_module and sources.path(function.__module__) is not None:
         made._cache = KernelCache(function)
@@ -167,13 +169,13 @@ if TYPE_CHECKING:
     inlined: Decorator
 else:
     njit = _njit
-    # For kernels that neither make nor return arrays: without reference counts, which cost more
-    # than the arithmetic where records of arrays are handed from function to function, and half the
-    # time to compile. ``entry`` is for those that Python calls, ``kernel`` for all others.
+    # For kernels that neither make nor return arrays: no reference counts. With records of arrays
+    # as arguments, these cost more than the arithmetic, and half the time to compile. ``entry`` is
+    # for kernels that Python calls, ``kernel`` for all others.
     entry = functools.partial(_njit, pipeline_class=_EntryCompiler, **_ARRAYS)
     kernel = _Part
-    # The same for what the loops of finite elements call, which LLVM would not always inline: 5 %
-    # of their time.
+    # The same for functions in the loops of finite elements, which LLVM would not always inline: 5
+    # % of their time.
     inlined = functools.partial(_Part, forceinline=True)
 
 

@@ -1,4 +1,4 @@
-"""Arrays that start on a cache line, so that a vector of eight numbers is never in two lines."""
+"""Arrays that start on a cache line, so a vector of eight numbers is never in two lines."""
 
 import math
 from typing import Literal

@@ -1,9 +1,9 @@
 """Records of arrays that kernels receive by their address.
 
 Numba passes a named tuple to a function as its parts, seven words for each array. A record of fifty
-arrays becomes hundreds of arguments of each function that takes it. A record that is passed by
-reference is one pointer to a structure, as in C: a function reads only what it uses, and the kernels
-of the surrogate compile in 100 s instead of more than 200 s.
+arrays becomes hundreds of arguments of each function. A record that is passed by reference is one pointer
+to a structure, as in C. A function reads only the members that it uses, and the kernels of the surrogate
+compile in 100 s instead of more than 200 s.
 """
 
 from typing import TypeVar
@@ -33,8 +33,8 @@ class Reference(types.NamedTuple):
 
 
 def by_reference(python: type[_Record]) -> type[_Record]:
-    """Decorator of a named tuple class: Python hands its records to kernels by their address.
-    Kernels read them and make none."""
+    """Decorator of a named tuple class: Python passes its records to kernels by address. Kernels
+    read such records and do not make them."""
 
     @typeof_impl.register(python)
     def type_of(value, context):
@@ -46,7 +46,7 @@ def by_reference(python: type[_Record]) -> type[_Record]:
 
 @register_model(Reference)
 class _ReferenceModel(models.PrimitiveModel):
-    """Pointer to a structure of the members; those that are records themselves lie within it."""
+    """Pointer to a structure of the members; a member that is a record is inside it."""
 
     def __init__(self, manager, kind):
         parts = [manager.lookup(member).get_value_type() for member in kind.types]
@@ -59,7 +59,7 @@ class _ReferenceModel(models.PrimitiveModel):
         super().__init__(manager, kind, self.structure.as_pointer())
 
     def from_argument(self, builder, value):
-        """The pointer. Nothing writes to a record, so that its parts are read once."""
+        """The pointer. Nothing writes to a record, so LLVM may read a part once."""
         for attribute in ("noalias", "captures(none)"):
             value.add_attribute(attribute)
         return value

@@ -119,7 +119,7 @@ def _listed(title: str, commands: Iterable[Callable[..., None]]) -> None:
 
 
 def add(title: str, entries: Iterable[Entry]) -> None:
-    """Add the commands of studies, under the ``title`` of their group in the help."""
+    """Add the commands of studies; ``title`` is their group in the help."""
     _listed(title, [command for entry in entries for command in entry.commands])
 
 

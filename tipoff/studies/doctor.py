@@ -1,8 +1,8 @@
 """Checks whether tipoff can run on this machine; prints what is missing and how to repair it.
 
-The mesher gmsh must be installed, but it need not load: only CAD solids need its system libraries
-(`meshes.generator` reports them). This file imports nothing of the project, so that it works when
-the rest does not.
+The mesher gmsh must be installed, but it is not loaded: only CAD solids need its system libraries
+(`meshes.generator` reports them). This file imports nothing of the project, so it works when the rest
+fails.
 """
 
 import importlib

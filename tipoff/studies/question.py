@@ -19,8 +19,8 @@ class Result(NamedTuple):
     """A result of a study, from one result file or several, under its ``name`` on the page.
 
     ``run`` makes it. ``stored`` finds it if it was made from the present scene, code and settings.
-    The report makes each result without ``stored``. It shows a result with ``stored`` where there
-    is one; with ``tipoff report --every`` it makes it too if it has ``run``.
+    The report makes each result without ``stored``. It shows a result with ``stored`` if there is
+    one. ``tipoff report --every`` also makes missing ones that have ``run``.
     """
 
     name: str
@@ -58,18 +58,18 @@ class Entry:
 
 
 class Question(Entry):
-    """A study with one result and one section, whose name is that of its ``package``: of its command,
-    section and make target.
+    """A study with one result and one section. The name of its ``package`` is also the name of its
+    command, section and make target.
 
-    ``text``: the help of the command. ``title``: of its section. ``link``: the text of the link to the
-    section. ``options``: the dataclass of its options; None without any. Where options of the
-    command belong to the study, its method ``asked`` returns the study of a request and the options of
-    the stage. ``always``: whether each report
-    makes the result. ``own``: a command in place of the one with these ``options``.
+    ``text``: the help of the command. ``title``: of its section. ``link``: the text of the link to
+    the section. ``options``: the dataclass of its options; None without any. If options of the
+    command belong to the study, the method ``asked`` of the dataclass returns the study of a
+    request and the options of the stage. ``always``: whether each report makes the result. ``own``:
+    a command in place of the one made from ``options``.
 
-    The package has a module ``stage`` with ``run`` and ``STAGE``, and ``stored`` if that is not the one of
-    ``STAGE``; and a module ``page`` with ``draw``, which makes the parts of the section of a result, and
-    ``terminal`` if the terminal shows others.
+    The package has a module ``stage`` with ``run``, ``STAGE``, and ``stored`` if it replaces that
+    of ``STAGE``. It also has a module ``page`` with ``draw``, which makes the parts of the section
+    from a result, and ``terminal`` if the terminal shows other parts.
     """
 
     def __init__(

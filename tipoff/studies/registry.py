@@ -1,5 +1,5 @@
-"""All studies. This is the only place where a study of the package is added: its command, its result
-and its section of the page follow."""
+"""All studies. A study of the package is added here and nowhere else: its command, its result and its
+section of the page follow."""
 
 from tipoff.studies import (
     ablation,
@@ -38,7 +38,7 @@ COMPARISON: tuple[Entry, ...] = (
     view.ENTRY,
 )
 ON_DEMAND: tuple[Entry, ...] = (single.ENTRY, ensemble.ENTRY)
-# Studies that answer a question of an engineer.
+# Studies for the questions of an engineer.
 QUESTIONS: tuple[Entry, ...] = (
     blind.QUESTION,
     sensitivity.QUESTION,

@@ -1,5 +1,5 @@
-"""The methods of the benchmark and the varied cases they solve. A method has ``settings``, from
-coarse to fine, the ``error`` (%) at one, and a ``piece``: a call that solves all cases."""
+"""The methods of the benchmark and their varied cases. A method has ``settings``, from coarse to fine,
+the ``error`` (%) at a setting, and a ``piece``: a call that solves all cases."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -19,7 +19,7 @@ TOLERANCES: tuple[float, ...] = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 STEPS_S: tuple[float, ...] = tuple(4e-4 / 2.0 ** (0.5 * k) for k in range(14))
 _TIGHT = 1e-11
 _ABSOLUTE = 1e-3  # of the relative tolerance of solve_ivp, in SI: places of 1e-6 m count
-# s, longest step of solve_ivp: in free flight it would step over contacts and miss them.
+# s, longest step of solve_ivp: longer steps in free flight miss contacts.
 _LONGEST = 1e-3
 _IN_WINDOW = 201  # samples of solve_ivp
 MODELS = {COMPLIANT: "compliant contact", SPRINGS: "springs"}
@@ -47,7 +47,7 @@ def varied(count: int, seed: int = 2024) -> list[dict[str, float]]:
 class Population:
     """The varied scenes, their settled rates on a ``model`` at a tight tolerance and the starts of
     their windows (s). All runs have the number of ``modes`` that the pilot of the cases chooses, so
-    that methods and tolerances differ by nothing else."""
+    methods and tolerances are the only difference."""
 
     def __init__(
         self,
@@ -74,7 +74,7 @@ class Population:
         return run_many(self.base, rows, self.model, compliance=self.compliance, numerics=numerics)
 
     def error(self, rates: np.ndarray) -> float:
-        """95th percentile of the errors (%) of ``rates`` (n,3) rad/s; infinite where one is not
+        """95th percentile of the errors (%) of ``rates`` (n,3) rad/s; infinite if a rate is not
         finite."""
         if not np.isfinite(rates).all():
             return np.inf
@@ -164,7 +164,7 @@ class PlainRungeKutta:
         return lambda: [oracle.integrate(*arguments) for arguments, _, _ in jobs]
 
     def _jobs(self, dt: float) -> list[tuple[tuple, np.ndarray, float]]:
-        """For each case the arguments of the integration, the rows among them that it fills, and
+        """For each case the arguments of the integration, the argument ``rows`` that it fills, and
         their interval (s)."""
         from validation import oracle
 
@@ -222,8 +222,8 @@ class SolveIvp:
 
 
 def coarsest(settings: tuple[float, ...], error, requested: float) -> tuple[float, float]:
-    """The coarsest of ``settings`` (falling) whose error, and that of all finer ones, is at most
-    ``requested``, and its error. The finer ones count since a coarse setting can pass by chance."""
+    """The coarsest of ``settings`` (falling) whose error is at most ``requested``, and its error.
+    The errors of all finer settings must be so too, because a coarse setting can pass by chance."""
     kept = None
     for setting in reversed(settings):
         found = error(setting)

@@ -30,14 +30,14 @@ _SURROGATE: Cells = (
 
 
 def draw(page: "Page") -> list[Part]:
-    """Both solvers and their baselines; nothing without a benchmark."""
+    """Both solvers and their baselines; empty without a benchmark."""
     found = page.documents.get("bench") or {}
     parts: list[Part] = [_reference(found["rows"])] if found.get("rows") else []
     return [*parts, _surrogate(found["lowfi"])] if found.get("lowfi") else parts
 
 
 def terminal(found: dict) -> list[Part]:
-    """What the terminal shows of the result of the command."""
+    """The result of the command for the terminal."""
     return [_reference(found["rows"]), _surrogate(found["surrogate"])]
 
 
@@ -55,7 +55,7 @@ def _reference(rows: list[dict]) -> Table:
 
 
 def _surrogate(found: dict) -> Table:
-    """Time of the surrogate and of what one would write by error."""
+    """Time of the surrogate and of the baselines by error."""
     many = "; ".join(
         f"on {row['method']} {row['cpu_ms_per_case']:.3f} ms of processor time per case, "
         f"{row['wall_s']:.2g} s in total"

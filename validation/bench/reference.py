@@ -21,9 +21,10 @@ from tipoff.workspace.progress import say
 from tipoff.workspace.study import read
 
 SIZES = (0.002, 0.001, 0.0005)  # m: 19,360, 154,880 and 1,239,040 elements of the reference rails
-# elements of the baseline, whose matrix fits into memory; a larger one is no faster per element
+# largest number of elements of the baseline, whose matrix fits into memory; more are no faster per
+# element
 _BASELINE_MOST = 160_000
-_WORK = 4e7  # elements times steps in one timed repeat
+_WORK = 4e7  # elements times steps of one timed repeat
 _PRESSED = 1e-4  # s, shorter than the contact
 
 

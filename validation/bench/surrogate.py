@@ -1,14 +1,14 @@
 """Speed of the surrogate at a stated error, by itself and in ensembles, on compliant contact and on
 springs, beside plain Runge-Kutta of order four with fixed steps and SciPy's ``solve_ivp``.
 
-All solve the same varied cases of the reference scene, drawn as in a Monte Carlo study; the two
-baselines have springs and compiled equations (``validation.oracle``). The error of a case is the largest
-error of its settled rate over the axes, against a run of the same model with a tight tolerance and
-relative to the largest rate. Each method uses its coarsest setting for which, and for all finer ones,
-the 95th percentile is within the requested error. Times are processor times of one core: for the
-surrogate from the records to the settled values, with the detection of the exit; for the baselines
-only the integration, to a given end of the window. Runs with curves are timed twice on compliant
-contact: with the rail modes of the ensemble, and with modes that each run chooses, as by default.
+All solve the same varied cases of the reference scene, drawn as in a Monte Carlo study; the two baselines
+have springs and compiled equations (``validation.oracle``). The error of a case is the largest difference
+of a settled rate from a run of the same model with a tight tolerance, relative to the largest rate. Each
+method uses its coarsest setting with a 95th percentile within the requested error; all finer settings
+must be within it too. Times are processor times of one core: for the surrogate from the records to the
+settled values, with the detection of the exit; for the baselines only the integration, to a given end of
+the window. Runs with curves are timed twice on compliant contact: with the rail modes of the ensemble,
+and with modes that each run chooses, as by default.
 """
 
 import resource
@@ -111,7 +111,7 @@ def _times(pieces: dict[str, Callable], repeats: int, cases: int) -> dict[str, f
     times: dict[str, list[float]] = {name: [] for name in pieces}
     for _ in range(repeats):
         for name, piece in pieces.items():
-            piece()  # once unseen: the caches of the machine are then this method's
+            piece()  # once without timing, which loads this method into the caches of the machine
             began = time.thread_time()
             piece()
             times[name].append(1e3 * (time.thread_time() - began) / cases)

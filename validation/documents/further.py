@@ -39,7 +39,7 @@ def details(folder: Path) -> str:
 
 
 def distributions(found: Sequence[Distribution]) -> list[Part]:
-    """Verdicts on conditions that no single run can judge; nothing where there is none."""
+    """Verdicts on conditions that no single run can judge; empty without such conditions."""
     if not found:
         return []
     table = distribution_page.verdicts_of(found)
@@ -96,8 +96,8 @@ def _scaling(found: Scaling) -> Table:
     return Table(
         ["over", "model", "p of a run", "p of a step"],
         rows,
-        (f"{step}Time with all effects over time without: {prices}.",),
-        "How time grows (`make cost`, one processor): t = c n^p. Expected over elements: 1 for "
+        notes=(f"{step}Time with all effects over time without: {prices}.",),
+        title="How time grows (`make cost`, one processor): t = c n^p. Expected over elements: 1 for "
         "a step, 4/3 for a run, because its steps\nbecome shorter too.",
     )
 
@@ -129,7 +129,7 @@ def _convergence(found: Convergence) -> list[Part]:
 
 
 def _changes(found: Convergence) -> Table:
-    """Changes by interface stiffness and contact cells."""
+    """Changes by interface stiffness and by contact cells."""
     changed = [
         (f"{row.interface_stiffness_n_m3:.3g} N/m³, {row.factor:g} times the scene's", row)
         for row in found.interface_stiffness

@@ -19,8 +19,7 @@ kept values of the other codes, also where these are not installed."""
 
 
 def keep(out: Path) -> None:
-    """Make the results under ``out`` part of the project, those of peers that were run, and write the
-    page."""
+    """Keep the results of peers under ``out`` that were run in the project, and write the page."""
     stage.KEPT.mkdir(exist_ok=True)
     for path in sorted((Path(out) / "peers").glob("*.json")):
         shutil.copyfile(path, stage.KEPT / path.name)

@@ -64,8 +64,8 @@ def main(folder: Path) -> None:
 
 
 def tails(found: Tails, folder: Path) -> None:
-    """Write the page of random errors that the reference has checked, with its picture, and what
-    README says of it."""
+    """Write the page of random errors checked by the reference, its picture, and its lines in
+    README."""
     _into_readme(
         "tails",
         "\n  - ".join(
@@ -89,8 +89,8 @@ def _into_readme(name: str, text: str) -> None:
 
 
 def headline(folder: Path) -> str:
-    """The few figures of README: agreement of compliant contact, and the one speed-up, at equal
-    accuracy, where the error of the reference was studied."""
+    """The figures of README: agreement of compliant contact, and the speed-up at equal accuracy if
+    the error of the reference was studied."""
     lines = [_agreed(_compared(folder).compliant)]
     if said := _equal(folder):
         said = said.split(". ")[0].removeprefix("speed-up ")
@@ -194,8 +194,8 @@ def _agreement(found: Agreement) -> Table:
 
 
 def _growth(found: Sequence[Growth]) -> list[Part]:
-    """One line a condition that 1 µm moves by more than the gate, and one for all others; nothing
-    where it was not measured."""
+    """A line for each condition in which 1 µm changes a rate by more than the gate, and one line
+    for all others; empty if not measured."""
     own = [item for item in found if item.model == FINITE_ELEMENTS]
     stable = [item for item in own if item.sensitive is False]
     lines = [
@@ -233,8 +233,8 @@ def _speed(agreement: Agreement) -> str:
 
 
 def _equal(folder: Path) -> str:
-    """The speed-up on the mesh whose uncertainty is as small as the error of the surrogate; empty where
-    it was not measured."""
+    """The speed-up on the mesh whose uncertainty is as small as the error of the surrogate; empty
+    if not measured."""
     found = read(folder / "convergence.json")
     equal = None if found is None else convergence.STAGE.read(found).equal_accuracy
     return equal.sentence() if equal else ""
@@ -246,7 +246,7 @@ def _rails(found: Sequence[other_rails.Scene]) -> Table:
 
 
 def _blind(found: Blind) -> Table:
-    """Conditions drawn after all code was written, as the agreement table has the scene's own."""
+    """Conditions drawn after all code was written, in the form of the agreement table."""
     return Table.of_records(
         found.compliant,
         "condition",

@@ -1,5 +1,5 @@
-"""Errors of the catalogue's scene, for comparison with the searches: their ends depend on the last
-bits of a run, a scene does not."""
+"""Errors of the catalogue's scene, for comparison with the searches. The ends of searches depend on the
+last bits of a run; a scene does not."""
 
 import numpy as np
 

@@ -28,7 +28,7 @@ def run(launcher: misfit.Launcher, shares: np.ndarray) -> Columns:
 
 
 def summary(left: Columns) -> dict:
-    """``conditions`` with the exit state ``left`` of each, None where it did not settle, and
+    """``conditions`` with the exit state ``left`` of each, None if it did not settle, and
     ``calibration``, the origin of the contact constants."""
     rows = []
     for place, (condition, (_, radial)) in enumerate(published.angles().items()):

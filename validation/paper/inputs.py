@@ -1,14 +1,12 @@
 """The inputs that the paper does not print, as points of the unit cube: bounds with their reasons,
 and the overrides of a scene.
 
-The inertia is that of a mass distribution, so that every point of the cube is a possible body:
-with P_i = m g_i^2 the second moments about the mass centre (g the radii along the
-axes) and P_ij = r_ij sqrt(P_i P_j),
+The inertia belongs to a mass distribution, so every point of the cube is a possible body. With the second
+moments P_i = m g_i^2 about the mass centre (radii g along the axes) and P_ij = r_ij sqrt(P_i P_j):
 
     I_xx = P_y + P_z,  I_yy = P_x + P_z,  I_zz = P_x + P_y,  I_ij = -P_ij
 
-P is positive definite where the correlations r are small. A cuboid of edge L filled evenly has g =
-L / sqrt(12).
+P is positive definite if the correlations r are small. A uniform cuboid of edge L has g = L / sqrt(12).
 """
 
 import math
@@ -20,16 +18,15 @@ from tipoff.scenes.scene import Scene
 
 
 class Unknown(NamedTuple):
-    """An input: its bounds (SI), searched on a logarithmic or linear scale, the unit and factor for
-    printing, and the reason for the bounds."""
+    """An input of the search."""
 
     name: str
-    low: float
-    high: float
-    logarithmic: bool
-    unit: str
-    factor: float
-    reason: str
+    low: float  # bound, SI
+    high: float  # bound, SI
+    unit: str  # for printing
+    reason: str  # for the bounds
+    factor: float = 1.0  # printed number over the SI value
+    logarithmic: bool = False  # scale of the search
 
     def value(self, share: float) -> float:
         """Value (SI) at ``share`` (0 to 1) of the way from the lower to the upper bound."""
@@ -46,75 +43,123 @@ class Unknown(NamedTuple):
 
 _BODY = "cuboid edges of 0.1 to 0.6 m, the scale of the group's drawings"
 UNKNOWNS = (
-    Unknown("mass", 8.0, 12.0, False, "kg", 1.0, "9.9 kg in the group's companion paper"),
-    Unknown("radius_x", 0.06, 0.15, True, "mm", 1e3, _BODY),
-    Unknown("radius_y", 0.03, 0.09, True, "mm", 1e3, _BODY),
-    Unknown("radius_z", 0.03, 0.09, True, "mm", 1e3, _BODY),
-    Unknown("correlation_xy", -0.15, 0.15, False, "1", 1.0, "equipment off the axes of symmetry"),
-    Unknown("correlation_xz", -0.15, 0.15, False, "1", 1.0, "equipment off the axes of symmetry"),
-    Unknown("correlation_yz", -0.15, 0.15, False, "1", 1.0, "equipment off the axes of symmetry"),
+    Unknown("mass", 8.0, high=12.0, unit="kg", reason="9.9 kg in the group's companion paper"),
+    Unknown("radius_x", 0.06, high=0.15, logarithmic=True, unit="mm", factor=1e3, reason=_BODY),
+    Unknown("radius_y", 0.03, high=0.09, logarithmic=True, unit="mm", factor=1e3, reason=_BODY),
+    Unknown("radius_z", 0.03, high=0.09, logarithmic=True, unit="mm", factor=1e3, reason=_BODY),
     Unknown(
-        "rear", 0.03, 0.15, False, "mm", 1e3, "rear pads behind the mass centre, within the body"
+        "correlation_xy", -0.15, high=0.15, unit="1", reason="equipment off the axes of symmetry"
+    ),
+    Unknown(
+        "correlation_xz", -0.15, high=0.15, unit="1", reason="equipment off the axes of symmetry"
+    ),
+    Unknown(
+        "correlation_yz", -0.15, high=0.15, unit="1", reason="equipment off the axes of symmetry"
+    ),
+    Unknown(
+        "rear",
+        0.03,
+        high=0.15,
+        unit="mm",
+        factor=1e3,
+        reason="rear pads behind the mass centre, within the body",
     ),
     Unknown(
         "front",
         0.03,
-        0.15,
-        False,
-        "mm",
-        1e3,
-        "front pads ahead of the mass centre, within the body",
+        high=0.15,
+        unit="mm",
+        factor=1e3,
+        reason="front pads ahead of the mass centre, within the body",
     ),
-    Unknown("half_width", 0.06, 0.14, False, "mm", 1e3, "pads at the corners of the body"),
-    Unknown("half_height", 0.06, 0.14, False, "mm", 1e3, "pads at the corners of the body"),
     Unknown(
-        "guided", 0.02, 0.40, True, "mm", 1e3, "length of rail ahead of the front pads at ignition"
+        "half_width",
+        0.06,
+        high=0.14,
+        unit="mm",
+        factor=1e3,
+        reason="pads at the corners of the body",
     ),
-    Unknown("clearance", 0.03e-3, 0.5e-3, True, "mm", 1e3, "sliding fit to loose fit"),
-    Unknown("arm", 0.05, 0.20, False, "mm", 1e3, "thruster at the rear of the body"),
-    Unknown("impulse", 30.0, 120.0, True, "N s", 1.0, "exit speed of 3 to 12 m/s"),
-    Unknown("width", 1e-3, 10e-3, True, "ms", 1e3, "solid thruster with 5 to 50 ms burn time"),
+    Unknown(
+        "half_height",
+        0.06,
+        high=0.14,
+        unit="mm",
+        factor=1e3,
+        reason="pads at the corners of the body",
+    ),
+    Unknown(
+        "guided",
+        0.02,
+        high=0.40,
+        logarithmic=True,
+        unit="mm",
+        factor=1e3,
+        reason="length of rail ahead of the front pads at ignition",
+    ),
+    Unknown(
+        "clearance",
+        0.03e-3,
+        high=0.5e-3,
+        logarithmic=True,
+        unit="mm",
+        factor=1e3,
+        reason="sliding fit to loose fit",
+    ),
+    Unknown(
+        "arm", 0.05, high=0.20, unit="mm", factor=1e3, reason="thruster at the rear of the body"
+    ),
+    Unknown(
+        "impulse",
+        30.0,
+        high=120.0,
+        logarithmic=True,
+        unit="N s",
+        reason="exit speed of 3 to 12 m/s",
+    ),
+    Unknown(
+        "width",
+        1e-3,
+        high=10e-3,
+        logarithmic=True,
+        unit="ms",
+        factor=1e3,
+        reason="solid thruster with 5 to 50 ms burn time",
+    ),
     Unknown(
         "friction",
         0.02,
-        0.4,
-        True,
-        "1",
-        1.0,
-        "aluminium, bare or lubricated; 0.2 in the companion paper",
+        high=0.4,
+        logarithmic=True,
+        unit="1",
+        reason="aluminium, bare or lubricated; 0.2 in the companion paper",
     ),
     Unknown(
         "exponent",
         1.0,
-        2.2,
-        False,
-        "1",
-        1.0,
-        "from flat contact to above Hertz contact; not printed in the paper",
+        high=2.2,
+        unit="1",
+        reason="from flat contact to above Hertz contact; not printed in the paper",
     ),
     Unknown(
         "offset_y",
         -0.9,
-        0.9,
-        False,
-        "of the clearance",
-        1.0,
-        "position of the body between the rails at ignition",
+        high=0.9,
+        unit="of the clearance",
+        reason="position of the body between the rails at ignition",
     ),
     Unknown(
         "offset_z",
         -0.9,
-        0.9,
-        False,
-        "of the clearance",
-        1.0,
-        "position of the body between the rails at ignition",
+        high=0.9,
+        unit="of the clearance",
+        reason="position of the body between the rails at ignition",
     ),
 )
 NAMES = tuple(item.name for item in UNKNOWNS)
 STIFFNESS, DAMPING, DEPTH = 70000.0, 60e3, 0.3e-3  # N/mm^e, N s/m, m: the paper's Table 2 baseline
 _CENTRE = 3.0  # widths before the peak of the thrust
-_MOUNTS = ((0.05, 0.15), (0.45, 0.55), (0.85, 0.95))  # shares of the rail, which is rigid here
+_MOUNTS = ((0.05, 0.15), (0.45, 0.55), (0.85, 0.95))  # shares of the rail; the rail is rigid here
 
 
 def values(shares: np.ndarray) -> dict[str, float]:
@@ -187,8 +232,8 @@ def stiffness(printed: float, exponent: float) -> float:
 
 
 def duration(found: dict[str, float]) -> float:
-    """Time (s) in which the body leaves the rail and settles: burnout, or the distance at half the
-    final speed, whichever is longer."""
+    """Time (s) in which the body leaves the rail and settles: the longer of the burn time and the
+    time for the distance at half the final speed."""
     distance = found["rear"] + found["front"] + found["guided"] + 0.016
     return (
         max(

@@ -5,11 +5,11 @@ where the paper calls them negligible.
     54 deviations    e = (w_changed - w) - (w_changed - w)_printed                  weight 1 / s
     conditions 1, 5  e = max(|w| - 0.3 deg/s, 0)                                    weight ``stress`` / s
 
-s is per axis the root mean square of the printed deviations themselves (0.034, 0.013, 0.0075
-deg/s). They are not monotone in k, c or d (the roll rate of condition 2 falls for a softer and for
-a stiffer contact), so s is scatter of the printed solution, which no smooth model reproduces. The
-misfit of a residual is sqrt(1 + (e/L)^2) - 1 with L = 0.3 deg/s, the size the paper calls
-negligible, so that one large error does not hide eight small ones.
+s is per axis the root mean square of the printed deviations themselves (0.034, 0.013, 0.0075 deg/s). They
+are not monotone in k, c or d (the roll rate of condition 2 falls for a softer and for a stiffer contact),
+so s is scatter of the printed solution, which no smooth model reproduces. The misfit of a residual is
+sqrt(1 + (e/L)^2) - 1 with L = 0.3 deg/s, which the paper calls negligible. So one large error does not
+hide eight small ones.
 """
 
 import math

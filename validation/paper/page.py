@@ -1,5 +1,5 @@
-"""The paper's numbers on the page and in the terminal: its Table 2 and headline and ours, and the
-inferred inputs."""
+"""The paper's numbers on the page and in the terminal: its Table 2 and speed-up beside our values, and
+the inferred inputs."""
 
 import numpy as np
 
@@ -93,7 +93,7 @@ def _fit(found: dict) -> Table:
         else f"The best set is not the scene {kept['name']} of the catalogue, which is from "
         "another run."
     )
-    return Table(["inputs", *_MEASURES.values()], rows, (_verdict(found), same))
+    return Table(["inputs", *_MEASURES.values()], rows, notes=(_verdict(found), same))
 
 
 def _admissible(found: dict) -> list[str]:
@@ -110,7 +110,7 @@ def _admissible(found: dict) -> list[str]:
 
 
 def _outside(found: dict) -> str:
-    """A further sentence where the best set is not admissible."""
+    """A further sentence if the best set is not admissible."""
     best = found["searches"][found["best"]]
     missed = max(best["largest_error_deg_s"], best["largest_deviation_error_deg_s"])
     note = " The best set is not among them: its misfit includes conditions 1 and 5."
@@ -134,11 +134,11 @@ def figures(found: dict) -> tuple[Figure, Figure]:
 
 
 def _traded(found: dict, title: str, across: tuple[str, str], upwards: tuple[str, str]) -> Panel:
-    """Panel of two measures (key, label) of every search; with the Pareto front where it has these
+    """Panel of two measures (key, label) of every search, with the Pareto front if it is of these
     two."""
     front, best = np.array(found["front"]), found["searches"][found["best"]]
     lines = (
-        [Line(front[:, 0], front[:, 1], "Pareto front", TEAL)]
+        [Line(front[:, 0], front[:, 1], name="Pareto front", colour=TEAL)]
         if (across, upwards) == (_NINE, _QUIET)
         else []
     )
@@ -148,7 +148,7 @@ def _traded(found: dict, title: str, across: tuple[str, str], upwards: tuple[str
         (known, f"scene {known['name']}", TEAL, "^", 11.0),
     ):
         place = [own[across[0]]], [own[upwards[0]]]
-        lines.append(Line(*place, name, colour, dash="", marker=marker, size=size))
+        lines.append(Line(*place, name=name, colour=colour, dash="", marker=marker, size=size))
     for all_five, name, colour, marker in (
         (False, "search over three conditions", GREY, "s"),
         (True, "search over five conditions", NAVY, "o"),
@@ -160,8 +160,8 @@ def _traded(found: dict, title: str, across: tuple[str, str], upwards: tuple[str
         ]
         if ends:
             x, y = zip(*ends)
-            lines.append(Line(x, y, name, colour, dash="", marker=marker))
-    return Panel(title, across[1], upwards[1], lines, log=True)
+            lines.append(Line(x, y, name=name, colour=colour, dash="", marker=marker))
+    return Panel(title, across[1], y_label=upwards[1], lines=lines, log=True)
 
 
 def _against(title: str, printed: np.ndarray, ours: np.ndarray) -> Panel:
@@ -171,14 +171,19 @@ def _against(title: str, printed: np.ndarray, ours: np.ndarray) -> Panel:
         Line(
             printed[..., axis].ravel(),
             ours[..., axis].ravel(),
-            f"about {name}",
-            colour,
+            name=f"about {name}",
+            colour=colour,
             dash="",
             marker=marker,
         )
         for axis, (name, colour, marker) in enumerate(_AXES)
     ]
-    return Panel(title, "printed", "found", [Line(ends, ends, "equal", GREY, dash="--"), *points])
+    return Panel(
+        title,
+        "printed",
+        y_label="found",
+        lines=[Line(ends, ends, name="equal", colour=GREY, dash="--"), *points],
+    )
 
 
 def _table2(best: dict) -> Fold:
@@ -240,7 +245,7 @@ def _deviations(best: dict) -> list[Part]:
 
 
 def table_at_exit(found: dict) -> Table:
-    """Exit state with the best set by condition; a dash where it did not settle."""
+    """Exit state with the best set by condition; a dash if it did not settle."""
     conditions = [
         Column(
             f"{row['condition']} at {row['radial_misalignment_deg']:g} deg"
@@ -253,7 +258,7 @@ def table_at_exit(found: dict) -> Table:
         (f"{item.label} ({item.unit})", *(row[item.name] for row in found["conditions"]))
         for item in answers.ALL
     ]
-    return Table(["exit state, condition", *conditions], rows, (_AT_EXIT.format(**found),))
+    return Table(["exit state, condition", *conditions], rows, notes=(_AT_EXIT.format(**found),))
 
 
 def _verdict(found: dict) -> str:
@@ -281,7 +286,7 @@ def _verdict(found: dict) -> str:
 
 
 def _headline(found: dict) -> list[Part]:
-    """Cost of one case in both fidelities, the paper's and ours."""
+    """Cost of one case in both fidelities, in the paper and here."""
     printed, ours = found["headline"], found["ours"]
     springs = "springs, calibrated"
     rows = [
@@ -308,7 +313,7 @@ def _headline(found: dict) -> list[Part]:
         Column("speed-up", form=",.0f"),
     )
     missing = f"Not measured here yet; `tipoff compare --scene {found['scene']}` measures it."
-    return [Table(heads, rows, () if ours else (missing,))]
+    return [Table(heads, rows, notes=() if ours else (missing,))]
 
 
 def table_of_inputs(found: dict) -> Table:

@@ -1,10 +1,10 @@
 """Sets of inputs that give the printed rates: independent searches, their admissible points, and
 the Pareto front.
 
-Rates are smooth in the inputs until one impact more or less changes them by degrees per second.
-Inside such a basin, Gauss-Newton steps reach zero residuals where the basin contains such a point,
-because there are fewer residuals than inputs. Basin hopping tries many basins (Wales and Doye, J.
-Phys. Chem. A 101 (1997) 5111). A search
+Rates are smooth in the inputs as long as the impacts are the same; one impact more or less changes them
+by degrees per second. Such a smooth region is a basin. In a basin with a point of zero residuals,
+Gauss-Newton steps reach this point, because there are fewer residuals than inputs. Basin hopping tries
+many basins (Wales and Doye, J. Phys. Chem. A 101 (1997) 5111). A search
 
 1. draws points of the unit cube, minimises the rates of five runs by least squares from the best of
    them, and keeps a pool of ends;
@@ -12,12 +12,13 @@ Phys. Chem. A 101 (1997) 5111). A search
    from there, and replaces it if the end is better;
 3. minimises all 69 residuals of 23 runs from each of the pool, and ends with the best.
 
-Better means a smaller misfit of all 69: an end near the edge of its basin can give the nine rates,
-but not with a contact constant changed by some percent. Searches that end badly are shown too.
+Better means a smaller misfit of all 69 residuals: an end near the edge of its basin can give the nine
+rates, but not the rates with a contact constant changed by some percent. Searches with a bad end are
+shown too.
 
-Nine rates and 54 small deviations cannot determine twenty inputs. The result is therefore a set:
-every end at which no printed rate and no deviation is missed by more than ``ADMISSIBLE``. An input
-is determined as far as the set is narrower than its bounds.
+Nine rates and 54 small deviations cannot determine twenty inputs. So the result is a set: all ends at
+which every error of a printed rate or deviation is at most ``ADMISSIBLE``. An input is determined as far
+as the set is narrower than its bounds.
 """
 
 from collections.abc import Callable
@@ -33,7 +34,7 @@ from validation.paper.inputs import UNKNOWNS
 ADMISSIBLE = misfit.NEGLIGIBLE
 
 _MOVES = (0.01, 0.03, 0.06, 0.12)  # standard deviations of a hop, of the bounds
-_SOME = 0.25  # chance of an input to be among those that move, in every other hop
+_SOME = 0.25  # probability that an input moves, in every other hop
 _INSIDE = 1e-3  # of the bounds: least squares cannot start on a bound
 # of the bounds: above the scatter of runs at the middle tolerance, below the size of a basin
 _DIFFERENCE = 5e-4
@@ -43,9 +44,9 @@ _WORK = {"point": 0.02, "descent": 2.0, "hop": 1.0, "end": 10.0}  # shares of th
 @dataclass(frozen=True)
 class Plan:
     """Size of a search: ``points`` drawn, ``descents`` from the best of them, ends in the ``pool``,
-    ``hops``, admissible points ``kept``; ``steps`` of a descent from a point drawn, from a hop, and
-    of the last one; ``tolerances`` (relative error of a step) of drawn points, of descents and of
-    the reported end."""
+    ``hops``, admissible points ``kept``; ``steps`` of a descent from a drawn point, from a hop, and
+    of the last descent; ``tolerances`` (relative error of a step) of drawn points, of descents and
+    of the reported end."""
 
     points: int = 2000
     descents: int = 24
@@ -98,7 +99,7 @@ def run(
     )
     pool = pool[: plan.pool]
     for _ in range(plan.hops):
-        place = min(int(generator.exponential(1.5)), len(pool) - 1)  # better ones more often
+        place = min(int(generator.exponential(1.5)), len(pool) - 1)  # better ends more often
         moves = generator.choice(_MOVES) * generator.standard_normal(len(UNKNOWNS))
         some = generator.random(len(UNKNOWNS)) < generator.choice([_SOME, 1.0])
         end = walk.end(np.clip(pool[place].shares + moves * some, 0.0, 1.0), plan.steps[1], "hop")
@@ -109,11 +110,11 @@ def run(
     return Search(
         stress,
         seed,
-        best,
-        fine.rates(best),
-        fine.changed(best),
-        walk.admissible(plan.kept),
-        front(walk.errors, walk.sizes),
+        shares=best,
+        rates=fine.rates(best),
+        changed=fine.changed(best),
+        admissible=walk.admissible(plan.kept),
+        front=front(walk.errors, walk.sizes),
     )
 
 
@@ -165,7 +166,7 @@ class _Walk:
         return found
 
     def last(self, end: _End, steps: int) -> _End:
-        """Descent with all residuals, or ``end`` itself where that is better."""
+        """Descent with all residuals, or ``end`` itself if that is better."""
 
         def every(point: np.ndarray) -> np.ndarray:
             return misfit.residuals(
@@ -219,7 +220,7 @@ def _down(
 
 
 def front(errors, sizes) -> np.ndarray:
-    """Pairs (m,2), ascending in the first, of which no other pair is smaller in both."""
+    """Pairs (m,2), ascending in the first value, for which no other pair is smaller in both values."""
     pairs = np.column_stack([errors, sizes])
     pairs = pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
     best = np.minimum.accumulate(pairs[:, 1])

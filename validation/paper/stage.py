@@ -1,8 +1,8 @@
 """Stage ``paper``: inputs inferred from the paper's printed rates, and its tables compared with
 those of the best set found.
 
-Every finished search is stored, so an interrupted stage continues with the next one, and more
-starts add to the stored ones.
+Every finished search is stored. So an interrupted stage continues with the next search, and more starts
+add to the stored searches.
 """
 
 import math
@@ -56,8 +56,8 @@ def run(study: Study, options: Options = Options()) -> dict:
     """The searches, the ranges of every input, and the best set with the printed tables; writes the
     best set as a scene, and every end and admissible point as netCDF.
 
-    Raises SceneError for a scene that ``require`` refuses, StudyError where no scene file could
-    hold the best set.
+    Raises SceneError for a scene that ``require`` refuses, StudyError if no scene file can contain
+    the best set.
     """
     require(study.scene)
 
@@ -158,14 +158,14 @@ def require(scene: Scene) -> None:
 
 
 def _base(scene: Scene) -> Scene:
-    """The scene with the misalignment that the paper's Table 1 has."""
+    """The scene with the misalignment of the paper's Table 1."""
     return scene.replace({"thrust_offset.misalignment.axial": f"{published.angles()[1][0]} deg"})
 
 
 def _write(base: Scene, shares: np.ndarray, rates: np.ndarray, path: Path) -> None:
     """Write the set at ``shares`` (p,) as a scene that extends ``base`` by its name. Raises
-    StudyError unless the file loads and is the scene that was searched: what was put over a file of
-    the catalogue is not in it."""
+    StudyError unless the file loads and is the searched scene: overrides of a scene of the
+    catalogue are not in the file."""
     write_text(path, scene_file.scene(base, inputs.values(shares), rates))
     cannot = (
         f"the best set cannot be kept as {path.name}, which extends {base.name!r} of the catalogue"
@@ -201,7 +201,7 @@ def _differing(first, second, key: str = "") -> list[str]:
 
 
 def _searches(study: Study, base: Scene, options: Options) -> list[solutions.Search]:
-    """Every search in its order, ``workers`` at a time; Ctrl-C ends those that run and starts no
+    """All searches in order, ``workers`` at a time; Ctrl-C ends the running ones and starts no
     other."""
     plans = [(stress, seed) for seed in range(options.starts) for stress in STRESSES]
     with Board(NAME, len(plans)) as board, team(board, study.settings.workers) as pool:
@@ -240,12 +240,12 @@ def _searches(study: Study, base: Scene, options: Options) -> list[solutions.Sea
     return [future.result() for future in pending]
 
 
-STAGE = Stage(NAME, __name__, Options)
+STAGE = Stage(NAME, __name__, options=Options)
 
 
 def _with_present(study: Study, found: dict) -> dict:
-    """The result with values that are not stored in it: the cost of both fidelities, where the
-    present agreement study has it, and whether the best set is the catalogue's scene."""
+    """The result with values that are not stored in it: the cost of both fidelities, if the present
+    agreement study has it, and whether the best set is the catalogue's scene."""
     kept = load(CATALOGUED)
     best = misfit.Launcher(_base(study.scene)).scene(
         inputs.shares(found["searches"][found["best"]]["values"])

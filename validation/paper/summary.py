@@ -36,7 +36,7 @@ def of_search(found: solutions.Search) -> dict:
 
 def ranges(found: list[solutions.Search], best: solutions.Search) -> list[dict]:
     """Every input in its printed unit: bounds, best, range of the admissible set and its share of
-    the bounds on the scale of the search; None where the set is empty."""
+    the bounds on the scale of the search; None if the set is empty."""
     points = np.vstack([item.admissible for item in found])
     rows = []
     for number, item in enumerate(inputs.UNKNOWNS):

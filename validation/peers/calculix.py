@@ -1,9 +1,9 @@
 """Decks for CalculiX (``ccx``), its runs, and its result tables.
 
 A deck is written from a mesh of the project: the nodes and elements, as 8-node hexahedra with
-incompatible modes (C3D8I), or as 20-node ones of reduced integration (C3D20R) whose middle nodes are
-the middles of the edges. Axes and units are those of the scene, SI. CalculiX is a program of its own;
-nothing of it is linked.
+incompatible modes (C3D8I), or as 20-node ones of reduced integration (C3D20R) whose middle nodes are the
+middles of the edges. Axes and units are those of the scene, SI. CalculiX runs as a separate program;
+nothing is linked.
 """
 
 import os
@@ -42,7 +42,7 @@ class Solid(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """What a run printed into its ``.dat`` file, and its processor time (s)."""
+    """The content of the ``.dat`` file of a run, and its processor time (s)."""
 
     text: str
     cpu_s: float
@@ -107,8 +107,8 @@ def sides(of: Solid, facets: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.nda
 
 
 def shares(nodes: np.ndarray) -> np.ndarray:
-    """Shares of the nodes of a rectangular face in a uniform pressure on it: of four, or of eight
-    (corners -1/12, middles 1/3)."""
+    """Shares of the nodes of a rectangular face in the force of a uniform pressure: of four nodes,
+    or of eight (corners -1/12, middles 1/3)."""
     return np.full(4, 0.25) if nodes.shape[1] == 4 else np.repeat([-1.0 / 12.0, 1.0 / 3.0], 4)
 
 
@@ -174,8 +174,8 @@ def pressure(of: Solid, facets: np.ndarray, value: float) -> str:
 
 
 def run(deck: str) -> Answer:
-    """Solve ``deck`` on one thread in a folder of its own. Raises PeerMissing, and RuntimeError with
-    the end of what CalculiX said where it fails."""
+    """Solve ``deck`` on one thread in a folder of its own. Raises PeerMissing, and RuntimeError
+    with the last lines of CalculiX if it fails."""
     program = _program()
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "job.inp").write_text(deck)
@@ -198,7 +198,7 @@ def run(deck: str) -> Answer:
 
 
 def _numbers(lines: list[str]) -> np.ndarray:
-    """The first block of rows of numbers; heads above it are passed over."""
+    """The first block of rows of numbers, without the heads above it."""
     rows: list[list[float]] = []
     for line in lines:
         try:

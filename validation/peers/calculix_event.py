@@ -1,9 +1,9 @@
 """The first contact of scene ``reference``, condition phi35, by the implicit dynamics of CalculiX.
 
-The event begins just before pad 3 touches its rail and ends as it leaves, when a second pad is about
-to touch. The payload has the motion of the reference then. There is no thrust, and the platform is
-fixed. The rail is that of the reference in C3D8I. The payload is a box of one stiff element along its
-principal axes, whose size gives its inertia; the pad hangs on it by linear equations.
+The event starts just before pad 3 touches its rail. It ends when the pad leaves, just before a second pad
+touches. The payload starts with the motion of the reference at that time. There is no thrust, and the
+platform is fixed. The rail is that of the reference in C3D8I. The payload is a box of one stiff element
+along its principal axes, and its size gives the inertia. Linear equations connect the pad to the box.
 """
 
 from functools import cache
@@ -179,8 +179,8 @@ def _deck(rail: RailMesh, box: Body, pad: Body, facets: np.ndarray, step: float)
 
 
 def _hung(box: Body, pad: Body, facets: np.ndarray, nodes: int) -> str:
-    """Equations that move the inner side of the pad with the box, whose trilinear displacement goes
-    on beyond it."""
+    """Equations that move the inner side of the pad with the box: the trilinear displacement of the
+    box is extended beyond the box."""
     inner = np.setdiff1d(np.arange(len(pad.points)), facets)
     edges = box.points[[1, 3, 4]] - box.points[0]
     local = np.linalg.solve(edges.T, (pad.points[inner] - box.points[0]).T).T
@@ -208,7 +208,7 @@ def _flying(box: Body, pad: Body, nodes: int) -> str:
 
 
 def _within(setting: str, quantity: str) -> float:
-    """The rate about z is what is left of two that nearly cancel."""
+    """The rate about z is the difference of two rates that nearly cancel."""
     return 2e-2 if quantity == "rate z" else 3e-3
 
 

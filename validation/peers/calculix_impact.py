@@ -20,7 +20,7 @@ from validation.peers.calculix import LINEAR
 from validation.peers.case import Case
 
 ALPHA = -0.05
-STIFFER = 1e3  # the block than the bar
+STIFFER = 1e3  # stiffness of the block over that of the bar
 _DIVISIONS = 16  # along each edge of the pad
 STICK = 1e12  # N/m3, slope of friction over slip where it sticks
 _BREADTH = 0.024  # m, the block along y
@@ -80,7 +80,7 @@ def there(chosen: Setting) -> dict[str, float]:
     share = moved.mass / moved.mass.sum()
     centre, mean = share @ place, share @ velocity
     apart, drift = place - centre, velocity - mean
-    # about y, as the moments of the nodes' masses, whose inertia is that of the trapezoidal rule
+    # about y, from the moments of the nodal masses, whose inertia is that of the trapezoidal rule
     spin = moved.mass @ (apart[:, 2] * drift[:, 0] - apart[:, 0] * drift[:, 2])
     inertia = moved.mass @ (apart[:, 2] ** 2 + apart[:, 0] ** 2)
     return {
@@ -118,7 +118,7 @@ def _deck(bar: RailMesh, moved: Block, chosen: Setting) -> str:
 
 
 def _within(setting: str, quantity: str) -> float:
-    """What is left falls with the time step."""
+    """The remaining difference falls with the time step."""
     return 5e-3 if SETTINGS[setting].step > 2e-6 else 2e-3
 
 

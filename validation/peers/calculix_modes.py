@@ -1,12 +1,12 @@
 """Lowest frequencies of the rails of the catalogue, here and in CalculiX.
 
-The reference has lumped masses. CalculiX has consistent ones, and in C3D8I the incompatible modes move
-with mass of their own::
+The reference has lumped masses. CalculiX has consistent masses, and in C3D8I the incompatible modes have
+mass of their own::
 
     [K   L^T] [u]           [M   R^T] [u]
     [L   H  ] [a] = omega^2 [R   S  ] [a],     M, R, S = rho integral of products of the 8 + 3 functions
 
-This mass on the elements of the reference tells whether what is left is the mass or the stiffness.
+With this mass on the elements of the reference, a remaining difference comes from the stiffness.
 """
 
 import numpy as np
@@ -33,8 +33,8 @@ CHANNEL = {
 
 
 def here(name: str, chosen: Setting) -> dict[str, float]:
-    """Frequencies (Hz) of a rail with the masses of the reference; where both codes have the same
-    elements also with those of CalculiX."""
+    """Frequencies (Hz) of a rail with the masses of the reference; if both codes have the same
+    elements, also with the masses of CalculiX."""
     scene, mesh = rail(name, chosen.ours)
     operator = assembly.of_material(mesh, scene.rail.material)
     clamped = Clamped(operator)

@@ -1,7 +1,7 @@
 """The rails of the catalogue in CalculiX: a load, the lowest frequencies, a thermal bow.
 
-Both codes have the same meshes where the element is C3D8I. C3D20R is the better element: it shows how
-much of the difference is the mesh.
+For the element C3D8I both codes have the same meshes. C3D20R is more accurate: it shows which part of the
+difference is due to the mesh.
 """
 
 from functools import cache, partial
@@ -27,7 +27,7 @@ FORCE = 100.0  # N
 WARM, GRADIENT = 20.0, 500.0  # K, K/m along y
 _PATCH = 0.016  # m, side of the loaded square, that of a pad
 _START = 0.056  # m from the rear end of the rail, as between two mounts
-_FREE = 0.008  # m from a mount within which the stress of the clamp is left out
+_FREE = 0.008  # m from a mount; the stress of the clamp within it is left out
 
 
 class Setting(NamedTuple):
@@ -95,8 +95,8 @@ def loaded_here(chosen: Setting) -> dict[str, float]:
 
 
 def _stresses(chosen: Setting, at_points: np.ndarray) -> dict[str, float]:
-    """The mean over the points, and where both codes have the same points the largest: it is that of
-    an inner corner, and grows on finer meshes."""
+    """The mean over the points and, if both codes have the same points, the largest value. The
+    largest value is at an inner corner and grows on finer meshes."""
     found = {"mean stress": 1e-6 * float(at_points.mean())}
     if chosen.kind == LINEAR:
         found["largest stress"] = 1e-6 * float(at_points.max())
@@ -182,12 +182,13 @@ def _equal_elements(setting: str) -> bool:
 
 
 def _load_within(setting: str, quantity: str) -> float:
-    """Equal elements differ by the digits that CalculiX prints; C3D20R by the mesh."""
+    """Equal elements differ by the printed digits of CalculiX, C3D20R by the mesh."""
     return 1e-6 if _equal_elements(setting) else {"deflection": 3e-3}.get(quantity, 2e-2)
 
 
 def _bow_within(setting: str, _: str) -> float:
-    """C3D8I takes the mean temperature of an element: a tenth at 4 mm, a fourth of it at 2 mm."""
+    """C3D8I uses the mean temperature of an element, which is an error of a tenth at 4 mm, and of a
+    fourth of that at 2 mm."""
     return {4.0: 0.1, 2.0: 0.03, 1.0: 0.02}[SETTINGS[setting].ours]
 
 

@@ -27,13 +27,14 @@ _LONG = 2.0  # s
 class Case:
     """One case.
 
-    ``name`` is unique, ``title`` stands on the page. ``inputs``: plain values, kept with the result.
-    ``matched`` and ``unmatched``: what both sides share, and what the peer cannot express.
-    ``settings``: meshes or conditions. ``units``: the unit of each quantity. ``ours`` and ``theirs``
-    map a setting to quantities in these units, and ``cpu_s``, the processor time, where they measure
-    it themselves. ``within`` maps a setting and a quantity to the largest difference, relative to the
-    largest value of this quantity. ``slow``: settings that take more than a few seconds here.
-    ``work``: points of the diagram of work and precision, with what their error is measured on.
+    ``name`` is unique; ``title`` is for the page. ``inputs``: plain values, kept with the result.
+    ``matched``: properties that are equal on both sides; ``unmatched``: properties that the peer
+    lacks. ``settings``: meshes or conditions. ``units``: the unit of each quantity. ``ours`` and
+    ``theirs`` map a setting to quantities in these units, and to ``cpu_s``, the processor time, if
+    they measure it themselves. ``within`` maps a setting and a quantity to the largest difference,
+    relative to the largest value of this quantity. ``slow``: settings that take more than a few
+    seconds here. ``work``: points of the diagram of work and precision, with the quantity of their
+    error.
     """
 
     name: str
@@ -53,7 +54,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Peer:
-    """Another code. ``version`` raises PeerMissing where it is not installed."""
+    """Another code. ``version`` raises PeerMissing if it is not installed."""
 
     name: str
     what: str
@@ -62,8 +63,8 @@ class Peer:
 
 
 def timed(solve: Callable[[], Mapping[str, float]]) -> tuple[dict[str, float], float]:
-    """What ``solve`` finds, and its processor time (s): its own where it gives one; else that of the
-    call, or of a second one where the first took so short that compilation may be most of it."""
+    """The result of ``solve``, and its processor time (s): as measured by ``solve`` itself, or else
+    of the call. A short call is repeated for the time, because compilation may be most of it."""
     began = time.process_time()
     found = dict(solve())
     spent = time.process_time() - began

@@ -16,7 +16,7 @@ from validation.peers.case import PeerMissing
 from validation.peers.springs_problem import Problem
 
 FIXED, ADAPTIVE = "RK44", "DOPRI5"
-# s, of an adaptive step: none passes over a contact, and each may be as short as a touch needs
+# s, bounds of an adaptive step: the largest does not miss a contact, the smallest resolves a touch
 _LONGEST, _SHORTEST = 2e-4, 1e-12
 
 
@@ -36,7 +36,7 @@ class Law(NamedTuple):
     damping: float  # N s/m
     depth: float | None
     friction: float  # coefficient, static and dynamic
-    slip: float  # m/s, where it is full
+    slip: float  # m/s, at which it is fully reached
 
 
 def engine() -> Any:
@@ -54,8 +54,8 @@ def version() -> str:
 
 
 class Wrench:
-    """Forces and moments on both bodies, about their mass centres in scene axes, for one state at a
-    time: Exudyn asks for each of the four vectors by itself."""
+    """Forces and moments on both bodies, about their mass centres in scene axes. The last state is
+    kept, because Exudyn requests each of the four vectors separately."""
 
     def __init__(self, problem: Problem, law: Law):
         self.problem, self.law = problem, law

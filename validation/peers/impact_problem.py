@@ -1,9 +1,9 @@
 """A rigid block slides along an elastic bar and strikes it: the case of ``quadratic``, solved by the
 reference on a mesh of its own.
 
-The bar lies along X between two clamped ends, its upper side in the plane z = -HEIGHT under the block's
-mass centre. The block has one crowned pad below it, which presses with the interface stiffness and slips
-throughout.
+The bar lies along X between two clamped ends. Its upper side is in the plane z = -HEIGHT below the
+block's mass centre. The block has one crowned pad below it. The pad presses with the interface stiffness
+and always slips.
 """
 
 import tempfile

@@ -1,16 +1,16 @@
-"""The model ``springs`` in MuJoCo: two free bodies, a small ball at each pad face against a box that is
-its wall, in pairs of their own.
+"""The model ``springs`` in MuJoCo: two free bodies; a small ball at each pad face touches one box, its
+wall.
 
 MuJoCo's contact is a constraint on accelerations. With the impedance d, the reference acceleration
 -b v / d - k p / d and an inverse mass D along the contact it gives the force
 
     N = (k p + b v - d a) / ((1 - d) D + d A)
 
-where A f is what the contacts themselves accelerate and a what all else does. At the least impedance,
-1e-4, both terms with d are below a thousandth of it, so that k = K (1 - d) D and b = C (1 - d) D make a
-spring K and a damper C that never pull. Friction is on an elliptic cone. A slip s raises the normal
-force by mu B s, with B the damping of the friction constraint, so B is small, and ``impratio`` is large
-so that friction holds below 10 mm/s all the same.
+where A f is the acceleration by the contacts and a the acceleration by all other forces. At the smallest
+impedance, 1e-4, both terms with d are below a thousandth of N. So k = K (1 - d) D and b = C (1 - d) D
+make a spring K and a damper C that never pull. Friction has an elliptic cone. A slip s increases the
+normal force by mu B s, with the damping B of the friction constraint. So B is small, and ``impratio`` is
+large, because friction must still hold below 10 mm/s.
 
 Source: MuJoCo documentation, Computation, sections "Constraint model" and "Parameters".
 """

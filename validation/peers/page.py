@@ -25,7 +25,7 @@ _STYLES = (
     (AMBER, "D"),
     (GREY, "v"),
 )
-_EQUAL = 1e-5  # rows with a smaller limit differ by rounding, printed digits and time steps alone
+_EQUAL = 1e-5  # rows with a smaller limit differ only by rounding, printed digits and time steps
 _CAPTION = (
     "Error over processor time of one thread. Errors of finite elements are against quadratic ones of "
     "2 mm (rail) and 3 mm (impact), those of rigid bodies against tipoff at a tolerance of 1e-11, "
@@ -43,7 +43,7 @@ def stored(study: "Study") -> dict | None:
 
 
 def draw(page: "Page") -> list[Part]:
-    """The section; nothing where no peer was run."""
+    """The section; empty if no peer was run."""
     found = page.documents.get("peers")
     return parts(found["peers"]) if found else []
 
@@ -71,10 +71,10 @@ def equal_error(peers: list[dict]) -> Table:
             codes.setdefault(point["code"], []).append(point)
         reached = max(min(point["error"] for point in points) for points in codes.values())
         for code, points in codes.items():
-            # equal elements differ in the last digits that are printed
+            # equal elements differ in the last printed digits
             enough = [point for point in points if point["error"] <= 1.001 * reached]
             best = min(enough, key=lambda point: point["cpu_s"])
-            # as text: errors of a code are below the smallest step of a result
+            # as text, because some errors are below the smallest step of a result
             rows.append(
                 (case["error_of"], number(reached, ".2g"), code, best["setting"], best["cpu_s"])
             )
@@ -150,15 +150,17 @@ def picture(peers: list[dict]) -> Chart:
                     Line(
                         [point["cpu_s"] for point in points],
                         [point["error"] for point in points],
-                        code,
-                        colour,
+                        name=code,
+                        colour=colour,
                         marker=marker,
                         labels=tuple(point["setting"] for point in points),
                     )
                 )
             if lines:
                 title = case["error_of"]
-                panels.append(Panel(title, "CPU time (s)", "error (%)", lines, log=True))
+                panels.append(
+                    Panel(title, "CPU time (s)", y_label="error (%)", lines=lines, log=True)
+                )
     return Chart("peers", panels, columns=2, height=380)
 
 

@@ -1,8 +1,8 @@
 """The sliding impact of ``impact_problem`` in 27-node hexahedra of scikit-fem with a leapfrog in NumPy.
 
-No code of the solvers is used: the stiffness is scikit-fem's, the mass is lumped by Simpson's rule,
-whose points are the nodes, and the contact is a sum over a grid of points of the pad. The block moves
-in the plane y = 0: x, z and pitch.
+No code of the solvers is used. The stiffness is from scikit-fem. The mass is lumped by Simpson's rule
+with the nodes as points. The contact is a sum over a grid of points of the pad. The block moves in the
+plane y = 0: x, z and pitch.
 
     M v' = f - K u,    p = wall(x) - z > 0:  dN = k p dA,   friction mu N against the slip
 """
@@ -68,7 +68,7 @@ def bar(size: float) -> Bar:
         grid[i, j] = number[chosen]
         grids.append(grid)
     inner = csr_array(stiffness)[free][:, free]
-    return Bar(inner, 1.0 / mass[free], xs, ys, grids[0], grids[1])
+    return Bar(inner, 1.0 / mass[free], x=xs, y=ys, across=grids[0], along=grids[1])
 
 
 def _at(place: np.ndarray, value: float) -> np.ndarray:
@@ -173,7 +173,7 @@ class Pad:
 
 def _quadratic(place: np.ndarray, line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """First node (g,) and values (g,3) of the quadratic functions on the element around each of
-    ``place``; ``line`` are corners and middles."""
+    ``place``; ``line``: places of corners and middles."""
     first = 2 * np.clip(
         ((place - line[0]) / (line[2] - line[0])).astype(int), 0, line.size // 2 - 1
     )
@@ -189,7 +189,7 @@ SETTINGS = {
 
 
 def version() -> str:
-    """Version of scikit-fem, which the project needs itself."""
+    """Version of scikit-fem, which the project itself requires."""
     return metadata.version("scikit-fem")
 
 

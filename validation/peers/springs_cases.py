@@ -23,7 +23,9 @@ from validation.peers.springs_problem import (
 
 _AFTER = 2.1e-3  # s from the start of the window to the end of a run
 _FRICTION, _SLIP = 0.2, 0.01  # of scene ``reference``: coefficient, m/s
-IMPACT = exudyn_model.Law(7e4 * 1e3**1.5, 1.5, 6e4, 3e-4, _FRICTION, _SLIP)
+IMPACT = exudyn_model.Law(
+    7e4 * 1e3**1.5, 1.5, damping=6e4, depth=3e-4, friction=_FRICTION, slip=_SLIP
+)
 _SHOWN = "phi35"  # in the diagram of work and precision
 _TOLERANCES = (1e-2, 1e-4, 1e-6, 1e-8)
 _STEPS = (4e-5, 2e-5, 1e-5, 5e-6)  # s

@@ -18,11 +18,11 @@ from tipoff.mechanics.model_names import SPRINGS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene, load
 
-# The conditions of the catalogue in which pads touch and 1 um of clearance does not decide.
+# Conditions of the catalogue in which pads touch and 1 um of clearance changes little.
 CONDITIONS = ("phi0", "phi15", "phi35", "phi60", "phi90", "h1", "h2", "h3", "h4", "h10")
-TIGHT = 1e-11  # relative tolerance of our own answer
+TIGHT = 1e-11  # relative tolerance of our own run
 AXES = "xyz"
-# A spring and damper of which every code has a form: as stiff as IMPACT at 20 um.
+# A spring and damper that every code can express: as stiff as IMPACT at 20 um.
 LINEAR = {
     "law": "linear",
     "clearance": 0.25e-3,
@@ -33,8 +33,8 @@ LINEAR = {
 
 
 class Problem(NamedTuple):
-    """One condition. Places from the payload's mass centre in body axes, walls from the platform's
-    mass centre in platform axes."""
+    """One condition. Places relative to the payload's mass centre in body axes, walls relative to
+    the platform's mass centre in platform axes."""
 
     mass: float  # kg
     inertia: np.ndarray  # (3,3) kg m2
@@ -107,7 +107,7 @@ def solved(condition: str, law: str, friction: bool, tolerance: float = TIGHT) -
 
 @cache
 def window(condition: str, law: str, friction: bool) -> float:
-    """Start (s) of the settled window of our own tight run, which every code shares."""
+    """Start (s) of the settled window of our own tight run, used for all codes."""
     start = solved(condition, law, friction).outcome.window_start
     assert start is not None
     return start

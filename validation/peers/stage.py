@@ -1,4 +1,4 @@
-"""Comparisons with other codes: runs every case in both, in one go, and keeps what was found.
+"""Comparisons with other codes: runs every case in both codes, and keeps the results.
 
 The results of a peer are one JSON file, ``<peer>.json``; those in the folder ``kept`` are part of the
 project. Tests compare today's numbers with them where a peer is not installed.
@@ -43,9 +43,9 @@ PEERS = (
 
 
 def run(out: Path, names: Iterable[str] = ()) -> dict:
-    """Solve the cases of all peers, or of those named; writes ``out``/peers/<peer>.json. A peer that
-    is not installed is a ``missing`` row and keeps the file it has. Raises SceneError for a name that
-    no peer has."""
+    """Solve the cases of all peers, or of the named ones; writes ``out``/peers/<peer>.json. A peer
+    that is not installed is a ``missing`` row, and its old file stays. Raises SceneError for an
+    unknown name of a peer."""
     wanted, folder, rows = {name.lower() for name in names}, Path(out) / "peers", []
     known = [peer.name for peer in PEERS]
     if unknown := sorted(wanted - {name.lower() for name in known}):
@@ -64,8 +64,8 @@ def run(out: Path, names: Iterable[str] = ()) -> dict:
 
 
 def stored(folder: Path) -> list[dict]:
-    """The results in a folder, in the order of the peers; those there are none of are missing
-    rows. Raises DamageError."""
+    """The results in a folder, in the order of the peers; a peer without a result is a missing row.
+    Raises DamageError."""
     return [
         read_json(folder / _file(peer))
         if (folder / _file(peer)).is_file()

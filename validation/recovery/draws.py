@@ -22,9 +22,9 @@ NAMES = (
     "contact.interface_stiffness",
     "thrust_offset.eccentricity.y",
 )
-# Least squares from the scene's values, beside a token of a global search.
+# Least squares from the scene's values; the global search is as small as possible.
 LOCAL = Plan(points=2, starts=1, evaluations=4, polish=8)
-_NEAR = 0.03  # of the bounds, hidden values lie from the scene's
+_NEAR = 0.03  # largest distance of hidden values from the scene's, as a share of the bounds
 
 
 class Draw(NamedTuple):
@@ -40,8 +40,8 @@ class Draw(NamedTuple):
         return scene.replace(self.constants | added.overrides(scene, self.changes))
 
     def inside(self, intervals: Sequence[Sequence[float]]) -> np.ndarray:
-        """Whether each hidden value is inside its interval (p,). One without ends, of a parameter
-        that the curves do not determine, contains nothing."""
+        """Whether each hidden value is inside its interval (p,). A parameter that the curves do not
+        determine has no interval: False."""
         return np.array(
             [
                 -np.inf < low <= value <= high < np.inf

@@ -1,8 +1,8 @@
 """Stage ``recovery``: whether a calibration of compliant contact finds hidden values.
 
-Twenty times, values near the scene's are drawn, the surrogate's curves with them get 2 % of noise,
-and a fit that starts from the scene's values gives intervals. A held-out condition compares rates.
-Then clearance and friction are hidden in one run of the reference.
+Twenty draws change values near the scene's. The curves of the surrogate with these values get 2 % of
+noise, and a fit from the scene's values gives intervals. Rates are compared on a held-out condition. Then
+clearance and friction are hidden in one run of the reference.
 """
 
 from collections.abc import Sequence
@@ -20,7 +20,8 @@ from tipoff.workspace.words import counted
 if TYPE_CHECKING:
     from validation.recovery.draws import Draw
 
-HIDDEN = {"contact.clearance": 1.05, "friction.dynamic": 0.65}  # of the scene's, in the reference
+# hidden value over the scene's, in the reference
+HIDDEN = {"contact.clearance": 1.05, "friction.dynamic": 0.65}
 _CONDITIONS = 3
 
 
@@ -34,10 +35,10 @@ class Options:
 
 
 def run(study: Study, options: Options = Options()) -> dict:
-    """``rows``: parameter, in how many draws each interval contains the hidden value, in how many
-    the curves do not determine it, and the median half width (SI) of the others, None without any;
-    ``held_out``: largest errors of its settled rates (deg/s), of a fitted condition where none is
-    held out; ``reference``: values hidden in the reference and found.
+    """``rows``: parameter, number of draws in which each interval contains the hidden value, number
+    of draws that do not determine it, and the median half width (SI) of the others, None without
+    any; ``held_out``: largest errors of the settled rates (deg/s) of a held-out condition, or of a
+    fitted one without any; ``reference``: hidden and found values in the reference.
 
     Raises StudyError for a scene without contact, clearance or friction, whose values are hidden.
     """
@@ -56,7 +57,7 @@ def run(study: Study, options: Options = Options()) -> dict:
     return STAGE.run(study, options, make)
 
 
-STAGE = Stage("recovery", __name__, Options)
+STAGE = Stage("recovery", __name__, options=Options)
 
 
 def _drawn(study: Study, options: Options) -> dict:

@@ -19,7 +19,7 @@ def draw(found: Ablation) -> list[Part]:
 
 
 def terminal(found: Ablation) -> list[Part]:
-    """What each effect changes and costs."""
+    """The change and the cost of each effect."""
     names = ("fidelity", "variant", "status", "time_s", "time_ratio", "settled_rate_change_deg_s")
     title = f"Without each effect, condition {found.condition}:"
     return [Table.of_records(found.rows, *names, title=title)]

@@ -1,11 +1,11 @@
 """Stage ``ablation``: runs without each effect, one at a time, in both fidelities: change of rates
 and time, and the effects in each compiled kernel.
 
-The baseline has all effects: those that the scene lacks are added with the small values in
-``ADDED``, except those that need values of the scene (contact, friction, platform, and temperature
-for a material without expansion). The last lines are the scene itself and the scene without any
-effect; the reference has one more, the baseline with the rails that rest stepped too. The surrogate
-runs all variants in turn, so that other load on the machine affects all of them alike.
+The baseline has all effects: effects that the scene lacks are added with the small values in ``ADDED``,
+except effects that need values of the scene (contact, friction, platform, and temperature for a material
+without expansion). The last lines are the scene itself and the scene without any effect. The reference
+has one more line: the baseline with all rails stepped, also at rest. The surrogate runs all variants in
+turn, so other load on the machine affects all of them alike.
 """
 
 import importlib
@@ -50,8 +50,8 @@ class Row:
 
 @dataclass(frozen=True)
 class Ablation:
-    """``rows`` of a ``condition``, with ``element_size_m`` of the reference; ``added`` values, as
-    overrides, by the effect that the scene lacks."""
+    """``rows`` of a ``condition``, with ``element_size_m`` of the reference; ``added``: overrides
+    by the effect that the scene lacks."""
 
     condition: str
     added: dict[str, dict]
@@ -78,7 +78,7 @@ def variants(scene: Scene) -> dict[str, dict]:
 
 
 def run(study: Study) -> dict:
-    """The content of ``Ablation``, of the first refined condition or else the first one."""
+    """The content of ``Ablation`` on the first refined condition, or else on the first condition."""
     name = (study.scene.agreement.refined or tuple(study.conditions))[0]
 
     def make() -> tuple[Ablation, list[Path]]:
@@ -103,8 +103,8 @@ STAGE = Stage("ablation", __name__, result=Ablation)
 
 
 def surrogate_runs(study: Study, name: str, lines: dict[str, dict]) -> list[Run]:
-    """A run of the surrogate for each line: on the compliance of its rails, unless there is no
-    contact. No rail has inertia: a number of modes chosen for each line would be one more change."""
+    """A run of the surrogate for each line, on the compliance of its rails if it has contact. All
+    runs have no rail modes, because a number chosen for each line would be another change."""
     scenes = {line: study.condition(name).replace(changes) for line, changes in lines.items()}
     under = study.compliances_of(scenes)
     return [
@@ -121,15 +121,15 @@ def surrogate_runs(study: Study, name: str, lines: dict[str, dict]) -> list[Run]
 
 
 def _timed_reference(study: Study, runs: list[Run]) -> tuple[list[Trajectory], list[float]]:
-    """The results, and the processor time (s) of the thread of each, which parallel runs do not
+    """The results, and the processor time (s) of the thread of each run, which parallel runs do not
     change."""
     found = study.store.fill("ablation, highfi", runs)
     return found, [run.cost.get("cpu_s", run.cost["wall_s"]) for run in found]
 
 
 def timed_surrogate(study: Study, runs: list[Run]) -> tuple[list[Trajectory], list[float]]:
-    """The results of runs in turn, and the median time (s) of their time loops, without set-up and
-    evaluation, which are the same for all."""
+    """The results of runs in turn, and the median time (s) of their time loops. Set-up and
+    evaluation are left out, because they are the same for all."""
     for run in runs:
         warm_up(run)
     rounds = [[timed(run) for run in runs] for _ in range(study.settings.lowfi_repeats)]

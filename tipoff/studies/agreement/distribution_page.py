@@ -17,7 +17,7 @@ from tipoff.studies.render.table import Column, Table
 
 Shown = tuple[Distribution, Verdict]
 _VERDICT = ("verdict", lambda shown: shown[1].verdict)
-_SHOWN = {"compliant": (VERMILION, 1.6, "-"), "calibrated": (AMBER, 1.6, "--")}
+_SHOWN = {"compliant": (VERMILION, "-"), "calibrated": (AMBER, "--")}  # colour, dash
 _CAPTION = (
     "Share of the neighbours of {condition} with a smaller settled rate: {count} runs of the reference, "
     "{further:,} of each surrogate. Calibrated springs are the control."
@@ -65,14 +65,22 @@ def picture(item: Distribution, name: str = "distributions") -> Chart:
     for place, axis in enumerate(AXES):
         values = sorted(rates[place] for rates in item.settled_deg_s)
         steps = [value for value in values for _ in (0, 1)]
-        shares = [(number + up) / len(values) for number in range(len(values)) for up in (0, 1)]
-        lines = [Line(steps, shares, FINITE_ELEMENTS, NAVY, 3.0, "-", 0.6)]
-        for model, look in _SHOWN.items():
+        up_to = [(number + up) / len(values) for number in range(len(values)) for up in (0, 1)]
+        lines = [
+            Line(steps, up_to, name=FINITE_ELEMENTS, colour=NAVY, width=3.0, dash="-", opacity=0.6)
+        ]
+        for model, (colour, dash) in _SHOWN.items():
             own = item.models.get(model)
             if own and (rates := own.quantiles.rates_deg_s):
-                lines.append(Line(rates[place], own.quantiles.shares, own.title, *look))
+                shares = own.quantiles.shares
+                lines.append(Line(rates[place], shares, name=own.title, colour=colour, dash=dash))
         panels.append(
-            Panel(f"{item.condition}, rate {axis}", "settled rate (deg/s)", "share", lines)
+            Panel(
+                f"{item.condition}, rate {axis}",
+                "settled rate (deg/s)",
+                y_label="share",
+                lines=lines,
+            )
         )
     return Chart(name, panels, columns=3, height=280)
 
@@ -85,7 +93,7 @@ _BEFORE: tuple[tuple[Column | str, Callable[[Shown], Any]], ...] = (
 
 
 def summary(found: Sequence[Distribution], name: str = "distributions") -> Table:
-    """One row for each condition and model: the comparison that decides."""
+    """One row for each condition and model: the comparison with the largest bound."""
     columns = (
         *_BEFORE,
         ("rate, quantile", _of_worst(lambda item: f"{item.axis}, {100.0 * item.share:g} %")),

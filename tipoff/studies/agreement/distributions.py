@@ -1,9 +1,9 @@
 """Conditions that no single run can judge: both models on neighbours of the condition within 1 um.
 
-A condition is judged as a distribution where its reference is not converged, or where 1 um of clearance
-moves a settled rate of the reference by more than the limit of agreement (sensitive). Both models stand
-on the coarse mesh, the surrogate with the rail compliance of that mesh, so that the mesh is no part of
-their difference. ``agreement.neighbours`` draws, ``agreement.equivalence`` judges.
+A condition is judged as a distribution if its reference is not converged, or if 1 um of clearance changes
+a settled rate of the reference by more than the limit of agreement (sensitive). Both models use the
+coarse mesh, the surrogate by the rail compliance of this mesh, so the mesh adds nothing to their
+difference. ``agreement.neighbours`` draws, ``agreement.equivalence`` judges.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -23,17 +23,17 @@ from tipoff.workspace.announcing import announce
 from tipoff.workspace.progress import Board
 from tipoff.workspace.study import Study
 
-FURTHER = 8  # draws of the surrogates beside each of the reference; more would add little
+FURTHER = 8  # further draws of a surrogate for each draw of the reference; more would add little
 _CURVE = tuple(round(0.01 * share, 2) for share in range(1, 100))  # of distributions that are drawn
-_STABLE_SHARE = 4  # a reference that 1 um does not move much needs fewer neighbours
-_LEAST = 5  # fewer do not enclose a median
+_STABLE_SHARE = 4  # divisor of the number of neighbours if 1 um changes the reference little
+_LEAST = 5  # fewer give no bounds of a median
 _FORETOLD = 20
 
 
 @dataclass(frozen=True)
 class Quantiles:
-    """Distribution of the settled rates of a surrogate: ``rates_deg_s`` of x, y and z at the ``shares``,
-    None where no case settled."""
+    """Distribution of the settled rates of a surrogate: ``rates_deg_s`` of x, y and z at the
+    ``shares``, None if no case settled."""
 
     shares: list[float]
     rates_deg_s: list[list[float]] | None
@@ -41,8 +41,7 @@ class Quantiles:
 
 @dataclass(frozen=True, kw_only=True)
 class Verdict:
-    """Verdict on one surrogate, called ``title``; the ``comparisons`` are empty where cases did not
-    settle."""
+    """Verdict on one surrogate, called ``title``; ``comparisons`` is empty if cases did not settle."""
 
     title: str
     judgement: str
@@ -58,9 +57,9 @@ class Verdict:
 
 @dataclass(frozen=True, kw_only=True)
 class Distribution:
-    """Settled rates of the reference on the ``neighbours`` of one condition, None where one did not settle,
-    and the verdicts on surrogates by name, which have ``further`` neighbours too; ``limit_deg_s`` is the
-    smallest margin."""
+    """Settled rates of the reference on the ``neighbours`` of one condition, None where one did not
+    settle, and the verdicts on surrogates by name. Surrogates also ran ``further`` neighbours.
+    ``limit_deg_s`` is the smallest margin."""
 
     condition: str
     neighbours: int
@@ -83,11 +82,11 @@ class Distribution:
 def counts(
     rows: Iterable[Row], growths: Iterable[Growth], undecided: Iterable[str], draws: int
 ) -> dict[str, int]:
-    """Number of neighbours by condition, for those that are judged as distributions: ``draws``, or a
-    quarter where the reference is not converged though 1 um does not move it by more than the limit.
-    ``undecided`` conditions, which no single run can judge either, were found elsewhere."""
+    """Number of neighbours for each condition that is judged as a distribution: ``draws``, or a
+    quarter if the reference is not converged but 1 um does not change it by more than the limit.
+    The caller found the ``undecided`` conditions, which no single run can judge either."""
     found = {item.condition: item for item in growths if item.model == FINITE_ELEMENTS}
-    # one whose twin did not settle counts as sensitive
+    # a condition whose twin did not settle counts as sensitive
     sensitive = {name for name, item in found.items() if item.sensitive is not False}
     sensitive |= set(undecided)
     few = max(_LEAST, draws // _STABLE_SHARE)
@@ -101,8 +100,8 @@ def counts(
 def judge(
     study: Study, wanted: Mapping[str, int], surrogates: Sequence[Candidate], limit: float
 ) -> list[Distribution]:
-    """The distributions of each condition with its verdicts; ``limit`` (deg/s) is that of the settled
-    rates. The surrogates stand on the coarse mesh."""
+    """The distributions of each condition with its verdicts; ``limit`` (deg/s) of the settled
+    rates. The surrogates have the rail compliance of the coarse mesh."""
     distance = study.settings.clearance_change
     possible = {
         name: count
@@ -219,7 +218,7 @@ def _lost(rates: np.ndarray) -> int:
 
 
 def _why(word: str, found: list[Comparison], draws: int) -> str:
-    """What decides a verdict; empty for agreement."""
+    """The reason for a verdict; empty for agreement."""
     if word == verdicts.AS_DISTRIBUTION:
         return ""
     shown = [item for item in found if item.shown]
@@ -232,7 +231,7 @@ def _why(word: str, found: list[Comparison], draws: int) -> str:
         return f"{_place(worst)} {times:.3g} x margin"
     worst = max(found, key=lambda item: item.width)
     needed = equivalence.needed(found, draws)
-    # far beyond, the width of so few draws foretells nothing
+    # the width from few draws predicts no larger number
     words = f"up to {needed}" if needed <= _FORETOLD * draws else f"more than {_FORETOLD * draws}"
     return (
         f"with {draws} neighbours the {_place(worst)} of the reference is uncertain by "
@@ -248,8 +247,8 @@ def _place(item: Comparison) -> str:
 def combined(
     rows: Iterable[Row], found: Iterable[Distribution], wanted: Iterable[str], model: str
 ) -> list[Row]:
-    """Rows of the agreement table of a ``model`` with the verdicts on distributions. A condition that
-    was ``wanted`` and has none cannot be judged."""
+    """Rows of the agreement table of a ``model`` with the verdicts on distributions. A ``wanted``
+    condition without a distribution cannot be judged."""
     own = {item.condition: item.models[model] for item in found}
     asked = set(wanted)
     return [_as_distribution(row, own) if row.condition in asked else row for row in rows]

@@ -8,7 +8,7 @@ With settled rates r, over all axes, and U the uncertainty of the finest mesh fr
     uncertainty of a mesh of size h  u(h) = max (U + |r_h - r_finest|)
 
 A finer mesh makes the reference slower without need; a coarser one cannot resolve the error of the
-surrogate. Where even the finest mesh is not sufficient, its speed-up is a lower bound.
+surrogate. If even the finest mesh is not sufficient, its speed-up is a lower bound.
 """
 
 from collections.abc import Sequence
@@ -19,8 +19,8 @@ from tipoff.workspace.timing import Speedup
 
 @dataclass(frozen=True, kw_only=True)
 class EqualAccuracy(Speedup):
-    """A speed-up over the chosen mesh. ``error_deg_s``: of the surrogate. ``surer``: whether the uncertainty
-    of the mesh is below it."""
+    """A speed-up over the chosen mesh. ``error_deg_s``: error of the surrogate. ``surer``: whether
+    the uncertainty of the mesh is below this error."""
 
     error_deg_s: float
     element_size_m: float
@@ -48,8 +48,8 @@ class EqualAccuracy(Speedup):
 def uncertainties(
     rates: Sequence[tuple[Sequence[float | None], float | None]],
 ) -> list[float] | None:
-    """u(h) in deg/s of every mesh, coarsest first; None where one is unknown. Each of ``rates`` is
-    one axis: its values (deg/s) by mesh, and the uncertainty (deg/s) of the last."""
+    """u(h) in deg/s of every mesh, coarsest first; None if unknown. Each of ``rates`` is one axis:
+    its values (deg/s) by mesh, and the uncertainty (deg/s) of the last value."""
     by_axis = []
     for values, uncertainty in rates:
         known = [value for value in values if value is not None]
@@ -62,7 +62,7 @@ def uncertainties(
 def coarsest(
     sizes: Sequence[float], uncertainty: Sequence[float], error: float
 ) -> tuple[float, float]:
-    """Size (m) and uncertainty (deg/s) of the first of the meshes of falling ``sizes`` with an
-    ``uncertainty`` below ``error`` (deg/s), else of the last."""
+    """Size (m) and uncertainty (deg/s) of the first mesh with an ``uncertainty`` below ``error``
+    (deg/s), or of the last mesh; ``sizes`` fall."""
     meshes = list(zip(sizes, uncertainty))
     return next((mesh for mesh in meshes if mesh[1] < error), meshes[-1])

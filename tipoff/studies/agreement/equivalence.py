@@ -5,21 +5,22 @@ and each share p of ``SHARES``
 
     D = b S + (1 - b) S' - R         b = (cov(R, S) + var S') / (var S + var S')
 
-R and S are the Harrell-Davis estimates of the quantile from the n draws, S' is that of the surrogate
-from the others. b = 1 compares draw by draw, where the models follow each other; b = 0 compares two
-samples, where chaos has parted them; this b has the smallest variance (control variate).
+R and S are the Harrell-Davis estimates of the quantile from the n draws. S' is the estimate of the
+surrogate from the further draws. b = 1 compares draw by draw, which is best if the rates of the models
+correlate. b = 0 compares two samples, which is best if chaos removes the correlation. This b has the
+smallest variance (control variate).
 
 The margin is the limit of agreement of the settled rates or, if larger, ``MARGIN_SHARE`` of the distance
-between the 10 and 90 % quantiles of the reference: what remains is small beside what 1 um does. A
-normal distribution that is shifted by this margin differs from the reference by at most 0.25 in any
+between the 10 and 90 % quantiles of the reference: such a difference is small beside the effect of 1 um.
+A normal distribution that is shifted by this margin differs from the reference by at most 0.25 in any
 probability. Bounds of D / margin are percentiles of the bootstrap over draws, expanded for small n, so
-that they hold the uncertainty of the margin too.
+they include the uncertainty of the margin.
 
 * **agrees**: all bounds lie within -1 and 1: two one-sided tests, and the intersection of all of them.
-* **misses**: a bound shows a difference above the margin, at a level that is divided by the number of
-  quantiles, where there are draws enough to enclose the quantile; or agreement is not shown although the
-  interval of every quantile of the reference is narrower than ``KNOWN`` margins, where equal
-  distributions agree in nine of ten trials (some 140 independent draws).
+* **misses**, for one of two reasons. A bound shows a difference above the margin, at a level divided by
+  the number of quantiles, and the draws are enough for bounds of the quantile. Or agreement is not shown
+  although the interval of every quantile of the reference is narrower than ``KNOWN`` margins: equal
+  distributions then agree in nine of ten trials (some 140 independent draws).
 * **cannot be judged**: neither is shown, and some quantile of the reference is less well known.
 
 Sources: Harrell and Davis, Biometrika 69 (1982) 635; Wilcox et al., Behav. Res. Methods 46 (2014)
@@ -53,8 +54,8 @@ _SEED = 20261124
 class Comparison:
     """One quantile ``share`` of the settled rate about ``axis``: values of both models, their
     difference D and the margin (deg/s); the one-sided bounds ``low`` and ``high`` of D and the
-    ``width`` of the interval of the reference's own quantile between its one-sided bounds, in
-    margins; the weight b; whether a difference above the margin is ``shown``."""
+    ``width`` between the one-sided bounds of the reference's quantile, in margins; the weight b;
+    whether a difference above the margin is ``shown``."""
 
     axis: Annotated[str, Column("rate")]
     share: Annotated[float, Column("quantile", "%", "g", 100.0)]
@@ -77,9 +78,9 @@ class Comparison:
 def compare(
     reference: np.ndarray, surrogate: np.ndarray, further: np.ndarray, limit: float
 ) -> list[Comparison]:
-    """Every quantile of every rate, from settled rates (n,3) deg/s of both models on the same draws,
-    and (m,3) of the surrogate on others; ``limit`` (deg/s) is the smallest margin. Raises ValueError
-    for fewer than two draws or ones without settled rates."""
+    """Every quantile of every rate, from settled rates (n,3) deg/s of both models on the same
+    draws, and (m,3) of the surrogate on others; ``limit`` (deg/s) is the smallest margin. Raises
+    ValueError for fewer than two draws or draws without settled rates."""
     if len(reference) < 2 or not all(
         np.isfinite(part).all() for part in (reference, surrogate, further)
     ):
@@ -127,8 +128,9 @@ def verdict(found: list[Comparison]) -> str:
 
 
 def needed(found: list[Comparison], draws: int) -> int:
-    """How many draws make every interval of the reference as narrow as ``KNOWN``; their width falls with
-    the root of the number. Up to twice too many where there are few, whose margin is uncertain too."""
+    """How many draws make every interval of the reference as narrow as ``KNOWN``; the width is
+    proportional to one over the root of the number. From few draws the result can be twice too
+    large, because the margin is uncertain too."""
     return math.ceil(draws * max(1.0, *(item.width / KNOWN for item in found)) ** 2)
 
 
@@ -144,8 +146,8 @@ def harrell_davis(samples: np.ndarray) -> np.ndarray:
 
 
 def _resampled(values: np.ndarray, generator: np.random.Generator) -> np.ndarray:
-    """Replicates (B,c,q) of the quantiles of many values (m,c): the place of a quantile among them has
-    a beta distribution, so that no value need be drawn again."""
+    """Replicates (B,c,q) of the quantiles of many values (m,c): the place of a quantile among them
+    has a beta distribution, so values need no resampling."""
     count, ordered = len(values), np.sort(values, axis=0)
     places = np.stack(
         [
@@ -162,20 +164,20 @@ def _resampled(values: np.ndarray, generator: np.random.Generator) -> np.ndarray
 
 
 def _tails(level: float, count: int) -> tuple[float, float]:
-    """Shares of bootstrap replicates beyond which one-sided bounds at a ``level`` lie: further out for
-    few draws, as Student's t is wider than the normal distribution."""
+    """Shares of bootstrap replicates beyond one-sided bounds at a ``level``: smaller for few draws,
+    because Student's t is wider than the normal distribution."""
     tail = float(ndtr(math.sqrt(count / (count - 1.0)) * stdtrit(count - 1, level)))
     return tail, 1.0 - tail
 
 
 def _enclosed(share: float, count: int) -> bool:
-    """Whether ``count`` draws reach beyond a quantile with ``CONFIDENCE``; a bootstrap of fewer knows
-    nothing of what lies there."""
+    """Whether ``count`` draws lie on both sides of a quantile with ``CONFIDENCE``. A bootstrap of
+    fewer draws has no values beyond the quantile."""
     return count >= order_statistics.runs_needed(max(share, 1.0 - share), CONFIDENCE)
 
 
 def _weights(own: np.ndarray, other: np.ndarray, apart: np.ndarray) -> np.ndarray:
-    """b (c,q) between 0 and 1; 0 where the surrogate does not vary."""
+    """b (c,q) between 0 and 1; 0 if the surrogate does not vary."""
     covariance = ((own - own.mean(0)) * (other - other.mean(0))).mean(0)
     total = other.var(0) + apart.var(0)
     with np.errstate(invalid="ignore", divide="ignore"):

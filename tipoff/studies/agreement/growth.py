@@ -5,16 +5,16 @@
     d_k  = mean of s over the free flight after contact k
     factor d_k / d_(k-1),   exponent ln(d_k / d_(k-1)) / (t_k - t_(k-1)),   t_k the end of contact k
 
-The walls are moved, not the payload, as for the floor: this affects every face and exists in both
-models. Before the first contact nothing differs. The first contact turns the length into a rate
-d_1; every later one adds a similar part, so that only d_k above k d_1 is growth.
+The walls are moved, as for the floor, because this affects every face and exists in both models. Before
+the first contact there is no difference. The first contact converts the distance into a rate d_1. Every
+later contact adds a similar part, so only d_k above k d_1 is growth.
 
-**Horizon**: the first instant at which s passes the gate of the settled rates and is not back below
-it after the same contact. Twins touch at different instants, so s peaks while only one of them is
-in contact; a peak that ends with the contact is a shift of time. Curves can be compared up to the
-horizon of the reference. **Sensitive**: 1 um changes a settled rate by more than the gate.
-**Chaotic**: sensitive, and d after the last of n contacts is above n d_1, so that growth from
-contact to contact is the cause. All of it is **not known** where a run did not settle.
+**Horizon**: the first instant at which s passes the gate of the settled rates and is not back below it
+after the same contact. Twins touch at different instants, so s peaks while only one of them is in
+contact. A peak that ends with the contact is only a shift of time. Curves can be compared up to the
+horizon of the reference. **Sensitive**: 1 um changes a settled rate by more than the gate. **Chaotic**:
+sensitive, and d after the last of n contacts is above n d_1, so growth from contact to contact is the
+cause. **Not known**: a run did not settle.
 """
 
 import math
@@ -31,13 +31,13 @@ from tipoff.studies.render.column import Column
 STABLE, SENSITIVE, CHAOTIC = "stable", "sensitive, not chaotic", "chaotic"
 UNKNOWN = "not known: a run did not settle"
 _BOUNCE = 1e-3  # s: contacts closer than this count as one
-_DRAWN = 300  # points of a curve that result files keep
+_DRAWN = 300  # points of a curve in a result file
 
 
 @dataclass(frozen=True)
 class Contact:
     """One contact of any of the twins: its begin and end (s), the separation after it (deg/s), and
-    since the one before the factor and the exponent (1/s), None for the first."""
+    the factor and exponent (1/s) since the contact before, None for the first."""
 
     start_s: float
     end_s: float
@@ -50,8 +50,8 @@ class Contact:
 class Growth:
     """Separation of one model from its twins on one condition, settled in deg/s (None where a run
     did not settle) and per um of the disturbance; factor and exponent (1/s) from the first contact
-    to the last, None with fewer than two; horizon (s), None where the gate is never left; the
-    verdicts above; and the curve, of each stretch its largest value."""
+    to the last, None with fewer than two; horizon (s), None if s never passes the gate; the
+    verdicts above; and the curve, thinned to the largest value of each interval."""
 
     condition: Annotated[str, Column("condition")]
     model: Annotated[str, Column("model")]
@@ -86,7 +86,7 @@ def growth(
     gate: float,
 ) -> Growth:
     """Growth of a ``disturbance`` (m) in one model, from runs that differ by it; ``gate`` (deg/s)
-    is that of the settled rates."""
+    of the settled rates."""
     time = min((common_time(nominal, twin) for twin in twins), key=lambda each: each[-1])
     apart = separation(time, nominal, twins)
     spans = contacts(time, np.any([_loaded(run, time) for run in (nominal, *twins)], axis=0))
@@ -140,9 +140,9 @@ def contacts(time: np.ndarray, loaded: np.ndarray) -> list[tuple[int, int]]:
 def horizon(
     time: np.ndarray, apart: np.ndarray, spans: list[tuple[int, int]], gate: float
 ) -> float | None:
-    """First instant (s) at which ``apart`` (n,) passes ``gate`` for longer than the contact it is
-    in, as ``contacts`` gives them; None without one. Between samples s is taken to grow
-    exponentially."""
+    """First instant (s) at which ``apart`` (n,) passes ``gate`` and stays above it after the
+    contact; ``spans`` as from ``contacts``; None without such an instant. Between samples s is
+    assumed to grow exponentially."""
     free = np.ones(time.size, dtype=bool)
     for first, after in spans:
         free[first : min(after, time.size - 1)] = False

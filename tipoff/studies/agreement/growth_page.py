@@ -27,13 +27,13 @@ _NOTES = (
     "deg/s). Chaotic: sensitive, and the factor is above the number of contacts. Without "
     "growth, the factor equals the number of contacts.",
 )
-_SHOWN = 1e-4  # of the gate; nothing below matters to a comparison
+_SHOWN = 1e-4  # of the gate; smaller differences do not affect a comparison
 _LOOKS = ((NAVY, 5.0, "-", 0.35), (VERMILION, 1.5, "-", 1.0))
 _MARKERS = "Do"
 
 
 def draw(page: "Page") -> list[Part]:
-    """The section, where a pad touches a rail."""
+    """The section; empty if no pad touches a rail."""
     found = page.read(stage.STAGE)
     if found is None or not found.growth:
         return []
@@ -55,8 +55,8 @@ def picture(found: Sequence[Growth]) -> Chart:
                 Panel(
                     condition,
                     "time after ignition (ms)",
-                    "separation (deg/s)",
-                    lines,
+                    y_label="separation (deg/s)",
+                    lines=lines,
                     band=(own[0].gate_deg_s, "below the limit of agreement"),
                     log_y=True,
                 )
@@ -65,7 +65,7 @@ def picture(found: Sequence[Growth]) -> Chart:
 
 
 def _lines(item: Growth, look: tuple[str, float, str, float], marker: str) -> list[Line]:
-    """The curve of one model and its horizon; nothing where the twins do not separate."""
+    """The curve of one model and its horizon; nothing if the twins do not separate."""
     points = [
         (1e3 * time, apart)
         for time, apart in zip(item.time_s, item.separation_deg_s)
@@ -74,7 +74,16 @@ def _lines(item: Growth, look: tuple[str, float, str, float], marker: str) -> li
     if not points:
         return []
     times, separations = zip(*points)
-    curve = Line(times, separations, item.model, *look)
+    colour, width, dash, opacity = look
+    curve = Line(
+        times,
+        separations,
+        name=item.model,
+        colour=colour,
+        width=width,
+        dash=dash,
+        opacity=opacity,
+    )
     if item.horizon_s is None:
         return [curve]
     return [
@@ -82,17 +91,17 @@ def _lines(item: Growth, look: tuple[str, float, str, float], marker: str) -> li
         Line(
             [1e3 * item.horizon_s],
             [item.gate_deg_s],
-            f"horizon, {item.model}",
-            look[0],
-            1.0,
-            "",
+            name=f"horizon, {item.model}",
+            colour=colour,
+            width=1.0,
+            dash="",
             marker=marker,
         ),
     ]
 
 
 def tables(found: Sequence[Growth]) -> list[Part]:
-    """Up to when curves can be compared, and the growth over the contacts."""
+    """The time up to which curves can be compared, and the growth over the contacts."""
     columns = (
         *("condition", "model"),
         ("contacts", lambda item: len(item.contacts)),
@@ -123,7 +132,7 @@ def _sentences(found: Sequence[Growth]) -> list[str]:
 
 
 def sentence(item: Growth) -> str:
-    """Up to when curves of one condition can be compared."""
+    """The time up to which curves of one condition can be compared."""
     horizon = f"{1e3 * item.end_s:.1f}" if item.horizon_s is None else _horizon(item)
     return f"{item.condition}: {item.verdict}; curves can be compared up to {horizon} ms"
 

@@ -1,15 +1,15 @@
 """Agreement at a quarter, once and four times the interface stiffness.
 
-The interface stiffness is a property of the launcher that is known to a factor only. Both models
-have it, so both move with it, and the reference is not judged by it. The claim of agreement must
-hold for any value: both models are compared at each, on the coarse mesh and with the rail
-compliance of that same mesh, so that the mesh is no part of their difference.
+The interface stiffness is a property of the launcher that is known only within a factor. Both models have
+it and change with it, so it is no uncertainty of the reference. Agreement must hold for any value. So
+both models are compared at each value, on the coarse mesh and with the rail compliance of this mesh, so
+the mesh adds nothing to their difference.
 
-A condition is judged at a stiffness where the reference is converged and not chaotic. Chaos is
-looked for where the models miss a limit: there the reference also runs with 1 um more and less
-clearance. Where one of these runs does not settle, nobody knows whether the miss is one of the
-model, and the condition cannot be judged. A condition that is chaotic at the nominal stiffness, or of
-which that is not known, is judged as a distribution (``agreement.distributions``).
+A condition is judged at a stiffness if the reference is converged and not chaotic there. If the models
+miss a limit, the reference also runs with 1 um more and less clearance, which shows chaos. If one of
+these runs does not settle, the cause of the miss is not known, and the condition cannot be judged. A
+condition that is, or may be, chaotic at the nominal stiffness is judged as a distribution
+(``agreement.distributions``).
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -35,9 +35,9 @@ _NOT_JUDGED = {
 
 @dataclass(frozen=True, kw_only=True)
 class Row(Judged):
-    """Both models on one condition at one ``factor`` of the stiffness: changes of the largest settled rate
-    relative to factor 1, metrics, verdict, and ``growth`` of 1 um in the reference, None where nobody
-    looked for it."""
+    """Both models on one condition at one ``factor`` of the stiffness: changes of the largest
+    settled rate relative to factor 1, metrics, verdict, and ``growth`` of 1 um in the reference,
+    None if not computed."""
 
     factor: Annotated[float, Column("factor", form="g")]
     interface_stiffness_n_m3: Annotated[float, Column("interface stiffness", "N/m³")]
@@ -95,7 +95,7 @@ def rows(study: Study, request: Callable[..., Run], context: Context) -> list[Ro
 
 
 def _regarding(row: Row, grown: str | None) -> Row:
-    """A row with the growth that was ``grown``. A miss can be judged only where 1 um does not grow."""
+    """A row with the computed growth, ``grown``. A miss is a verdict only if 1 um does not grow."""
     row = replace(row, growth=grown)
     if grown is None or (why := _NOT_JUDGED.get(grown)) is None:
         return row
@@ -105,15 +105,15 @@ def _regarding(row: Row, grown: str | None) -> Row:
 
 
 def undecided(found: Sequence[Row]) -> list[str]:
-    """Conditions that no single run can judge at the nominal stiffness: their reference is chaotic, or
-    that is not known."""
+    """Conditions that no single run can judge at the nominal stiffness: their reference is, or may
+    be, chaotic."""
     return [item.condition for item in found if item.factor == 1.0 and item.growth in _NOT_JUDGED]
 
 
 def combined(agreement: Iterable[verdicts.Row], found: Sequence[Row]) -> list[verdicts.Row]:
     """Rows of the agreement table with the verdicts at each factor under ``interface``. A condition
-    agrees where it does at every factor at which it is judged, and cannot be judged where it misses
-    at none and the growth of 1 um is not known at one."""
+    agrees if it agrees at every factor at which it is judged. It cannot be judged if it misses at
+    no factor and the growth of 1 um is not known at one factor."""
     return [
         _combined(row, [item for item in found if item.condition == row.condition])
         for row in agreement
@@ -122,7 +122,7 @@ def combined(agreement: Iterable[verdicts.Row], found: Sequence[Row]) -> list[ve
 
 def _combined(row: verdicts.Row, own: list[Row]) -> verdicts.Row:
     as_distribution = row.judgement == verdicts.AS_DISTRIBUTION
-    # the distribution has judged the nominal stiffness
+    # the distribution judges the nominal stiffness
     further = [item for item in own if not (as_distribution and item.factor == 1.0)]
     row = replace(row, interface=tuple(AtFactor(item.factor, item.verdict) for item in own))
     if row.judgement not in (verdicts.AGREES, verdicts.AS_DISTRIBUTION):
@@ -162,8 +162,7 @@ def _row(
 
 
 def _growths(study: Study, places: Sequence[Place], context: Context) -> dict[Place, str]:
-    """Whether 1 um of clearance grows from contact to contact of the reference, by condition and
-    factor, in the words of ``Growth.verdict``."""
+    """``Growth.verdict`` of 1 um of clearance in the reference, by condition and factor."""
 
     def request(place: Place, **changes: Any) -> Run:
         return reference(study, *place, **changes)

@@ -1,9 +1,8 @@
-"""Judgement of surrogates on the conditions of a study. Studies of chosen conditions and of drawn ones
-share it.
+"""Judgement of surrogates on the conditions of a study, chosen or drawn.
 
-Single runs are compared first. Conditions that no single run can judge, because their reference is not
-converged or 1 um moves it by more than the limit, are then judged as distributions. Runs with 1 um more
-and less clearance give the floor and the growth.
+Single runs are compared first. No single run can judge a condition whose reference is not converged, or
+changes by more than the limit with 1 um. Such conditions are then judged as distributions. Runs with 1 um
+more and less clearance give the floor and the growth.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -45,7 +44,7 @@ class Judged(NamedTuple):
 
 
 def as_curves(study: Study, compared: Sequence[Candidate], purpose: str) -> Curves:
-    """The candidates against single runs of the reference. Raises StudyError where one of these fails,
+    """The candidates against single runs of the reference. Raises StudyError if one of these fails,
     with the ``purpose`` in the message."""
     wanted = {name: study.highfi(name) for name in study.conditions}
     reference = dict(zip(wanted, study.store.fill("highfi", list(wanted.values()))))
@@ -85,10 +84,10 @@ def judge(
     draws: int,
     undecided: Iterable[str] = (),
 ) -> Judged:
-    """The verdicts on the candidates, one of which is compliant contact: those of the ``curves``, and
-    on conditions that no single run can judge those of distributions over ``draws`` neighbours.
-    ``undecided`` conditions are such ones for a reason that was found elsewhere. The runs are kept in
-    the store, so that an interrupted study goes on."""
+    """The verdicts on the candidates, one of which is compliant contact: the verdicts of the
+    ``curves``, and those of distributions over ``draws`` neighbours on conditions that no single
+    run can judge. The caller knows some of these conditions, ``undecided``. The store keeps the
+    runs, so an interrupted study continues."""
     static = next(candidate for candidate in compared if candidate.name == COMPLIANT)
     own = curves.rows[static.name]
     growths = _growths(study, static, own)
@@ -117,9 +116,9 @@ def floors(study: Study, model: str, request: Callable[..., Run]) -> list[Spread
 
 
 def _growths(study: Study, compliant: Candidate, rows: Iterable[Row]) -> list[Growth]:
-    """Growth of 1 um of clearance in both models, on the conditions of the floor and on those whose
-    reference is not converged in the ``rows`` of the agreement table, because chaos can be the
-    reason."""
+    """Growth of 1 um of clearance in both models, on the conditions of the floor and on conditions
+    whose reference is not converged in the ``rows`` of the agreement table: the reason may be
+    chaos."""
     if study.scene.contact is None:
         return []
     names = dict.fromkeys(
@@ -142,7 +141,7 @@ def _growths(study: Study, compliant: Candidate, rows: Iterable[Row]) -> list[Gr
 def twins(
     study: Study, title: str, request: Callable[..., Run], names: Iterable[Name]
 ) -> dict[Name, tuple[Trajectory, list[Trajectory]]]:
-    """The run that ``request`` makes of each name, and its runs with 1 um more and less clearance."""
+    """The run of each name, made by ``request``, and its runs with 1 um more and less clearance."""
     assert study.scene.contact is not None  # as for every caller
     names, changes = list(names), study.scene.contact.either_way(study.settings.clearance_change)
     nominal = dict(zip(names, study.store.fill(title, [request(name) for name in names])))

@@ -36,10 +36,10 @@ def _rows(
 
 
 def require_accepted(study: Study, name: str | None, condition: str | None = None) -> None:
-    """Raises StudyError where ``name`` is None and the stored agreement table rejects the default
-    model: on ``condition`` or, without one, on any condition of the scene. A miss of a distribution counts
-    for its own condition alone. There the model is wrong by more than a share of what 1 um does, which
-    tells nothing of cases that differ by far more."""
+    """Raises StudyError if ``name`` is None and the stored agreement table rejects the default
+    model on ``condition`` or, without one, on any condition of the scene. A miss of a distribution
+    counts for its own condition only: the error is above a share of the effect of 1 um, and other
+    cases differ by much more than 1 um."""
     if name is not None:
         return
     missed = [
@@ -64,8 +64,8 @@ def words(
     calibrated: bool = False,
     modes: int | str = AUTO,
 ) -> str:
-    """The error of ``model`` on ``condition``, or its largest over all conditions with contact and a
-    converged reference, as text."""
+    """The error of ``model`` on ``condition`` as text, or the largest error over all conditions
+    with contact and a converged reference."""
     if model == FINITE_ELEMENTS:
         return "the reference itself"
     if calibrated and model == COMPLIANT:
@@ -105,7 +105,7 @@ def words(
 
 
 def _others(rows: Sequence[Row]) -> str:
-    """How many conditions agree, and which miss, as distributions; empty without one."""
+    """How many conditions agree as distributions, and which miss; empty without distributions."""
     alike = [row for row in rows if row.judged_as == verdicts.DISTRIBUTION]
     agree = sum(row.judgement == verdicts.AS_DISTRIBUTION for row in alike)
     lost = [row.condition for row in alike if row.judgement == verdicts.MISSES]

@@ -22,7 +22,7 @@ from tipoff.scenes.uncertainty import Uncertainty
 
 SEED = 20261123
 _AXES = ("x", "y", "z")
-_ROOM = 4.0  # times d: with less clearance a neighbour could begin inside a wall
+_ROOM = 4.0  # times d: with less clearance a neighbour could start inside a wall
 
 
 def possible(scene: Scene, distance: float) -> bool:
@@ -31,8 +31,8 @@ def possible(scene: Scene, distance: float) -> bool:
 
 
 def draw(scene: Scene, distance: float, cases: int) -> list[dict[str, float]]:
-    """Overrides (SI) of ``scene`` for each of ``cases`` neighbours within ``distance`` (m), where
-    they are ``possible``."""
+    """Overrides (SI) of ``scene`` for each of ``cases`` neighbours within ``distance`` (m); the
+    caller has checked that they are ``possible``."""
     names = ["clearance", "y", "z", *(f"about {axis}" for axis in _AXES)]
     uniform = law("uniform", low=-distance, high=distance)
     drawn = Uncertainty(cases, SEED, "random", dict.fromkeys(names, uniform))

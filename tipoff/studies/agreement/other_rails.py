@@ -37,8 +37,8 @@ class Scene:
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """One model over the conditions with contact of a scene; the largest errors are those of conditions
-    judged as curves, None without one."""
+    """One model over the conditions with contact of a scene; largest errors over conditions judged
+    as curves, None without such a condition."""
 
     scene: Annotated[str, Column("scene")]
     element_size_m: Annotated[float, Column("elements", "mm", "g", 1e3)]
@@ -73,7 +73,7 @@ def beside(folder: Path) -> list[Scene]:
 
 
 def draw(page: "Page") -> list[Part]:
-    """The section, where other scenes have results."""
+    """The section; empty if no other scene has results."""
     found = page.documents.get("rails")
     return parts(found) if found else []
 

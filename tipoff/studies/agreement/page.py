@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def starred(shown: str, measured_here: bool) -> str:
-    """A number, with a star where it was measured on other conditions."""
+    """A number, with a star if it was measured on other conditions."""
     return shown if measured_here else f"{shown}*"
 
 
@@ -30,7 +30,7 @@ def _to_floor(name: str) -> Callable[[Row], Measured]:
 
 
 def _rounded(uncertainty: float | None) -> str:
-    """A floor or an uncertainty (deg/s) with the digits that count."""
+    """A floor or an uncertainty (deg/s) with two digits."""
     return rounded(uncertainty, uncertainty)
 
 
@@ -151,7 +151,7 @@ def _simpler(found: Agreement) -> Fold:
 
 
 def at_factors(found: Sequence[interface.Row]) -> list[Part]:
-    """Both models at other values of the interface stiffness; nothing without contact."""
+    """Both models at other values of the interface stiffness; empty without contact."""
     if not found:
         return []
     kinds = [distribution_page.kind(item.judgement) for item in found]
@@ -172,7 +172,7 @@ def at_factors(found: Sequence[interface.Row]) -> list[Part]:
 
 
 def by_factor(found: Sequence[interface.Row]) -> list[Part]:
-    """The same, one line a condition; nothing where they were not compared."""
+    """The same with a line for each condition; empty if the models were not compared."""
     if not found:
         return []
     factors = list(dict.fromkeys(item.factor for item in found))

@@ -1,9 +1,10 @@
 """Uncertainty of the reference by its own refinements: mesh, step, contact cells.
 
-Each is refined alone, and the settled rates are extrapolated with the order that they show
-(``comparison.extrapolation``). The uncertainty is that of the run which every other stage uses:
-the mesh of the scene; for step and cells, which are refined further on the coarse mesh, that of the
-finest run and the distance to it. A mesh file that cannot be coarsened is refined instead.
+Each is refined alone, and the settled rates are extrapolated with their observed order
+(``comparison.extrapolation``). The result is the uncertainty of the run that every other stage uses. For
+the mesh this is the mesh of the scene. Step and cells are refined further, on the coarse mesh: their
+uncertainty is that of the finest run plus the distance to it. A mesh file that cannot be coarsened is
+refined instead.
 """
 
 import math
@@ -24,7 +25,7 @@ from tipoff.workspace.run import Run
 from tipoff.workspace.study import Study
 
 MESH, STEP, CELLS = "mesh", "step", "cells"
-_TWO = 2  # meshes show a change
+_TWO = 2  # meshes, the fewest that show a change
 _SAFETIES = (Numerics().safety, 0.45)
 
 
@@ -38,8 +39,8 @@ class Group(NamedTuple):
 
 
 def meshes(study: Study, name: str, sizes: Iterable[float]) -> list[Run]:
-    """One run for each element size (m). Runs that several stages make have one name, so that the
-    store has them once."""
+    """One run for each element size (m). A run that several stages make has one name, so the store
+    keeps it once."""
     settings = study.settings
     known = {
         2.0 * settings.coarse_size: "-coarsest",
@@ -55,9 +56,9 @@ def meshes(study: Study, name: str, sizes: Iterable[float]) -> list[Run]:
 def mesh_sizes(
     study: Study, scene: Scene, given: Iterable[float], least: int
 ) -> tuple[list[float], list[float]]:
-    """Element sizes (m) to ask for, coarsest first, and those of the meshes that they give. A file
-    gives one mesh for several ``given`` sizes: the size of the other stages, or else the smallest,
-    stands for them, and finer ones follow until there are ``least``, where they fit."""
+    """Requested element sizes (m), coarsest first, and the sizes of their meshes. A file gives one
+    mesh for several ``given`` sizes. Then only the size of the other stages is used, or else the
+    smallest, and finer sizes follow until there are ``least`` meshes, if they fit."""
     wanted = list(given)
     own: dict[float, float] = {}
     for asked, size in zip(wanted, mesh_files.sizes(scene, wanted)):
@@ -88,15 +89,15 @@ def contact_cells(study: Study, name: str, counts: Iterable[int]) -> list[Run]:
     """One run on the coarse mesh for each number of contact cells along an edge of a pad."""
     return [
         study.coarse(name)
-        if count == LEAST_CELLS  # what every run has
+        if count == LEAST_CELLS  # the number of every other run
         else study.coarse(name, tag=f"-cells-{count}", cells=count)
         for count in counts
     ]
 
 
 def groups(study: Study, name: str) -> dict[str, Group]:
-    """The refinements of a condition by cause: the mesh, and on the scene's refined conditions step
-    and cells."""
+    """The refinements of a condition by cause: the mesh; on the scene's refined conditions also
+    step and cells."""
     scene, settings = study.condition(name), study.settings
     asked, sizes = mesh_sizes(study, scene, settings.judged_sizes, _TWO)
     found = {MESH: Group(sizes, meshes(study, name, asked), asked.index(settings.element_size))}
@@ -110,8 +111,8 @@ def groups(study: Study, name: str) -> dict[str, Group]:
 
 
 def refinements(study: Study, names: Iterable[str] | None = None) -> list[Refinement]:
-    """Uncertainties of the reference on the conditions ``names`` (default: all). That by the mesh
-    also reveals chaotic conditions."""
+    """Uncertainties of the reference on the conditions ``names`` (default: all). The uncertainty by
+    the mesh also reveals chaotic conditions."""
     wanted = [
         (name, cause, group)
         for name in (study.conditions if names is None else names)
@@ -148,7 +149,7 @@ def refinement(
 def _largest(
     sizes: Sequence[float], runs: Sequence[Trajectory], used: int
 ) -> tuple[float | None, Estimate]:
-    """Uncertainty (deg/s) of the axis that has the largest, and its estimate."""
+    """The largest uncertainty (deg/s) over the axes, and its estimate."""
     rates = [run.outcome.rate for run in runs]
     if any(rate is None for rate in rates):
         return None, estimate(sizes, [None] * len(sizes))

@@ -25,7 +25,7 @@ def draw(page: "Page") -> list[Part]:
 
 def speedups(found: stage.Agreement, equal: EqualAccuracy | None = None) -> list[Part]:
     """Wall times of the reference and of two surrogates on one machine, their ratios and scatter;
-    and those at ``equal`` accuracy, where the convergence study measured them."""
+    also at ``equal`` accuracy if the convergence study measured it."""
     machine = found.speedup.hardware
     return [
         _speedup("model compliant", found.speedup_compliant),

@@ -31,8 +31,9 @@ _SIMPLER = {
 
 @dataclass(frozen=True, kw_only=True)
 class Simpler:
-    """Errors of compliant contact on a part of the rail compliance, ``walls`` in words: its first pressure
-    ``patterns`` of each face, ``coupled`` between faces or not; None where a run did not settle."""
+    """Errors of compliant contact with a part of the rail compliance, ``walls`` in words: the first
+    pressure ``patterns`` of each face, ``coupled`` between faces or not; None if a run did not
+    settle."""
 
     walls: str
     patterns: int
@@ -78,7 +79,7 @@ class Agreement:
 
 
 def run(study: Study, options: Options | None = None) -> dict:
-    """The content of ``Agreement``; without ``options`` those of the settings."""
+    """The content of ``Agreement``; default ``options``: those of the settings."""
     study.fitted()
     draws = (options and options.neighbours) or study.settings.neighbours
     _, calibrated, static, modal = compared = candidates(study)
@@ -117,14 +118,14 @@ def run(study: Study, options: Options | None = None) -> dict:
 
 
 def current(study: Study) -> dict:
-    """The result that the page shows: that of the last ``tipoff compare`` if it is of the present scene,
-    code and settings, with its number of neighbours, else a new one."""
+    """The result for the page: the stored one of ``tipoff compare``, with its number of neighbours,
+    if scene, code and settings are the present ones; otherwise a new one."""
     found = STAGE.stored(study)
     return run(study, None if found is None else STAGE.asked(found))
 
 
 def _elements(compliant: Candidate) -> dict | None:
-    """What the most uncertain rail compliance states about its elements."""
+    """The statement of the most uncertain rail compliance about its elements."""
     found = [under.stated() for under in compliant.compliance.values() if under is not None]
     known = [own for own in found if own is not None]
     return max(known, key=lambda own: own["uncertainty"] or 0.0, default=None)
@@ -134,7 +135,7 @@ def _inputs(study: Study, _: Options) -> list:
     return [calibrate.constants(study), asdict(verdicts.gates(study.scene))]
 
 
-STAGE = Stage("agreement", __name__, Options, inputs=_inputs, result=Agreement)
+STAGE = Stage("agreement", __name__, options=Options, inputs=_inputs, result=Agreement)
 
 
 def stored(study: Study) -> Agreement | None:

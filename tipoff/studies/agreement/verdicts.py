@@ -1,20 +1,19 @@
 """Rows of the agreement table: metrics, gates, floor, and uncertainty of the reference.
 
-* **Floor**: change of a model by +-1 um of clearance, in the same two metrics. Smaller differences
-  have no meaning.
-* **Reference uncertainty**: the largest of those of its settled rates by mesh, step and contact
-  cells (``agreement.refinement``). Agreement requires at most 0.1 deg/s. The interface stiffness is
-  no part of it: it is physics, which both models share (``agreement.interface``).
+* **Floor**: change of a model by +-1 um of clearance, in the same two metrics. Smaller differences are
+  not significant.
+* **Reference uncertainty**: the largest uncertainty of its settled rates by mesh, step and contact cells
+  (``agreement.refinement``). Agreement requires at most 0.1 deg/s. It does not include the interface
+  stiffness, a physical value that both models share (``agreement.interface``).
 
-* **Gates**: v_x within 0.1 %, rates and settled rates within the limits of the scene's
-  ``[agreement]``; the limit of the settled rates is at least twice the floor, of which at most
-  0.1 deg/s counts.
+* **Gates**: v_x within 0.1 %, rates and settled rates within the limits of the scene's ``[agreement]``.
+  The limit of the settled rates is at least twice the floor, with a floor of at most 0.1 deg/s.
 
 The uncertainty by the mesh is measured on every condition, the others on conditions that the scene
 names; the remaining conditions take the largest value, with a mark.
 
-Every row has one word, its ``judgement``: agrees, agrees as distribution, misses, cannot be judged. A
-row is first judged as a curve; ``agreement.distributions`` judges those that no single run can judge.
+Every row has a ``judgement``: agrees, agrees as distribution, misses, cannot be judged. A row is first
+judged as a curve; ``agreement.distributions`` judges the rows that no single run can judge.
 """
 
 import math
@@ -63,8 +62,8 @@ def gates(scene: Scene) -> Gates:
 
 @dataclass(frozen=True)
 class Gate:
-    """Whether a metric ``passes`` its ``limit``, and how many times the limit it is, None where it is not
-    known."""
+    """Whether a metric ``passes`` its ``limit``, and the ratio of the metric to the limit, None if
+    not known."""
 
     limit: float
     passes: bool
@@ -90,9 +89,10 @@ class AtFactor:
 
 @dataclass(frozen=True, kw_only=True)
 class Row(Difference, Judged):
-    """One line of the agreement table: the metrics of one surrogate on one condition, None where a run did
-    not settle. ``_measured_here``: False for the largest value of other conditions. ``touches``: whether a
-    pad of the reference touches a rail. ``interface``: verdicts at other values of its stiffness."""
+    """One line of the agreement table: the metrics of one surrogate on one condition, None if a run
+    did not settle. ``_measured_here``: False for the largest value of other conditions.
+    ``touches``: whether a pad of the reference touches a rail. ``interface``: verdicts at other
+    values of its stiffness."""
 
     role: Annotated[str, Column("role")]
     reference_status: str
@@ -119,7 +119,7 @@ class Row(Difference, Judged):
 
 @dataclass(frozen=True)
 class Spread:
-    """Change of one model by one cause on one condition, the larger of its cases; None where a run
+    """Change of one model by one cause on one condition, the largest over its cases; None if a run
     did not settle."""
 
     condition: Annotated[str, Column("condition")]
@@ -131,9 +131,9 @@ class Spread:
 
 @dataclass(frozen=True, kw_only=True)
 class Refinement(Spread):
-    """Refinement of one ``cause`` on one condition: ``sizes``, coarsest first, and of the last two
-    runs the change of both metrics; ``uncertainty_deg_s`` of the settled rates, None where it is
-    not known; ``order`` and ``method`` of the axis with the largest."""
+    """Refinement of one ``cause`` on one condition: ``sizes``, coarsest first; change of both
+    metrics between the last two runs; ``uncertainty_deg_s`` of the settled rates, None if not
+    known; ``order`` and ``method`` of the axis with the largest uncertainty."""
 
     cause: Annotated[str, Column("refined")]
     sizes: list[float]
@@ -169,7 +169,8 @@ def largest(values) -> float | None:
 
 
 def largest_known(values) -> float | None:
-    """Largest of the values, or None where one of them is: the unknown one may be larger."""
+    """Largest of the values, or None if one of them is None, because the unknown value may be
+    larger."""
     found = list(values)
     return None if None in found else largest(found)
 
@@ -193,8 +194,8 @@ class Context:
         return replace(self.gates, settled_rate_error_deg_s=settled)
 
     def floor(self, condition: str) -> tuple[float | None, float | None, bool]:
-        """Floor of the settled rates (deg/s) and of the rate L2, None where a run did not settle, and
-        whether it was measured on this very condition."""
+        """Floor of the settled rates (deg/s) and of the rate L2, None if a run did not settle, and
+        whether it was measured on this condition."""
         own, measured = _own(self.floors, condition)
         return (
             largest_known(item.settled_rate_change_deg_s for item in own),
@@ -203,8 +204,8 @@ class Context:
         )
 
     def uncertainty(self, condition: str) -> tuple[float | None, dict[str, float | None], bool]:
-        """Reference uncertainty (deg/s), the same by cause, and whether all of it was measured on
-        this very condition."""
+        """Reference uncertainty (deg/s), the same by cause, and whether every part was measured on
+        this condition."""
         causes: dict[str, float | None] = {}
         here = []
         for cause in dict.fromkeys(item.cause for item in self.refinements):
@@ -212,16 +213,16 @@ class Context:
                 [item for item in self.refinements if item.cause == cause], condition
             )
             found = [item.uncertainty_deg_s for item in own]
-            # Unknown where the payload did not settle with a refinement, or a mesh is not refined:
-            # what is borrowed of several conditions is unknown where one of them is.
+            # Unknown if the payload did not settle with a refinement, or if a mesh is not refined.
+            # A value from several other conditions is unknown if one of these is unknown.
             causes[cause] = largest_known(found)
             here.append(measured)
         unknown = not causes or None in causes.values()
         return None if unknown else largest(causes.values()), causes, bool(here) and all(here)
 
     def known(self, condition: str) -> bool:
-        """Whether there are refinements to judge this condition by, own or borrowed ones, and every one
-        that was wanted on it could be run."""
+        """Whether this condition has refinements, its own or those of other conditions, and every
+        requested refinement could run."""
         return bool(self.refinements) and all(
             item.rate_relative_l2 is not None
             for item in self.refinements
@@ -271,8 +272,8 @@ def row(
 def single(
     condition: str, difference: Difference, context: Context, touches: bool
 ) -> tuple[dict[str, Gate], str, str]:
-    """Gates by metric, judgement and verdict on the ``difference`` of two single runs, in the reference
-    of which a pad ``touches`` a rail or none."""
+    """Gates by metric, judgement and verdict on the ``difference`` of two single runs; ``touches``:
+    whether a pad of the reference touches a rail."""
     gates = {}
     for name, limit in vars(context.limits(context.floor(condition)[0])).items():
         value = getattr(difference, name)
@@ -280,7 +281,7 @@ def single(
         gates[name] = Gate(limit, known and value <= limit, value / limit if known else None)
     if not context.known(condition):
         return gates, CANNOT, NOT_KNOWN
-    # a reference that is not converged comes first
+    # a reference that is not converged has priority
     if not context.converged(condition):
         return gates, CANNOT, NOT_CONVERGED
     missed = [

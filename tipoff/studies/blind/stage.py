@@ -1,8 +1,9 @@
 """Stage ``blind``: agreement on conditions drawn at random after all constants are fixed.
 
-Authors of a surrogate can see held-out conditions. These are drawn from distributions of errors;
-the default seed is a digest of the sources and the scene, so any change of the code draws others.
-They are judged as the chosen ones are: as curves, or as distributions where no single run can judge.
+The authors of a surrogate can see held-out conditions. Blind conditions are drawn from distributions of
+errors. The default seed is a digest of the sources and the scene, so any change of the code draws other
+conditions. They are judged like chosen conditions: as curves, or as distributions if no single run can
+judge.
 """
 
 from dataclasses import asdict, dataclass, replace
@@ -68,9 +69,8 @@ def run(study: Study, options: Options = Options()) -> dict:
 
 
 def draw(study: Study, options: Options) -> Study:
-    """The study of the drawn conditions, in the same folder: all held out, each with its own floor
-    and refinements, because the uncertainty of another, possibly chaotic, condition does not
-    apply."""
+    """The study of the drawn conditions, in the same folder. All are held out. Each has its own
+    floor and refinements, because another condition may be chaotic."""
     source = Drawn(
         uncertainty.load(
             options.vary,
@@ -107,4 +107,4 @@ def _inputs(study: Study, options: Options) -> list:
     return [conditions, calibrate.constants(study), asdict(verdicts.gates(study.scene))]
 
 
-STAGE = Stage(NAME, __name__, Options, _inputs, result=Blind)
+STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, result=Blind)

@@ -1,5 +1,5 @@
-"""Stage ``compliance``: compliance of the rail under the pads, from the statics of the finite
-elements of the size of the reference's, without a run of the reference.
+"""Stage ``compliance``: compliance of the rail under the pads from statics, on elements of the
+reference's size, without a run of the reference.
 """
 
 import itertools
@@ -21,8 +21,8 @@ _SAME = 1e-9  # m
 
 @dataclass(frozen=True, kw_only=True)
 class UnderPad:
-    """Compliance (m/N) of the walls under a pad, by face, and between them, over the place (m) of its
-    middle; mounts are intervals of X (m)."""
+    """Compliance (m/N) of the walls under a pad, by face and between faces, over the place (m) of
+    the middle of the pad; mounts are intervals of X (m)."""
 
     pad: int
     place_m: list[float]

@@ -21,13 +21,13 @@ _CAPTION = (
     "under a force on the other; negative values are towards the payload."
 )
 _DIRECT, _CROSS = (NAVY, VERMILION, TEAL), (AMBER, GREY)
-# The walls of a symmetric section have equal compliance. The first line is broad and pale, so that
+# The walls of a symmetric section have equal compliance, so the first line is broad and pale and
 # the next one is visible on it.
 _LOOKS = ((5.0, "-", 0.35), (1.5, "-", 1.0), (1.5, ":", 1.0))  # width, dash, opacity
 
 
 def draw(page: "Page") -> list[Part]:
-    """The curves and their extremes; nothing for a scene without contact."""
+    """The curves and their extremes; empty for a scene without contact."""
     found = page.read(compliance.STAGE)
     if found is None or (under := found.under_a_pad) is None:
         return []
@@ -41,24 +41,42 @@ def picture(found: UnderPad) -> Chart:
     """Compliance over the place of the pad, mounts shaded."""
     place = 1e3 * np.array(found.place_m)
     lines = [
-        Line(place, 1e9 * np.array(values), f"{name} wall, force on itself", colour, *look)
-        for (name, values), colour, look in zip(found.direct_m_per_n.items(), _DIRECT, _LOOKS)
+        Line(
+            place,
+            1e9 * np.array(values),
+            name=f"{name} wall, force on itself",
+            colour=colour,
+            width=width,
+            dash=dash,
+            opacity=opacity,
+        )
+        for (name, values), colour, (width, dash, opacity) in zip(
+            found.direct_m_per_n.items(), _DIRECT, _LOOKS
+        )
     ]
     lines += [
         Line(
             place,
             1e9 * np.array(values),
-            f"{' wall, force on '.join(name.split())}",
-            colour,
-            2.0,
-            "--",
+            name=f"{' wall, force on '.join(name.split())}",
+            colour=colour,
+            width=2.0,
+            dash="--",
         )
         for (name, values), colour in zip(found.cross_m_per_n.items(), _CROSS)
     ]
     mounts = tuple((1e3 * low, 1e3 * high) for low, high in found.mounts_m)
     return Chart(
         "compliance",
-        [Panel("", "middle of the pad along X (mm)", "compliance (nm/N)", lines, spans=mounts)],
+        [
+            Panel(
+                "",
+                "middle of the pad along X (mm)",
+                y_label="compliance (nm/N)",
+                lines=lines,
+                spans=mounts,
+            )
+        ],
         height=320,
     )
 

@@ -9,9 +9,9 @@ from tipoff.scenes.faults import Fault, SceneError
 
 
 def constants(path: Path | None, model: str, scene: str) -> Calibration | None:
-    """The calibration in a file, or None without a file; one that was fitted on another scene than
-    that of the name ``scene`` is announced. Raises SceneError for one that cannot be read or is of
-    another ``model``."""
+    """The calibration in a file, or None without a file. A message announces a calibration that was
+    fitted on another scene than ``scene``. Raises SceneError for a file that cannot be read or
+    belongs to another ``model``."""
     if path is None:
         return None
     try:

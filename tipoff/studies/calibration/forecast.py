@@ -3,11 +3,10 @@
     time = ceil(runs / at a time) * elements * steps * ns per element and step
            + evaluations * conditions * time of the surrogate
 
-Elements are counted without a mesh where the rail is the built-in section. Steps and nanoseconds
-come from stored runs of the reference: of this scene, else of another scene in the same folder,
-else from a benchmark, else from typical values, which the line then states. The estimate neglects
-the load of other programs and that a run ends early, after the exit. It is abandoned after one
-second.
+The elements of a built-in section are counted without a mesh. Steps and nanoseconds come from stored runs
+of the reference: of this scene, else of another scene in the same folder, else from a benchmark, else
+from typical values. The line states the source. The estimate neglects the load of other programs, and
+that a run ends soon after the exit. It is abandoned after one second.
 """
 
 import contextlib
@@ -32,10 +31,10 @@ from tipoff.workspace.words import counted
 PATIENCE = 1.0  # s
 # per element and step, the 2 mm mesh of the reference scene on one thread of an AMD EPYC
 _TYPICAL_NS = 11.0
-_TYPICAL_RUNS = {SPRINGS: 3e-3, COMPLIANT: 6e-3}  # s, the surrogate there
+_TYPICAL_RUNS = {SPRINGS: 3e-3, COMPLIANT: 6e-3}  # s, a run of the surrogate on the same processor
 _STEP = 0.7  # dt sqrt(E / rho) / h of meshes of the built-in section
 _COMPILED = " and half a minute to compile, this once"
-_LARGEST = 1e18  # of any number in a file; a larger one is damage
+_LARGEST = 1e18  # largest plausible number in a file; a larger one is damage
 _LOOKED_AT = 4  # stored runs, newest first
 
 
@@ -75,7 +74,7 @@ def _line(
     study: Study, requested: Sequence[Run], rest: Callable[[], float], name: str, bound: str
 ) -> str:
     for package in ("tipoff.calibration", "tipoff.highfi", "h5py"):
-        importlib.import_module(package)  # needed in any case, so not part of the second
+        importlib.import_module(package)  # needed in any case, so not counted in the second
     missing = [run for run in requested if not study.store.path(run).is_file()]
     together = min(study.settings.workers, len(missing))
     reference, seconds = in_time(lambda: (_references(missing, together, pace(study)), rest())) or (
@@ -91,7 +90,7 @@ def work(name: str, seconds: float | None, bound: str = "about") -> str:
 
 
 def words(missing: int, together: int, reference: tuple[float, str] | None, after: str) -> str:
-    """The line: number of ``missing`` runs, how many run ``together``, seconds of all with their
+    """The line: number of ``missing`` runs, number of runs ``together``, seconds of all with their
     source, and the work ``after`` them."""
     if not missing:
         return f"no reference run to make; {after}"
@@ -140,7 +139,7 @@ def pace(study: Study) -> Pace:
 
 
 def in_time(work: Callable):
-    """The result of ``work``, or None where it takes longer than a second or fails."""
+    """The result of ``work``, or None if it takes longer than a second or fails."""
     found = []
 
     def attempt() -> None:
@@ -156,7 +155,7 @@ def in_time(work: Callable):
 
 def _references(missing: Sequence[Run], together: int, speed: Pace) -> tuple[float, str] | None:
     """Seconds of all ``missing`` runs, ``together`` at a time and mesh by mesh, with the source;
-    None where the duration of one is unknown."""
+    None if the duration of a run is unknown."""
     found = [reference_seconds(run, speed) for run in missing]
     each = Counter(one for one in found if one is not None)
     if not each or None in found:
@@ -167,8 +166,7 @@ def _references(missing: Sequence[Run], together: int, speed: Pace) -> tuple[flo
 
 
 def reference_seconds(run: Run, speed: Pace) -> tuple[float, str] | None:
-    """Seconds of one run, and the source of its speed; None where the number of elements is
-    unknown."""
+    """Seconds of one run, and the source of its speed; None if the number of elements is unknown."""
     size = run.numerics.element_size
     elements = _elements(run.scene, size, speed)
     if elements is None:
@@ -207,7 +205,7 @@ def _stored(path: Path) -> Pace | None:
 
 
 def _numbers(path: Path, names: Sequence[tuple[str, str]]) -> list[float] | None:
-    """Numbers in tables of the file of a stored run; None where one is missing or has no meaning. Does
+    """Numbers in tables of the file of a stored run; None if one is missing or implausible. Does
     not read arrays."""
     import h5py
 
@@ -215,7 +213,7 @@ def _numbers(path: Path, names: Sequence[tuple[str, str]]) -> list[float] | None
         require_whole(path)
         with h5py.File(path) as file:
             found = [float(json.loads(file.attrs[table])[name]) for table, name in names]
-    except Exception:  # that of HDF5 for a foreign file depends on the file
+    except Exception:  # the exception of HDF5 depends on the damage of the file
         return None
     return found if all(0.0 < number < _LARGEST for number in found) else None
 
@@ -240,8 +238,8 @@ def _is_cold() -> bool:
 
 
 def _surrogate(folder: Path, model: str) -> float:
-    """Seconds of one run of a ``model``: the fastest of the newest stored runs, since the first ones
-    load kernels."""
+    """Seconds of one run of a ``model``: the fastest of the newest stored runs, because first runs
+    also load kernels."""
     own = [
         path
         for path in (folder / "lowfi").glob("*.nc")

@@ -22,12 +22,12 @@ _INTERVALS = (
 
 
 def draw(page: "Page") -> list[Part]:
-    """The calibration, or how to make it."""
+    """The calibration, or the command that makes it."""
     return page.shown("calibration", lambda found: calibration(STAGE.read(found)), "calibrate")
 
 
 def of_models(found: dict, folder: Path) -> list[Part]:
-    """What the terminal shows of the results of both models, or of one, with the files in ``folder``."""
+    """The results of both models, or of one, for the terminal, with the files in ``folder``."""
     parts: list[Part] = []
     if "compliance" in found:
         parts += _compliance(compliance.STAGE.read(found["compliance"]), folder)
@@ -37,9 +37,9 @@ def of_models(found: dict, folder: Path) -> list[Part]:
 
 
 def terminal(found: Fit, folder: Path) -> list[Part]:
-    """What the terminal shows of a fit: the constants with intervals, weak directions, its file in
+    """A fit for the terminal: the constants with intervals, weak directions, its file in
     ``folder``."""
-    # a value that is kept is not that of the fit, and the interval is not its own
+    # a kept value is not the fitted one, and the interval belongs to the fitted one
     kept = found.values != found.fitted
     columns: list[tuple[Column | str, Sequence[Any]]] = [
         ("constant", found.parameters),
@@ -59,7 +59,7 @@ def terminal(found: Fit, folder: Path) -> list[Part]:
     notes += [f"Verdict: {found.verdict}"] if found.verdict else []
     heads, cells = zip(*columns)
     return [
-        Table(heads, list(zip(*cells)), tuple(notes), title),
+        Table(heads, list(zip(*cells)), notes=tuple(notes), title=title),
         _residuals(found),
         f"  {folder / found.calibration}",
     ]
@@ -87,7 +87,7 @@ def _residuals(found: Fit) -> Table:
 
 
 def constant(value: float, ends: Sequence[float | None]) -> Any:
-    """A fitted constant, rounded to half its interval; as it is where it has none."""
+    """A fitted constant, rounded to half its interval; with all digits if it has no interval."""
     low, high = ends
     if low is None or high is None or high <= low:
         return value
@@ -107,7 +107,7 @@ def interval(ends: Sequence[float | None]) -> str:
 
 def calibration(found: Fit) -> list[Part]:
     """Fitted constants with bounds and reasons, weak directions, residuals."""
-    # of springs, whose fitted values are never replaced by the scene's
+    # fits of springs only: their values are never replaced by the scene's
     columns: dict[Column | str, Sequence[Any]] = {
         "constant": found.parameters,
         Column("value", form=".3g"): list(map(constant, found.fitted, found.intervals)),
@@ -122,7 +122,7 @@ def calibration(found: Fit) -> list[Part]:
     matrix = [(name, *row) for name, row in zip(found.parameters, found.information)]
     return [
         f"Fitted to {', '.join(found.conditions)} together; objective {found.objective:.4g}.",
-        Table(list(columns), list(zip(*columns.values())), (_INTERVALS,)),
+        Table(list(columns), list(zip(*columns.values())), notes=(_INTERVALS,)),
         Table(("weak directions, and constants that the curves do not determine",), weak),
         Fold(
             "Constants of the surrogate (SI)",

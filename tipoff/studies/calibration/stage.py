@@ -1,8 +1,8 @@
 """Stage ``calibration``: constants of springs, fitted to the reference on the fitted conditions.
 The compliance of compliant contact is from statics (``studies.calibration.compliance``).
 
-Curves of another code or of a test can replace the reference, and fit either surrogate. The result is
-then in a separate folder, so that other stages, which compare with the reference, do not replace it.
+Curves of another code or of a test can replace the reference, for a fit of either surrogate. This result
+has a separate folder, because other stages compare with the fit to the reference.
 """
 
 import math
@@ -28,21 +28,19 @@ FILE = "calibration.toml"
 _OF_COMPLIANT = f"calibration-{COMPLIANT}"
 
 
-Ends = tuple[
-    float | None, float | None
-]  # of an interval; None where the curves do not determine it
+Ends = tuple[float | None, float | None]  # of an interval; None if the curves do not determine it
 
 
 @dataclass(frozen=True, kw_only=True)
 class Fit:
-    """A calibration as ``scenes.Calibration`` has it, in a result: ``fitted`` are always the values that
-    the intervals belong to; ``calibration`` is its file in the folder of the scene."""
+    """A ``scenes.Calibration`` as a result: ``fitted`` are always the values of the intervals;
+    ``calibration`` is its file in the folder of the scene."""
 
     constants: dict[str, float]
     changes: dict[str, float]
     verdict: str
     parameters: list[str]
-    values: list[float]
+    values: list[float]  # SI, in the order of the parameters
     fitted: list[float]
     intervals: list[Ends]
     with_model_error: list[Ends]
@@ -54,7 +52,7 @@ class Fit:
     weak_directions: list[str]
     residuals: dict[str, dict[str, float | None]]
     conditions: list[str]
-    objective: float
+    objective: float  # at the fitted values
     provenance: dict[str, str]
     calibration: str
 
@@ -79,8 +77,8 @@ def run(study: Study) -> dict:
 
 
 def of_models(study: Study, model: str | None = None) -> dict:
-    """Calibrate one ``model`` of the surrogate, None for both: ``compliance`` and ``springs`` are as
-    in their result files."""
+    """Calibrate one ``model`` of the surrogate, None for both; ``compliance`` and ``springs`` as in
+    their result files."""
     found: dict[str, Any] = {"scene": study.scene.name}
     if model != COMPLIANT:
         study.fitted()  # raises before the compliance is computed
@@ -145,7 +143,7 @@ def named(
     """(condition, path) of each ``NAME=FILE``; a file without a name belongs to ``condition``, else
     to the scene itself.
 
-    Raises SceneError for options that need a file where there is none.
+    Raises SceneError for options that need a file if there is none.
     """
     pairs = [item.partition("=") for item in references]
     unnamed = [name for name, equals, _ in pairs if not equals]
@@ -177,9 +175,9 @@ def from_files(
     model: str = SPRINGS,
     parameters: Sequence[str] | None = None,
 ) -> dict:
-    """The content of ``Fit`` of a ``model``, of these ``parameters`` where they are chosen, from CSV files
-    (condition, path) that ``Curves.read_csv`` reads; writes ``curves/calibration.toml``, on compliant
-    contact ``curves/calibration-compliant.toml``.
+    """The content of ``Fit`` of a ``model``, of these ``parameters`` or the default ones, from CSV
+    files (condition, path) that ``Curves.read_csv`` reads; writes ``curves/calibration.toml``, on
+    compliant contact ``curves/calibration-compliant.toml``.
 
     Raises SceneError listing every fault of every file, CalibrationError for curves that do not fit
     the scene.
@@ -220,9 +218,9 @@ def fit(
     model: str = SPRINGS,
     parameters: Sequence[str] | None = None,
 ) -> tuple[Fit, list[Path]]:
-    """Fit a ``model``, with these ``parameters`` where they are chosen, to ``references`` (condition:
-    run or curves) and write the record to ``path``: the result, and the files
-    written. Raises CalibrationError."""
+    """Fit a ``model``, with these ``parameters`` or the default ones, to ``references`` (condition:
+    run or curves) and write the record to ``path``: the result, and the files written. Raises
+    CalibrationError."""
     from tipoff import calibration
 
     calibration.require_model(study.scene, model, parameters)
@@ -243,8 +241,8 @@ def fit(
 
 
 def rigid_walls(study: Study, names: Iterable[str]) -> RailCompliance | None:
-    """Rigid walls with the thermal offset, if one of the conditions ``names`` is warm; they share a
-    rail."""
+    """Rigid walls with the thermal offset, if one of the conditions ``names`` is warm; all
+    conditions have one rail."""
     return next(filter(None, (study.rigid_rails(study.condition(name)) for name in names)), None)
 
 

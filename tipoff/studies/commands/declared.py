@@ -19,10 +19,10 @@ def command(
     answer: Callable[[Request, Any], Output],
     without: Collection[str] = (),
 ) -> Callable[..., None]:
-    """The command ``name`` with the help ``text`` and a parameter for each field of ``options``, a frozen
-    dataclass or None; ``answer`` gets the request and the options. Fields of ``kw_only`` stand last in
-    the help; common options that are ``without`` use here are left out. The attribute ``options`` of
-    the command is the dataclass."""
+    """The command ``name`` with the help ``text`` and a parameter for each field of ``options``, a
+    frozen dataclass or None; ``answer`` gets the request and the options. Fields of ``kw_only``
+    come last in the help; the common options in ``without`` are left out. The attribute ``options``
+    of the command is the dataclass."""
 
     def function(request: Request, **given: Any) -> Output:
         return answer(request, options and _made(options, given))

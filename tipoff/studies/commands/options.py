@@ -23,7 +23,7 @@ def scene_names(incomplete: str) -> list[str]:
 
 def condition_names(context: typer.Context, incomplete: str) -> list[str]:
     """Conditions of the scene on the command line that begin with the last name of ``incomplete``,
-    for the shell; none where the scene cannot be read."""
+    for the shell; none if the scene cannot be read."""
     from tipoff import scenes
 
     try:

@@ -65,7 +65,7 @@ def scene_command(
     """Decorator: a command from a function of a request and its own options that returns the output.
 
     The help lists own options after --set, and keyword-only ones after --workers. ``without``:
-    "element_size" or "workers", where the command does not have them.
+    "element_size" or "workers" if the command does not have this option.
     """
     common = {name: option for name, option in _COMMON.items() if name not in without}
 

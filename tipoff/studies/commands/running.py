@@ -18,8 +18,8 @@ _T = TypeVar("_T")
 
 
 class Output(NamedTuple):
-    """What a command prints: its ``result`` as JSON, or the parts that ``shown`` makes of it for the
-    terminal, and below them the files of the stage in the folder ``out``."""
+    """The output of a command: its ``result`` as JSON, or the parts that ``shown`` makes of it for
+    the terminal, followed by the files of the stage in the folder ``out``."""
 
     result: dict
     shown: "Callable[[dict], Sequence[Part]] | None" = None
@@ -82,7 +82,7 @@ def study_of(
         )
     for warning in doubtful:
         say(f"implausible: {warning}")
-    _require_time(study)  # after the warnings, which may say why a thrust lasts too long
+    _require_time(study)  # after the warnings, which may state why a thrust lasts too long
     replaced = _replaced(changes, study)
     for warning in [*reading.replaced_by_conditions(scene), *replaced]:
         say(f"warning: {warning}")
@@ -127,7 +127,8 @@ def _replaced(changes: dict[str, str], study) -> list[str]:
 
 
 def _of_option(named: dict[str, str], work: Callable[[], _T]) -> _T:
-    """What ``work`` returns; its faults are those of an option, with the fields ``named`` so."""
+    """The result of ``work``; its faults become faults of an option, with fields renamed by
+    ``named``."""
     from tipoff.scenes.faults import SceneError
 
     try:
@@ -157,8 +158,8 @@ def quantity(option: str, text: str | None, unit: str, example: str) -> float | 
 def guarded(work: Callable[[], Output], as_json: bool = False) -> None:
     """Run ``work`` and print its result as JSON or as text.
 
-    Errors become a message on standard error and an exit code: 1 for a failed run and for what this
-    machine refuses, 2 for bad input, 130 for Ctrl-C.
+    Errors become a message on standard error and an exit code: 1 for a failed run and for a refusal
+    of this machine, 2 for bad input, 130 for Ctrl-C.
     """
     from tipoff.files import remove_temporaries
     from tipoff.meshes.generator import GmshUnavailable
@@ -177,8 +178,8 @@ def guarded(work: Callable[[], Output], as_json: bool = False) -> None:
             file=sys.stderr,
             flush=True,
         )
-        # Results are complete at any time, and a thread that compiles a kernel would delay the exit
-        # by seconds.
+        # Stored results are complete at any time. A thread that compiles a kernel would delay the
+        # exit by seconds.
         remove_temporaries()
         os._exit(130)
     except InputError as fault:
@@ -201,7 +202,7 @@ def guarded(work: Callable[[], Output], as_json: bool = False) -> None:
 
 
 def _print(output: Output) -> str:
-    """Print the result and its files. Returns the reason where the former cannot be shown."""
+    """Print the result and its files. Returns the reason if the result cannot be shown."""
     result, shown, out = output
     reason = ""
     if shown is not None:
@@ -217,8 +218,8 @@ def _print(output: Output) -> str:
 
 
 def files(result: dict, out: Path) -> list[str]:
-    """One line for each file of a stage below the folder ``out``, made now or before; a folder with
-    more than three of its files is one line."""
+    """One line for each file of a stage below the folder ``out``, new or old; a folder with more
+    than three files has one line."""
     folder = Path(out) / result["scene"]
     listed: dict[str, list[str]] = {}
     for name in (f"{result['stage']}.json", *result.get("files", ())):

@@ -13,7 +13,7 @@ from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
 
 CUTOFF = 1000.0  # Hz
-# a cut-off above this part of the sampling frequency would filter little
+# largest cut-off over the sampling frequency: a higher one would filter little
 _OF_SAMPLING = 0.2
 _ORDER = 2
 
@@ -32,12 +32,12 @@ def impulses(scene: Scene, run: Trajectory) -> np.ndarray:
 
 
 def cutoff(scene: Scene) -> float:
-    """Cut-off (Hz) of the peak force: 1 kHz, or less where the samples are too sparse."""
+    """Cut-off (Hz) of the peak force: 1 kHz, or less if the samples are too sparse."""
     return min(CUTOFF, _OF_SAMPLING / scene.output.interval)
 
 
 def low_passed(scene: Scene, samples: np.ndarray) -> np.ndarray:
-    """Samples (n,...) of a run of the scene without frequencies above ``cutoff``."""
+    """Samples (n,...) of a run of the scene, low-pass filtered at ``cutoff`` (Hz)."""
     from scipy.signal import butter, sosfiltfilt  # slow to load
 
     sections = butter(_ORDER, cutoff(scene), fs=1.0 / scene.output.interval, output="sos")

@@ -37,7 +37,7 @@ _RIPPLE = (
 
 
 def draw(page: "Page") -> list[Part]:
-    """The section; empty without a result, which takes minutes to make."""
+    """The section; empty without a result, because a result takes minutes."""
     found = page.read(stage.STAGE)
     if found is None:
         return []
@@ -52,8 +52,8 @@ def terminal(found: Convergence) -> list[Part]:
 
 
 def sentences(found: Convergence) -> list[str]:
-    """One sentence for each of: meshes, steps, interface stiffness, contact cells, ripple, equal
-    accuracy, where the result ``found`` has it."""
+    """One sentence for each of meshes, steps, interface stiffness, contact cells, ripple and equal
+    accuracy that the result ``found`` has."""
     step = (
         f", {Numerics().safety:g} of the step limit on elements of {1e3 * found.coarse_size_m:g} mm"
     )
@@ -74,8 +74,8 @@ def sentences(found: Convergence) -> list[str]:
 
 
 def _refinement(found: Convergence, parameter: str, unit: str, factor: float, default: str) -> str:
-    """Uncertainty of the settled rates by one ``parameter``, whose sizes are shown in ``unit``, times
-    ``factor``; ``default`` says more of the default size."""
+    """Uncertainty of the settled rates by one ``parameter``, whose sizes are shown in ``unit``,
+    times ``factor``; ``default`` is a remark on the default size."""
     rows = found.refined(parameter, RATE)
     known = [
         (row.nominal_uncertainty, row.uncertainty, row)
@@ -97,7 +97,7 @@ def _refinement(found: Convergence, parameter: str, unit: str, factor: float, de
 
 
 def _largest_change(title: str, rows: Sequence[tuple[float, Change]]) -> list[str]:
-    """Largest change of a settled rate over the ``rows`` with their numbers; none without rows."""
+    """Largest change of a settled rate over the ``rows``; empty without rows."""
     if not rows:
         return []
     change = verdicts.largest(row.settled_rate_change_deg_s for _, row in rows)
@@ -121,15 +121,20 @@ def picture(found: Convergence) -> Chart:
         values = [value for value in row.values if value is not None]
         if len(values) < len(sizes):
             continue
-        lines = [Line(sizes, values, "finite elements", colour, marker="o", legend=False)]
+        lines = [
+            Line(sizes, values, name="finite elements", colour=colour, marker="o", legend=False)
+        ]
         if row.uncertainty is not None:
             bounds = values[-1] - row.uncertainty, values[-1] + row.uncertainty
             words = "uncertainty of the finest mesh"
             lines = [
-                *(Line([0.0, sizes[0]], [end, end], words, GREY, 1.1, ":") for end in bounds),
+                *(
+                    Line([0.0, sizes[0]], [end, end], name=words, colour=GREY, width=1.1, dash=":")
+                    for end in bounds
+                ),
                 *lines,
             ]
-        panels.append(Panel(row.quantity, "element size (mm)", "rate (deg/s)", lines))
+        panels.append(Panel(row.quantity, "element size (mm)", y_label="rate (deg/s)", lines=lines))
     return Chart("convergence", panels, columns=3, height=300)
 
 
@@ -168,13 +173,13 @@ def tables(found: Convergence) -> list[Part]:
 
 
 def _rounded(row: Refined, value: float | None, uncertainty: float | None = None) -> Measured:
-    """A value of a quantity, by default with the digits that the finest size gives it."""
+    """A value of a quantity, by default rounded to its uncertainty at the finest size."""
     own = row.uncertainty if uncertainty is None else uncertainty
     return Measured(value, own, apart=True, unit=row.unit)
 
 
 def _changed(found: Convergence) -> list[Part]:
-    """Ripple, interface stiffness and contact cells; nothing without contact."""
+    """Ripple, interface stiffness and contact cells; empty without contact."""
     if not found.interface_stiffness:
         return []
     slides = ("element_size_m", "cells_per_edge", "frequency", "facets", "ripple", "background")

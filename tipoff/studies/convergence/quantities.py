@@ -15,8 +15,8 @@ RATE = "settled rate"
 def quantities(
     scene: Scene, runs: Sequence[Trajectory]
 ) -> Iterator[tuple[str, str, Sequence[float | None]]]:
-    """(quantity, unit, value of each run, None where it did not settle); a pad without contact in
-    all runs is left out."""
+    """(quantity, unit, value of each run, None if it did not settle); a pad without contact in all
+    runs is left out."""
     for index, axis in enumerate(AXES):
         yield f"{RATE} {axis}", "deg/s", [settled_rate(found)[index] for found in runs]
     yield (

@@ -28,10 +28,10 @@ from tipoff.studies.render.column import Column
 
 CELLS = Column("contact cells along each edge of a pad")
 HARMONICS = 3
-_SPEED = 6.0  # m/s: a facet passes faster than the payload can follow it
+_SPEED = 6.0  # m/s: the payload cannot follow so fast a passing facet
 _LOAD = 1000.0  # N
 _INTERVAL = 2e-5  # s
-# samples of the settling, and the factor of all velocities in each: about critical damping
+# samples of the settling, and the factor on all velocities after each: about critical damping
 _SETTLING, _KEPT = 400, 0.95
 LEAST_FACETS = 5  # facets crossed at least
 _TREND = 5  # degree of the polynomial for the slow part of a force
@@ -50,12 +50,12 @@ class Ripple:
     frequency: Annotated[float, Column("facet frequency", "Hz", ".4g")]
     facets: Annotated[int, Column("facets")]
     load: float
-    cells_per_edge: Annotated[int, CELLS] = 0  # not known to ``judge``
+    cells_per_edge: Annotated[int, CELLS] = 0  # ``judge`` does not know it
 
 
 def measure(scene: Scene, numerics: Numerics) -> Ripple | None:
     """Ripple on the rails of ``scene``; None without contact, with facets of different lengths, or
-    with too few of them."""
+    with too few facets."""
     if scene.contact is None:
         return None
     pressed = pressing(scene)
@@ -75,7 +75,7 @@ def measure(scene: Scene, numerics: Numerics) -> Ripple | None:
 
 def pressing(scene: Scene) -> Scene:
     """``scene`` with a load into the +y and +z walls, which the pads just touch, and no other load.
-    Its effects stay, because another set of effects would be another kernel to compile."""
+    Its effects stay, because another set of effects compiles another kernel."""
     assert scene.contact is not None  # required by ``measure``
     _, beside, above = scene.contact.gaps()
     changes = {
@@ -91,7 +91,7 @@ def pressing(scene: Scene) -> Scene:
 
 
 def facet_length(mesh) -> float | None:
-    """Length (m) along X of the contact facets, or None where they differ."""
+    """Length (m) along X of the contact facets, or None if the lengths differ."""
     facets = np.concatenate(
         [group for name, group in mesh.surfaces.items() if name.startswith("contact")]
     )
@@ -126,8 +126,8 @@ def slide(loop: Loop, samples: int) -> np.ndarray:
 
 
 def _advance(loop: Loop) -> None:
-    """Advance by one sample. The loss of energy by the settling is no fault of the run, so messages
-    are cleared. Raises FloatingPointError where a value became infinite."""
+    """Advance by one sample. The settling loses energy on purpose, so messages are cleared. Raises
+    FloatingPointError if a value becomes infinite."""
     taken = len(loop.rows)
     while len(loop.rows) == taken:
         loop.message = ""
@@ -137,8 +137,8 @@ def _advance(loop: Loop) -> None:
 
 
 def judge(force: np.ndarray, frequency: float, facets: int) -> Ripple:
-    """Ripple of forces (n,f,3) N at the multiples of ``frequency`` (Hz), of faces with a tenth of
-    the largest load or more."""
+    """Ripple of forces (n,f,3) N at the multiples of ``frequency`` (Hz), over faces with at least a
+    tenth of the largest load."""
     mean = np.linalg.norm(force.mean(axis=0), axis=1)
     loaded = np.flatnonzero(mean > 0.1 * mean.max())
     sizes = np.linalg.norm(force[:, loaded], axis=2)
@@ -149,7 +149,11 @@ def judge(force: np.ndarray, frequency: float, facets: int) -> Ripple:
     )
     worst = int(at.max(axis=0).argmax())
     return Ripple(
-        float(at.max()), float(between.max()), frequency, facets, float(mean[loaded[worst]])
+        float(at.max()),
+        float(between.max()),
+        frequency=frequency,
+        facets=facets,
+        load=float(mean[loaded[worst]]),
     )
 
 

@@ -2,11 +2,11 @@
 
 Meshes and steps are refined separately, and the uncertainty of every quantity is estimated from its
 observed order (``comparison.extrapolation``). Deflection and natural frequencies of the rail
-(``studies.convergence.statics``) stand beside the settled rates. Interface stiffness and contact cells
-are changed and compared. A straight slide shows the ripple of a constant force by the facets
-(``studies.convergence.ripple``). A finer mesh has a smaller step, and contact cells no longer than
-half a facet. A wall has at least one element through its thickness, so coarse meshes differ in length and width only;
-``meshes`` holds the numbers of elements. Finally both fidelities are timed at equal accuracy
+(``studies.convergence.statics``) are refined too. Runs with other interface stiffness and contact cells
+are compared. A straight slide shows the ripple of a constant force by the facets
+(``studies.convergence.ripple``). A finer mesh has a smaller step, and contact cells of at most half a
+facet. A wall has at least one element through its thickness, so coarse meshes differ in length and width
+only; ``meshes`` has the numbers of elements. Finally both fidelities are timed at equal accuracy
 (``studies.agreement.equal_accuracy``)."""
 
 from collections.abc import Iterable, Sequence
@@ -33,9 +33,9 @@ from tipoff.workspace.study import Study, require_success
 from tipoff.workspace.timing import speedups
 
 NAME = "convergence"
-_LEAST = 3  # meshes, of which an order can be observed
-_FEW_CELLS = 3  # along each edge of a pad: longer than the facets it slides over
-_LONG = 60.0  # s, a run of the reference that is timed once only
+_LEAST = 3  # meshes, the fewest for an observed order
+_FEW_CELLS = 3  # along each edge of a pad: cells longer than the facets
+_LONG = 60.0  # s; a longer run of the reference is timed only once
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,23 +50,23 @@ class Mesh:
 
 @dataclass(frozen=True, kw_only=True)
 class Refined(Estimate):
-    """A quantity over the ``sizes`` of a refined ``parameter``, coarsest first; a value is None where a
-    run did not settle. ``nominal_uncertainty`` is that at the size that other stages use."""
+    """A quantity over the ``sizes`` of a refined ``parameter``, coarsest first; a value is None if
+    a run did not settle. ``nominal_uncertainty``: at the size that other stages use."""
 
     quantity: str
     unit: str
     parameter: str
     sizes: list[float]
     size_unit: str
-    values: list[float | None]
+    values: list[float | None]  # in the unit of the quantity
     nominal_size: float
     nominal_uncertainty: float | None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Change:
-    """Settled rates (deg/s) about x, y, z of a changed run, and the largest change of one against the
-    nominal run of the coarse mesh; None where it did not settle."""
+    """Settled rates (deg/s) about x, y, z of a changed run, and the largest change against the
+    nominal run of the coarse mesh; None if it did not settle."""
 
     status: Annotated[str, Column("status")]
     settled_rate_deg_s: Annotated[list[float | None], Column("settled x, y, z", "deg/s", ".3f")]
@@ -83,7 +83,7 @@ class OtherStiffness(Change):
 
 @dataclass(frozen=True, kw_only=True)
 class OtherCells(Change):
-    """The same with so many contact cells."""
+    """The same with another number of contact cells."""
 
     cells_per_edge: Annotated[int, CELLS]
 
@@ -98,9 +98,9 @@ class Slide(Ripple):
 @dataclass(frozen=True, kw_only=True)
 class Convergence:
     """``quantities`` over element size and time step with order and uncertainty; runs with other
-    ``interface_stiffness`` and ``contact_cells``, and the ``ripple`` by element size, the first with few
-    contact cells, none of them without contact; ``equal_accuracy`` None where nothing touches, or where
-    compliant contact or a mesh did not settle."""
+    ``interface_stiffness`` and ``contact_cells``; ``ripple`` by element size, the first with few
+    contact cells. All three are empty without contact. ``equal_accuracy`` is None if no pad
+    touches, or if compliant contact or a mesh did not settle."""
 
     condition: str
     element_size_m: float
@@ -114,7 +114,7 @@ class Convergence:
     equal_accuracy: EqualAccuracy | None
 
     def refined(self, parameter: str, quantity: str = "") -> list[Refined]:
-        """The rows of a refined parameter whose quantity begins so."""
+        """The rows of a refined parameter whose quantity begins with these words."""
         return [
             row
             for row in self.quantities
@@ -123,8 +123,8 @@ class Convergence:
 
 
 def run(study: Study, options: Options | None = None) -> dict:
-    """The content of ``Convergence``. Raises SceneError for an unknown condition, StudyError where a mesh
-    or a step fails."""
+    """The content of ``Convergence``. Raises SceneError for an unknown condition, StudyError if a
+    mesh or a step fails."""
     given = options and options.condition
     name = given or (study.scene.agreement.refined or tuple(study.conditions))[0]
     scene = study.condition(name)
@@ -165,7 +165,7 @@ def run(study: Study, options: Options | None = None) -> dict:
     return STAGE.run(study, name, make)
 
 
-STAGE = Stage(NAME, __name__, str, field="condition", result=Convergence)
+STAGE = Stage(NAME, __name__, options=str, field="condition", result=Convergence)
 
 
 def _finished(study: Study, title: str, wanted: list[Run]) -> list[Trajectory]:
@@ -183,7 +183,8 @@ def _judged(
     nominal: float,
     values_of: Iterable[tuple[str, str, Sequence[float | None]]],
 ) -> list[Refined]:
-    """One row a quantity over ``sizes``, coarsest first; other stages use the ``nominal`` one."""
+    """A row for each quantity over ``sizes``, coarsest first; other stages use the ``nominal``
+    size."""
     rows = []
     for quantity, its_unit, values in values_of:
         found = estimate(sizes, values)

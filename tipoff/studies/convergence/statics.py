@@ -1,4 +1,4 @@
-"""Deflection and natural frequencies of the rail, which the settled rates rest on, mesh by mesh.
+"""Deflection and natural frequencies of the rail, mesh by mesh. The settled rates depend on both.
 
 The deflection is the mean displacement of the wall under a pad face by a force spread over it, at
 the place along the way where the rail is softest on the finest mesh. At the edge of a rigid mount
@@ -13,14 +13,14 @@ from tipoff.scenes.scene import Scene
 
 FORCE = 100.0  # N
 MODES = 4
-_PLACES = 41  # along the way of the pads
+_PLACES = 41  # places along the way of the pads
 
 
 def quantities(
     scene: Scene, sizes: Sequence[float]
 ) -> Iterator[tuple[str, str, Sequence[float | None]]]:
-    """(quantity, unit, value in elements of each of the ``sizes``, m, coarsest first); nothing
-    without contact, whose pads are what presses. Raises MeshError."""
+    """(quantity, unit, value in elements of each of the ``sizes``, m, coarsest first); empty
+    without contact, because no pad presses. Raises MeshError."""
     if scene.contact is None:
         return
     from tipoff.highfi import compliance  # slow to load

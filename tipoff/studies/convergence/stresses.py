@@ -25,7 +25,7 @@ def patch_peak(scene: Scene, run: Trajectory) -> float | None:
 
 
 def facts(run: Trajectory) -> dict:
-    """Peak stress as rows of result files hold it, all None for a run without stress."""
+    """Peak stress as in the rows of result files, all None for a run without stress."""
     found = run.stress or {}
     if place := found.get("peak_stress_place_m"):
         found = found | {"peak_stress_place_m": tuple(place)}

@@ -1,11 +1,10 @@
 """Choice of a model from the measured points of the cost study: the fastest one for an accuracy, or
 the most accurate one for a time.
 
-The error bound of a point is the larger of its error against the finest mesh and the uncertainty of
-that mesh, measured on one condition. On another condition the bound is at least the error and the
-uncertainty of the reference that the agreement study measured there. A model that the agreement
-study lacks (other modes of the rails, a coarser mesh than its coarse one) has no bound there and is
-not chosen.
+The error bound of a point is the larger of its error against the finest mesh and the uncertainty of that
+mesh, measured on one condition. On another condition the bound is at least the error and the uncertainty
+of the reference that the agreement study measured there. A model that the agreement study lacks (other
+rail modes, a coarser mesh than its coarse one) has no bound on that condition and is not chosen.
 """
 
 import math
@@ -22,7 +21,7 @@ _ROUNDING = 1e-9
 
 
 class Trusted(NamedTuple):
-    """A point with its error bound; infinite where it is not known."""
+    """A point with its error bound; infinite if it is not known."""
 
     point: Point
     bound_deg_s: float
@@ -50,7 +49,7 @@ def choose(
     """The point of the ``cost`` study with an error bound of the settled rates of at most ``accuracy``
     (deg/s) on ``condition`` and a wall time of at most ``budget`` (s).
 
-    Raises StudyError where no model fits, with the nearest ones.
+    Raises StudyError with the nearest models if no model fits.
     """
     there = {} if condition == cost.condition else elsewhere(agreement, condition)
     points = trusted(cost.points, cost.band_deg_s, there)
@@ -109,8 +108,8 @@ def elsewhere(agreement: Agreement | None, condition: str) -> dict[str, float]:
 def trusted(
     points: Sequence[Point], band: float | None, there: dict[str, float] | None = None
 ) -> list[Trusted]:
-    """The points that have an error, and the reference, each with an error bound that is at least the
-    bound of its model ``there``; infinite where the uncertainty ``band`` of the reference is not
+    """The points that have an error, and the reference, each with an error bound of at least the
+    bound of its model in ``there``; infinite if the uncertainty ``band`` of the reference is not
     known."""
     found = []
     for point in points:
@@ -131,7 +130,7 @@ def _known(value: float | None) -> float:
 
 
 def _measured(cost: Cost, condition: str, there: dict[str, float]) -> str:
-    """Origin of the errors, where they were measured on another condition."""
+    """Origin of the errors if they were measured on another condition."""
     if condition == cost.condition:
         return ""
     return (

@@ -47,7 +47,7 @@ def draw(found: Cost) -> list[Part]:
 
 
 def _of_point(name: str) -> tuple[Column, Callable[[Point], Any]]:
-    """The column of an error; that of the reference itself is called so."""
+    """The column of an error; the cell of the reference is "reference"."""
     return POINT[name], lambda point: "reference" if point.reference else getattr(point, name)
 
 
@@ -65,7 +65,7 @@ _MATCHES = (
 
 
 def terminal(found: Cost) -> list[Part]:
-    """The points of the Pareto front: each the fastest with its accuracy."""
+    """The points of the Pareto front: each is the fastest with its accuracy."""
     best = sorted((point for point in found.points if point.pareto), key=lambda item: item.wall_s)
     title = (
         f"The fastest model of each accuracy, condition {found.condition}, "
@@ -75,7 +75,7 @@ def terminal(found: Cost) -> list[Part]:
 
 
 def tables(found: Cost) -> list[Part]:
-    """Errors and wall times of all points, and meshes with the error of each surrogate."""
+    """Errors and wall times of all points, and for each surrogate the mesh with the same error."""
     kinds = ["best" if point.pareto else "" for point in found.points]
     notes = ("Bold: points of the Pareto front.",)
     columns = (*_POINTS, "integration_error_deg_s")
@@ -124,7 +124,11 @@ def picture(cost: Cost) -> Chart:
         ]
         front = [_front(cost), *_recommended(cost)] if shaded else []
         shown = [line for line in front + lines if len(line.x)]
-        panels.append(Panel(title, "wall time of one run (s)", label, shown, True, shaded))
+        panels.append(
+            Panel(
+                title, "wall time of one run (s)", y_label=label, lines=shown, log=True, band=shaded
+            )
+        )
     return Chart("cost", [panel for panel in panels if panel.lines], columns=2, height=420)
 
 
@@ -152,11 +156,11 @@ def _recommended(cost: Cost) -> list[Line]:
         return []
     name = f"recommended: {point.model}, {point.numerics}"
     place = [point.wall_s], [point.error_deg_s]
-    return [Line(*place, name, "#000000", 1.6, "", marker="x", size=16.0)]
+    return [Line(*place, name=name, colour="#000000", dash="", marker="x", size=16.0)]
 
 
 def _front(cost: Cost) -> Line:
-    """Steps along the Pareto front; errors below the band count as the band."""
+    """The Pareto front as a step line; errors below the band count as the band."""
     front = sorted(
         (point.wall_s, bound)
         for point, bound in choice.trusted(cost.points, cost.band_deg_s)
@@ -170,10 +174,10 @@ def _front(cost: Cost) -> Line:
             for wall in pair
         ],
         [error for error in errors for _ in range(2)],
-        "Pareto front",
-        "#000000",
-        3.0,
-        "-",
+        name="Pareto front",
+        colour="#000000",
+        width=3.0,
+        dash="-",
         opacity=0.25,
     )
 
@@ -185,21 +189,22 @@ def _cost_line(
     look: tuple[str, str, str],
     beside: str,
 ) -> Line:
-    """One model, with its name at its slowest point; meshes and numbers of modes have their own labels."""
+    """One model, with its name at its slowest point; meshes and numbers of modes have labels of
+    their own."""
     colour, marker, dash = look
     varied = any(point.modes is not None for point in points)
     labels = [str(point.modes) if varied else point.numerics.split(",")[0] for point in points]
     if model != FINITE_ELEMENTS and not varied:
-        # right of the slowest point no other surrogate is in the way
+        # to the right of the slowest point there is no other surrogate
         named = max(points, key=lambda point: point.wall_s, default=None)
         labels = [model.split(" of ")[0] if point is named else "" for point in points]
     return Line(
         [p.wall_s for p in points],
         [error(p) for p in points],
-        model,
-        colour,
-        1.6,
-        dash,
+        name=model,
+        colour=colour,
+        width=1.6,
+        dash=dash,
         marker=marker,
         labels=tuple(labels),
         beside="top center" if varied or model == FINITE_ELEMENTS else beside,

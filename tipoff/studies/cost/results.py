@@ -11,9 +11,10 @@ _WALL = Column("wall time", "s")
 
 @dataclass(frozen=True, kw_only=True)
 class Point:
-    """A run of one model. ``setting``: element size (m) or relative tolerance; ``modes`` None where they
-    are not varied; errors None where a run did not settle, and for the reference; ``reference``: whether
-    it is the finest mesh and settled; ``pareto``: whether no faster point has an error bound as small."""
+    """A run of one model. ``setting``: element size (m) or relative tolerance; ``modes``: None if
+    they are not varied; errors: None if a run did not settle, and for the reference; ``reference``:
+    whether it is the finest mesh and settled; ``pareto``: whether no faster point has an error
+    bound as small."""
 
     model: Annotated[str, Column("model")]
     rung: str
@@ -31,7 +32,7 @@ class Point:
 
 @dataclass(frozen=True, kw_only=True)
 class Match:
-    """A surrogate, and the fastest mesh whose error is not larger."""
+    """A surrogate, and the fastest mesh with an error that is not larger."""
 
     model: Annotated[str, Column("surrogate")]
     numerics: Annotated[str, Column("numerics")]
@@ -48,7 +49,7 @@ class Match:
 class PowerLaw:
     """t = c n^p: ``exponent`` p, None for a single size, and its standard error, None for two points."""
 
-    exponent: float | None
+    exponent: float | None  # p of t = c n^p
     standard_error: float | None
 
 
@@ -96,7 +97,8 @@ class MeshGrowth(Growth):
 
 @dataclass(frozen=True)
 class Rung:
-    """Time with a set of effects, whose last ones were ``added``; ``on`` is their number."""
+    """Time with a set of effects; ``on``: their number; ``added``: the effects that the set before
+    lacks."""
 
     added: str
     on: int
@@ -105,24 +107,25 @@ class Rung:
 
 @dataclass(frozen=True)
 class EffectTime:
-    """Time of an effect: of all effects minus that of all others; ``of_none``: over that without any."""
+    """Time of an effect: time with all effects minus time without this one; ``of_none``: relative
+    to the time without any effect."""
 
     effect: str
     time_s: float
-    of_none: float
+    of_none: float  # relative to the time without any effect
 
 
 @dataclass(frozen=True, kw_only=True)
 class EffectTimes:
-    """Times of a model without effects, with all, and their ``ratio``; ``asked``: number and time (s) of
-    the effects of the scene."""
+    """Times of a model without effects, with all, and their ``ratio``; ``asked``: number and time
+    (s) of the effects of the scene itself."""
 
     model: str
     none_s: float
     all_s: float
     ratio: float
     ladder: tuple[Rung, ...]
-    asked: tuple[int, float]
+    asked: tuple[int, float]  # number of effects of the scene, and time (s)
     effects: tuple[EffectTime, ...]
 
 
@@ -137,7 +140,7 @@ class Scaling:
 
 @dataclass(frozen=True, kw_only=True)
 class Cost:
-    """``band_deg_s``: uncertainty of the finest mesh, None where it is not known."""
+    """``band_deg_s``: uncertainty of the finest mesh, None if not known."""
 
     condition: str
     scene_hash: str

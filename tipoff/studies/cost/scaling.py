@@ -4,9 +4,9 @@ the active effects.
     t = c n^p,   p the slope of a straight line through log t over log n, with its standard error
 
 Elements: the work of a step is proportional to n elements, so p = 1 per step. The step limit is
-proportional to the edge of an element, so a run has n^(1/3) times as many steps: p = 4/3. Smaller
-values occur on coarse meshes, where much of a step is the same on any mesh (a of t = a + b n), and
-where the thickness of a wall, one element, sets the step.
+proportional to the edge of an element, so a run has n^(1/3) times as many steps: p = 4/3. Smaller values
+occur on coarse meshes, for two reasons: a part of a step takes the same time on any mesh (a of t = a + b
+n), and the thickness of a wall, one element, limits the step.
 
 Pads are removed, or added between the others of the same payload. This changes the motion and its
 contacts, so p of a run includes that change; p of a step has less of it. Effects differ in kind, so
@@ -49,7 +49,7 @@ _REPEATS = {"highfi": 2, "lowfi": 20}
 
 
 def power_law(sizes: Sequence[float], times: Sequence[float]) -> PowerLaw:
-    """The law of ``times`` (s) over ``sizes``, such as those of a mesh from a file, which are one."""
+    """The law of ``times`` (s) over ``sizes``; a mesh from a file has a single size."""
     if len(set(sizes)) < 2:
         return PowerLaw(None, None)
     from scipy.stats import linregress  # slow to load
@@ -111,7 +111,7 @@ def elements(study: Study, name: str) -> MeshGrowth:
 
 
 def _median(costs: list[dict], time: str, n: int | None = None, **others: Any) -> Timing:
-    """Repeats of a run as one timing; ``n`` is the number of elements without another."""
+    """Repeats of a run as one timing; default ``n``: the number of elements."""
     seconds = statistics.median(cost[time] for cost in costs)
     steps = statistics.median(cost["steps"] for cost in costs)
     return Timing(
@@ -126,9 +126,9 @@ def _median(costs: list[dict], time: str, n: int | None = None, **others: Any) -
 
 
 def pads(study: Study, name: str) -> tuple[Growth, ...]:
-    """Law over the number of pads of each model; reference and rail compliance on the coarsest mesh.
-    On a mesh from a file, which has no coarser one, the reference is left out: ten of its runs may
-    take hours."""
+    """Law over the number of pads of each model; reference and rail compliance on the coarsest
+    mesh. A mesh from a file cannot be coarsened. Then the reference is left out, because ten of its
+    runs may take hours."""
     variants = pad_variants(study, name)
     wanted = (
         {}
@@ -154,7 +154,7 @@ def pads(study: Study, name: str) -> tuple[Growth, ...]:
 
 
 def over_pads(model: str, runs: list[Run], counts: list[int], board: Board) -> Growth:
-    """Alternating runs, so that other load on the machine affects all numbers of pads alike."""
+    """Alternating runs, so other load on the machine affects all numbers of pads alike."""
     fidelity, progress = runs[0].fidelity, board.callback(model)
     for run in runs:
         warm_up(run)
@@ -183,9 +183,9 @@ def pad_variants(study: Study, name: str) -> dict[int, dict]:
 
 
 def with_pads(scene: Scene, count: int) -> dict | None:
-    """Override that leaves ``count`` pads: rear ones, so that the exit stays where it is, and of
-    a part of a band those farthest apart; or more bands, evenly spaced from rear to front. None
-    where ``count`` is no multiple of a band."""
+    """Override with ``count`` pads. Fewer pads: the rear ones, so the place of the exit does not
+    change, and of a part of a band those farthest apart. More pads: more bands, evenly spaced from
+    rear to front. None if ``count`` is no multiple of a band."""
     own = sorted(
         (pad.model_dump(mode="json") for pad in scene.pads), key=lambda pad: pad["position"][0]
     )
@@ -265,8 +265,7 @@ def effects(scene: Scene, ablation: Ablation) -> tuple[EffectTimes, ...]:
 
 
 def _ladder(time: dict[str, float], count: int) -> tuple[Rung, ...]:
-    """The nested sets of the ablation study, which need no further kernels. There is no friction
-    without contact."""
+    """The nested sets of the ablation study, which need no further kernels. Friction needs contact."""
     sets = [
         ("none", 0, "no effect"),
         ("all but contact and friction", count - 2, "without contact"),

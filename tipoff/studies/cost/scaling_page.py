@@ -49,24 +49,35 @@ def picture(found: Scaling) -> Chart:
     elements = found.elements
     first = elements.points[0]
     expected = [first.time_s * (point.n / first.n) ** (4.0 / 3.0) for point in elements.points]
-    steep = Line([point.n for point in elements.points], expected, "exponent 4/3", NAVY, 1.0, ":")
+    steep = Line(
+        [point.n for point in elements.points],
+        expected,
+        name="exponent 4/3",
+        colour=NAVY,
+        width=1.0,
+        dash=":",
+    )
     panels = [
         Panel(
-            "elements of the rails", "elements", "time of a run (s)", [*_law(elements), steep], True
+            "elements of the rails",
+            "elements",
+            y_label="time of a run (s)",
+            lines=[*_law(elements), steep],
+            log=True,
         ),
         Panel(
             "pads",
             "pads",
-            "time of a run (s)",
-            [line for law in found.pads for line in _law(law)],
-            True,
+            y_label="time of a run (s)",
+            lines=[line for law in found.pads for line in _law(law)],
+            log=True,
             ticks=tuple(point.n for point in found.pads[0].points),
         ),
         Panel(
             "effects",
             "active effects",
-            "time relative to no effects",
-            [_ladder(item) for item in found.effects],
+            y_label="time relative to no effects",
+            lines=[_ladder(item) for item in found.effects],
         ),
     ]
     return Chart("scaling", panels, columns=3, height=320)
@@ -76,12 +87,15 @@ def _law(law: Growth) -> list[Line]:
     """The points of one model, and the fitted line through their geometric means, if it exists."""
     colour, marker, dash = _LOOKS[law.model]
     sizes, times = zip(*((point.n, point.time_s) for point in law.points))
-    points = Line(sizes, times, law.model, colour, 1.6, "", marker=marker)
+    points = Line(sizes, times, name=law.model, colour=colour, width=1.6, dash="", marker=marker)
     if law.run.exponent is None:
         return [points]
     size, time = (math.exp(sum(map(math.log, values)) / len(values)) for values in (sizes, times))
     fit = [time * (each / size) ** law.run.exponent for each in sizes]
-    return [points, Line(sizes, fit, law.model, colour, 1.4, dash, legend=False)]
+    return [
+        points,
+        Line(sizes, fit, name=law.model, colour=colour, width=1.4, dash=dash, legend=False),
+    ]
 
 
 def _ladder(item: EffectTimes) -> Line:
@@ -90,10 +104,10 @@ def _ladder(item: EffectTimes) -> Line:
     return Line(
         [step.on for step in item.ladder],
         ratios,
-        item.model,
-        colour,
-        1.4,
-        dash,
+        name=item.model,
+        colour=colour,
+        width=1.4,
+        dash=dash,
         marker=marker,
     )
 
@@ -105,7 +119,7 @@ def tables(found: Scaling) -> list[Part]:
 
 
 def exponent(law: PowerLaw) -> str:
-    """An exponent with its standard error; a dash where sizes do not differ."""
+    """An exponent with its standard error; a dash for a single size."""
     error = law.standard_error
     if law.exponent is None:
         return "–"
@@ -125,7 +139,7 @@ def _exponents(found: Scaling) -> Table:
         for over, of, points, law in laws
     ]
     heads = ("over", "model", "from", "to", "p of a run", "p of a step")
-    return Table(heads, rows, (_EXPECTED, _step(elements)))
+    return Table(heads, rows, notes=(_EXPECTED, _step(elements)))
 
 
 def _step(law: MeshGrowth) -> str:
@@ -170,7 +184,7 @@ def _times(found: Sequence[EffectTimes]) -> Table:
         for at, item in enumerate(first.effects)
     ]
     models = [f"{item.model} (ms)" for item in found]
-    return Table(["effects", "number", *models], [*sets, *alone], (_TIMES,))
+    return Table(["effects", "number", *models], [*sets, *alone], notes=(_TIMES,))
 
 
 def _time(item: Rung | EffectTime, model: EffectTimes) -> Noted:
@@ -178,5 +192,5 @@ def _time(item: Rung | EffectTime, model: EffectTimes) -> Noted:
 
 
 def _milliseconds(seconds: float) -> str:
-    """Three digits, or all before the point, because times span three powers of ten."""
+    """Three digits, or all digits before the point, because times span three powers of ten."""
     return f"{1e3 * seconds:,.0f}" if abs(seconds) >= 0.1 else f"{1e3 * seconds:.3g}"

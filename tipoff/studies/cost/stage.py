@@ -1,10 +1,10 @@
 """Stage ``cost``: error of the settled rates over wall time, both fidelities on one condition; and
 growth of time with elements, pads and effects (``studies.cost.scaling``).
 
-Errors are against the finest finite-element mesh. Its uncertainty is the band below which an error
-cannot be distinguished from zero; a smaller error counts as the band in the Pareto front. Every run
-is timed alone on the machine. The time-integration error of a surrogate is against its tightest
-tolerance, with the same modes of the rails; the rest of its error is the error of the model.
+Errors are relative to the finest finite-element mesh. Its uncertainty is the band below which an error
+cannot be distinguished from zero; a smaller error counts as the band in the Pareto front. Every run is
+timed alone on the machine. The time-integration error of a surrogate is relative to its tightest
+tolerance with the same rail modes; the rest of its error is the error of the model.
 
 ``cost.json`` is the list of points for other tools, ``cost_study.json`` the whole result.
 """
@@ -39,7 +39,7 @@ from tipoff.workspace.timing import timed
 from tipoff.workspace.words import counted
 
 BY_MODES = f"{COMPLIANT}, modes varied"
-MODES = (0, 1, 2, 8)  # of each rail, beside those of the agreement study
+MODES = (0, 1, 2, 8)  # modes of each rail, in addition to those of the agreement study
 STIFFNESS_ALONG = f"{COMPLIANT}, mean pressure of each face by itself"
 NAME, POINTS = "cost_study", "cost.json"
 
@@ -108,7 +108,7 @@ def surrogates(study: Study, conditions: Iterable[str] | None = None) -> list[Ca
 def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None, list[Point]]:
     settings = study.settings
     sizes = (2.0 * settings.coarse_size, settings.coarse_size, settings.element_size)
-    wanted = refinement.meshes(study, name, sizes)  # runs of the agreement study
+    wanted = refinement.meshes(study, name, sizes)  # as in the agreement study
     coarsest, coarse, finest = study.store.fill("cost, meshes", wanted)
     band = Context(
         [], refinement.refinements(study, [name]), verdicts.gates(study.scene)
@@ -202,9 +202,9 @@ def surrogate_points(
 
 
 def _integration_errors(tightest: Run, runs: list[Trajectory]) -> list[float | None]:
-    """Largest error (deg/s) of a settled rate by the tolerance of each of the ``runs``, the first of
-    which is the ``tightest`` one and has None. A run that chose other modes of the rails than that one
-    is compared with a tight run with its own modes: modes are part of the model."""
+    """Largest error (deg/s) of a settled rate by the tolerance of each of the ``runs``, the first
+    of which is the ``tightest`` one and has None. A run that chose other rail modes is compared
+    with a tight run with these modes, because modes are part of the model."""
     tight = {runs[0].numerics.get("modes"): runs[0]}
     for found in runs[1:]:
         if (modes := found.numerics.get("modes")) not in tight:
@@ -217,11 +217,12 @@ def _integration_errors(tightest: Run, runs: list[Trajectory]) -> list[float | N
 
 def matched(points: Sequence[Point]) -> list[Match]:
     """For each surrogate: the fastest mesh with an error at most as large, and the ratio of wall
-    times. The error of a surrogate is that at its tightest tolerance, because step errors can cancel
-    it by chance; its time is that of the fastest tolerance that adds at most a tenth to it. The
-    error of the finest mesh, the reference, is zero by definition; a mesh that did not settle has none and
-    matches nothing. A surrogate that did not settle at its tightest tolerance is left out, and so are
-    other numbers of modes, because no tolerance was varied there."""
+    times. The error of a surrogate is that at its tightest tolerance, because step errors can
+    cancel it by chance. Its time is that of the fastest tolerance that adds at most a tenth to this
+    error. The error of the finest mesh, the reference, is zero by definition. A mesh that did not
+    settle has no error and is not used. A surrogate that did not settle at its tightest tolerance
+    is left out. Points with other numbers of modes are left out too, because they have one
+    tolerance only."""
     points = [point for point in points if point.modes is None]
     meshes = [point for point in points if point.model == FINITE_ELEMENTS]
     found = []
@@ -256,7 +257,7 @@ def matched(points: Sequence[Point]) -> list[Match]:
 
 
 def _is_within(point: Point, error: float | None, limit: float | None) -> bool:
-    """Whether an ``error`` of a point is known and at most ``limit``, an unknown one None."""
+    """Whether an ``error`` of a point is known (not None) and at most ``limit``."""
     if limit is None:
         return False
     return point.reference or (error is not None and error <= limit)
@@ -264,7 +265,7 @@ def _is_within(point: Point, error: float | None, limit: float | None) -> bool:
 
 def marked(points: Sequence[Point], band: float | None) -> list[Point]:
     """The points with ``pareto``: whether no faster point has an error bound as small. Without a
-    ``band`` no bound is known."""
+    ``band``, bounds are not known."""
     known = [item for item in choice.trusted(points, band) if math.isfinite(item.bound_deg_s)]
 
     def beaten(item: Trusted) -> bool:

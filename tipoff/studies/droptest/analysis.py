@@ -1,4 +1,4 @@
-"""One drop test from its sheet to its change of rate: what the other files here do, in order."""
+"""One drop test from its sheet to its change of rate: the steps of the other files in order."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -15,10 +15,9 @@ from tipoff.studies.droptest.sheet import Sheet
 
 
 class Drop(NamedTuple):
-    """A drop test: its sheet, calibrated samples, filtered rate (n,3) rad/s, samples that are
-    ``doubtful`` (n,) as they are missing or clipped, events, windows, change of rate; largest rate
-    (rad/s) in the window at rest, and ``notes``, everything that was repaired, assumed or left out,
-    in words."""
+    """A drop test: its sheet, calibrated samples, filtered rate (n,3) rad/s, ``doubtful`` samples
+    (n,) that are missing or clipped, events, windows, change of rate, largest rate (rad/s) in the
+    window at rest. ``notes`` state in words what was repaired, assumed or left out."""
 
     name: str
     sheet: Sheet
@@ -39,7 +38,7 @@ def analyse(path: str | Path) -> Drop:
 
 
 def of(sheet: Sheet, log: Log, source: str) -> Drop:
-    """The same of a log that was read already."""
+    """The same for a log that is already read."""
     samples = calibrated(sheet, log)
     smooth = filtered(samples.rate, sheet.channel_class, log.interval)
     events = finding.find(sheet, samples, source)
@@ -50,20 +49,20 @@ def of(sheet: Sheet, log: Log, source: str) -> Drop:
     return Drop(
         Path(source).stem,
         sheet,
-        samples,
-        smooth,
-        log.doubtful | log.clipped,
-        events,
-        spans,
-        result,
-        unrest,
-        _notes(sheet, log, events, unrest),
+        samples=samples,
+        filtered=smooth,
+        doubtful=log.doubtful | log.clipped,
+        events=events,
+        spans=spans,
+        reduced=result,
+        unrest=unrest,
+        notes=_notes(sheet, log, events, unrest),
     )
 
 
 def _require_whole(log: Log, spans: Spans, source: str) -> None:
-    """No gap in a window, no clipped rate, nor acceleration, by which the rate is compensated.
-    Raises SceneError else."""
+    """Check that no window has a gap, a clipped rate, or a clipped acceleration that compensates
+    the rate. Raises SceneError otherwise."""
     faults = []
     for name in WINDOWS:
         places = inside(log.time, getattr(spans, name))

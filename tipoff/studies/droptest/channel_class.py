@@ -5,20 +5,20 @@ forward and backward.
     a0 = a2 = w_a^2 / c,  a1 = 2 a0,  b1 = 2 (1 - w_a^2) / c,  b2 = (sqrt(2) w_a - 1 - w_a^2) / c
     y_n = a0 x_n + a1 x_(n-1) + a2 x_(n-2) + b1 y_(n-1) + b2 y_(n-2)
 
-These are the numbers of ``scipy.signal.butter(2, 2.0775 * CFC, fs=1 / T)``, whose second list is
-(1, -b1, -b2): the bilinear transform with its warping taken out at 2.0775 CFC. Both passes together
-have the gain 1 / (1 + (w / w_d)^4) and no phase: -6 dB at 2.0775 CFC, and -3 dB at (sqrt(2) -
-1)^(1/4) of it, which is 5/3 CFC, the 100 Hz of CFC 60.
+These are the numbers of ``scipy.signal.butter(2, 2.0775 * CFC, fs=1 / T)``, whose second list is (1, -b1,
+-b2): the bilinear transform, prewarped at 2.0775 CFC. Both passes together have the gain 1 / (1 + (w /
+w_d)^4) and no phase shift: -6 dB at 2.0775 CFC, and -3 dB at (sqrt(2) - 1)^(1/4) of that frequency, which
+is 5/3 CFC (100 Hz for CFC 60).
 """
 
 import math
 
 import numpy as np
-import scipy  # its parts load when they are first used
+import scipy  # scipy loads a part at its first use
 
 DESIGN = 2.0775  # frequency of one pass over the class
 SAMPLES_PER_CLASS = 10.0  # least sampling rate over the class
-_DECAYS = 10.0  # time constants after which nothing is left of a jump: 5e-5
+_DECAYS = 10.0  # time constants after which 5e-5 of a jump is left
 
 
 def coefficients(channel_class: float, rate: float) -> tuple[np.ndarray, np.ndarray]:
@@ -40,8 +40,8 @@ def coefficients(channel_class: float, rate: float) -> tuple[np.ndarray, np.ndar
 
 
 def filtered(values: np.ndarray, channel_class: float, interval: float) -> np.ndarray:
-    """``values`` (n, ...) sampled every ``interval`` (s), without phase; turned round at both ends:
-    a straight line stays."""
+    """``values`` (n, ...) sampled every ``interval`` (s), filtered without phase shift. The signal
+    is continued by point reflection at both ends, so a straight line does not change."""
     top, bottom = coefficients(channel_class, 1.0 / interval)
     pad = min(math.ceil(reach(channel_class) / interval), len(values) - 1)
     return scipy.signal.filtfilt(top, bottom, values, axis=0, padtype="odd", padlen=pad)

@@ -1,14 +1,14 @@
 """Release and ignition in the accelerations, and the windows that follow from them.
 
-**Release**: while the platform hangs its accelerometers feel g, in free fall nothing. Free fall is
-the first stretch in which the filtered force stays below g/2 for 50 ms, so that no knock passes for
-it; its beginning is then put where a step from the mean force before to zero fits the unfiltered
-samples best (least squares, which is maximum likelihood for white noise).
+**Release**: the accelerometers of a hanging platform measure g, in free fall zero. Free fall is the first
+interval in which the filtered force stays below g/2 for 50 ms. A knock is shorter. The beginning is where
+a step from the mean force before to zero fits the unfiltered samples best (least squares, which is
+maximum likelihood for white noise).
 
-**Ignition**: of all stretches after release in which the force along +X exceeds six standard
-deviations of its noise (and 1 m/s2), the first whose impulse is that of an ejection is the burn,
-and its beginning is ignition. A latch may knock harder, but not for as long; and whatever catches
-the platform may push for longer than the thruster, but not before it.
+**Ignition**: the burn is the first interval after release in which the force along +X exceeds six
+standard deviations of its noise (and 1 m/s2) and has the impulse of an ejection. Its beginning is
+ignition. A latch may knock harder, but for a shorter time. The catch of the platform may push for longer
+than the thruster, but it comes later.
 """
 
 from typing import NamedTuple
@@ -22,19 +22,19 @@ from tipoff.studies.droptest.sheet import Sheet
 
 GRAVITY = 9.80665
 WINDOWS = ("rest", "reference", "settled")
-_FALL = 0.05  # s; no knock lasts as long
+_FALL = 0.05  # s; a knock is shorter
 _NOISE_FROM, _NOISE_TO = 0.01, 0.05  # s after release, where the noise of the force is judged
 _SIGMAS, _LEAST = 6.0, 1.0  # a sample that belongs to the burn: standard deviations, and m/s2
 _JOINED = 0.002  # s between samples of one burn
-_IMPULSE = 0.3  # m/s; less is no ejection
+_IMPULSE = 0.3  # m/s, the smallest impulse per mass of an ejection
 _AT_REST = 0.05  # relative error of g while hanging, beyond which units or scale are wrong
 _SHORTEST = 0.03  # s of a window
-_ROUNDING = 1e-6  # of an interval: instants are sums of times in decimal digits
+_ROUNDING = 1e-6  # of an interval: rounding of instants, which are sums of decimal times
 
 
 class Events(NamedTuple):
-    """Instants (s of the log), and whether they are found or given; ``later``, where further pushes
-    begin that are as long as a burn and lie after the exit, and are taken for the catch."""
+    """Instants (s of the log), and whether they are found or given; ``later``: begins of further
+    pushes after the exit that are as long as a burn, which are taken for the catch."""
 
     release: float
     ignition: float
@@ -86,7 +86,7 @@ def find(sheet: Sheet, found: Calibrated, source: str) -> Events:
 
 
 def _force(found: Calibrated) -> np.ndarray:
-    """The specific force (n,3), which every log has whose sheet does not give the events."""
+    """The specific force (n,3). A log has it unless its sheet states the events."""
     assert found.force is not None
     return found.force
 
@@ -104,7 +104,7 @@ def _release(sheet: Sheet, found: Calibrated, interval: float, source: str) -> i
     low, high = max(crossing - span, 1), min(crossing + span, found.time.size - 1)
     before = force[max(0, low - 5 * span) : low].mean(axis=0)
     measured = force[low:high] @ before / (before @ before)  # 1 while hanging, 0 in free fall
-    # Sum of squares that a step after k samples leaves, but for a constant.
+    # Residual sum of squares of a step after k samples, without a constant part.
     wrong = np.concatenate([[0.0], np.cumsum((measured - 1.0) ** 2 - measured**2)])
     return low + int(np.argmin(wrong))
 
@@ -133,7 +133,7 @@ def _pushes(found: Calibrated, interval: float, release: int, source: str) -> li
 
 
 def spans(sheet: Sheet, found: Calibrated, events: Events, source: str) -> Spans:
-    """The windows. Raises SceneError where the log does not hold them, or they are too short."""
+    """The windows. Raises SceneError if the log does not contain them, or if they are too short."""
     from tipoff.mechanics.outcome import SETTLE_DELAY, SETTLE_WINDOW
 
     ask, guard = sheet.windows, reach(sheet.channel_class)
@@ -146,7 +146,7 @@ def spans(sheet: Sheet, found: Calibrated, events: Events, source: str) -> Spans
         left + SETTLE_DELAY + 0.5 * SETTLE_WINDOW,
     )
     faults = []
-    # Less than half an interval outside the log, a window holds the same samples.
+    # A window that ends less than half an interval outside the log has the same samples.
     slack = 0.5 * float(found.time[1] - found.time[0])
     first, last = found.time[0] - slack, found.time[-1] + slack
     for name in WINDOWS:

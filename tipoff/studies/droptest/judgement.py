@@ -1,18 +1,17 @@
-"""How tests sit among simulated cases, by ranks alone: no shape of the distribution is assumed.
+"""Comparison of tests with simulated cases by ranks, without an assumed distribution.
 
-If a test is one more draw of the model, its place among N simulated ones is as likely to be any of
-N + 1, so that
+If a test is one more draw of the model, each of the N + 1 ranks among N simulated cases has the same
+probability. Then
 
     p = (r + 1) / (N + 1),   r simulated cases being at least as extreme,
 
-is uniform (Barnard 1963; conformal prediction). Exactly so when
+is uniform (Barnard 1963; conformal prediction). This is exact if
 
-* a case carries the same errors of measurement as the test: they are drawn for it from the test's
-  uncertainty, and
-* extremeness treats all N + 1 alike: Mahalanobis distance from the mean of all, by the covariance
-  of all, test included.
+* each case has errors of measurement like the test, drawn from the test's uncertainty, and
+* the measure treats all N + 1 alike: the Mahalanobis distance uses the mean and the covariance of all,
+  test included.
 
-The smallest p that N cases can show is 1 / (N + 1).
+The smallest possible p is 1 / (N + 1).
 """
 
 import numpy as np
@@ -29,8 +28,8 @@ _SUBSETS = 9999
 def standing(
     simulated: np.ndarray, change: np.ndarray, uncertainty: np.ndarray, number: int = 0
 ) -> Standing:
-    """Of test ``number`` with a change (3,) of rate and its standard uncertainty (3,) among
-    simulated cases (n,3)."""
+    """The place of test ``number``, with a change (3,) of rate and its standard uncertainty (3,),
+    among simulated cases (n,3)."""
     drawn = measured(simulated, uncertainty, number)
     share, p = ranked(drawn, change)
     size = magnitudes(change)
@@ -69,8 +68,8 @@ def ranked(simulated: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def p_distance(simulated: np.ndarray, value: np.ndarray) -> float:
-    """Share of all n + 1 that lie at least as far from their mean as ``value`` (k,), itself among
-    them."""
+    """Share of all n + 1 points, ``value`` (k,) included, that lie at least as far from their mean
+    as ``value``."""
     distance = distances(np.vstack([simulated, value]))
     return float((distance >= distance[-1]).mean())
 
@@ -87,14 +86,14 @@ def _inverse(covariance: np.ndarray) -> np.ndarray:
 
 
 def combined(p: list[float]) -> float:
-    """Fisher's combined p of all tests. They share n cases, which changes it by about 1/n."""
+    """Fisher's combined p of all tests. The tests share n cases, which changes p by about 1/n."""
     return float(scipy.stats.combine_pvalues(p, method="fisher").pvalue)
 
 
 def p_spread(simulated: np.ndarray, changes: np.ndarray, uncertainties: np.ndarray) -> float:
-    """Two-sided p of the sum of squared distances of k tests (k,3) among sums over as many cases
-    drawn at random, with each test's errors of measurement: small where the model is too narrow,
-    and where it is too wide."""
+    """Two-sided p of the sum of squared distances of k tests (k,3) among sums over k cases drawn at
+    random, with each test's errors of measurement. It is small if the model is too narrow or too
+    wide."""
     rng = np.random.default_rng([_SEED, len(changes)])
     drawn = simulated[rng.integers(len(simulated), size=(_SUBSETS, len(changes)))]
     drawn = drawn + uncertainties * rng.standard_normal(drawn.shape)
@@ -116,8 +115,9 @@ def spreads(
 
 
 def region(simulated: np.ndarray, pair: tuple[int, int], share: float = SHARE) -> Region:
-    """The ellipse that holds a ``pair`` of components of the next draw with at least this probability,
-    from draws (n,3): its squared radius is the ceil(share (n + 1))-th distance."""
+    """The ellipse that contains a ``pair`` of components of the next draw with at least the
+    probability ``share``, from draws (n,3): its squared radius is the ceil(share (n + 1))-th
+    distance."""
     points = simulated[:, pair]
     place = int(np.ceil(share * (len(points) + 1)))
     first, second = np.cov(points.T).tolist()

@@ -1,12 +1,11 @@
-"""Reading the log of an inertial unit: units, an even time base, and what had to be done to get
-there, in words.
+"""Reads the log of an inertial unit: units, an even time base, and notes on every repair.
 
-Every sample belongs to an instant of an even grid. Time that jitters by less than half an interval
-is interpolated onto it; one or two samples that are missing or not a number are bridged by a
-straight line; longer gaps and clipped rates are marked, so that no window that matters may hold
-them. A temperature, which drifts in seconds, is interpolated over gaps of any length. Each of these
-leaves a note; anything worse is a fault. Raw samples then become rates in payload body axes, by the
-inverse of what a gyro triad does to the rate that it feels:
+Every sample belongs to an instant of an even grid. Samples whose time jitters by less than half an
+interval are interpolated onto the grid. One or two samples that are missing or not a number are bridged
+by a straight line. Longer gaps and clipped rates are marked, and a window that contains them is refused.
+A temperature drifts slowly, so it is interpolated over gaps of any length. Each repair adds a note;
+anything worse is a fault. Raw samples then become rates in payload body axes by the inverse of the sensor
+model:
 
     raw = (1 + diag s)(1 + E) w + b + G f + c (T - T0)          sensor axes
     w_body = R [(1 + diag s)(1 + E)]^-1 (raw - b - G f - c (T - T0))
@@ -29,11 +28,11 @@ from tipoff.studies.droptest.saturation import saturated
 from tipoff.studies.droptest.sheet import Sheet
 from tipoff.workspace.words import counted
 
-_BRIDGED = 2  # samples that a straight line may stand for
-_JITTER = 0.01  # of an interval: less is the rounding of a clock, and left as it is
-_UNEVEN = 0.45  # of an interval: more, and it is not clear which instant a sample belongs to
+_BRIDGED = 2  # missing samples that a straight line may replace
+_JITTER = 0.01  # of an interval: a smaller jitter is rounding of the clock and stays
+_UNEVEN = 0.45  # of an interval: with more jitter the instant of a sample is not clear
 _FEWEST = 100
-_MOST_MISSING = 10.0  # instants of the even grid per sample; a bad time would ask for billions
+_MOST_MISSING = 10.0  # instants of the even grid per sample; a wrong time would make billions
 
 
 class Log(NamedTuple):
@@ -138,7 +137,7 @@ def _places(sheet: Sheet, source: str, time: np.ndarray) -> tuple[np.ndarray, fl
             f"a gap from {time[gap]:.6g} s to {time[gap + 1]:.6g} s, samples {interval:.3g} s apart",
             f"at most {_MOST_MISSING:g} times as many instants as samples",
         )
-    # Counted step by step: jitter may put the median off by more than the whole log forgives.
+    # Counted step by step: jitter of the median would add up over the whole log.
     place = np.concatenate([[0], np.cumsum(np.round(steps / interval).astype(int))])
     interval, start = (
         float(value) for value in np.polynomial.Polynomial.fit(place, time, 1).convert().coef[::-1]
@@ -157,8 +156,7 @@ def _fault(source: str, given: str, expected: str, column: str = "time") -> Scen
 def _bridged(
     time, columns, grid, place, name: str, notes: list[str]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Values (n,k) on the grid, and where (n,) a gap was too long to be bridged; says so in
-    ``notes``."""
+    """Values (n,k) on the grid, and the samples (n,) of gaps too long to bridge; adds ``notes``."""
     good = np.isfinite(columns).all(axis=1)
     missing = np.ones(grid.size, dtype=bool)
     missing[place[good]] = False
@@ -186,8 +184,8 @@ def _bridged(
 
 
 def _drifting(time, values, grid, source: str, notes: list[str]) -> np.ndarray:
-    """Temperature (n,) on the grid; a logger may write it more slowly than rates. Raises SceneError
-    for a column without a number."""
+    """Temperature (n,) on the grid; a logger may sample it more slowly than rates. Raises
+    SceneError for a column without a number."""
     good = np.isfinite(values)
     if not good.any():
         raise _fault(
@@ -218,7 +216,7 @@ def _marked(sheet: Sheet, filled: dict, doubtful: np.ndarray, notes: list[str]) 
             "every window"
         )
     if force is not None:
-        assert sheet.accelerometer is not None  # as a sheet with accelerations has to have it
+        assert sheet.accelerometer is not None  # every sheet with accelerations has it
         largest = sheet.accelerometer.range
         pushed = saturated(force, largest)
         clipped = np.asarray(pushed.any(axis=1))
@@ -226,11 +224,19 @@ def _marked(sheet: Sheet, filled: dict, doubtful: np.ndarray, notes: list[str]) 
             where = _level(force, pushed, largest, "m/s2")
             notes.append(f"acceleration: {counted(clipped.sum(), 'sample')} clipped at {where}")
     gone = doubtful | at_end.any(axis=1)
-    return Log(filled["time"], rate, force, temperature, gone, clipped, notes)
+    return Log(
+        filled["time"],
+        rate,
+        acceleration=force,
+        temperature=temperature,
+        doubtful=gone,
+        clipped=clipped,
+        notes=notes,
+    )
 
 
 def _level(values: np.ndarray, at_end: np.ndarray, largest: float, unit: str) -> str:
-    """The range, or the level where the samples ``at_end`` are if that is not the range."""
+    """The range in words, or the level of the samples ``at_end`` if it is below the range."""
     level = float(np.median(np.abs(values[at_end])))
     if abs(level / largest - 1.0) < 0.02:
         return f"the range of {largest:.4g} {unit}"
@@ -263,7 +269,7 @@ def calibrated(sheet: Sheet, log: Log) -> Calibrated:
     gyro, turn = sheet.gyro, sheet.mounting
     rate, force = log.rate - np.array(gyro.bias), None
     if log.acceleration is not None:
-        assert sheet.accelerometer is not None  # as a sheet with accelerations has to have it
+        assert sheet.accelerometer is not None  # every sheet with accelerations has it
         force = (log.acceleration - np.array(sheet.accelerometer.bias)) / (
             1.0 + np.array(sheet.accelerometer.scale_error)
         )
@@ -278,7 +284,7 @@ def calibrated(sheet: Sheet, log: Log) -> Calibrated:
 
 
 def missing_information(sheet: Sheet, log: Log) -> list[str]:
-    """In words, what the sheet gives a coefficient for and the log has no column for."""
+    """Coefficients of the sheet for which the log has no column, in words."""
     notes = []
     if log.acceleration is None and np.any(sheet.gyro.g_sensitivity):
         notes.append("g-sensitivity not compensated: the log has no accelerations")

@@ -53,7 +53,7 @@ def draw(found: Droptest) -> list[Part]:
 
 
 def terminal(found: Droptest) -> list[Part]:
-    """The tables of the tests and of their comparison with the simulated cases."""
+    """Tables of the tests and of their comparison with the simulated cases."""
     request, cases = found.request, found.cases
     condition = f" of condition {request.condition}" if request.condition else ""
     return [
@@ -79,7 +79,7 @@ def table_of_comparison(found: Compared) -> list[Part]:
 
 
 def figures(found: Droptest) -> tuple[Figure, Figure]:
-    """Filtered rates of every test; the simulated cloud with the tests in it."""
+    """Filtered rates of every test, and the tests in the simulated cloud."""
     panels = [panel for row in found.tests for panel in _rates(row)]
     shown, settled = len(found.cases.shown_deg_s), found.cases.settled
     words = _CLOUD.format(
@@ -109,15 +109,22 @@ def _rates(row: Row) -> list[Panel]:
             Line(
                 factor * time[near],
                 rate[near, place],
-                f"rate about {axis.upper()}",
-                colour,
-                1.4,
-                _DASHES[axis],
+                name=f"rate about {axis.upper()}",
+                colour=colour,
+                width=1.4,
+                dash=_DASHES[axis],
             )
             for place, (axis, colour) in enumerate(AXIS_COLOURS.items())
         ]
         lines += [
-            Line([factor * at] * 2, [low, high], "release, ignition", GREY, 1.6, ":")
+            Line(
+                [factor * at] * 2,
+                [low, high],
+                name="release, ignition",
+                colour=GREY,
+                width=1.6,
+                dash=":",
+            )
             for at in (row.release_s - ignition, 0.0)
             if begin <= at <= end
         ]
@@ -127,7 +134,13 @@ def _rates(row: Row) -> list[Panel]:
             if b > begin and a < end
         )
         panels.append(
-            Panel(words, f"time after ignition ({unit})", "rate (deg/s)", lines, spans=spans)
+            Panel(
+                words,
+                f"time after ignition ({unit})",
+                y_label="rate (deg/s)",
+                lines=lines,
+                spans=spans,
+            )
         )
     return panels
 
@@ -141,7 +154,7 @@ def _clouds(found: Compared) -> list[Panel]:
         if region.squared_radius is not None:
             words = f"{100.0 * region.share:g} % prediction region"
             edge = judgement.outline(region)
-            lines.append(Line(edge[:, 0], edge[:, 1], words, NAVY, 1.8))
+            lines.append(Line(edge[:, 0], edge[:, 1], name=words, colour=NAVY, width=1.8))
         lines += _tests(
             found,
             [
@@ -150,7 +163,7 @@ def _clouds(found: Compared) -> list[Panel]:
             ],
         )
         first, second = (f"rate about {axis.upper()} (deg/s)" for axis in region.components)
-        panels.append(Panel("", first, second, lines))
+        panels.append(Panel("", first, y_label=second, lines=lines))
     sizes = judgement.magnitudes(cases)[:, :2]
     marks = _tests(
         found,
@@ -161,7 +174,12 @@ def _clouds(found: Compared) -> list[Panel]:
     )
     return [
         *panels,
-        Panel("", "|rate about X| (deg/s)", "rate across X (deg/s)", [_dots(sizes), *marks]),
+        Panel(
+            "",
+            "|rate about X| (deg/s)",
+            y_label="rate across X (deg/s)",
+            lines=[_dots(sizes), *marks],
+        ),
     ]
 
 
@@ -169,8 +187,8 @@ def _dots(points: np.ndarray) -> Line:
     return Line(
         points[:, 0],
         points[:, 1],
-        "simulated cases",
-        GREY,
+        name="simulated cases",
+        colour=GREY,
         dash="",
         marker="o",
         size=3.0,
@@ -184,11 +202,11 @@ def _tests(found: Compared, places: Sequence[tuple]) -> list[Line]:
     for number_, (row, ((x, y), (dx, dy))) in enumerate(zip(found.tests, places)):
         colour, marker = _LOOKS[number_ % len(_LOOKS)]
         lines += [
-            Line(*bar, "", colour, 1.6, legend=False)
+            Line(*bar, name="", colour=colour, width=1.6, legend=False)
             for bar in (([x - dx, x + dx], [y, y]), ([x, x], [y - dy, y + dy]))
         ]
         name = f"{row.test}{' (SIMULATED)' if row.simulated else ''}"
-        lines.append(Line([x], [y], name, colour, dash="", marker=marker, size=10.0))
+        lines.append(Line([x], [y], name=name, colour=colour, dash="", marker=marker, size=10.0))
     return lines
 
 
@@ -238,7 +256,7 @@ def _standing(found: Compared) -> Table:
         "except for the Mahalanobis distance of x, y and z. Roll, transverse and total are "
         "magnitudes."
     )
-    return Table(heads, rows, (note,))
+    return Table(heads, rows, notes=(note,))
 
 
 def _together(found: Compared) -> Table:
@@ -254,7 +272,7 @@ def _together(found: Compared) -> Table:
         f"{'All tests are' if together.inside_range else 'Not all tests are'} inside the "
         "range of the cases. This alone is no validation."
     )
-    return Table(["all tests together", Column("p", form=".3f")], rows, (note,))
+    return Table(["all tests together", Column("p", form=".3f")], rows, notes=(note,))
 
 
 def _place(share: float, p: float) -> str:
@@ -273,7 +291,7 @@ def _cases(cases: Cases) -> Table:
         "where the cases are independent and enough."
     )
     heads = ["simulated cases", *(f"{percent(share, '.4g')} %" for share in shares)]
-    return Table(heads, rows, (note,), dense=True)
+    return Table(heads, rows, notes=(note,), dense=True)
 
 
 def _budgets(tests: Sequence[Row]) -> Fold:

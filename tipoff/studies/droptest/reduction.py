@@ -1,4 +1,4 @@
-"""The change of rate by ejection, with a budget of its uncertainty in the manner of the GUM.
+"""The change of rate by ejection, with a budget of its uncertainty according to the GUM.
 
     d = w_1 - w_0
     w_0   mean over the reference window
@@ -20,15 +20,15 @@
 
 The noise of d = sum_i w_i x_i, which is linear in the samples:
 
-* White and short-correlated noise: variance sigma^2 tau sum w^2, with the integrated correlation
-  time in samples tau = 1 + 2 sum_k rho_k, summed up to the first lag L >= 5 tau (Sokal) and not
-  taken below one. What was fitted to the samples takes tau/n off every rho, which the factor 1 + (2
-  L + 1)/n puts back (Wolff, Comput. Phys. Commun. 156, 2004).
-* Bias instability B: two-sided density B^2 / (2 pi f) (IEEE 952), so the variance is the integral
-  of density times |W(f)|^2, W being the transform of the weights; it is finite since a difference
-  has W(0) = 0.
+* White and short-correlated noise: variance sigma^2 tau sum w^2, with the integrated correlation time in
+  samples tau = 1 + 2 sum_k rho_k, summed up to the first lag L >= 5 tau (Sokal) and at least one. A fit
+  to the samples reduces every rho by tau/n; the factor 1 + (2 L + 1)/n corrects this (Wolff, Comput.
+  Phys. Commun. 156, 2004).
+* Bias instability B: two-sided density B^2 / (2 pi f) (IEEE 952), so the variance is the integral of
+  density times |W(f)|^2, with the transform W of the weights. It is finite since a difference has W(0) =
+  0.
 
-The samples are not filtered here: a mean needs no filter, which would only carry the burn into the
+The samples are not filtered here: a mean needs no filter, and a filter would spread the burn into the
 windows.
 """
 
@@ -44,11 +44,11 @@ from tipoff.studies.droptest.sheet import Sheet
 
 COVERAGE = 0.95
 _FITTED = 3  # parameters: a mean before, a straight line after
-_TINY = 1e-15  # rad/s; noise that is none
-# probability of so large a residual by chance: less, and something still moves the payload
+_TINY = 1e-15  # rad/s; smaller noise counts as none
+# probability of such a residual by chance; below it, the payload is not in free motion
 _UNSETTLED = 1e-5
 _OVER_TAU = 5.0
-_PADDED = 16  # times the span of the weights: how finely low frequencies are resolved
+_PADDED = 16  # times the span of the weights: resolution of low frequencies
 
 
 class Reduced(NamedTuple):
@@ -67,7 +67,7 @@ class Reduced(NamedTuple):
 
 
 def reduced(sheet: Sheet, found: Calibrated, spans: Spans, source: str) -> Reduced:
-    """The change of rate. Raises SceneError where the rate is not settled."""
+    """The change of rate. Raises SceneError if the rate is not settled."""
     calm, settled = inside(found.time, spans.reference), inside(found.time, spans.settled)
     away = found.time[settled] - found.time[settled].mean()
     lever, spread = spans.instant - found.time[settled].mean(), float((away**2).sum())
@@ -92,26 +92,26 @@ def reduced(sheet: Sheet, found: Calibrated, spans: Spans, source: str) -> Reduc
     parts["bent line"] = 0.5 * bend * abs(lever**2 - length**2 / 12.0) / np.sqrt(3.0)
     parts["instant"] = np.abs(slope) * sheet.windows.exit_uncertainty
     combined = np.sqrt(sum(part**2 for part in parts.values()))
-    # All other parts count as known; a share of noise that small leaves the factor of a normal
-    # distribution.
+    # All other parts have infinite degrees of freedom. With little noise the factor is that of a
+    # normal distribution.
     effective = freedom / tau / np.maximum(parts["noise"] / np.maximum(combined, _TINY), 1e-2) ** 4
     return Reduced(
         before,
         after,
-        change,
-        parts,
-        combined,
-        scipy.stats.t.ppf(0.5 + 0.5 * COVERAGE, effective),
-        sigma,
-        tau,
+        change=change,
+        parts=parts,
+        combined=combined,
+        factor=scipy.stats.t.ppf(0.5 + 0.5 * COVERAGE, effective),
+        noise=sigma,
+        correlation=tau,
     )
 
 
 def _systematic(
     sheet: Sheet, found: Calibrated, change: np.ndarray, weights: np.ndarray, windows
 ) -> dict[str, np.ndarray]:
-    """What the calibration leaves uncertain. Scale and misalignment act on the change alone: both
-    rates share their errors."""
+    """Parts from the uncertainty of the calibration. Scale and misalignment act on the change
+    alone, because both rates have the same errors."""
     sure, interval = sheet.gyro.uncertainty, found.time[1] - found.time[0]
     across = np.sqrt((change**2).sum() - change**2)
     calm, settled = windows
@@ -131,8 +131,8 @@ def _systematic(
 
 
 def _quantised(resolution: float, sigma: np.ndarray, factor: float) -> np.ndarray:
-    """Rounding that noise of half a step spreads is averaged with it; with less, a mean may be off
-    by a whole rounding."""
+    """Part of the rounding. Noise of half a step or more makes rounding random, and a mean reduces
+    it; with less noise, a mean may be wrong by a whole rounding error."""
     return np.where(
         sigma >= 0.5 * resolution,
         resolution * np.sqrt(factor / 12.0),
@@ -143,8 +143,8 @@ def _quantised(resolution: float, sigma: np.ndarray, factor: float) -> np.ndarra
 def _require_settled(
     residuals: list[np.ndarray], tau: float, bent: np.ndarray, resolution: float, source: str
 ) -> None:
-    """The straight line of a settled payload leaves noise as small as the reference window has, and
-    what a free tumble is ``bent`` (3,) rad/s. Raises SceneError else."""
+    """Check that residuals of the straight line are noise as small as in the reference window plus
+    the ``bent`` (3,) rad/s of a free tumble. Raises SceneError otherwise."""
     calm, settled = (
         (stretch**2).sum(axis=0) / (len(stretch) - lost) for stretch, lost in zip(residuals, (1, 2))
     )
@@ -162,11 +162,11 @@ def _require_settled(
 
 
 def correlation_time(residuals: list[np.ndarray], fitted: int = 1) -> float:
-    """tau, from several stretches (n_i,3) of residuals of one sensor from which ``fitted``
-    parameters were taken in all."""
+    """tau from several intervals (n_i,3) of residuals of one sensor after a fit of ``fitted``
+    parameters in all."""
     count, scales = sum(map(len, residuals)), sum((stretch**2).sum(axis=0) for stretch in residuals)
     if not scales.all():
-        return 1.0  # rounded to a constant: nothing to be seen
+        return 1.0  # rounded to a constant: no noise is visible
     raw = tau = 1.0
     for lag in range(1, max(map(len, residuals)) // 2):
         pairs = sum(max(len(stretch) - lag, 0) for stretch in residuals)
@@ -183,8 +183,8 @@ def correlation_time(residuals: list[np.ndarray], fitted: int = 1) -> float:
 
 
 def instability_variance(weights: np.ndarray, interval: float, instability: float) -> float:
-    """Variance that bias instability (rad/s) gives a sum with ``weights`` (n,) of samples every
-    ``interval`` (s)."""
+    """Variance by bias instability (rad/s) of a sum of samples every ``interval`` (s) with
+    ``weights`` (n,)."""
     length = _PADDED * weights.size
     frequency = np.fft.rfftfreq(length, interval)[1:]
     power = np.abs(np.fft.rfft(weights, length)[1:]) ** 2

@@ -1,5 +1,5 @@
-"""Result of drop tests: each test, its place among the simulated cases, and what that comparison is
-worth. Rates are in deg/s, in payload body axes."""
+"""Result of drop tests: each test, its place among the simulated cases, and the power of that comparison.
+Rates are in deg/s, in payload body axes."""
 
 from dataclasses import dataclass
 from typing import Annotated
@@ -16,7 +16,7 @@ Span = tuple[float, float]  # first and last instant, s of the log
 
 @dataclass(frozen=True, kw_only=True)
 class Magnitude:
-    """Of a rate, which needs no angle about X; ``p`` is two-sided."""
+    """The rank of a magnitude, which does not depend on the angle about X; ``p`` is two-sided."""
 
     value_deg_s: float
     percentile: float
@@ -44,10 +44,10 @@ class Curve:
 
 @dataclass(frozen=True, kw_only=True)
 class Measured:
-    """A drop test. ``windows_s`` by name; ``instant_s`` of the settled rate; ``rest_deg_s``: largest rate
-    in the window at rest, and whether its limit was kept; ``budget_deg_s``: standard uncertainties by
-    name; noise of one sample, and its correlation time in samples; ``notes``: what was repaired, assumed
-    or left out."""
+    """A drop test. ``windows_s`` by name; ``instant_s`` of the settled rate; ``rest_deg_s``:
+    largest rate in the window at rest, and whether it is within its limit; ``budget_deg_s``:
+    standard uncertainties by name; noise of one sample, and its correlation time in samples;
+    ``notes``: what was repaired, assumed or left out."""
 
     test: str
     simulated: bool
@@ -69,7 +69,7 @@ class Measured:
     standard_uncertainty_deg_s: Vector
     coverage_factor: Vector
     expanded_uncertainty_deg_s: Vector
-    coverage: float
+    coverage: float  # probability of the expanded uncertainty
     budget_deg_s: dict[str, Vector]
     noise_deg_s: Vector
     correlation_samples: float
@@ -87,10 +87,10 @@ class Row(Standing, Measured):
 class Together:
     """p of all tests by distance and by spread, and twice the smaller."""
 
-    p_distance: float
+    p_distance: float  # Fisher's combined p
     p_spread: float
     p: float
-    smallest_p: float  # that the number of cases can show
+    smallest_p: float  # smallest possible with this number of cases
     inside_range: bool
 
 
@@ -100,7 +100,7 @@ class Region:
     None where there are too few cases for one."""
 
     components: tuple[str, str]
-    share: float
+    share: float  # probability that the next case is inside
     centre_deg_s: tuple[float, float]
     covariance: tuple[tuple[float, float], tuple[float, float]]  # (deg/s)^2
     squared_radius: float | None
@@ -111,7 +111,7 @@ _SHARE = {"unit": "%", "form": ".2f", "scale": 100.0}
 
 @dataclass(frozen=True, kw_only=True)
 class Power:
-    """How often a model passes that is ``factor`` times as wide as the truth."""
+    """How often a model that is ``factor`` times as wide as the truth passes."""
 
     factor: Annotated[float, Column("spread of the model over the truth")]
     passes_one_axis: Annotated[float, Column("inside the range, one axis", **_SHARE)]

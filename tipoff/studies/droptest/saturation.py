@@ -1,33 +1,36 @@
-"""Where a sensor or its logger is saturated. A saturated channel repeats its largest value, up to a step
-or two of its resolution where noise is added after the clipping.
+"""Finds samples at which a sensor or its logger is saturated. A saturated channel repeats its largest
+value. Noise that is added after the clipping changes it by a step or two of the resolution.
 
-The level need not be the range: offsets, calibration and the logger move it, and not by the same amount
-on both sides. Of the samples at the level, the top, three things are asked:
+The level can differ from the range: offsets, calibration and the logger move it, on both sides by
+different amounts. Three tests decide whether the samples at the largest level, the top, are saturated:
 
-* Has the signal a corner there? At a smooth maximum the number of samples within k widths of the level
-  grows with sqrt(k), so that twice as many lie just below it, within eight, as at it. A clipped
-  signal has few of them.
+* Does the signal have a corner there? At a smooth maximum the number of samples within k widths of the
+  level grows with sqrt(k), so twice as many samples lie just below the level, within eight widths, as at
+  it. A clipped signal has few samples just below.
 * Is the level near the range? Then three samples in a row are enough.
-* Elsewhere, is it no chance? If the share p of samples equals the one before, a run of L equal ones among
-  the k at the top has the probability k p^(L-1). A quiet sensor, whose noise is below its resolution,
-  may rest at one value. A vibration may be clipped for one or two samples of each cycle; then many samples
-  are equal to the largest, and hardly any is just below.
+* Far from the range: can the level be chance? If the share p of samples equals the sample before, a run
+  of L equal samples among the k at the top has the probability k p^(L-1). A quiet sensor, whose noise is
+  below its resolution, may stay at one value. A vibration may be clipped for one or two samples of each
+  cycle; then many samples are equal to the largest, and very few are just below.
 
-Samples that differ by a step or two are one level within a tenth of the range only: far from the range, a
-settled rate with less noise than before looks the same.
+Samples that differ by a step or two count as one level only within a tenth of the range. Far from the
+range, a settled rate with less noise than before looks the same.
 """
 
 import numpy as np
 
-_AT = 1e-3  # of the range: what a low-pass after the clipping leaves below it
-_NEAR, _NEAR_NOISY, _RUN = 0.02, 0.005, 3  # of the range, and samples in a row there
-_LIKELY = 0.1  # of the range: a level with noise on it is looked for within
+_AT = 1e-3  # of the range: a low-pass after the clipping may reduce the level by this
+_NEAR, _NEAR_NOISY, _RUN = 0.02, 0.005, 3  # shares of the range, and samples in a row there
+_LIKELY = 0.1  # share of the range within which a level with noise is searched
 _NOISY = (2.5, 4.5)  # steps between the smallest and the largest sample of a level with noise on it
-_LEAST, _CHANCE = 4, 1e-6  # equal samples elsewhere, and how many such runs chance may give
+_LEAST, _CHANCE = (
+    4,
+    1e-6,
+)  # equal samples far from the range, and how many such runs chance may give
 _MANY, _RARE = 8, 8  # equal largest samples, and how many of them for each just below
-_CORNER = 0.5  # samples just below a level for each at it: more, and it is a smooth maximum
+_CORNER = 0.5  # samples just below a level for each at it; a smooth maximum has more
 _BELOW = 8.0  # widths of a level, or steps, that are just below it
-_QUIET = 1.5  # steps between samples of a sensor that may rest at one value
+_QUIET = 1.5  # steps between samples of a sensor that may stay at one value
 _EQUAL = 1e-6  # relative: a value in single precision, or converted from another unit
 
 
@@ -80,7 +83,7 @@ def _is_near(level: float, largest: float, top: np.ndarray, is_noisy: bool) -> b
 def _is_no_chance(
     column: np.ndarray, top: np.ndarray, step: float, width: float, is_far: bool
 ) -> bool:
-    """Whether so many samples, or so many in a row, are at the level by more than chance."""
+    """Whether more samples, or more in a row, are at the level than by chance."""
     others, count = np.abs(np.diff(column[~top])), int(top.sum())
     if is_far or not others.size or np.median(others) <= _QUIET * step:
         return False

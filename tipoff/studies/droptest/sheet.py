@@ -11,8 +11,7 @@ uncertainty of the sensor::
     [gyro.uncertainty]                         # standard uncertainties of these (GUM)
     [accelerometer]  [events]  [windows]
 
-Quantities carry units, as in a scene; whatever is misspelt, missing or of another dimension is a
-fault.
+Quantities have units, as in a scene. A key that is misspelt, missing or of another dimension is a fault.
 """
 
 from pathlib import Path
@@ -48,19 +47,19 @@ SAMPLES = sorted((Path(__file__).resolve().parent / "logs").glob("*.toml"))
 _Kind = TypeVar("_Kind")
 _Triple = tuple[_Kind, _Kind, _Kind]
 _Matrix = tuple[_Triple[_Kind], _Triple[_Kind], _Triple[_Kind]]
-_SKEW = 1e-3  # how far typed direction cosines may be from orthonormal
+_SKEW = 1e-3  # tolerance of typed direction cosines that must be orthonormal
 
 
 def _in(unit: str, **bounds: float) -> tuple:
-    """What ``quantity`` lays over a float."""
+    """The type that ``quantity`` makes of a float."""
     return quantity(unit, **bounds).__metadata__
 
 
-_FASTEST = 1e6  # rad/s, which no gyro reaches
+_FASTEST = 1e6  # rad/s, above the range of any gyro
 NonNegativeRate = Annotated[float, *_in("rad/s", ge=0.0, le=_FASTEST)]
 PositiveRate = Annotated[float, *_in("rad/s", gt=0.0, le=_FASTEST)]
 PositiveAcceleration = Annotated[float, *_in("m/s**2", gt=0.0)]
-# of a sensor that is one: within these bounds its matrix has an inverse
+# bounds of errors of a real sensor: within them its matrix has an inverse
 ScaleError = Annotated[float, *_in("dimensionless", ge=-0.5, le=0.5)]
 Misalignment = Annotated[float, *_in("rad", ge=-0.3, le=0.3)]
 GSensitivity = Annotated[float, *_in("rad*s/m")]
@@ -78,7 +77,7 @@ def _unit_of(si: str) -> AfterValidator:
 
 
 def _temperature(value: Any, info: ValidationInfo) -> float:
-    """On the absolute scale, so that a degC has its zero."""
+    """A temperature on the absolute scale, so that degC has the correct zero."""
     bare = bool(info.context and info.context.get("bare_numbers_are_si"))
     return to_si(value, "K", absolute=True) if isinstance(value, str) else parse(value, "K", bare)
 
@@ -114,8 +113,8 @@ class GyroUncertainty(Table):
 
 
 class Gyro(Table):
-    """Calibration of the gyros in sensor axes; zero where absent, except what clipping and
-    quantisation are judged by."""
+    """Calibration of the gyros in sensor axes. An absent value is zero; range and resolution have
+    no default."""
 
     range: PositiveRate
     resolution: NonNegativeRate
@@ -137,7 +136,7 @@ class Accelerometer(Table):
 
 
 class Triggers(Table):
-    """Instants (s of the log) known from elsewhere, such as a trigger channel, in place of those
+    """Instants (s of the log) from another source, such as a trigger channel, in place of those
     found in the accelerations."""
 
     release: Time
@@ -147,7 +146,7 @@ class Triggers(Table):
 class Windows(Table):
     """``exit`` (s after ignition) of the payload from its rail with its standard uncertainty;
     ``rest`` (s) before release during which no rate may exceed ``rest_rate`` (rad/s);
-    ``after_release`` (s) until it is calm; length of the ``settled`` window (s)."""
+    ``after_release`` (s) until the platform is calm; length of the ``settled`` window (s)."""
 
     exit: PositiveTime
     exit_uncertainty: PositiveTime = 1e-3
@@ -198,8 +197,8 @@ class Sheet(Table):
 
     @property
     def mounting(self) -> np.ndarray:
-        """Rotation (3,3) from sensor to body axes: the one nearest to ``axes``, which were typed
-        with a few digits."""
+        """Rotation (3,3) from sensor to body axes: the nearest one to ``axes``, which have few
+        digits."""
         left, _, right = np.linalg.svd(np.array(self.axes))
         return left @ right
 

@@ -1,9 +1,9 @@
 """Reduced signals of drop tests as netCDF: a group for each test, all samples, in payload body
 axes.
 
-Rates and specific forces stand there twice: filtered by the channel frequency class of the log, as
-pictures show them, and as they were reduced, calibrated and not filtered. Where a sample is not to
-be relied on, ``doubtful`` is 1.
+Rates and specific forces are stored twice: filtered by the channel frequency class of the log, as in the
+figures, and calibrated without a filter, as used for the change of rate. ``doubtful`` is 1 for a sample
+that is missing or clipped.
 """
 
 from pathlib import Path

@@ -29,7 +29,7 @@ from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study, StudyError
 
 NAME = "droptest"
-_FEWEST = 20  # settled cases for a useful covariance
+_FEWEST = 20  # fewest settled cases for a useful covariance
 _SHOWN = 2000  # cases in the figure
 _EVERY = 4  # curves of a result file hold every fourth sample
 _AROUND = 0.12  # s before and after ignition, where they hold all samples
@@ -38,8 +38,8 @@ _AROUND = 0.12  # s before and after ignition, where they hold all samples
 def run(study: Study, options: Options = Options()) -> dict:
     """The content of ``Droptest``.
 
-    Raises SceneError listing every fault of every log and of the distributions, StudyError where
-    too few cases settle.
+    Raises SceneError listing every fault of every log and of the distributions, StudyError if too
+    few cases settle.
     """
     drops, drawn = together(
         lambda: analysed(options.logs or sheet.SAMPLES), lambda: _drawn(study, options)
@@ -77,7 +77,7 @@ def _inputs(study: Study, options: Options) -> list:
     return [digests, _drawn(study, options).uncertainty.resolved()]
 
 
-STAGE = Stage(NAME, __name__, Options, _inputs, "request", Droptest)
+STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, field="request", result=Droptest)
 
 
 def _drawn(study: Study, options: Options) -> Drawn:
@@ -120,7 +120,7 @@ def analysed(paths: Sequence[Path]) -> list[Drop]:
 
 
 def short_names(places: list[Path]) -> list[str]:
-    """Names of the sheets without suffix, with as many parent folders as make them unique."""
+    """Names of the sheets without suffix, with as many parent folders as needed to be unique."""
     names = [place.stem for place in places]
     for depth in range(2, max(len(place.parts) for place in places)):
         names = [

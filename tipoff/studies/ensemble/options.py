@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Options:
-    """None: from the file of distributions, or the default. The file is that of ``vary``, else of the
-    errors that the scene states, else of the paper."""
+    """None: from the file of distributions, or the default. The file is ``vary``, or the errors
+    that the scene states, or the errors of the paper."""
 
     vary: Annotated[
         str | None,

@@ -44,7 +44,7 @@ def summary(found: Ran) -> list[Part]:
 
 
 def _others(statuses: dict[str, int]) -> str:
-    """How the cases ended that neither left the rail nor failed: jammed, or at the time limit."""
+    """Cases that neither left the rail nor failed: jammed, or at the time limit."""
     words = {"jammed": "jammed", "time_limit": "reached the time limit"}
     found = [f"{statuses[name]:,} {text}" for name, text in words.items() if statuses.get(name)]
     return "".join(f", {text}" for text in found)
@@ -57,7 +57,7 @@ def _time(cost: Cost) -> str:
 
 
 def _sensitivity(found: Sensitive) -> list[Part]:
-    """How many cases are sensitive, the changes by cause, and what that took beside the cases."""
+    """How many cases are sensitive, the changes by cause, and the additional run time."""
     limit = f"{found.limit_deg_s:.3g} deg/s"
     rows = [
         (
@@ -91,7 +91,7 @@ def table_of_quantiles(found: Ran) -> Table:
     rows = [(_LABELS[name], *map(estimate, rows)) for name, rows in found.quantiles.items()]
     shares = [row.share for row in next(iter(found.quantiles.values()))]
     heads = ["quantity", *(f"{percent(share, 'g')} % below" for share in shares)]
-    return Table(heads, rows, (f"{found.confidence:.0%} bounds: {found.bounds}.",))
+    return Table(heads, rows, notes=(f"{found.confidence:.0%} bounds: {found.bounds}.",))
 
 
 def case(one: One) -> list[Part]:

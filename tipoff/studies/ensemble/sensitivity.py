@@ -1,7 +1,7 @@
 """How many cases of an ensemble are sensitive: 1 um more of every clearance, or a tighter tolerance,
-moves a settled rate by more than the limit of agreement, or keeps the case from settling.
+changes a settled rate by more than the limit of agreement, or the case does not settle.
 
-``tipoff run`` tells the same of one run (``studies.single.disturbed``). Chaos is the usual cause.
+``studies.single.disturbed`` does the same for one run. Chaos is the usual cause.
 """
 
 from collections.abc import Mapping
@@ -44,7 +44,8 @@ class Sensitivity:
 
 
 def of(store: Store, disturbed: Mapping[str, Store], limit: float) -> Sensitivity:
-    """Of a whole ``store`` and the stores of its twins by cause; ``limit`` (deg/s)."""
+    """The sensitivity of a whole ``store``, from the stores of its twins by cause; ``limit``
+    (deg/s)."""
     settled = np.isfinite(store.column("lateral_velocity"))
     beyond, found = np.zeros(store.asked, dtype=bool), {}
     for cause, twin in disturbed.items():

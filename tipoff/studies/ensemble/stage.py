@@ -36,8 +36,8 @@ from tipoff.workspace.words import counted
 
 @dataclass(frozen=True, kw_only=True)
 class Cost:
-    """Of the cases that were run: time by the clock, and of the processor for each case, None on other
-    machines and without a case; peak memory of the process, None for twins."""
+    """Cost of the cases that were run: wall time; processor time of each case, None if other
+    machines ran them or without a case; peak memory of the process, None for twins."""
 
     cases: int
     wall_s: float
@@ -55,7 +55,7 @@ class Sensitive(Sensitivity):
 
 @dataclass(frozen=True, kw_only=True)
 class Ran(Statistics):
-    """The result: statistics of the ``store``; ``sensitivity`` None where it is not asked for."""
+    """The result: statistics of the ``store``; ``sensitivity`` None if not requested."""
 
     stage: str = "ensemble"
     scene: str
@@ -75,8 +75,8 @@ class Ran(Statistics):
 
 @dataclass(frozen=True, kw_only=True)
 class One:
-    """One case run alone: inputs as text; changes of the rates by cause (deg/s), None where they are not
-    asked for; ``stored``: whether its store has the same bits, None without a stored result."""
+    """One case run alone: inputs as text; changes of the rates by cause (deg/s), None if not
+    requested; ``stored``: whether its store has the same bits, None without a stored result."""
 
     case: int
     inputs: dict[str, str]
@@ -131,9 +131,11 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
     scene = study.scene
     if fitted is not None and not springs:  # before a case, which may vary a constant
         scene, fitted = fitted.split(scene)
-    asked = Ensemble(scene, source, fitted, numerics, found)
+    asked = Ensemble(scene, source, calibration=fitted, numerics=numerics, compliance=found)
     path = options.store or study.path(f"ensemble-{asked.key[:8]}")
-    like = Run("lowfi", "ensemble", scene, numerics, fitted, found)
+    like = Run(
+        "lowfi", "ensemble", scene=scene, numerics=numerics, calibration=fitted, compliance=found
+    )
     with kernel_marks.first_use(like, many=True):
         ensemble = pilot.settled(asked, path)
     if ensemble.modes_why:
@@ -142,13 +144,12 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
 
 
 def run(study: Study, options: Options) -> Ran:
-    """Run the cases that the store lacks, then their twins where the sensitivity is asked for.
-    Returns the statistics, also written as ``ensemble.json``. Raises StudyError when the store
-    fails."""
+    """Run the cases that the store lacks, then their twins if the sensitivity is requested. Returns
+    the statistics, also written as ``ensemble.json``. Raises StudyError when the store fails."""
     ensemble, path = request(study, options)
     try:
         store = ensemble.store(path)
-        ensemble.case(0)  # compiles, or loads the kernels from disk, before any clock runs
+        ensemble.case(0)  # compiles the kernels or loads them from disk, before a time is taken
         with Board("ensemble", 3 if options.sensitivity else 1) as board:
             cost = _filled(study, ensemble, store, options, board)
             told = _sensitivity(study, ensemble, store, options, board)
@@ -192,7 +193,7 @@ def _filled(
 def _sensitivity(
     study: Study, ensemble: Ensemble, store: Store, options: Options, board: Board
 ) -> Sensitive | None:
-    """How far the twins of the cases differ, and the cost of each; None where it is not asked for."""
+    """How far the twins of the cases differ, and the cost of each; None if not requested."""
     if not options.sensitivity:
         return None
     disturbed, costs = {}, {}
@@ -205,7 +206,7 @@ def _sensitivity(
 
 
 def _limit(study: Study) -> float:
-    """Limit of agreement of the settled rates, deg/s: that of ``tipoff run``."""
+    """Limit of agreement of the settled rates, deg/s, as in ``tipoff run``."""
     return verdicts.gates(study.scene).settled_rate_error_deg_s
 
 

@@ -26,9 +26,9 @@ _VALUES: dict[str, tuple[str, Callable[[np.ndarray], np.ndarray]]] = {
 
 @dataclass(frozen=True, kw_only=True)
 class Statistics:
-    """Counts, and quantiles of the settled values with the method of their bounds. ``cases``: what they
-    are drawn from; ``provenance`` of the distributions by key; ``failures``: the first, with number,
-    status, reason and inputs; ``failed``: their reasons where no case is ok."""
+    """Counts, and quantiles of the settled values with the method of their bounds. ``cases``: the
+    source of the cases; ``provenance`` of the distributions by key; ``failures``: the first ones,
+    with number, status, reason and inputs; ``failed``: their reasons if no case is ok."""
 
     model: str
     counts: dict[str, int]
@@ -47,7 +47,7 @@ class Statistics:
 
 
 def of(ensemble: Ensemble, store: Store, calibrated: bool) -> Statistics:
-    """Statistics of a whole store; the constants of the model are ``calibrated`` or the scene's."""
+    """Statistics of a whole store; ``calibrated``: the constants of the model are not the scene's."""
     status, settled = store.column("status"), np.isfinite(store.column("exit_time"))
     failures = store.failures()[:_SHOWN]
     counts, unbounded = columns.counts(status), _no_bounds(ensemble.source)
@@ -77,8 +77,8 @@ def of(ensemble: Ensemble, store: Store, calibrated: bool) -> Statistics:
 
 
 def _values(store: Store, name: str, of: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """A function of a result (n,), computed by chunk: whole vectors of ten million cases need too
-    much memory."""
+    """A function of a result (n,), computed by chunk, because ten million cases would need too much
+    memory at once."""
     return np.concatenate(
         [of(store.column(name, *store.bounds(number))) for number in range(len(store))]
     )

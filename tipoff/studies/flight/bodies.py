@@ -1,9 +1,8 @@
-"""What flies: both bodies as their scene has them, the boxes they fill, and the state in which they
-part.
+"""The flying bodies: payload and platform of a scene, their boxes, and their state at the exit.
 
-The payload is a box of ``flight.body``, or else ``payload.size``, about its nominal mass centre.
-The platform is the boxes of ``flight.envelope``, and two for every built-in rail, along its legs;
-other rails are files, of which ``flight.envelope`` has to say where they lie.
+The payload is a box of ``flight.body``, or else ``payload.size``, about its nominal mass centre. The
+platform is the boxes of ``flight.envelope``, and two for every built-in rail, along its legs; rails from
+a file count only if ``flight.envelope`` lists their boxes.
 """
 
 from collections.abc import Iterable, Sequence
@@ -24,8 +23,8 @@ class Bodies(NamedTuple):
     """Of n cases, each about its own mass centre and in its own axes: inertia (n,3,3) kg m2 of
     payload and platform, half sizes (n,3) m and centre (n,3) m of the payload's box, the platform's
     b boxes by centre and half sizes (n,b,3) m; and in scene axes the mass centre (n,3) m of both
-    together at ignition. The platform of a scene without one is the scene axes, at rest; without
-    boxes b is zero."""
+    together at ignition. In a scene without a platform, the platform is the scene axes, at rest;
+    without boxes b is zero."""
 
     inertia: np.ndarray
     platform_inertia: np.ndarray
@@ -39,7 +38,7 @@ class Bodies(NamedTuple):
 class Start(NamedTuple):
     """n cases at exit, in scene axes: payload and platform by place (m), velocity (m/s), rates in
     body axes (rad/s), all (n,3), and attitude (n,3,3), body to scene. Velocity and rate of the
-    payload are the settled ones."""
+    payload are the settled values."""
 
     place: np.ndarray
     velocity: np.ndarray
@@ -52,13 +51,12 @@ class Start(NamedTuple):
 
 
 def bodies(scenes: Iterable[Scene]) -> Bodies:
-    """Bodies of every scene, all of them with as many boxes. Without boxes where a size is
-    unknown."""
+    """Bodies of all scenes, each with the same number of boxes; without boxes if a size is unknown."""
     return Bodies(*map(np.array, zip(*map(_bodies, scenes))))
 
 
 def start(found: Columns) -> Start:
-    """State of settled cases."""
+    """State at the exit of settled cases."""
     attitude, platform = (
         Rotation.from_rotvec(part).as_matrix()
         for part in (found.exit_attitude, found.exit_platform_attitude)
@@ -66,12 +64,12 @@ def start(found: Columns) -> Start:
     return Start(
         found.exit_position,
         found.velocity,
-        attitude,
-        found.rate,
-        found.exit_platform_position,
-        found.exit_platform_velocity,
-        platform,
-        found.exit_platform_rate,
+        turn=attitude,
+        rate=found.rate,
+        platform_place=found.exit_platform_position,
+        platform_velocity=found.exit_platform_velocity,
+        platform_turn=platform,
+        platform_rate=found.exit_platform_rate,
     )
 
 
@@ -83,7 +81,7 @@ def of_outcomes(outcomes: Sequence[Outcome]) -> Columns:
 
 
 def unknown_size(scene: Scene) -> str:
-    """Why no clearance can be computed in this scene; empty where it can."""
+    """The reason why no clearance can be computed in this scene; empty if it can be computed."""
     if _size(scene) is None:
         return "neither flight.body nor payload.size says how large the payload is"
     return (
@@ -94,13 +92,12 @@ def unknown_size(scene: Scene) -> str:
 
 
 def unknown_rails(scene: Scene) -> bool:
-    """Whether the rails are given by a file, so that only ``flight.envelope`` can say where they
-    are."""
+    """Whether the rails come from a file: then only ``flight.envelope`` has their boxes."""
     return not isinstance(scene.rail, SectionTable)
 
 
 def table_of(scene: Scene) -> FlightTable:
-    """What the scene says of its flight; a scene that says nothing is refused beforehand."""
+    """The table of the flight of a scene; a scene without it is refused before."""
     assert scene.flight is not None
     return scene.flight
 
@@ -131,7 +128,7 @@ def _bodies(scene: Scene) -> tuple:
 
 
 def _origin(scene: Scene, offset: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """The point on the orbit: the mass centre of payload and platform before anything moved."""
+    """The point on the orbit: the mass centre of payload and platform at ignition."""
     if scene.platform is None:
         return place
     moved = scene.initial.position if scene.initial else None
@@ -150,7 +147,7 @@ def _boxes(scene: Scene) -> list[tuple]:
     gap = rail.gap(scene.contact.clearance if scene.contact else 0.0)
     for corner in dict.fromkeys(pad.position[1:] for pad in scene.pads):
         side, inner = np.sign(corner), np.abs(corner) + gap  # of the rail's inner corner
-        for across in (0, 1):  # the leg behind the wall that stands across y, then across z
+        for across in (0, 1):  # the leg behind the wall normal to y, then to z
             near, far = inner + rail.thickness - rail.leg, inner + rail.thickness
             near[across] = inner[across]
             ends = np.sort([side * near, side * far], axis=0)

@@ -1,18 +1,18 @@
-"""How far a turning box is from others: the largest separation on the 15 axes that can part two
-boxes (Gottschalk, Lin and Manocha, SIGGRAPH 1996), or on the three faces of one of them together,
-where more than one part them.
+"""Distance of a rotating box from other boxes: the largest separation on the 15 axes that can separate
+two boxes (Gottschalk, Lin and Manocha, SIGGRAPH 1996), or the distance over all face axes of one box that
+separate them.
 
-Below zero it is the depth of overlap, exactly. Above zero it is exact where a corner is nearest to
-a face, an edge to an edge, or for boxes that are parallel, and else less than the distance: a box
-that is called clear is clear.
+Below zero it is the exact depth of overlap. Above zero it is exact if the nearest points are a corner and
+a face or two edges, or if the boxes are parallel. Otherwise it is below the distance, so a positive value
+always means that the boxes are apart.
 """
 
 from collections.abc import Callable
 
 import numpy as np
 
-_AGAIN = 16  # instants about the best of those before
-_PARALLEL = 1e-9  # sine of edges whose product is no axis: their faces tell what it would
+_AGAIN = 16  # instants around the best instant of the round before
+_PARALLEL = 1e-9  # sine below which two edges give no axis; axes of the faces replace it
 
 
 def separation(
@@ -50,8 +50,8 @@ def separation(
 
 
 def _faces(apart: np.ndarray) -> np.ndarray:
-    """Separation (...) of what is ``apart`` (...,3) along three axes at right angles: the length of
-    the gap."""
+    """Separation (...) from the gaps ``apart`` (...,3) along three perpendicular axes: the length
+    of the gap vector."""
     largest = apart.max(axis=-1)
     return np.where(largest > 0.0, np.linalg.norm(np.maximum(apart, 0.0), axis=-1), largest)
 
@@ -63,8 +63,8 @@ def least(
     points: int,
     rounds: int,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Least value (n,) of n functions ``of`` times (n,k) between ``begin`` and ``end`` (n,), and
-    when: on ``points`` instants, then ``rounds`` times on fewer between the neighbours of the
+    """Smallest value (n,) of n functions ``of`` times (n,k) between ``begin`` and ``end`` (n,), and
+    its time: on ``points`` instants, then ``rounds`` times on fewer between the neighbours of the
     best."""
     rows, low, high = np.arange(len(begin)), begin, end
     for count in (points, *[_AGAIN] * rounds):

@@ -8,7 +8,8 @@ from tipoff.studies.flight.summary import plain
 
 SHOWN = 5  # conditions with curves
 _POINTS = 201
-_NEAR, _LEAST = 5e-4, 2.0  # clearance (m), and times the least one, up to which it is shown
+# clearance (m), and multiple of the smallest one, up to which a curve is shown
+_NEAR, _LEAST = 5e-4, 2.0
 
 
 def of(condition: str, both: flown.Pair, found: flown.Flown) -> Curves:
@@ -39,8 +40,8 @@ def of(condition: str, both: flown.Pair, found: flown.Flown) -> Curves:
 
 
 def _axis(both: flown.Pair, time: np.ndarray) -> np.ndarray:
-    """Where the x axis points at ``time`` (1,k) s: its angle (deg) from the launch axis, in the
-    direction (k,2) it leans to."""
+    """Direction of the x axis at ``time`` (1,k) s: its angle (deg) from the launch axis, as
+    components (k,2) across this axis."""
     axis = rotation.at(both.payload_turn, time)[0][0, :, :, 0]
     across = np.hypot(axis[:, 1], axis[:, 2])
     return (

@@ -1,10 +1,9 @@
 """Flight of a payload after its exit: miss distance, pointing, and distance from the platform.
 
-From the exit on, all bodies fall freely. The settled velocity and rate are taken to hold from
-there, so thrust that is left at the exit counts as delivered. Moments by the gradient of the
-Earth's attraction, by drag and by light are left out. The target is that of
-``scenes.effects.flight``. The miss is measured when the payload passes the plane through the target
-across the launch axis, in orbit axes.
+From the exit on, all bodies fall freely. Velocity and rate at the exit are the settled values, so thrust
+after the exit counts as delivered at the exit. Moments by gravity gradient, drag and radiation pressure
+are left out. The target is that of ``scenes.effects.flight``. The miss is measured when the payload
+passes the plane through the target normal to the launch axis, in orbit axes.
 """
 
 from collections.abc import Callable, Sequence
@@ -16,25 +15,25 @@ from tipoff.scenes.effects.flight import Flight
 from tipoff.studies.flight import boxes, orbit, rotation
 from tipoff.studies.flight.bodies import Bodies, Start
 
-# instants at which a flight is looked at before an event is located between two of them
+# instants of a flight between which an event is located
 _SCAN = 400
-_LOOKS = 120  # for a least distance, before the best is looked at more closely
+_LOOKS = 120  # instants for the smallest distance, before the refinement
 _HALVINGS = 60
-_APPROACHES = 2000  # of the pointing limit, each by what is left of it over the rate
+_APPROACHES = 2000  # largest number of steps to the pointing limit
 _CLOSE = 1e-9  # rad
-_CHUNK = 250  # cases whose arrays are held at once
+_CHUNK = 250  # cases in memory at once
 
 
 class Flown(NamedTuple):
-    """n cases. ``passes`` (n,) s, when the target is passed, ``miss`` (n,2) m in scene y and z
-    there, and ``orbital`` (n,2) m, the part of it that a shot of the same axial velocity without
-    any error has too; ``pointing`` (n,) rad, between payload x axis and launch axis, then;
-    ``limit`` (n,) s, when the pointing limit is first reached, infinite where it is not before the
-    target, NaN where that stayed open. NaN for a target not passed. ``cone`` (n,2) rad, least and
-    largest angle of the x axis from the angular momentum, ``coning`` (n,) rad/s, its mean rate
-    about it; ``nutation`` (n,) s. ``clearance`` (n,) m, ``closest`` (n,) s, when that was;
-    ``returns`` (n,) m, least gap between the spheres about both bodies once they were farthest,
-    infinite where they come no nearer than the target was. NaN without boxes."""
+    """Flights of n cases. ``passes`` (n,) s: time of passing the target; ``miss`` (n,2) m: scene y
+    and z there; ``orbital`` (n,2) m: the miss of a shot of the same axial velocity without errors;
+    ``pointing`` (n,) rad: angle between payload x axis and launch axis at that time. These are NaN
+    if the target is not passed. ``limit`` (n,) s: first time at the pointing limit, infinite if it
+    is not reached before the target, NaN if this is not known. ``cone`` (n,2) rad: smallest and
+    largest angle of the x axis from the angular momentum; ``coning`` (n,) rad/s: mean rate of the x
+    axis about it; ``nutation`` (n,) s: period. ``clearance`` (n,) m and its time, ``closest`` (n,)
+    s; ``returns`` (n,) m: smallest gap between the spheres about both bodies after their largest
+    distance, infinite if they do not come closer than the target. NaN without boxes."""
 
     passes: np.ndarray
     miss: np.ndarray
@@ -50,8 +49,8 @@ class Flown(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """Payload and platform of n cases in free flight: states (n,6) in orbit axes and free
-    rotations, from their ``start`` on."""
+    """Payload and platform of n cases in free flight from ``start``: states (n,6) in orbit axes and
+    free rotations."""
 
     payload: np.ndarray
     platform: np.ndarray
@@ -84,7 +83,7 @@ def fly(
 
 
 def joined(parts: Sequence[Flown]) -> Flown:
-    """Flights one after the other."""
+    """Joins flights to one record."""
     return Flown(*map(np.concatenate, zip(*parts)))
 
 
@@ -94,11 +93,13 @@ def pair(flight: Flight, bodies: Bodies, start: Start) -> Pair:
     return Pair(
         orbit.state(n, axes, start.place - bodies.origin, start.velocity),
         orbit.state(n, axes, start.platform_place - bodies.origin, start.platform_velocity),
-        rotation.free(bodies.inertia, start.turn, start.rate),
-        rotation.free(bodies.platform_inertia, start.platform_turn, start.platform_rate),
-        bodies,
-        start,
-        flight,
+        payload_turn=rotation.free(bodies.inertia, start.turn, start.rate),
+        platform_turn=rotation.free(
+            bodies.platform_inertia, start.platform_turn, start.platform_rate
+        ),
+        bodies=bodies,
+        start=start,
+        flight=flight,
     )
 
 
@@ -117,15 +118,15 @@ def found(both: Pair) -> Flown:
     return Flown(
         passes,
         miss,
-        orbital,
-        np.where(np.isfinite(passes), pointing, np.nan),
-        _limit(both, passes),
-        np.stack([least, largest], axis=1),
-        coning,
-        rotation.nutation_period(both.payload_turn),
-        clearance,
-        closest,
-        returns,
+        orbital=orbital,
+        pointing=np.where(np.isfinite(passes), pointing, np.nan),
+        limit=_limit(both, passes),
+        cone=np.stack([least, largest], axis=1),
+        coning=coning,
+        nutation=rotation.nutation_period(both.payload_turn),
+        clearance=clearance,
+        closest=closest,
+        returns=returns,
     )
 
 
@@ -142,8 +143,8 @@ def _perfect(both: Pair) -> np.ndarray:
 
 
 def _passed(flight: Flight, apart: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """When (n,) s payloads pass the plane of their target, given states (n,6) apart from it, and
-    how far (n,2) m beside it, or NaN."""
+    """Times (n,) s at which payloads pass the plane of their target, from states (n,6) relative to
+    it, and the miss (n,2) m; NaN if they do not pass."""
     along, across = flight.axes[:, 0], flight.axes[:, 1:]
 
     def short(time: np.ndarray) -> np.ndarray:
@@ -168,18 +169,18 @@ def _passed(flight: Flight, apart: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def pointing_error(both: Pair, time: np.ndarray) -> np.ndarray:
-    """Angle (n,k) rad between the payload's x axis and the launch axis as it was at exit, after
-    ``time`` (n,k) s."""
+    """Angle (n,k) rad between the payload's x axis after ``time`` (n,k) s and the launch axis at
+    the exit."""
     axis = rotation.at(both.payload_turn, time)[0][..., 0]
     return np.arctan2(np.hypot(axis[..., 1], axis[..., 2]), axis[..., 0])
 
 
 def _limit(both: Pair, passes: np.ndarray) -> np.ndarray:
     """First time (n,) s at which the pointing error reaches its limit before the target is passed,
-    infinite where it does not.
+    infinite if it does not.
 
-    The error cannot grow faster than the body turns, so steps of what is left over the largest rate
-    never jump over the limit.
+    The error cannot grow faster than the body rotates. So a step of the remaining angle over the
+    largest rate never passes the limit.
     """
     limit, end = (
         both.flight.pointing_limit,
@@ -199,11 +200,11 @@ def _limit(both: Pair, passes: np.ndarray) -> np.ndarray:
 
 
 def cone(body: rotation.Free) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Least and largest angle (n,) rad of the body's x axis from its angular momentum, and its mean
-    rate (n,) rad/s about it.
+    """Smallest and largest angle (n,) rad of the body's x axis from the angular momentum, and the
+    mean rate (n,) rad/s of the x axis about it.
 
-    Principal axis 3 goes round with the precession, and so does x where the momentum, as seen from
-    the body, goes round x too; else the body's turning about axis 3 takes x along.
+    Principal axis 3 rotates with the precession. The x axis does too if the path of the momentum in
+    body axes encloses x. Otherwise the rotation of the body about axis 3 carries x along.
     """
     period = rotation.nutation_period(body)
     _, rate = rotation.at(
@@ -222,8 +223,8 @@ def cone(body: rotation.Free) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def gap(both: Pair, time: np.ndarray) -> np.ndarray:
-    """Clearance (n,k) m between payload and platform after ``time`` (n,k) s: the least separation
-    of boxes."""
+    """Clearance (n,k) m between payload and platform after ``time`` (n,k) s: the smallest
+    separation of boxes."""
     bodies, flight = both.bodies, both.flight
     apart = orbit.back(
         flight.mean_motion,
@@ -249,8 +250,8 @@ def gap(both: Pair, time: np.ndarray) -> np.ndarray:
 
 
 def clear_after(both: Pair) -> np.ndarray:
-    """Time (n,) s from which on the sphere about the payload is past the front of the platform, so
-    that the clearance only grows."""
+    """Time (n,) s after which the sphere about the payload is ahead of the platform, so the
+    clearance only grows."""
     bodies, flight = both.bodies, both.flight
     along = (both.payload - both.platform) @ np.kron(np.eye(2), flight.axes[:, :1])
     front = (bodies.boxes + bodies.box_halves)[..., 0].max(axis=1)
@@ -263,8 +264,8 @@ def clear_after(both: Pair) -> np.ndarray:
 
 
 def _kept(both: Pair) -> np.ndarray:
-    """Least clearance (n,) m while the payload draws away, when (n,) s, and the least gap (n,) m if
-    it comes back."""
+    """Smallest clearance (n,) m while the payload moves away, its time (n,) s, and the smallest gap
+    (n,) m if the payload returns."""
     bodies, flight, away = both.bodies, both.flight, clear_after(both)
     clearance, closest = boxes.least(
         lambda time: gap(both, time), np.zeros(len(away)), away, _LOOKS, 2

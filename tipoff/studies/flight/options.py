@@ -64,7 +64,6 @@ class Asked:
 
 
 def _require(name: str, text: str | None, unit: str, example: str) -> None:
-    """Raise SceneError where the option ``name`` has no quantity in ``unit``; "absent" drops the
-    key."""
+    """Raise SceneError if the option ``name`` is no quantity in ``unit``; "absent" removes the key."""
     if text != "absent":
         quantity(f"--{name}", text, unit, example)

@@ -1,21 +1,21 @@
 """Relative motion beside a circular orbit, in closed form (Clohessy and Wiltshire, J. Aerospace
 Sci. 27, 1960).
 
-In orbit axes, x radially outwards, y along the flight, z along the orbit's normal, that turn with
-the mean motion n about z::
+Orbit axes rotate with the mean motion n about z: x radially outwards, y along the flight, z along the
+orbit's normal::
 
     x'' = 2 n y' + 3 n^2 x,     y'' = -2 n x',     z'' = -n^2 z
 
-Gravity is linear in the distance from the orbit; what that leaves out is of the size of the
-distance squared over the orbit's radius.
+Gravity is linear in the distance from the orbit. The error is of the order of the squared distance over
+the orbit's radius.
 """
 
 import numpy as np
 
 
 def transition(motion: float, time: np.ndarray) -> np.ndarray:
-    """Matrices (...,6,6) that take a state, place (m) and velocity (m/s) in orbit axes, on by
-    ``time`` (...) s; ``motion`` rad/s."""
+    """Transition matrices (...,6,6) over ``time`` (...) s of a state, place (m) and velocity (m/s)
+    in orbit axes; ``motion`` rad/s."""
     n, angle = motion, motion * np.asarray(time, dtype=float)
     c, s = np.cos(angle), np.sin(angle)
     found = np.zeros((*angle.shape, 6, 6))
@@ -43,9 +43,9 @@ def transition(motion: float, time: np.ndarray) -> np.ndarray:
 
 
 def state(motion: float, axes: np.ndarray, place: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-    """States (n,6) of bodies at ``place`` (n,3) m from a point on the orbit that fall freely with
-    ``velocity`` (n,3) m/s against it, both in axes that do not turn; ``axes`` (3,3) gives orbit
-    components of these."""
+    """States (n,6) of free bodies at ``place`` (n,3) m from a point on the orbit with the relative
+    ``velocity`` (n,3) m/s, both in axes that do not rotate; ``axes`` (3,3) converts these to orbit
+    components."""
     r, v = place @ axes.T, velocity @ axes.T
     turning = np.stack([-motion * r[:, 1], motion * r[:, 0], np.zeros(len(r))], axis=1)
     return np.concatenate([r, v - turning], axis=1)
@@ -57,8 +57,8 @@ def places(motion: float, states: np.ndarray, time: np.ndarray) -> np.ndarray:
 
 
 def back(motion: float, axes: np.ndarray, place: np.ndarray, time: np.ndarray) -> np.ndarray:
-    """Vectors (n,k,3) given in orbit axes at ``time`` (n,k) s, in the axes that did not turn with
-    the orbit since."""
+    """Vectors (n,k,3) in orbit axes at ``time`` (n,k) s, converted to axes that do not rotate with
+    the orbit."""
     c, s = np.cos(motion * time), np.sin(motion * time)
     held = np.stack(
         [

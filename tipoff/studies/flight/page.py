@@ -84,7 +84,7 @@ def terminal(found: Flight) -> list[Part]:
 def table_of_conditions(
     conditions: Sequence[Condition], shown: Sequence[str], notes: Sequence[str], form=".3g"
 ) -> Table:
-    """The quantities ``shown`` of every condition; a condition without a flight has its status."""
+    """The quantities ``shown`` of every condition, or its status if it has no flight."""
     rows = [
         (row.condition, *(row.flown[name] for name in shown))
         if row.flown
@@ -92,7 +92,7 @@ def table_of_conditions(
         for row in conditions
     ]
     columns = [Column(BY_NAME[name].label, BY_NAME[name].unit, form) for name in shown]
-    return Table(["condition", *columns], rows, tuple(notes), dense=True)
+    return Table(["condition", *columns], rows, notes=tuple(notes), dense=True)
 
 
 def _flights(found: Flight) -> list[Part]:
@@ -123,7 +123,7 @@ def _cases(many: Cases) -> Table:
         for name, quantiles in many.quantiles.items()
     ]
     heads = ["quantity", *(f"{percent(share, '.4g')} %" for share in shares)]
-    return Table(heads, rows, notes, dense=True)
+    return Table(heads, rows, notes=notes, dense=True)
 
 
 def figures(found: Flight) -> list[Figure]:
@@ -142,7 +142,7 @@ _Axis = Callable[[Curves], Sequence[float]]
 
 def _lines(curves: Sequence[Curves], x: _Axis, y: _Axis) -> list[Line]:
     return [
-        Line(x(curve), y(curve), curve.condition, colour, 1.8, dash)
+        Line(x(curve), y(curve), name=curve.condition, colour=colour, width=1.8, dash=dash)
         for curve, (colour, dash, _) in zip(curves, _LOOKS)
     ]
 
@@ -154,8 +154,10 @@ def _paths(curves: Sequence[Curves], flight: Orbit) -> Chart:
     def apart(index: int) -> _Axis:
         return lambda curve: [1e-3 * row[index] for row in curve.orbit_m]
 
-    target = Line([flight.range_m], [0.0], "target", "#000000", 1.0, "", marker="D")
-    platform = Line([0.0], [0.0], "platform", "#000000", 1.0, "", marker="s")
+    target = Line(
+        [flight.range_m], [0.0], name="target", colour="#000000", width=1.0, dash="", marker="D"
+    )
+    platform = Line([0.0], [0.0], name="platform", colour="#000000", width=1.0, dash="", marker="s")
     along = "along the launch axis (m)"
     return Chart(
         "flight-path",
@@ -163,20 +165,20 @@ def _paths(curves: Sequence[Curves], flight: Orbit) -> Chart:
             Panel(
                 "to the target, sideways",
                 along,
-                "y (m)",
-                [*_lines(curves, path(0), path(1)), target],
+                y_label="y (m)",
+                lines=[*_lines(curves, path(0), path(1)), target],
             ),
             Panel(
                 "to the target, up",
                 along,
-                "z (m)",
-                [*_lines(curves, path(0), path(2)), target],
+                y_label="z (m)",
+                lines=[*_lines(curves, path(0), path(2)), target],
             ),
             Panel(
                 f"{flight.duration_s / 60.0:.3g} min, from the platform",
                 "along the orbit (km)",
-                "radially outwards (km)",
-                [*_lines(curves, apart(1), apart(0)), platform],
+                y_label="radially outwards (km)",
+                lines=[*_lines(curves, apart(1), apart(0)), platform],
             ),
         ],
         columns=3,
@@ -186,7 +188,16 @@ def _paths(curves: Sequence[Curves], flight: Orbit) -> Chart:
 
 def _axes(curves: Sequence[Curves]) -> Chart:
     passed = [
-        Line([y], [z], curve.condition, colour, 1.0, "", marker=marker, legend=False)
+        Line(
+            [y],
+            [z],
+            name=curve.condition,
+            colour=colour,
+            width=1.0,
+            dash="",
+            marker=marker,
+            legend=False,
+        )
         for curve, (colour, _, marker) in zip(curves, _LOOKS)
         for y, z in [curve.axis_at_target_deg]
     ]
@@ -199,8 +210,13 @@ def _axes(curves: Sequence[Curves]) -> Chart:
     return Chart(
         "flight-axis",
         [
-            Panel("cone of the x axis", "towards y (deg)", "towards z (deg)", [*around, *passed]),
-            Panel("pointing error", "time after exit (s)", "angle (deg)", angle),
+            Panel(
+                "cone of the x axis",
+                "towards y (deg)",
+                y_label="towards z (deg)",
+                lines=[*around, *passed],
+            ),
+            Panel("pointing error", "time after exit (s)", y_label="angle (deg)", lines=angle),
         ],
         columns=2,
         height=360,
@@ -220,8 +236,11 @@ def _clearance(curves: Sequence[Curves]) -> Chart:
             Panel(
                 "",
                 "time after exit (ms)",
-                "clearance (mm)",
-                [*lines, Line(ends, (0.0, 0.0), "touch", "#000000", 1.0, ":")],
+                y_label="clearance (mm)",
+                lines=[
+                    *lines,
+                    Line(ends, (0.0, 0.0), name="touch", colour="#000000", width=1.0, dash=":"),
+                ],
             )
         ],
         height=300,
@@ -236,9 +255,19 @@ def _scatter(many: Cases) -> Chart:
         *_exceeded(many, "tip_off_miss_m", errors, "ejection errors alone", AMBER, "--"),
     ]
     marks = [
-        Line(y, z, "case", NAVY, 1.0, "", 0.35, marker="o", size=3.0),
-        Line(orbital_y[:1], orbital_z[:1], "without errors", VERMILION, 1.0, "", marker="o"),
-        Line([0.0], [0.0], "target", "#000000", 1.0, "", marker="D"),
+        Line(
+            y, z, name="case", colour=NAVY, width=1.0, dash="", opacity=0.35, marker="o", size=3.0
+        ),
+        Line(
+            orbital_y[:1],
+            orbital_z[:1],
+            name="without errors",
+            colour=VERMILION,
+            width=1.0,
+            dash="",
+            marker="o",
+        ),
+        Line([0.0], [0.0], name="target", colour="#000000", width=1.0, dash="", marker="D"),
     ]
     return Chart(
         "flight-miss",
@@ -246,10 +275,15 @@ def _scatter(many: Cases) -> Chart:
             Panel(
                 f"{len(y):,} of {many.settled:,} cases in the plane of the target",
                 "y (m)",
-                "z (m)",
-                marks,
+                y_label="z (m)",
+                lines=marks,
             ),
-            Panel("cases with a larger miss distance", "miss distance (m)", "share (%)", shares),
+            Panel(
+                "cases with a larger miss distance",
+                "miss distance (m)",
+                y_label="share (%)",
+                lines=shares,
+            ),
         ],
         columns=2,
         height=360,
@@ -265,17 +299,17 @@ def _exceeded(
         Line(
             [row.low, row.high],
             [100.0 * (1.0 - row.share)] * 2,
-            "bounds",
-            VERMILION,
-            2.5,
-            "-",
+            name="bounds",
+            colour=VERMILION,
+            width=2.5,
+            dash="-",
             marker="D",
             size=5.0,
         )
         for row in many.quantiles.get(name, ())
         if row.low is not None and row.high is not None
     ]
-    return [Line(sorted(values), above, words, colour, 2.0, dash), *bounds]
+    return [Line(sorted(values), above, name=words, colour=colour, width=2.0, dash=dash), *bounds]
 
 
 def _setup(found: Flight) -> str:

@@ -1,5 +1,5 @@
-"""Result of flights. Quantities of a flight stand under the names in ``summary``, those of the state at
-the exit under the names in ``studies.populations.answers``."""
+"""Result of flights. ``summary`` has the names of the quantities of a flight,
+``studies.populations.answers`` those of the state at the exit."""
 
 from dataclasses import dataclass
 
@@ -12,8 +12,8 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True, kw_only=True)
 class Orbit:
-    """The requested flight. ``no_clearance``: why no clearance is computed, empty where one is;
-    ``rails_listed``: the rails count only where ``flight.envelope`` lists them."""
+    """The requested flight. ``no_clearance``: why no clearance is computed, empty if it is
+    computed; ``rails_listed``: the rails count only if ``flight.envelope`` lists them."""
 
     mean_motion_rad_s: float
     period_s: float
@@ -27,8 +27,8 @@ class Orbit:
 
 @dataclass(frozen=True)
 class Condition:
-    """A condition and its quantities by name; None for a value that does not exist or an instant that
-    never comes, and for ``flown`` of a payload that did not settle."""
+    """A condition and its quantities by name. None: a value that does not exist, an event that does
+    not occur, or ``flown`` of a payload that did not settle."""
 
     condition: str
     status: str
@@ -37,10 +37,10 @@ class Condition:
 
 @dataclass(frozen=True, kw_only=True)
 class Curves:
-    """Of one condition. ``axis_deg``: where the payload's x axis points in one round about its angular
-    momentum, as its angle from the launch axis along scene y and z, and where it does at the target;
-    pointing error and path, in scene axes that turn with the orbit, at ``time_s``; path in orbit axes
-    relative to the platform; clearance, empty without boxes."""
+    """Curves of one condition. ``axis_deg``: direction of the payload's x axis during one round
+    about its angular momentum, as its angle from the launch axis along scene y and z; also at the
+    target. Pointing error and path, in scene axes that rotate with the orbit, at ``time_s``; path
+    in orbit axes relative to the platform; clearance, empty without boxes."""
 
     condition: str
     axis_deg: tuple[tuple[float, float], ...]
@@ -55,8 +55,8 @@ class Curves:
 
 @dataclass(frozen=True, kw_only=True)
 class Share:
-    """Cases of all with an event, and the bounds of their share (Clopper and Pearson); None where the
-    cases are not independent."""
+    """Number of cases with an event, and the bounds of their share (Clopper and Pearson); None if
+    the cases are not independent."""
 
     count: int
     of: int
@@ -67,9 +67,10 @@ class Share:
 
 @dataclass(frozen=True, kw_only=True)
 class Cases:
-    """Many cases: numbers, quantiles by quantity and whence their ``bounds``, those that do not show
-    whether the pointing limit is reached, that ``touch`` the platform again and that never reach the
-    target (None where nothing is known of any), and points (y, z, and without errors) for the figure."""
+    """Many cases: numbers; quantiles by quantity and the method of their ``bounds``; cases that do
+    not show whether the pointing limit is reached, that ``touch`` the platform again, and that
+    never reach the target (None if not known for any case); points (y, z, and without errors) for
+    the figure."""
 
     counts: dict[str, int]
     settled: int
@@ -91,6 +92,6 @@ class Flight(Answering):
     scene: str
     flight: Orbit
     conditions: tuple[Condition, ...]
-    curves: list[Curves]  # a list is no CSV file
+    curves: list[Curves]  # a list does not go to a CSV file
     cases: Cases
     data: str

@@ -1,19 +1,19 @@
 """Free rotation of rigid bodies in closed form, of any inertia, for any time (Jacobi; Landau and
 Lifshitz, Mechanics, section 37).
 
-In principal axes, of which the third is the one that stays on its side of the angular momentum (L
-its size, T kinetic energy)::
+In principal axes, with L the magnitude of the angular momentum and T the kinetic energy. Axis 3 is the
+one whose component of the angular momentum keeps its sign::
 
     w = (a cn u, b sn u, c dn u),   u = u0 + lambda t,   lambda^2 = (I3 - I2)(L^2 - 2 T I1) / (I1 I2 I3)
 
-Axis 3 goes round the angular momentum by an angle that takes Legendre's integral of the third
+The angle of precession of axis 3 about the angular momentum contains Legendre's integral of the third
 kind::
 
     phi(t) = L t / I3 + L (I3 - I1) / (I1 I3 lambda) (Pi(n; u) - Pi(n; u0)),     n = -I3 (I2 - I1) / (I1 (I3 - I2)) <= 0
 
-Pi comes from Carlson's R_F and R_J (DLMF 19.25.14). Nothing is stepped, so the error is that of the
-phase, rounding times its size. Near rotation about the middle axis the motion is unstable: what
-rounding leaves open grows there as exp(lambda t), as in nature.
+Pi is computed from Carlson's R_F and R_J (DLMF 19.25.14). There are no time steps, so the error is
+rounding times the phase. Rotation near the middle axis is unstable: there the rounding error grows as
+exp(lambda t), like any disturbance.
 """
 
 from typing import NamedTuple
@@ -21,8 +21,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import ellipj, ellipkinc, ellipkm1, elliprf, elliprj
 
-# Least relative distance of the moments: a body of revolution gets as much of its phase wrong, and
-# half the digits go where it turns about an axis across its own.
+# Smallest relative distance of the moments. It is the relative error of the phase for a body of
+# revolution. If such a body rotates across its axis, half of the digits are lost.
 _PARTED = 1e-13
 
 
@@ -30,8 +30,8 @@ class Free(NamedTuple):
     """n free bodies: principal ``axes`` (n,3,3) as columns in body axes, ``moments`` (3,n,1) kg m2,
     ``amplitude`` (3,n,1) rad/s, and as (n,1) ``speed`` lambda, ``phase`` u0, ``quarter`` period K
     of u, ``parameter`` m and its ``complement`` 1 - m, ``characteristic`` n, ``momentum`` L, factor
-    ``precession`` of Pi, and ``start``, Pi at u0; ``frame`` (n,3,3), inertial from axes at the
-    momentum."""
+    ``precession`` of Pi, and ``start``, Pi at u0; ``frame`` (n,3,3), from momentum axes to inertial
+    axes."""
 
     axes: np.ndarray
     moments: np.ndarray
@@ -58,7 +58,7 @@ def free(inertia: np.ndarray, turn: np.ndarray, rate: np.ndarray) -> Free:
     # |2 T I3 - L^2| and |L^2 - 2 T I1|, without cancellation
     outer, inner = x**2 + y**2, i2 * d21 * w2**2 + i3 * d31 * w3**2
     apart = abs(i3 * d32 * w3**2 - i1 * d21 * w1**2)  # |L^2 - 2 T I2|, zero on the separatrix
-    # inner is zero at rest only
+    # inner is zero only at rest
     scale, moves = np.where(inner > 0.0, d32 * inner, 1.0), inner > 0.0
     complement = np.where(moves, np.clip(d31 * apart / scale, 1e-30, 1.0), 1.0)
     parameter, quarter = np.minimum(d21 * outer / scale, 1.0), ellipkm1(complement)
@@ -84,17 +84,17 @@ def free(inertia: np.ndarray, turn: np.ndarray, rate: np.ndarray) -> Free:
     body = Free(
         axes,
         moments,
-        amplitude,
-        speed,
-        phase,
-        quarter,
-        parameter,
-        complement,
-        -i3 * d21 / (i1 * d32),
-        momentum,
-        precession,
-        np.zeros_like(speed),
-        axes,
+        amplitude=amplitude,
+        speed=speed,
+        phase=phase,
+        quarter=quarter,
+        parameter=parameter,
+        complement=complement,
+        characteristic=-i3 * d21 / (i1 * d32),
+        momentum=momentum,
+        precession=precession,
+        start=np.zeros_like(speed),
+        frame=axes,
     )
     body = body._replace(start=_course(body, phase)[-1])
     begin, _ = _at_momentum(body, np.zeros_like(speed))
@@ -110,15 +110,15 @@ def at(body: Free, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def precession_rate(body: Free) -> np.ndarray:
-    """Mean rate (n,) rad/s at which principal axis 3 goes round the angular momentum."""
+    """Mean rate of precession (n,) rad/s of principal axis 3 about the angular momentum."""
     return (
         body.momentum / body.moments[2] + body.precession * body.speed * _whole(body) / body.quarter
     )[:, 0]
 
 
 def spin_rate(body: Free) -> np.ndarray:
-    """Mean rate (n,) rad/s at which the body turns about principal axis 3 beside that, counted
-    about the angular momentum: once a nutation, backwards where axis 3 has the largest moment."""
+    """Mean rate (n,) rad/s of the additional rotation about principal axis 3, counted about the
+    angular momentum: one turn in each nutation, backwards if axis 3 has the largest moment."""
     return -np.sign(body.moments[2] - body.moments[1])[:, 0] * 2.0 * np.pi / nutation_period(body)
 
 
@@ -131,8 +131,8 @@ def nutation_period(body: Free) -> np.ndarray:
 
 def _principal(inertia: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Right-handed principal axes, moments (3,n,1) and rates (3,n,1). The last axis has the largest
-    moment or the smallest, whichever the body turns about as told by the separatrix L^2 = 2 T
-    I2."""
+    or the smallest moment: the one about which the body rotates, as decided by the separatrix L^2 =
+    2 T I2."""
     moments, axes = np.linalg.eigh(inertia)
     axes[:, :, 2] *= np.linalg.det(axes)[:, None]
     for above in (1, 2):
@@ -140,7 +140,7 @@ def _principal(inertia: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.nd
     w = np.einsum("nji,nj->ni", axes, rate)
     i1, i2, i3 = moments.T
     smallest = (i3 * (i3 - i2) * w[:, 2] ** 2 <= i1 * (i2 - i1) * w[:, 0] ** 2)[:, None]
-    mirror = np.array([1.0, -1.0, 1.0])  # to exchange two axes alone would leave them left-handed
+    mirror = np.array([1.0, -1.0, 1.0])  # an exchange of only two axes would make them left-handed
     axes = np.where(smallest[:, None], axes[:, :, ::-1] * mirror, axes)
     return (
         axes,
@@ -157,15 +157,15 @@ def _at_momentum(body: Free, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     rate = np.stack([a * cn, b * sn, c * dn], axis=-1)
     precession = body.momentum * time / i3 + body.precession * (third - body.start)
     nutation = np.arctan2(np.hypot(i1 * a * cn, i2 * b * sn), i3 * c * dn)
-    # Shares of the momentum across axis 3, without the size they have in common, which vanishes in
-    # rotation about that axis.
+    # Components of the momentum across axis 3 without their common factor, which is zero in
+    # rotation about axis 3.
     ahead = np.where(c < 0.0, -1.0, 1.0) * np.sign(i3 - i2)
     spin = np.arctan2(np.sqrt(i1 / abs(i3 - i1)) * cn, ahead * np.sqrt(i2 / abs(i3 - i2)) * sn)
     return _euler(precession, nutation, spin), rate
 
 
 def _course(body: Free, u: np.ndarray) -> tuple[np.ndarray, ...]:
-    """sn, cn, dn and Pi of u (n,k), from the half period about zero, where their series are
+    """sn, cn, dn and Pi of u (n,k), reduced to the half period about zero, where their series are
     exact."""
     halves = np.round(u / (2.0 * body.quarter))
     sn, cn, dn, _ = ellipj(u - 2.0 * halves * body.quarter, body.parameter)

@@ -66,7 +66,7 @@ def run(study: Study, options: Options = Options()) -> dict:
 
 
 def _inputs(study: Study, options: Options) -> list:
-    """Tables of the flight and distributions. Raises SceneError where no flight is possible."""
+    """Tables of the flight and distributions. Raises SceneError if no flight is possible."""
     _require(study)
     tables = {
         name: scene.flight and scene.flight.model_dump(mode="json")
@@ -77,7 +77,7 @@ def _inputs(study: Study, options: Options) -> list:
     return [own, tables, varied, study.settings.element_size]
 
 
-STAGE = Stage(NAME, __name__, Options, _inputs, result=Flight)
+STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, result=Flight)
 
 
 def _require(study: Study) -> None:

@@ -89,14 +89,14 @@ def orbit(scene: Scene) -> Orbit:
 
 
 def _values(found: Flown, left: Left) -> dict[str, np.ndarray]:
-    """All quantities (n,) of flights and of their state ``left`` at the exit, by name."""
+    """All quantities (n,) of flights and of their states at the exit, ``left``, by name."""
     return {item.name: item.of(left) for item in answers.ALL} | {
         item.name: item.of(found) for item in (*QUANTITIES, *SIDES)
     }
 
 
 def row(found: Flown, left: Left, case: int) -> dict[str, float | None]:
-    """One case; None for a value that does not exist, or an instant that never comes."""
+    """One case; None for a value that does not exist, or an event that does not occur."""
     return {name: _finite(values[case]) for name, values in _values(found, left).items()}
 
 
@@ -134,7 +134,7 @@ def cases(found: Flown, population: Population, uncertainty: Uncertainty) -> Cas
             name: tuple(_quantiles(values[~np.isnan(values)], independent))
             for name, values in judged.items()
         },
-        # where all are open, the scene has no limit
+        # if it is open in all cases, the scene has no limit
         limit_open=0 if is_open.all() else int(is_open.sum()),
         touch=_share(found.clearance[known] <= 0.0, independent),
         not_reached=_share(~reached, independent),
@@ -150,7 +150,7 @@ def plain(values: np.ndarray) -> tuple:
 
 
 def _quantiles(values: np.ndarray, independent: bool) -> list[Quantile]:
-    """Quantiles that are values of cases; None where that case never reaches the event."""
+    """Quantiles that are values of cases; None if that case does not reach the event."""
     rows = []
     for share in SHARES:
         ends = order_statistics.bounds(values, share, CONFIDENCE) if independent else (None, None)

@@ -1,5 +1,5 @@
-"""Find the largest tolerances of thrust, mass, clearance and friction that keep the rates
-below limits with a probability; writes limits.json.
+"""Find the largest tolerances of thrust, mass, clearance and friction for which the rates stay below
+limits with a given probability; writes limits.json.
 
 The result has each tolerance alone, all tolerances together, and pairs of misalignment and
 mass eccentricity. It includes the uncertainty of the constants and of the model.

@@ -2,9 +2,9 @@
 the reference is above its limit, at the tolerances that the surrogate certifies.
 
 New cases within these tolerances are put into strata by the largest ratio of a rate to its limit in the
-surrogate: above one, near it, and the others. The reference runs the first cases of the last two, and
-``populations.stratified`` bounds the probability. The cases are not those of the search, which has chosen
-the tolerances by them.
+surrogate: above one, near one, far below one. The reference runs the first cases of the strata near and
+far, and ``populations.stratified`` bounds the probability. The search chose the tolerances by its own
+cases, so the check draws other cases.
 """
 
 from collections.abc import Sequence
@@ -24,8 +24,8 @@ from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.populations.stratified import Bound, Runs
 from tipoff.workspace.study import Study
 
-TIMES = 10  # cases for each case of the search, so that the weights are known well
-NEAR = 0.9  # of a limit
+TIMES = 10  # cases for each case of the search, for accurate weights of the strata
+NEAR = 0.9  # of a limit: from here on, a case is near it
 STRATA = ("above", "near", "far")
 
 

@@ -49,7 +49,7 @@ def draws(
 @dataclass(frozen=True)
 class Margin:
     """The largest error of the surrogate's settled rates, deg/s, by axis x, y, z and in ``total``;
-    None where nothing is measured. ``said`` names the measured conditions."""
+    None if not measured. ``said`` names the measured conditions."""
 
     deg_s: dict[str, float] | None
     said: str
@@ -63,10 +63,10 @@ def _residuals(found: Fit | None) -> list[float]:
 
 
 def margin(study: Study, model: str) -> Margin:
-    """The largest errors on the held-out conditions of ``make compare`` that single runs judge; on
-    others the error has an unknown share of the reference's own. Where there is no such condition,
-    the largest residuals of the calibration of the present scene and code. Runs of compliant
-    contact have the modes that each condition chose."""
+    """The largest errors on the held-out conditions of ``make compare`` that single runs judge. On
+    other conditions the reference itself is too uncertain. Without such a condition: the largest
+    residuals of the calibration of the present scene and code. Runs of compliant contact have the
+    modes that each condition chose."""
     if study.scene.contact is None:
         return Margin(
             dict.fromkeys(("x", "y", "z", "total"), 0.0), "zero, because the scene has no contact"

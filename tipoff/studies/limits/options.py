@@ -72,7 +72,7 @@ class Options:
     ] = None
     certify: Annotated[
         int | None,
-        between(20, noun="runs"),  # with fewer, a bound says nothing
+        between(20, noun="runs"),  # fewer give no useful bound
         typer.Option(
             metavar="N",
             help="Check the tolerances that are scaled together with N runs of the finite-element "

@@ -119,7 +119,7 @@ def _uncertain(found: Limits) -> str:
 
 
 def _certified(found: Limits) -> list[str]:
-    """What the runs of the reference show, in sentences; none where they were not asked for."""
+    """The result of the runs of the reference, in sentences; empty if they were not requested."""
     if found.asked.certify is None:
         return []
     if (shown := found.certificate) is None:
@@ -177,7 +177,7 @@ def _kept(advised: Advised) -> str:
 
 
 def _odd(row: Row) -> list[str]:
-    """Where the number of cases above a limit does not grow with the tolerance."""
+    """The tolerances between which the number of cases above a limit does not grow."""
     unit, lines = _unit(row.unit), []
     if row.nominal.again:
         sizes = ", ".join(f"{size:.3g}" for size in row.nominal.again)
@@ -219,7 +219,7 @@ def _beside(found: Limits) -> list[Part]:
     note = (
         f"The magnitude that {found.probability:.4%} of the cases stay below, with its 95 % bounds."
     )
-    table = Table(["at the certified tolerance of", *quantities], body, (note,), dense=True)
+    table = Table(["at the certified tolerance of", *quantities], body, notes=(note,), dense=True)
     return [Fold("Every quantity at the certified tolerances", [table])]
 
 
@@ -234,18 +234,34 @@ def _panel(row: Row, found: Limits) -> Panel:
     ends = [min(upper + shares), 1.0]
     lines = [
         Line(
-            [size for size, _ in seen], shares, "share of cases above", NAVY, marker="o", size=5.0
+            [size for size, _ in seen],
+            shares,
+            name="share of cases above",
+            colour=NAVY,
+            marker="o",
+            size=5.0,
         ),
-        Line(sizes, upper, "its upper bound", TEAL, dash=":"),
-        Line([sizes[0], sizes[-1]], [1.0 - found.probability] * 2, "1 - p", GREY, 1.2, "-."),
+        Line(sizes, upper, name="its upper bound", colour=TEAL, dash=":"),
+        Line(
+            [sizes[0], sizes[-1]],
+            [1.0 - found.probability] * 2,
+            name="1 - p",
+            colour=GREY,
+            width=1.2,
+            dash="-.",
+        ),
     ]
     if (most := row.nominal.tolerance) is not None:
-        lines.append(Line([most] * 2, ends, "largest certified", VERMILION, 1.8))
+        lines.append(Line([most] * 2, ends, name="largest certified", colour=VERMILION, width=1.8))
     if row.advised and sizes[0] <= (advice := row.advised.tolerance) <= sizes[-1]:
-        lines.append(Line([advice] * 2, ends, "advised by the paper", AMBER, 1.8, "--"))
+        lines.append(
+            Line(
+                [advice] * 2, ends, name="advised by the paper", colour=AMBER, width=1.8, dash="--"
+            )
+        )
     title = row.words.partition(",")[0]
     unit = "times the set" if row.name == TOGETHER else row.unit.replace("1", "dimensionless")
-    return Panel(title, f"tolerance ({unit})", "share above a limit", lines, log=True)
+    return Panel(title, f"tolerance ({unit})", y_label="share above a limit", lines=lines, log=True)
 
 
 def _map(shown: Map, probability: float) -> Chart:
@@ -253,10 +269,10 @@ def _map(shown: Map, probability: float) -> Chart:
     (at_x, at_y), advised = shown.advised, "advised by the paper"
     certified = f"largest certified pairs, p = {probability:g}"
     lines = [
-        Line(x, y, certified, NAVY, 1.8, marker="o", size=7.0),
-        Line([at_x], [at_y], advised, VERMILION, dash="", marker="s", size=10.0),
+        Line(x, y, name=certified, colour=NAVY, width=1.8, marker="o", size=7.0),
+        Line([at_x], [at_y], name=advised, colour=VERMILION, dash="", marker="s", size=10.0),
     ]
     x_label, y_label = (
         f"tolerance of {name} ({unit})" for name, unit in zip(shown.words, shown.units)
     )
-    return Chart("limits-map", [Panel("", x_label, y_label, lines)], height=380)
+    return Chart("limits-map", [Panel("", x_label, y_label=y_label, lines=lines)], height=380)

@@ -31,29 +31,26 @@ class Magnitude(Named, Quantile):
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """A factor with tolerances in its ``unit``, searched up to ``most``: ``nominal``, with nominal
-    constants; with each draw of the ``constants``; with limits less the error of the ``model``; with
-    ``both``, the worst draw and these limits. ``beside``: quantities at the certified tolerance. None
-    where there is nothing to search, and without advice."""
+    """A factor with its certified tolerances. None if there is nothing to search."""
 
     name: str
-    words: str
-    unit: str
-    most: float
-    nominal: Found
-    advised: Advised | None
-    constants: tuple[Found, ...] | None = None
-    model: Found | None = None
-    both: Found | None = None
-    beside: tuple[Magnitude, ...] | None = None
+    words: str  # name for a reader
+    unit: str  # of all tolerances of the row
+    most: float  # the largest searched tolerance
+    nominal: Found  # with nominal constants
+    advised: Advised | None  # None if the paper advises no tolerance
+    constants: tuple[Found, ...] | None = None  # with each draw of the constants
+    model: Found | None = None  # with limits less the error of the model
+    both: Found | None = None  # with the worst draw and these limits
+    beside: tuple[Magnitude, ...] | None = None  # quantities at the certified tolerance
 
 
 @dataclass(frozen=True)
 class Pair:
     """Certified tolerances of both factors of a map, on one ray."""
 
-    tolerances: tuple[float, float]
-    state: str
+    tolerances: tuple[float, float]  # in the units of the map
+    state: str  # as in ``search.Found``
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,33 +60,32 @@ class Map:
     names: tuple[str, str]
     words: tuple[str, str]
     units: tuple[str, str]
-    advised: tuple[float, float]
+    advised: tuple[float, float]  # in ``units``
     points: tuple[Pair, ...]
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """Number of ``draws`` of the constants, and the names of those ``drawn``."""
+    """The draws of the constants."""
 
-    draws: int
-    drawn: tuple[str, ...]
+    draws: int  # number
+    drawn: tuple[str, ...]  # names of the drawn constants
 
 
 @dataclass(frozen=True, kw_only=True)
 class Limits(Answering):
-    """``allowed``: how many of the ``cases`` may be above a limit; ``rows``: of each factor, and of all
-    together; ``map``: None without a certified pair; ``certificate``: None where it was not asked for, or
-    no tolerance of the whole set is certified."""
+    """Certified tolerances of a scene."""
 
     asked: Options
     limits: tuple[Limit, ...]
     probability: float
     confidence: float
     cases: int
-    allowed: int
+    allowed: int  # how many of the cases may be above a limit
     constants: Drawn
     margin: Margin
-    rows: tuple[Row, ...]
-    map: Map | None
+    rows: tuple[Row, ...]  # of each factor, and of all together
+    map: Map | None  # None without a certified pair
+    # None if not requested, or if no tolerance of the whole set is certified
     certificate: Certificate | None
-    evaluations: int
+    evaluations: int  # sets of cases that were run

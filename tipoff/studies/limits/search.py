@@ -27,26 +27,26 @@ class Trial(NamedTuple):
 @dataclass(frozen=True)
 class Found:
     """``tolerance`` is the largest certified one below ``fails``, the first that fails. ``state``:
-    FOUND; ALL, none of the ``trials`` fails; SMALL, all fail except zero; NONE, zero fails too; LOST, no
-    search, because the model error exceeds a limit. ``again``: certified beyond the first that fails;
-    ``falls``: neighbouring trials of which the larger has fewer cases above a limit."""
+    FOUND; ALL, none of the ``trials`` fails; SMALL, all fail except zero; NONE, zero fails too;
+    LOST, no search, because the model error exceeds a limit."""
 
     state: str
     tolerance: float | None = None
     fails: float | None = None
-    again: tuple[float, ...] = ()
+    again: tuple[float, ...] = ()  # certified beyond the first that fails
+    # neighbouring trials of which the larger has fewer cases above a limit
     falls: tuple[tuple[float, float], ...] = ()
     trials: tuple[Trial, ...] = ()
 
     def times(self, size: float) -> "Found":
-        """The same with tolerances in another unit, of which scale one is ``size``."""
+        """The same in another unit, in which scale one is ``size``."""
         return Found(
             self.state,
             None if self.tolerance is None else size * self.tolerance,
-            None if self.fails is None else size * self.fails,
-            tuple(size * scale for scale in self.again),
-            tuple((size * one, size * two) for one, two in self.falls),
-            tuple(Trial(size * trial.tolerance, trial.above) for trial in self.trials),
+            fails=None if self.fails is None else size * self.fails,
+            again=tuple(size * scale for scale in self.again),
+            falls=tuple((size * one, size * two) for one, two in self.falls),
+            trials=tuple(Trial(size * trial.tolerance, trial.above) for trial in self.trials),
         )
 
 
@@ -114,4 +114,4 @@ def _found(
         if two.above < one.above
     )
     again = tuple(each for each in fine if fails is not None and each > fails)
-    return Found(state, scale, fails, again, tuple(falls), trials)
+    return Found(state, scale, fails=fails, again=again, falls=tuple(falls), trials=trials)

@@ -8,8 +8,8 @@ misalignment and mass eccentricity. Two uncertainties are separate: for the cons
 surrogate, the search is repeated for draws from their intervals; for the surrogate itself, its
 measured error reduces every limit.
 
-All searches, and the check by the reference, are of one model with one number of rail modes: that
-which pilot cases within the certified multiple of the whole set choose.
+All searches and the check by the reference use one model with one number of rail modes. Pilot cases
+within the certified multiple of the whole set choose this number.
 """
 
 import math
@@ -37,7 +37,7 @@ from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study
 
 NAME = "limits"
-TIMES_NEEDED = 10  # times the fewest cases: some cases may then be above a limit
+TIMES_NEEDED = 10  # times the smallest number of cases, so that some cases may be above a limit
 DRAWS = 8
 PAIR = ("misalignment", "mass_eccentricity")
 RAYS = 5  # rays between the axes of the map of two tolerances
@@ -45,8 +45,8 @@ _REACH = 5.0  # largest multiple of a whole set
 
 
 def run(study: Study, options: Options = Options()) -> dict:
-    """The content of ``Limits``. Raises SceneError for bad input, every fault listed, and StudyError where
-    the payload does not leave without errors either."""
+    """The content of ``Limits``. Raises SceneError listing every fault of the input, and StudyError
+    if the payload does not leave the rail even without errors."""
     (limits, cases), _ = together(
         lambda: checked(options), lambda: options.condition and study.condition(options.condition)
     )
@@ -70,7 +70,7 @@ def _inputs(study: Study, options: Options) -> dict:
     return vars(constants.margin(study, options.model or COMPLIANT))
 
 
-STAGE = Stage(NAME, __name__, Options, _inputs, result=Limits)
+STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, result=Limits)
 
 
 def checked(options: Options) -> tuple[list[Limit], int]:
@@ -175,10 +175,10 @@ class Search:
         )
 
     def _choose_modes(self, tolerances: dict[str, float]) -> Found:
-        """Give the model its number of rail modes, and return the search of the whole set with it. The
-        number is what pilot cases within the result of that search choose, and the result depends on
-        the number: the search begins without modes, and is made again with more while the pilot needs
-        more."""
+        """Give the model its number of rail modes, and return the search of the whole set with it.
+        Pilot cases within the result of that search choose the number, and the result depends on
+        the number. So the first search has no modes, and it is repeated with more modes until the
+        pilot needs no more."""
         choosing, self.model = self.model, self.model._replace(modes=0)
         while True:
             found = self._search(tolerances)
@@ -190,12 +190,12 @@ class Search:
                 self.model = chosen
                 continue
             if chosen.mode_count == self.model.mode_count:
-                self.model = chosen  # with the reason from its own result
+                self.model = chosen  # with the reason that its own pilot gives
             return found
 
     def certified(self, tolerances: dict[str, float], found: Found) -> Certificate | None:
-        """The set of ``tolerances`` at the ``found`` scale, checked by the reference; None where that was
-        not asked for, or where there is no such scale."""
+        """The set of ``tolerances`` at the ``found`` scale, checked by the reference; None if not
+        requested, or without such a scale."""
         if self.options.certify is None or found.tolerance is None:
             return None
         name = self.options.condition
@@ -274,7 +274,7 @@ class Search:
         )
 
     def _shrunk(self) -> list[Limit] | None:
-        """The limits less the error of the model; None where that error is not known or zero."""
+        """The limits less the error of the model; None if that error is zero or not known."""
         error = self.margin.deg_s
         if not error or not any(error.values()):
             return None
@@ -297,13 +297,13 @@ class Search:
 
     def pairs(self, start: float) -> Map | None:
         """Certified pairs of two tolerances on rays from one axis to the other; each search starts
-        at the last result. None where there is no such pair."""
+        at the last result. None without such a pair."""
         one, two = (self.factors[name] for name in PAIR)
         points = []
         for number in range(RAYS + 2):
             angle = 0.5 * math.pi * number / (RAYS + 1)
             shares = [round(part, 12) for part in (math.cos(angle), math.sin(angle))]
-            edge = 1.0 / max(shares)  # there one of both reaches its largest searched tolerance
+            edge = 1.0 / max(shares)  # there one of the two reaches its largest searched tolerance
             ray = {
                 name: share * factor.most for name, share, factor in zip(PAIR, shares, (one, two))
             }

@@ -1,8 +1,8 @@
-"""Cases within tolerances. An input with tolerance T is normal about zero, or about its nominal
-value, with T for three sigma; a value beyond T is drawn again, as an inspection rejects such parts.
-An error of thrust or mass has a uniform direction around the axis.
+"""Cases within tolerances. An input with tolerance T is normal about zero, or about its nominal value,
+with T for three sigma. A value beyond T is drawn again, because an inspection would reject the part. An
+error of thrust or mass has a uniform direction around the axis.
 
-A case has the same draws for all sets of tolerances, so that two sets do not differ by chance.
+A case has the same draws for all sets of tolerances, so two sets do not differ by chance.
 """
 
 import json
@@ -35,7 +35,7 @@ ADVISED = {
 }
 TABLE3 = {name: error.three_sigma for name, error in ERRORS.items()}
 SETS = {"advised": ADVISED, "table3": TABLE3}
-_REACH = 5.0  # times the advised tolerances: misalignments as far as the paper's own sweep goes
+_REACH = 5.0  # times the advised tolerances: up to the largest misalignment of the paper's sweep
 
 
 class Factor(NamedTuple):
@@ -107,8 +107,8 @@ def with_modes(model: Surrogate, tolerances: dict[str, float], cases: int, seed:
 
 class Cases:
     """Results of ``model`` within ``tolerances`` (SI) times a scale; each scale is run once and
-    kept in a file. The model has a number of modes (``with_modes``): one for all scales, or the search
-    would meet jumps."""
+    kept in a file. The model has one number of modes for all scales (``with_modes``): otherwise the
+    number of cases above a limit would jump."""
 
     def __init__(
         self,
@@ -124,7 +124,7 @@ class Cases:
         self._known: dict[float, np.ndarray] = {}
 
     def source(self, scale: float) -> Derived:
-        """The cases at a scale; one case at scale zero, where all are equal."""
+        """The cases at a scale; a single case at scale zero, where all cases are equal."""
         sizes = {name: scale * size for name, size in self._tolerances.items()}
         return source(self._model.scene, sizes, self._cases if scale > 0.0 else 1, self._seed)
 

@@ -96,8 +96,8 @@ def _oblique(axes, mesh, colours: dict[str, str], ink: str) -> None:
 
 
 def _section(axes, mesh, colours: dict[str, str], ink: str) -> None:
-    """Draw the middle layer of the rail at +y +z (of all rails without one there), seen along X, with
-    thick lines for the named surfaces."""
+    """Draw the middle layer of the rail at +y +z, seen along X, with thick lines for the named
+    surfaces. Without a rail there, draw all rails."""
     from matplotlib.collections import LineCollection, PolyCollection
 
     centres = mesh.points[mesh.cells].mean(axis=1)
@@ -131,7 +131,7 @@ def _section(axes, mesh, colours: dict[str, str], ink: str) -> None:
 
 
 def _cut(mesh, among, x: float) -> np.ndarray:
-    """Numbers of the elements that the plane at ``x`` (m) cuts, of those marked in ``among``."""
+    """Numbers of the elements marked in ``among`` that the plane at ``x`` (m) cuts."""
     along = mesh.points[mesh.cells][:, :, 0]
     return np.flatnonzero(among & (along.min(axis=1) < x) & (along.max(axis=1) > x))
 

@@ -99,7 +99,7 @@ def _run(found: MonteCarlo) -> list[str]:
 
 
 def _different(readings: Sequence[ReadingRow]) -> list[str]:
-    """Readings whose rates differ from those of the study, and those with too few cases to tell."""
+    """Readings with other rates than the study, and readings with too few cases to compare."""
     others = [row for row in readings if not row.same]
     few = [row.reading for row in others if row.distance is None]
     different = [
@@ -115,7 +115,7 @@ def _different(readings: Sequence[ReadingRow]) -> list[str]:
 
 
 def _model_error(found: MonteCarlo) -> list[str]:
-    """The difference between springs and compliant contact in the rates, or why it is not known."""
+    """The difference of the rates between springs and compliant contact, or why it is not known."""
     if not (models := found.models):
         return [f"springs against compliant contact: not compared, {found.models_missing}"]
     compliant = population.with_modes("compliant contact", models.modes, models.modes_why)
@@ -140,10 +140,19 @@ def _histograms(found: MonteCarlo) -> Chart:
             np.pad(np.repeat(bars, 2), 1) for bars in (item.histogram.first, item.histogram.all)
         )
         lines = [
-            Line(edges, first, f"first {found.paper_cases:,} cases", AMBER, 4.0, opacity=0.55),
-            Line(edges, whole, f"all {found.counts['asked']:,} cases", NAVY, 1.4),
+            Line(
+                edges,
+                first,
+                name=f"first {found.paper_cases:,} cases",
+                colour=AMBER,
+                width=4.0,
+                opacity=0.55,
+            ),
+            Line(edges, whole, name=f"all {found.counts['asked']:,} cases", colour=NAVY, width=1.4),
         ]
-        panels.append(Panel(item.label, item.title, f"density (1/({item.unit}))", lines))
+        panels.append(
+            Panel(item.label, item.title, y_label=f"density (1/({item.unit}))", lines=lines)
+        )
     return Chart("montecarlo-histograms", panels, columns=2, height=280)
 
 
@@ -182,7 +191,7 @@ def _converging(label: str, found: list[Converging]) -> list[Panel]:
         ]
         counts = [count for count, _, _ in bounded]
         values += [
-            Line(counts, ends, "", colour, 1.0, ":", legend=False)
+            Line(counts, ends, name="", colour=colour, width=1.0, dash=":", legend=False)
             for ends in ([low for _, low, _ in bounded], [high for _, _, high in bounded])
         ]
         halves = [0.5 * (high - low) for _, low, high in bounded]
@@ -190,10 +199,22 @@ def _converging(label: str, found: list[Converging]) -> list[Panel]:
         if halves:
             ends = [counts[0], counts[-1]]
             falling = [halves[-1] * (counts[-1] / count) ** 0.5 for count in ends]
-            widths.append(Line(ends, falling, "falling as 1/√n", GREY, 1.0))
+            widths.append(Line(ends, falling, name="falling as 1/√n", colour=GREY, width=1.0))
     return [
-        Panel(f"Quantiles of the {label}", "cases", f"{label} (deg/s)", values, log_x=True),
-        Panel("Half the width of the bounds", "cases", "half width (deg/s)", widths, log=True),
+        Panel(
+            f"Quantiles of the {label}",
+            "cases",
+            y_label=f"{label} (deg/s)",
+            lines=values,
+            log_x=True,
+        ),
+        Panel(
+            "Half the width of the bounds",
+            "cases",
+            y_label="half width (deg/s)",
+            lines=widths,
+            log=True,
+        ),
     ]
 
 
@@ -205,10 +226,10 @@ def _models(models: Compared) -> Chart:
         low, high = min(map(min, pair.values())), max(map(max, pair.values()))
         both = pair["springs"], pair["compliant"]
         lines = [
-            Line([low, high], [low, high], "both agree", GREY, 1.2),
-            Line(*both, "a case", NAVY, dash="", marker="o", size=3.5, opacity=0.45),
+            Line([low, high], [low, high], name="both agree", colour=GREY, width=1.2),
+            Line(*both, name="a case", colour=NAVY, dash="", marker="o", size=3.5, opacity=0.45),
         ]
-        panels.append(Panel(label, "springs (deg/s)", "compliant (deg/s)", lines))
+        panels.append(Panel(label, "springs (deg/s)", y_label="compliant (deg/s)", lines=lines))
     return Chart("montecarlo-models", panels, columns=3, height=300)
 
 
@@ -220,7 +241,7 @@ def table_of_quantities(found: MonteCarlo) -> Table:
         shown = [estimate(quantiles[share]) for share in _LOOKS]
         rows.append((*_name_and_sd(item), *shown))
     below = [f"{percent(share, 'g')} % below" for share in _LOOKS]
-    return Table(["quantity", "sd", *below], rows, (_BOUNDS,))
+    return Table(["quantity", "sd", *below], rows, notes=(_BOUNDS,))
 
 
 def _name_and_sd(item: Distribution) -> tuple[str, str]:
@@ -228,7 +249,7 @@ def _name_and_sd(item: Distribution) -> tuple[str, str]:
 
 
 def _quantiles(found: MonteCarlo) -> Table:
-    """Of all cases, and in a second row of the paper's number of cases."""
+    """A row of all cases, and a row of the paper's number of cases."""
     shares = [row.share for row in found.quantities[0].quantiles[1:]]
     rows = []
     for item in found.quantities:
@@ -243,7 +264,7 @@ def _quantiles(found: MonteCarlo) -> Table:
             ("", found.paper_cases, "", *first),
         ]
     below = [f"{percent(share, 'g')} % below" for share in shares]
-    return Table(["quantity", "cases", "sd", *below], rows, (_BOUNDS,), dense=True)
+    return Table(["quantity", "cases", "sd", *below], rows, notes=(_BOUNDS,), dense=True)
 
 
 def table_of_tails(found: MonteCarlo) -> Table:
@@ -263,7 +284,7 @@ def _readings(found: MonteCarlo) -> Table:
     shares = (0.5, 0.95, 0.99, 0.9973)
     rows: list[tuple] = []
     for item in found.readings:
-        name = item.reading + (" (that of the study, drawn again)" if item.same else "")
+        name = item.reading + (" (reading of the study, drawn again)" if item.same else "")
         if item.rates is None:
             settled = f"{item.settled or 'none'} settled"
             rows.append((name, settled, *[""] * (4 + len(shares))))
@@ -287,7 +308,7 @@ def _readings(found: MonteCarlo) -> Table:
         "by chance",
     )
     note = _READINGS.format(cases=found.readings[0].cases)
-    return Table(heads, rows, (note,), dense=True)
+    return Table(heads, rows, notes=(note,), dense=True)
 
 
 def _apart(found: MonteCarlo) -> list[Part]:

@@ -33,7 +33,7 @@ from tipoff.studies.populations.draws import Draws
 from tipoff.studies.populations.population import Population
 
 RATES = (*answers.RATES, answers.TOTAL_RATE)
-_MOST_CONTACTS = 4  # those with more are in the same row
+_MOST_CONTACTS = 4  # draws with more contacts are in the same row
 _QUANTILES = (0.5, 0.9, 0.95, 0.99)
 
 
@@ -93,12 +93,13 @@ def by_contacts(drawn: Draws, gate: float) -> list[ByContacts]:
 
 
 def _largest(one: Columns, other: Columns) -> np.ndarray:
-    """Largest difference (n,) of the settled rates over the axes, deg/s; NaN where one has none."""
+    """Largest difference (n,) of the settled rates over the axes, deg/s; NaN where a draw did not
+    settle."""
     return np.degrees(twins.change(one.rate, other.rate))
 
 
 def _agreement(error: np.ndarray, gate: float) -> Agreement:
-    """That of draws with an ``error`` (deg/s), NaN where one did not settle."""
+    """Agreement over draws with an ``error`` (deg/s), NaN where a draw did not settle."""
     found = error[np.isfinite(error)]
     within, some = int((found <= gate).sum()), bool(found.size)
     low, high = exceedance.bounds(within, found.size, spread.CONFIDENCE) if some else (None, None)
@@ -139,7 +140,7 @@ def by_modes(own: own_modes.OwnModes, drawn: Draws, gate: float) -> OwnModes:
 
 
 def _median(values: np.ndarray) -> float | None:
-    """Median of those that are finite; None without one."""
+    """Median of the finite values; None without one."""
     found = values[np.isfinite(values)]
     return float(np.median(found)) if found.size else None
 

@@ -1,4 +1,4 @@
-"""Results of ``tipoff montecarlo``: of the surrogate alone, and checked by the reference."""
+"""Results of ``tipoff montecarlo``: the surrogate alone, and checked by the reference."""
 
 from dataclasses import dataclass
 from typing import Annotated
@@ -28,18 +28,18 @@ class Spread(Moments):
 
 @dataclass(frozen=True, kw_only=True)
 class Distribution(Named, Spread):
-    """Those of one of ``answers.ALL``; ``first``: quantiles of the paper's number of cases, None where none
-    of these settled."""
+    """Spread of one of ``answers.ALL`` over all cases."""
 
+    # of the paper's number of cases; None if none of these settled
     first: tuple[Quantile, ...] | None
     histogram: Histogram
 
 
 @dataclass(frozen=True, kw_only=True)
 class Tail(Limit):
-    """Probability above a limit, with bounds; ``limit``: the same in words."""
+    """Probability above a limit, with its bounds."""
 
-    limit: Annotated[str, Column("limit")]
+    limit: Annotated[str, Column("limit")]  # in words
     above: int
     cases: int
     share: Annotated[float, Column("probability above")]
@@ -57,51 +57,50 @@ class Converging(Quantile):
 
 @dataclass(frozen=True, kw_only=True)
 class ReadingRow:
-    """A reading, compared with that of the study, which it may be the ``same`` as; None without enough
+    """A reading of the paper's Table 3, compared with the reading of the study; None without enough
     settled cases."""
 
     reading: str
-    same: bool
+    same: bool  # whether this is the reading of the study
     cases: int
     settled: int
-    distance: float | None
-    chance: float | None
+    distance: float | None  # of Kolmogorov and Smirnov, the largest over the rates
+    chance: float | None  # probability of such a distance if both distributions are equal
     rates: tuple[Spread, ...] | None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Difference(Named):
-    """The magnitude of the difference of both surrogates in a quantity, and that of each surrogate:
-    quantiles of 50, 95 and 99 %."""
+    """How much the surrogates differ in a quantity: quantiles of 50, 95 and 99 % of magnitudes."""
 
-    root_mean_square: float
-    quantiles: tuple[Quantile, ...]
-    most: float
-    springs: tuple[Quantile, ...]
-    compliant: tuple[Quantile, ...]
+    root_mean_square: float  # in the unit of the quantity
+    quantiles: tuple[Quantile, ...]  # of the difference
+    most: float  # the largest difference
+    springs: tuple[Quantile, ...]  # of the quantity itself
+    compliant: tuple[Quantile, ...]  # of the quantity itself
 
 
 @dataclass(frozen=True, kw_only=True)
 class Compared:
-    """Both surrogates on the same ``cases``; ``modes`` of the other one than that of the study; ``pairs`` of
-    rates by name and model."""
+    """Both surrogates on the same cases."""
 
     cases: int
     both_settled: int
-    modes: int | str
+    modes: int | str  # of each rail, of the surrogate that the study does not use
     modes_why: str
     quantities: tuple[Difference, ...]
+    # settled rates (deg/s) by name of the rate and model
     pairs: dict[str, dict[str, tuple[float, ...]]]
 
 
 @dataclass(frozen=True, kw_only=True)
 class MonteCarlo(Answering):
-    """``models``: None where ``models_missing`` says why."""
+    """The random errors on the surrogate."""
 
     asked: Cases
     reading: str
     store: str
-    counts: dict[str, int]
+    counts: dict[str, int]  # cases by status
     settled: int
     confidence: float
     paper_cases: int
@@ -109,104 +108,96 @@ class MonteCarlo(Answering):
     tails: tuple[Tail, ...]
     convergence: tuple[Converging, ...]
     readings: tuple[ReadingRow, ...]
-    models: Compared | None
+    models: Compared | None  # None for the reason ``models_missing``
     models_missing: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class Apart:
-    """The difference of two series over draws that settled in both: its mean, and quantiles of its
-    magnitude."""
+    """The difference of two series over draws that settled in both."""
 
     draws: int
-    mean: float
-    median: float
-    most_95: Annotated[float, Field(alias="95")]
-    most: float
-    correlation: float | None
+    mean: float  # with its sign
+    median: float  # of the magnitude
+    most_95: Annotated[float, Field(alias="95")]  # 95 % quantile of the magnitude
+    most: float  # the largest magnitude
+    correlation: float | None  # of both series
 
 
 @dataclass(frozen=True, kw_only=True)
 class Errors(Named):
-    """Differences from the reference: of the surrogate on the ``same_mesh``, of the ``population``
-    that is studied, of the reference on the finer mesh, ``mesh``, and of the population from that,
-    ``finer``. None without a draw that settled in both."""
+    """Differences from the reference; None without a draw that settled in both."""
 
-    same_mesh: Apart | None
-    population: Apart | None
-    mesh: Apart | None
-    finer: Apart | None
+    same_mesh: Apart | None  # the surrogate on the mesh of the reference
+    population: Apart | None  # the surrogate as in the population
+    mesh: Apart | None  # the reference on the coarser mesh, from the finer one
+    finer: Apart | None  # the population from the reference on the finer mesh
 
 
 @dataclass(frozen=True, kw_only=True)
 class Agreement:
-    """Median and largest error (deg/s) of draws that settled, and their share within the gate with its
-    bounds; None where none settled."""
+    """Errors of draws that settled; None if none settled."""
 
     draws: Annotated[int, Column("draws")]
     settled: int
-    median: Annotated[float | None, _MEDIAN]
-    most: Annotated[float | None, _MOST]
-    within_gate: float | None
+    median: Annotated[float | None, _MEDIAN]  # deg/s
+    most: Annotated[float | None, _MOST]  # deg/s
+    within_gate: float | None  # share of the settled draws; ``low`` and ``high`` are its bounds
     low: float | None
     high: float | None
 
 
 @dataclass(frozen=True, kw_only=True)
 class ByContacts(Agreement):
-    """That of draws with this number of ``contacts``."""
+    """Agreement of draws with this number of contacts."""
 
     contacts: Annotated[str, Column("contacts")]
 
 
 @dataclass(frozen=True, kw_only=True)
 class ByModes(Agreement):
-    """That with these ``modes`` of each rail; processor seconds of a single run, and of a case of a
-    population, None where each draw chooses."""
+    """Agreement of runs with these modes of each rail, and their cost."""
 
     modes: int | str
     cpu_s: Annotated[float, Column("single run", "ms", ".2g", 1e3)]
+    # processor time; None if each draw chooses its modes
     case_s: Annotated[float | None, Column("case of a population", "ms", ".2g", 1e3)]
 
 
 @dataclass(frozen=True, kw_only=True)
 class OwnModes:
-    """The draws by rail modes, with one number in every draw and, last, with those that each draw chooses.
-    ``choosing``: how many draws choose some modes, ``choosing_all`` those that the rails have, ``held``.
-    ``moved_deg_s``: largest change of a rate by the chosen modes, median over the draws that choose
-    some; ``moved_by_clearance_deg_s``: the same by ``clearance_change_m``; ``more_by_clearance``:
-    how many of these draws the clearance moves more."""
+    """The draws by rail modes: with one number in all draws, and with the number that each draw
+    chooses."""
 
-    held: int
-    choosing: int
-    choosing_all: int
+    held: int  # modes of each rail in the rail compliance
+    choosing: int  # how many draws choose some modes
+    choosing_all: int  # how many draws choose all modes
+    # largest change of a rate by the chosen modes; median over the draws that choose some
     moved_deg_s: float | None
     clearance_change_m: float
-    moved_by_clearance_deg_s: float | None
-    more_by_clearance: int
-    rows: tuple[ByModes, ...]
+    moved_by_clearance_deg_s: float | None  # the same by ``clearance_change_m``
+    more_by_clearance: int  # how many of these draws change more by the clearance
+    rows: tuple[ByModes, ...]  # last: the modes that each draw chooses
 
 
 @dataclass(frozen=True, kw_only=True)
 class Statistic(Named, Estimate):
-    """A ``statistic`` of a quantity, in words; ``share`` of a quantile; ``equivalent_runs`` as in
-    ``control_variate``."""
+    """A statistic of a quantity."""
 
-    statistic: str
-    share: float | None
-    equivalent_runs: float | None
+    statistic: str  # in words
+    share: float | None  # of a quantile
+    equivalent_runs: float | None  # as in ``control_variate``
 
 
 @dataclass(frozen=True, kw_only=True)
 class CorrectedTail(Estimate, Limit):
-    """Probability above a limit; draws above it in the reference, of which the surrogate ``missed`` some;
-    ``false``: the other way round."""
+    """Probability above a limit, corrected."""
 
     limit: Annotated[str, Column("limit")]
-    above: int
-    missed: Annotated[int, Column("missed")]
-    false: Annotated[int, Column("false")]
-    equivalent_runs: float | None
+    above: int  # draws above the limit in the reference
+    missed: Annotated[int, Column("missed")]  # of these, not above it in the surrogate
+    false: Annotated[int, Column("false")]  # draws above it in the surrogate only
+    equivalent_runs: float | None  # as in ``control_variate``
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -219,28 +210,26 @@ class Optimal(Allocation):
 
 @dataclass(frozen=True, kw_only=True)
 class Cost:
-    """Processor seconds of a run of each model, and their ``ratio``."""
+    """Cost of a run of each model."""
 
-    reference_cpu_s: float
+    reference_cpu_s: float  # processor time, as of the two below
     fine_cpu_s: float
     surrogate_cpu_s: float
-    ratio: float
+    ratio: float  # reference to surrogate
     optimal: tuple[Optimal, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
 class DrawnPairs:
-    """``rates`` (deg/s) by name and model, and the contacts of every draw that settled in both."""
+    """The draws that settled in both models."""
 
-    contacts: tuple[int, ...]
-    rates: dict[str, dict[str, tuple[float, ...]]]
+    contacts: tuple[int, ...]  # number, of each draw
+    rates: dict[str, dict[str, tuple[float, ...]]]  # deg/s, by name of the rate and model
 
 
 @dataclass(frozen=True, kw_only=True)
 class Tails(Answering):
-    """The population checked by ``draws``; ``fine`` of them on the finer mesh; ``paired``: those that settled
-    in both models; ``gate_deg_s``: limit of the error of a settled rate; ``own_modes``: None where the
-    rails have none."""
+    """The population, checked by draws of the reference."""
 
     asked: Options
     reading: str
@@ -249,20 +238,20 @@ class Tails(Answering):
     settled: int
     draws: int
     counts: dict[str, int]
-    paired: int
+    paired: int  # draws that settled in both models
     lost: tuple[Lost, ...]
     confidence: float
     element_size_m: float
     elements: int
-    fine: int
+    fine: int  # draws on the finer mesh
     fine_element_size_m: float
     fine_elements: int
-    gate_deg_s: float
+    gate_deg_s: float  # limit of the error of a settled rate
     has_contact: bool
     cost: Cost
     errors: tuple[Errors, ...]
     contacts: tuple[ByContacts, ...]
-    own_modes: OwnModes | None
+    own_modes: OwnModes | None  # None if the rails have no modes
     statistics: tuple[Statistic, ...]
     tails: tuple[CorrectedTail, ...]
     pairs: DrawnPairs

@@ -93,7 +93,7 @@ def fitted(study: Study, _options: object) -> str | None:
     return found["key"] if found else None
 
 
-STAGE = Stage(NAME, __name__, Cases, fitted, result=MonteCarlo)
+STAGE = Stage(NAME, __name__, options=Cases, inputs=fitted, result=MonteCarlo)
 
 
 def _settled(quantity: answers.Quantity, found: Population, first: int | None = None) -> np.ndarray:

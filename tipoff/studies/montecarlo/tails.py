@@ -32,7 +32,7 @@ from tipoff.workspace.study import Study, StudyError
 from tipoff.workspace.words import counted
 
 NAME = "tails"
-FEWEST = 10  # draws; fewer have no useful interval
+FEWEST = 10  # draws; fewer give no useful interval
 
 
 def run(study: Study, options: Options) -> dict:
@@ -97,7 +97,7 @@ def run(study: Study, options: Options) -> dict:
     return STAGE.run(study, options, make)
 
 
-STAGE = Stage(NAME, __name__, Options, montecarlo.fitted, result=Tails)
+STAGE = Stage(NAME, __name__, options=Options, inputs=montecarlo.fitted, result=Tails)
 
 
 def checked(study: Study, options: Options) -> tuple[list[exceedance.Limit], Derived, int]:

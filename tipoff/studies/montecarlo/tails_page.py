@@ -211,9 +211,13 @@ def _scatter(rate: _Rate) -> Panel:
         inside = [place for place, count in enumerate(contacts) if count in numbers]
         x, y = ([pair[side][place] for place in inside] for side in ("surrogate", "reference"))
         if inside:
-            lines.append(Line(x, y, words, colour, dash="", marker=marker, size=5.0, opacity=0.7))
+            lines.append(
+                Line(x, y, name=words, colour=colour, dash="", marker=marker, size=5.0, opacity=0.7)
+            )
     axis = name[5]
-    return Panel(f"Rate about {axis}", "surrogate (deg/s)", "reference (deg/s)", lines)
+    return Panel(
+        f"Rate about {axis}", "surrogate (deg/s)", y_label="reference (deg/s)", lines=lines
+    )
 
 
 def _quantiles(rate: _Rate) -> Panel:
@@ -221,14 +225,16 @@ def _quantiles(rate: _Rate) -> Panel:
     x, y = sorted(pair["surrogate"]), sorted(pair["reference"])
     lines = [
         _diagonal(x, y),
-        Line(x, y, "quantiles", TEAL, dash="", marker="D", size=4.0, opacity=0.8),
+        Line(x, y, name="quantiles", colour=TEAL, dash="", marker="D", size=4.0, opacity=0.8),
     ]
-    return Panel(f"Quantiles about {name[5]}", "surrogate (deg/s)", "reference (deg/s)", lines)
+    return Panel(
+        f"Quantiles about {name[5]}", "surrogate (deg/s)", y_label="reference (deg/s)", lines=lines
+    )
 
 
 def _diagonal(x: Sequence[float], y: Sequence[float]) -> Line:
     ends = [min(*x, *y), max(*x, *y)]
-    return Line(ends, ends, "equal", GREY, 1.2)
+    return Line(ends, ends, name="equal", colour=GREY, width=1.2)
 
 
 def by_contacts(found: Tails) -> Table:
@@ -313,4 +319,4 @@ def _errors(found: Tails) -> Table:
     note = _ERRORS.format(
         fine=1e3 * found.fine_element_size_m, coarse=1e3 * found.element_size_m, count=found.fine
     )
-    return Table(heads, rows, (note,), dense=True)
+    return Table(heads, rows, notes=(note,), dense=True)

@@ -100,7 +100,7 @@ def new(
 
 
 def _require_scene(text: str, file: Path) -> None:
-    """Raise SceneError unless ``text`` would be a sound scene as the content of ``file``."""
+    """Raise SceneError unless ``text`` is a valid scene as the content of ``file``."""
     import tomllib
 
     from tipoff.scenes import parse
@@ -112,7 +112,7 @@ def _require_scene(text: str, file: Path) -> None:
 
 
 def _require_new(file: Path) -> None:
-    """Raise SceneError for a file that is no new scene file."""
+    """Raise SceneError if the file exists or does not end in .toml."""
     from tipoff.scenes import names
     from tipoff.scenes.faults import Fault, SceneError
 
@@ -166,8 +166,8 @@ def _numbers(given: dict[str, str | None], thrust_curve: Path | None, pads: int 
 
 
 def _require_curve(file: Path | None, given: dict[str, str | None]) -> None:
-    """Raise SceneError for a curve of the thrust that is no such curve, or that stands beside what
-    it replaces."""
+    """Raise SceneError for an invalid curve of the thrust, or one beside the options that it
+    replaces."""
     from tipoff.scenes.faults import Fault, SceneError
     from tipoff.studies.new_scene import template
 
@@ -183,7 +183,7 @@ def _require_curve(file: Path | None, given: dict[str, str | None]) -> None:
 
 
 def _require_pads(pads: int | None) -> None:
-    """Raise SceneError for a number of pads that the rails do not hold."""
+    """Raise SceneError for a number of pads that does not fit on the rails."""
     from tipoff.scenes.faults import SceneError
     from tipoff.studies.new_scene import template
 

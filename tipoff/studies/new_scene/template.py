@@ -1,8 +1,8 @@
 """A commented scene file of a launcher from a few numbers.
 
-The payload is a box of uniform density in four L rails, pushed by one pulse of thrust, or by a
-measured one, that is tilted by 0.1 deg. What is not given has the proportions of the scene
-``reference``; its provenance is "assumed".
+The payload is a box of uniform density in four L rails. One pulse of thrust, or a measured thrust, pushes
+it with a tilt of 0.1 deg. All other values have the proportions of the scene ``reference`` and the
+provenance "assumed".
 """
 
 import os
@@ -34,7 +34,7 @@ class Numbers(NamedTuple):
     pads: int = 8
 
     def faults(self) -> list[Fault]:
-        """Numbers that make no launcher."""
+        """Faults of numbers from which no launcher can be made."""
         listed = {
             "--mass": (self.mass,),
             "--size": self.size,
@@ -66,7 +66,7 @@ class Numbers(NamedTuple):
 
 
 def pads_faults(count: int) -> list[Fault]:
-    """A number of pads that four rails do not hold alike."""
+    """The fault of a number of pads that is no multiple of four."""
     if count >= _RAILS and count % _RAILS == 0:
         return []
     expected = "4, 8, 12 or another multiple of 4: each of the four rails holds as many pads"
@@ -74,7 +74,7 @@ def pads_faults(count: int) -> list[Fault]:
 
 
 def _of_pads(numbers: Numbers) -> list[Fault]:
-    """A number of pads that the rails do not hold, or that do not fit side by side."""
+    """Faults of the number of pads: no multiple of four, or too many for the length."""
     if (faults := pads_faults(numbers.pads)) or min(numbers.size) <= 0.0:
         return faults
     most = _RAILS * max(1, int(2.0 * numbers.station / numbers.pad) + 1)
@@ -85,7 +85,7 @@ def _of_pads(numbers: Numbers) -> list[Fault]:
 
 
 def curve_faults(file: Path | None) -> list[Fault]:
-    """A curve of the thrust that cannot be read, or that does not push; none without a file."""
+    """Faults of a curve of the thrust: not readable, or without impulse; none without a file."""
     if file is None:
         return []
     try:
@@ -136,8 +136,8 @@ def text(name: str, numbers: Numbers, folder: Path = Path()) -> str:
 
 
 def _pads(numbers: Numbers) -> dict[str, str]:
-    """Where the pads are along the rail, and how long they are. One alone on each rail reaches as
-    far as two would, because nothing else keeps the payload from turning about Y and Z."""
+    """Positions and length of the pads along the rail. A single pad on each rail is as long as two
+    pads with their distance, because only this pad keeps the payload from turning about Y and Z."""
     if numbers.pads == _RAILS:
         length = _n(1e3 * (2.0 * numbers.station + numbers.pad))
         return {

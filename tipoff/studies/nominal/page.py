@@ -24,7 +24,7 @@ _NO_ERRORS = (
 
 
 def draw(found: Nominal) -> list[Part]:
-    """The values with their ranges in large type, and what they are."""
+    """The values with their ranges in large type, and their explanation."""
     return [KeyFigures(figures(found)), Caption(" ".join(f"{line}." for line in notes(found)))]
 
 
@@ -44,13 +44,12 @@ def _meaning(item: Quantity) -> str:
 
 
 def _values(found: Nominal) -> dict[str, float] | None:
-    """Those of the finite elements, or of the surrogate where they did not settle."""
+    """The values of the finite elements, or of the surrogate if these did not settle."""
     return found.answer[FINITE_ELEMENTS] or found.answer[COMPLIANT]
 
 
 def _shown(item: Quantity, found: Nominal) -> str:
-    """The value as text, with the digits that its range leaves a meaning, or without one those in which
-    both models agree."""
+    """The value as text, rounded to its range, or without a range to the difference of both models."""
     values = _values(found)
     assert values is not None
     least = STEPS.get(item.unit, LEAST)
@@ -62,7 +61,7 @@ def _shown(item: Quantity, found: Nominal) -> str:
 
 
 def _ends(spread: Spread | None, item: Quantity) -> Range | None:
-    """The range of a quantity; None where there is none."""
+    """The range of a quantity; None if it has none."""
     return None if spread is None or spread.ranges is None else spread.ranges[item.name]
 
 
@@ -76,7 +75,7 @@ def _text(ends: Range) -> str:
 
 
 def notes(found: Nominal) -> list[str]:
-    """Sentences: what the values are, how far both models differ, what the range is."""
+    """Sentences on the values, the difference of both models, and the range."""
     reference, surrogate = (found.answer[name] for name in (FINITE_ELEMENTS, COMPLIANT))
     statuses = {row.model: row.status for row in found.rows}
     of = "finite elements" if reference else "compliant contact" if surrogate else ""
@@ -132,7 +131,7 @@ def lines(found: Nominal) -> list[str]:
 
 
 def ranges(spread: Spread | None) -> list[str]:
-    """The 95 % range of each quantity, with what it is."""
+    """The 95 % range of each quantity, with its meaning."""
     own = [
         f"95 % range  {_meaning(item):<22}{_text(ends)} {item.unit}"
         for item in QUANTITIES

@@ -1,9 +1,9 @@
 """The 95 % range of rates, speed and time of a launch under the random errors that its scene states.
 
 The ends are the 2.5 and 97.5 % quantiles of independent cases of compliant contact. Half the distance of
-the 95 % bounds of an end, as a share of the range, is 1.35 / sqrt(n) with n cases of a normal
-distribution and 2.2 / sqrt(n) of a half normal one: 4,000 cases give 2 to 4 %. Where it is above 5 % for a
-rate, 16,000 cases are drawn, no more: the page states what was reached.
+the 95 % bounds of an end, as a share of the range, is 1.35 / sqrt(n) for n cases of a normal distribution
+and 2.2 / sqrt(n) for a half normal one: 4,000 cases give 2 to 4 %. If it is above 5 % for a rate, 16,000
+cases are drawn instead. The page states the accuracy.
 """
 
 import math
@@ -23,10 +23,10 @@ from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.workspace.study import Study
 
 SHARES = (0.025, 0.975)
-CASES = (4000, 16_000)  # the second where the first is not accurate enough
-ACCURACY = 0.05  # of the range of a rate: half the distance of the bounds of an end
+CASES = (4000, 16_000)  # the second if the first is not accurate enough
+ACCURACY = 0.05  # largest half distance of the bounds of an end, as a share of the range of a rate
 _CONFIDENCE = 0.95
-_FEWEST = 100  # settled cases: fewer do not show 2.5 %
+_FEWEST = 100  # settled cases: fewer give no 2.5 % quantile
 
 
 def _speed(found: Any) -> np.ndarray:
@@ -45,7 +45,7 @@ QUANTITIES = (*_RATES, SPEED, TIME)
 
 @dataclass(frozen=True, kw_only=True)
 class Range:
-    """Both ends, each with its 95 % bounds, None where there are too few cases for one."""
+    """Both ends, each with its 95 % bounds; a bound is None if the cases are too few."""
 
     low: float
     high: float
@@ -54,8 +54,8 @@ class Range:
 
     @property
     def doubt(self) -> float:
-        """Half the distance of the bounds of the worse end, as a share of the range; infinite where an
-        end has no two bounds, zero where all values are alike."""
+        """Half the distance of the bounds of the worse end, as a share of the range; infinite if an
+        end lacks a bound, zero if all values are equal."""
         width, worst = self.high - self.low, 0.0
         for low, high in (self.low_bounds, self.high_bounds):
             if low is None or high is None:
@@ -66,8 +66,8 @@ class Range:
 
 @dataclass(frozen=True, kw_only=True)
 class Spread:
-    """``errors``: the file of distributions as the scene names it; ``vary``: its keys; ``ranges`` by the
-    names of ``QUANTITIES``, None where fewer than 100 of the ``cases`` settled."""
+    """``errors``: the file of distributions as named in the scene; ``vary``: its keys; ``ranges``
+    by the names of ``QUANTITIES``, None if fewer than 100 of the ``cases`` settled."""
 
     errors: str
     vary: tuple[str, ...]
@@ -81,7 +81,8 @@ class Spread:
 
 
 def of(study: Study, scene: Scene) -> Spread | None:
-    """Ranges of ``QUANTITIES`` of ``scene``, by compliant contact; None where it states no errors.
+    """Ranges of ``QUANTITIES`` of ``scene`` by compliant contact; None if the scene states no
+    errors.
 
     Raises SceneError for distributions that do not fit the scene, StudyError when the store fails.
     """

@@ -1,5 +1,5 @@
 """Stage ``nominal``: the scene itself in both models, and the 95 % range of its rates under the random
-errors that it states."""
+errors stated in the scene."""
 
 import math
 from dataclasses import dataclass
@@ -30,9 +30,9 @@ def requests(study: Study) -> dict[str, Run]:
 
 @dataclass(frozen=True, kw_only=True)
 class Nominal:
-    """The scene itself: ``rows`` of both models; ``answer`` of each, the values of ``spread.QUANTITIES`` by
-    name, None where its run did not settle; ``spread`` under random errors, None where the scene states
-    none; ``failed``, a line for each run without success."""
+    """The scene itself: ``rows`` of both models; ``answer`` of each, the values of
+    ``spread.QUANTITIES`` by name, None if its run did not settle; ``spread`` under random errors,
+    None if the scene states none; ``failed``, a line for each run without success."""
 
     rows: tuple[Row, ...]
     answer: dict[str, dict[str, float] | None]
@@ -41,8 +41,7 @@ class Nominal:
 
 
 def run(study: Study) -> dict:
-    """The content of ``Nominal``. Raises SceneError where the distributions of the errors cannot be
-    used."""
+    """The content of ``Nominal``. Raises SceneError for invalid distributions of the errors."""
     scene = study.condition(NOMINAL)
     uncertainty.of_scene(scene)
 
@@ -80,7 +79,8 @@ STAGE = Stage(NAME, __name__, inputs=_inputs, result=Nominal)
 
 
 def answer(row: Row) -> dict[str, float] | None:
-    """Values by the names of ``spread.QUANTITIES`` from the row of a run; None unless it settled."""
+    """Values by the names of ``spread.QUANTITIES`` from the row of a run; None if it did not
+    settle."""
     if (settled := row.settled) is None or row.exit_time_s is None:
         return None
     rates = settled.rate_deg_s

@@ -1,4 +1,4 @@
-"""How many runs of two models estimate a mean at the least cost.
+"""Numbers of runs of two models that estimate a mean at the lowest cost.
 
 With the correlation r of both models, and w the cost of a run of the reference over that of the
 surrogate (Peherstorfer, Willcox and Gunzburger, SIAM J. Sci. Comput. 38 (2016) A3163):
@@ -13,15 +13,15 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Allocation:
-    """``cases_per_run`` of the surrogate for a run of the reference, at least one, None where no
-    number is too large; and the ``variance_ratio``."""
+    """``cases_per_run`` of the surrogate for a run of the reference, at least one, None if there is
+    no upper limit; and the ``variance_ratio``."""
 
     cases_per_run: float | None
     variance_ratio: float
 
 
 def optimal(correlation: float, cost_ratio: float) -> Allocation:
-    """The optimal allocation; the reference alone, ratio one, where the surrogate saves nothing."""
+    """The optimal allocation; the reference alone, ratio one, if the surrogate saves nothing."""
     explained = correlation**2
     left = max(1.0 - explained, 0.0)
     ratio = (math.sqrt(left) + math.sqrt(explained / cost_ratio)) ** 2

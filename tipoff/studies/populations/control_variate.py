@@ -9,7 +9,7 @@ The reference gives y on n draws. The surrogate gives x on the same n draws and 
 
 b is the optimal coefficient (Ng and Willcox, Int. J. Numer. Methods Eng. 100 (2014) 746). The logarithm
 keeps the standard deviation positive. Intervals: the variance of the n draws by the jackknife, which
-includes the error of b, that of the N draws by the delta method, and Student's t.
+includes the error of b; the variance of the N draws by the delta method; Student's t.
 """
 
 import math
@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.stats import t as student
 
-FEWEST = 4  # draws: a coefficient and a variance need three
+FEWEST = 4  # draws; a coefficient and a variance need three
 
 
 class Pairs(NamedTuple):
@@ -36,7 +36,7 @@ class Pairs(NamedTuple):
 class Estimate:
     """The corrected ``value`` with its bounds ``low`` and ``high``; the same from the reference
     alone, ``plain`` with ``plain_low`` and ``plain_high``; ``surrogate``, the uncorrected value of
-    the population. None where there is none."""
+    the population. None if it does not exist."""
 
     value: float
     low: float | None
@@ -48,7 +48,7 @@ class Estimate:
 
 
 def correlation(one: np.ndarray, other: np.ndarray) -> float | None:
-    """Correlation of two columns (n,); None where one is constant."""
+    """Correlation of two columns (n,); None if one is constant."""
     spread = one.std() * other.std()
     if not spread > 0.0:
         return None
@@ -56,10 +56,30 @@ def correlation(one: np.ndarray, other: np.ndarray) -> float | None:
 
 
 def equivalent_runs(found: Estimate, runs: int) -> float | None:
-    """Number of runs of the reference alone, with which the interval is as narrow as that of
-    ``found`` from ``runs``, since widths fall as 1/sqrt(n). None without both intervals."""
+    """Number of runs of the reference alone that would give an interval as narrow as that of
+    ``found`` from ``runs``, since widths are proportional to 1/sqrt(n). None without both
+    intervals."""
     width, plain = _width(found.low, found.high), _width(found.plain_low, found.plain_high)
     return runs * (plain / width) ** 2 if width and plain is not None else None
+
+
+_Bounds = tuple[float | None, float | None]
+
+
+def _estimate(
+    value: float, bounds: _Bounds, plain: float, plain_bounds: _Bounds, surrogate: float
+) -> Estimate:
+    low, high = bounds
+    plain_low, plain_high = plain_bounds
+    return Estimate(
+        value,
+        low,
+        high=high,
+        plain=plain,
+        plain_low=plain_low,
+        plain_high=plain_high,
+        surrogate=surrogate,
+    )
 
 
 def _width(low: float | None, high: float | None) -> float | None:
@@ -76,18 +96,19 @@ def mean(pairs: Pairs, confidence: float = 0.95) -> Estimate:
     def corrected(own: np.ndarray, beside: np.ndarray) -> np.ndarray:
         return _mean(own)[..., 0] + _slope(own, beside) * (far - _mean(beside)[..., 0])
 
-    low, high = _interval(corrected, pairs, error, confidence)
+    corrected_bounds = _interval(corrected, pairs, error, confidence)
     bounds = _interval(lambda own, _: _mean(own)[..., 0], pairs, 0.0, confidence)
-    return Estimate(float(corrected(reference, surrogate)), low, high, plain, *bounds, far)
+    value = float(corrected(reference, surrogate))
+    return _estimate(value, corrected_bounds, plain, bounds, far)
 
 
 def standard_deviation(pairs: Pairs, confidence: float = 0.95) -> Estimate:
-    """The standard deviation. One that is zero in the reference has no interval, and one that is
-    zero in the surrogate is not corrected."""
+    """The standard deviation. If it is zero in the reference, it has no interval. If it is zero in
+    the surrogate, it is not corrected."""
     reference, surrogate, population = pairs
     far, plain = (float(values.std(ddof=1)) for values in (population, reference))
     if not plain > 0.0:
-        return Estimate(0.0, None, None, 0.0, None, None, far)
+        return _estimate(0.0, (None, None), 0.0, (None, None), far)
 
     def logarithm(own: np.ndarray, _: np.ndarray) -> np.ndarray:
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -99,17 +120,17 @@ def standard_deviation(pairs: Pairs, confidence: float = 0.95) -> Estimate:
 
     plain_bounds = _exponentials(_interval(logarithm, pairs, 0.0, confidence))
     if not (far > 0.0 and surrogate.std() > 0.0):
-        return Estimate(plain, *plain_bounds, plain, *plain_bounds, far)
+        return _estimate(plain, plain_bounds, plain, plain_bounds, far)
     share = float(_slope(_squares(reference), _squares(surrogate)))
     squares = (population - population.mean()) ** 2
     error = share**2 * float(squares.var()) / (4.0 * far**4 * population.size)
     bounds = _exponentials(_interval(corrected, pairs, error, confidence))
     value = math.exp(corrected(reference, surrogate))
-    return Estimate(value, *bounds, plain, *plain_bounds, far)
+    return _estimate(value, bounds, plain, plain_bounds, far)
 
 
-def _exponentials(bounds: tuple[float, float]) -> tuple[float | None, float | None]:
-    """None in place of bounds that are not finite: one draw alone made the values differ."""
+def _exponentials(bounds: tuple[float, float]) -> _Bounds:
+    """None in place of infinite bounds, which occur if a single draw differs from all others."""
     low, high = (math.exp(each) if math.isfinite(each) else None for each in bounds)
     return low, high
 
@@ -126,7 +147,7 @@ def _slope(values: np.ndarray, control: np.ndarray) -> np.ndarray:
 
 
 def _squares(values: np.ndarray) -> np.ndarray:
-    """Squared deviations over their mean; zero where nothing deviates."""
+    """Squared deviations over their mean; zero if all values are equal."""
     squares = (values - _mean(values)) ** 2
     mean_square = np.broadcast_to(_mean(squares), squares.shape)
     return np.divide(squares, mean_square, out=np.zeros_like(squares), where=mean_square > 0.0)

@@ -1,9 +1,9 @@
 """The first cases of a population, run by run through the finite-element reference and the surrogate.
 
-A case has the same overrides of the scene in both models. The reference has the element size of the
-settings where many runs are needed (``Settings.coarse_size``), and half of it for some cases, so that
-the error of the mesh is beside that of the model. The surrogate has the rail compliance of the same
-mesh, the rail modes of the population, and the step of single runs.
+A case has the same overrides of the scene in both models. The reference has the element size of studies
+with many runs (``Settings.coarse_size``), and half of it for some cases, which gives the error of the
+mesh. The surrogate has the rail compliance of the same mesh, the rail modes of the population, and the
+step of single runs.
 """
 
 import statistics
@@ -29,19 +29,19 @@ from tipoff.workspace.announcing import announce
 from tipoff.workspace.run import Run
 from tipoff.workspace.study import Study
 
-_PIECE = 16  # runs held in memory at once
-_REPEATS = 3  # of the timed surrogate
+_PIECE = 16  # runs in memory at once
+_REPEATS = 3  # timed runs of the surrogate
 
 Rows = Sequence[Mapping[str, Any]]
 
 
 class Draws(NamedTuple):
-    """``reference`` and ``surrogate``, results of n cases on the same mesh; ``fine``, of the first m
-    on the finer mesh; ``contacts`` (n,), the number of contacts of a case in the surrogate:
-    stretches of time in which some pad bears a force, as ``growth.contacts`` counts them; ``lost``,
-    status and message of each run of the reference that did not settle; processor seconds of a run
-    of the reference, ``reference_cpu_s``, and on the finer mesh, ``fine_cpu_s``; numbers of
-    ``elements`` and ``fine_elements``."""
+    """``reference`` and ``surrogate``, results of n cases on the same mesh; ``fine``, of the first
+    m on the finer mesh; ``contacts`` (n,), the number of contacts of a case in the surrogate:
+    intervals in which some pad has a force, as in ``growth.contacts``; ``lost``, status and message
+    of each run of the reference that did not settle; processor seconds of a run of the reference,
+    ``reference_cpu_s``, and on the finer mesh, ``fine_cpu_s``; numbers of ``elements`` and
+    ``fine_elements``."""
 
     reference: Columns
     surrogate: Columns
@@ -56,7 +56,7 @@ class Draws(NamedTuple):
 
 def run(study: Study, model: Surrogate, rows: Rows, fine: int) -> Draws:
     """The cases with the overrides ``rows`` of the scene, the first ``fine`` of them on the finer
-    mesh too. Runs are kept in the store of the study, so that an interrupted call goes on."""
+    mesh too. The store of the study keeps the runs, so an interrupted call continues."""
     coarse, finer, surrogates = requests(study, model, rows, fine)
     announce(study, [*coarse, *finer])
     many = filled(study, "tails, reference", coarse)
@@ -65,21 +65,21 @@ def run(study: Study, model: Surrogate, rows: Rows, fine: int) -> Draws:
     return Draws(
         results(many),
         results(surrogate),
-        results(few),
-        np.array([each.contacts for each in surrogate]),
-        [*lost(coarse, many), *lost(finer, few)],
-        statistics.median(each.cpu_s for each in many),
-        statistics.median(each.cpu_s for each in few),
-        many[0].elements,
-        few[0].elements,
+        fine=results(few),
+        contacts=np.array([each.contacts for each in surrogate]),
+        lost=[*lost(coarse, many), *lost(finer, few)],
+        reference_cpu_s=statistics.median(each.cpu_s for each in many),
+        fine_cpu_s=statistics.median(each.cpu_s for each in few),
+        elements=many[0].elements,
+        fine_elements=few[0].elements,
     )
 
 
 def requests(
     study: Study, model: Surrogate, rows: Rows, fine: int
 ) -> tuple[list[Run], list[Run], list[Run]]:
-    """The runs of the reference, those on the finer mesh, and those of the surrogate ``model``, whose
-    modes the population has chosen (ValueError before)."""
+    """The runs of the reference, on the coarse and on the finer mesh, and the runs of the surrogate
+    ``model``. Raises ValueError before the population has chosen its modes."""
     coarse_size, fine_size = study.settings.coarse_size, study.settings.element_size
     coarse, finer = (
         [
@@ -100,7 +100,14 @@ def beside(
     if model.name == COMPLIANT and study.scene.contact is not None:
         under = study.rail_compliance(study.scene, element_size=study.settings.coarse_size)
     return [
-        Run("lowfi", f"{label}-{model.name}{tag}", model.at(dict(row)).scene, numerics, None, under)
+        Run(
+            "lowfi",
+            f"{label}-{model.name}{tag}",
+            scene=model.at(dict(row)).scene,
+            numerics=numerics,
+            calibration=None,
+            compliance=under,
+        )
         for label, row in zip(_labels(rows), rows)
     ]
 
@@ -115,7 +122,7 @@ def reference(study: Study, label: str, scene: Scene, element_size: float) -> Ru
 
 
 def seconds_per_case(model: Surrogate, rows: Rows) -> float:
-    """Processor seconds that a population of the ``model``, modes included, takes for a case of the
+    """Processor seconds of a population of the ``model``, with its modes, for a case of the
     ``rows``, without compilation."""
     numerics = model.numerics(TOLERANCE)
     family = Family(model.scene, None, numerics, model.compliance)
@@ -125,15 +132,23 @@ def seconds_per_case(model: Surrogate, rows: Rows) -> float:
         list(completed(family, [part], 1))
         return (time.process_time() - began) / len(part)
 
-    like = Run("lowfi", "timed", model.scene, numerics, None, model.compliance)
+    like = Run(
+        "lowfi",
+        "timed",
+        scene=model.scene,
+        numerics=numerics,
+        calibration=None,
+        compliance=model.compliance,
+    )
     with kernel_marks.first_use(like, many=True):
         once(rows[:1])
     return statistics.median(once(rows) for _ in range(_REPEATS))
 
 
 class Kept(NamedTuple):
-    """What remains of a run: its result, number of contacts, processor seconds, number of elements
-    (zero in the surrogate), and the number of rail modes that it chose (zero where it was given)."""
+    """The kept values of a run: its result, number of contacts, processor seconds, number of
+    elements (zero in the surrogate), and the number of rail modes that it chose (zero if it was
+    given)."""
 
     case: Case
     contacts: int
@@ -171,7 +186,7 @@ def lost(requested: Sequence[Run], runs: Sequence[Kept]) -> list[Lost]:
 
 
 def filled(study: Study, title: str, runs: Sequence[Run]) -> list[Kept]:
-    """What remains of each of ``runs``, few of which are in memory at once."""
+    """The kept values of each of ``runs``; few runs are in memory at once."""
     found: list[Kept] = []
     for begin in range(0, len(runs), _PIECE):
         piece = runs[begin : begin + _PIECE]

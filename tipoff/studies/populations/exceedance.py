@@ -99,7 +99,7 @@ def allowed(cases: int, probability: float, confidence: float) -> int | None:
     1 - ``probability``; None where the bound of zero cases is larger."""
     if at_most(0, cases, confidence) > 1.0 - probability:
         return None
-    # a share is below its upper bound, so the search may end at 1 - probability
+    # a share is below its upper bound, so the search can end at 1 - probability
     fine, many = 0, min(int((1.0 - probability) * cases) + 1, cases)
     while many - fine > 1:
         middle = (fine + many) // 2

@@ -1,9 +1,9 @@
 """The draws with other rail modes than those of the population.
 
-A population has one number of rail modes, which pilot cases choose (``lowfi.ensemble.pilot``). Here
-the surrogate runs each draw with the number that the draw chooses by itself, and all draws without
-modes, with those of the population, and with all that the rail compliance holds. Where a draw
-chooses some, a run with a little more clearance shows how sensitive the draw is.
+A population has one number of rail modes, which pilot cases choose (``lowfi.ensemble.pilot``). Here the
+surrogate runs each draw with the number that the draw itself chooses. It also runs all draws without
+modes, with the modes of the population, and with all modes of the rail compliance. If a draw chooses
+modes, a run with a little more clearance shows how sensitive the draw is.
 """
 
 import statistics
@@ -21,14 +21,14 @@ from tipoff.studies.populations.population import Surrogate
 from tipoff.workspace.run import Run, execute
 from tipoff.workspace.study import Study
 
-_REPEATS = 2  # of the timed runs
+_REPEATS = 2  # timed runs
 
 
 class Series(NamedTuple):
-    """``results`` of n draws with the same ``modes`` of each rail, or ``"auto"``: each draw chooses.
-    ``cpu_s``, mean processor seconds of a run, with the runs that a choice takes, where kernels are
-    loaded; ``case_s``, those of a case of a population with these modes, None where each draw
-    chooses."""
+    """``results`` of n draws with the same ``modes`` of each rail, or ``"auto"``: each draw
+    chooses. ``cpu_s``: mean processor seconds of a run with loaded kernels, including the runs that
+    choose the modes; ``case_s``: processor seconds of a case of a population with these modes, None
+    if each draw chooses."""
 
     modes: int | str
     results: Columns
@@ -51,9 +51,9 @@ class OwnModes(NamedTuple):
 
 
 def run(study: Study, model: Surrogate, rows: Rows) -> OwnModes | None:
-    """The draws with the overrides ``rows`` of the scene on the surrogate ``model``, whose modes the
-    population has chosen (ValueError before). None where its rails have no modes. Runs are kept in
-    the store of the study."""
+    """The draws with the overrides ``rows`` of the scene on the surrogate ``model``. None if its
+    rails have no modes. The store of the study keeps the runs. Raises ValueError before the
+    population has chosen its modes."""
     requested = draws.beside(study, model, rows, Numerics(modes=AUTO), "-own-modes")
     if not (held := _held(requested[0])):
         return None
@@ -80,7 +80,7 @@ def _held(request: Run) -> int:
 
 
 def _same(study: Study, model: Surrogate, rows: Rows, count: int) -> Series:
-    """The draws with ``count`` modes. Those with the modes of the population are in the store."""
+    """The draws with ``count`` modes. The store already has those with the modes of the population."""
     tag = "" if count == model.modes else f"-{count}-modes"
     requested = draws.beside(study, model, rows, Numerics(modes=count), tag)
     found = draws.filled(study, f"tails, {count} modes", requested)
@@ -93,17 +93,17 @@ def _same(study: Study, model: Surrogate, rows: Rows, count: int) -> Series:
 
 
 def _seconds(requested: list[Run]) -> float:
-    """Mean processor seconds of a run. Stored times are of other days, and those of first runs contain
-    the loading of kernels: so each run is made twice more, and the shorter time counts."""
+    """Mean processor seconds of a run. Stored times may be of other days, and first runs include
+    the loading of kernels. So each run is made twice more, and the shorter time counts."""
     times = ([execute(run).cost["cpu_s"] for run in requested] for _ in range(_REPEATS))
     return statistics.fmean(map(min, *times))
 
 
 def _wider(request: Run, count: int, change: float) -> Run:
-    """The run with every clearance larger by ``change`` (m), and with ``count`` modes: a number that
-    changes would show as a change by the clearance."""
+    """The run with every clearance larger by ``change`` (m), and with ``count`` modes: another
+    number would look like a change by the clearance."""
     scene = request.scene
-    assert scene.contact is not None  # rails that vibrate are touched
+    assert scene.contact is not None  # rails with modes have contact
     return replace(
         request,
         label=f"{request.label}-clearance-plus",

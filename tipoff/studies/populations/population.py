@@ -1,13 +1,13 @@
 """Many cases of a scene on the surrogate of the tolerance studies, kept in a store beside the
 results.
 
-The surrogate is compliant unless springs are named. Springs have the calibrated constants as
-overrides of the scene, so that a case may vary them like any other input. An incomplete store is
-completed, and a complete one is only read.
+The surrogate is compliant contact unless springs are named. Springs have the calibrated constants as
+overrides of the scene, so a case can vary them like any other input. An incomplete store is completed, a
+complete one is only read.
 
 All cases have one number of rail modes. The pilot cases of the first population of a study choose it
-(``lowfi.ensemble.pilot``), and its store keeps it. The study passes the model of that population on to
-all that it runs beside it, so that two results never differ by modes.
+(``lowfi.ensemble.pilot``), and its store keeps it. All other runs of the study use the model of this
+population, so two results never differ by modes.
 """
 
 from dataclasses import dataclass
@@ -73,7 +73,12 @@ class Surrogate(NamedTuple):
         """The cases of ``source`` (``lowfi.ensemble.rows``) on this model."""
         numerics = Numerics(relative_tolerance=tolerance, modes=self.modes)
         return Ensemble(
-            self.scene, source, None, numerics, self.compliance, modes_why=self.modes_why
+            self.scene,
+            source,
+            calibration=None,
+            numerics=numerics,
+            compliance=self.compliance,
+            modes_why=self.modes_why,
         )
 
     @property
@@ -84,7 +89,7 @@ class Surrogate(NamedTuple):
         return self.modes
 
     def numerics(self, tolerance: float) -> Numerics:
-        """Numerics of a run that stands beside a population; ValueError as for ``mode_count``."""
+        """Numerics of a run that is compared with a population; ValueError as for ``mode_count``."""
         return Numerics(relative_tolerance=tolerance, modes=self.mode_count)
 
 
@@ -109,7 +114,7 @@ def surrogate(study: Study, model: str | None = None, condition: str | None = No
     """The surrogate of a ``model`` (None: the default) on a ``condition`` of a study (None: the
     scene). Its rail compliance or its calibration is computed unless it is stored.
 
-    Raises StudyError where no model is named and the agreement table rejects the default.
+    Raises StudyError if no model is named and the agreement table rejects the default.
     """
     scene = study.condition(condition) if condition else study.scene
     if scene.contact is None:
@@ -122,8 +127,8 @@ def surrogate(study: Study, model: str | None = None, condition: str | None = No
 
 
 def require_settling(*models: Surrogate) -> None:
-    """Run each of ``models`` once, until one settles. Raises StudyError, with how they ended, where none
-    does: thousands of cases like them would end so too."""
+    """Run each of ``models`` once, until one settles. Raises StudyError with the ends of the runs
+    if none settles: thousands of similar cases would end in the same way."""
     ended = []
     for model in models:
         vibrates = model.compliance is not None and model.name == COMPLIANT
@@ -144,9 +149,9 @@ def require_settling(*models: Surrogate) -> None:
 
 @dataclass(frozen=True, kw_only=True)
 class Answering:
-    """The first fields of a result of many cases: the ``model``, the number of its ``modes`` and why
-    (empty where it can have none), and its ``agreement`` with the reference as text; ``failed``, a line
-    for what could not be drawn."""
+    """The first fields of a result of many cases: the ``model``, the number of its ``modes`` and
+    why (empty if it can have none), and its ``agreement`` with the reference as text; ``failed``: a
+    line for each figure that could not be drawn."""
 
     model: str
     modes: int | str
@@ -186,12 +191,19 @@ def model_line(found: Answering) -> str:
 def run(
     study: Study, name: str, model: Surrogate, source, tolerance: float = TOLERANCE
 ) -> Population:
-    """Results of every case of ``source`` (``lowfi.ensemble.rows``), in a store named after
-    ``name``. Where ``model`` has no number of modes yet, pilot cases choose it unless the store has
-    it. Raises StudyError when the store fails."""
+    """Results of every case of ``source`` (``lowfi.ensemble.rows``), in a store with ``name``. If
+    ``model`` has no number of modes yet, it is that of the store, or pilot cases choose it. Raises
+    StudyError when the store fails."""
     asked = model.ensemble(source, tolerance)
     path = study.path(f"{name}-{asked.key[:8]}")
-    like = Run("lowfi", name, model.scene, asked.numerics, None, model.compliance)
+    like = Run(
+        "lowfi",
+        name,
+        scene=model.scene,
+        numerics=asked.numerics,
+        calibration=None,
+        compliance=model.compliance,
+    )
     with kernel_marks.first_use(like, many=True):
         ensemble = pilot.settled(asked, path)
     try:

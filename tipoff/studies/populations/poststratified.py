@@ -6,15 +6,16 @@ weights of the strata, the n draws of both the probability of the event in each:
 
     p = W_1 P(a | b = 1) + W_0 P(a | b = 0),     W_1 = share of b = 1 among the N draws
 
-This is the control variate mean_n(a) + c (mean_N(b) - mean_n(b)) with the optimal coefficient
-c = P(a | b = 1) - P(a | b = 0). Each conditional probability has the interval of Wilson (J. Am. Stat.
-Assoc. 22 (1927) 209), and the sum that of Zou and Donner (Statistics in Medicine 27 (2008) 1693), the
-recovery of variances. So an interval has no width of zero where both models agree on all n draws,
-and it is that of Wilson where the surrogate explains nothing. A stratum without a draw keeps the
-surrogate's answer and the interval 0 to 1.
+This is the control variate mean_n(a) + c (mean_N(b) - mean_n(b)) with the optimal coefficient c = P(a | b
+= 1) - P(a | b = 0). Each conditional probability has the interval of Wilson (J. Am. Stat. Assoc. 22
+(1927) 209), and the sum that of Zou and Donner (Statistics in Medicine 27 (2008) 1693), the recovery of
+variances. So an interval has a width above zero even if both models agree on all n draws, and it is that
+of Wilson if the surrogate explains nothing. A stratum without a draw keeps the surrogate's answer and the
+interval 0 to 1.
 
-A quantile is where the distribution function that is corrected in this way reaches its share, and its
-bounds are where the bounds of that function do (Woodruff, J. Am. Stat. Assoc. 47 (1952) 635).
+The distribution function is corrected in the same way. A quantile is the value at which it reaches the
+share. The bounds of the quantile are the values at which the bounds of the function reach the share
+(Woodruff, J. Am. Stat. Assoc. 47 (1952) 635).
 """
 
 from typing import NamedTuple
@@ -46,11 +47,19 @@ def probability(
     found = _combined(inside, outside, np.array([share]), cases, confidence)
     alone = wilson(inside.events + outside.events, inside.draws + outside.draws, confidence)
     value, low, high, plain, plain_low, plain_high = (float(each[0]) for each in (*found, *alone))
-    return Estimate(value, low, high, plain, plain_low, plain_high, share)
+    return Estimate(
+        value,
+        low,
+        high=high,
+        plain=plain,
+        plain_low=plain_low,
+        plain_high=plain_high,
+        surrogate=share,
+    )
 
 
 def quantile(pairs: Pairs, share: float, confidence: float = 0.95) -> Estimate:
-    """The quantile ``share``; a bound is None where the draws are too few for it."""
+    """The quantile ``share``; a bound is None if the draws are too few."""
     reference, ordered = np.sort(pairs.reference), np.sort(pairs.population)
     steps = np.linspace(0.0, 1.0, _GRID)
     grid = np.unique(np.concatenate([reference, np.quantile(ordered, steps)]))
@@ -68,7 +77,13 @@ def quantile(pairs: Pairs, share: float, confidence: float = 0.95) -> Estimate:
     )
     assert value is not None  # the function is one at the largest value
     return Estimate(
-        value, low, high, plain, plain_low, plain_high, float(np.quantile(ordered, share))
+        value,
+        low,
+        high=high,
+        plain=plain,
+        plain_low=plain_low,
+        plain_high=plain_high,
+        surrogate=float(np.quantile(ordered, share)),
     )
 
 
@@ -107,7 +122,7 @@ def _combined(
 
 
 def _crossing(grid: np.ndarray, function: np.ndarray, share: float) -> float | None:
-    """The smallest value at which a ``function`` (m,) of the ``grid`` (m,) has reached ``share``;
-    None where it does not."""
+    """The smallest value of the ``grid`` (m,) at which a ``function`` (m,) reaches ``share``; None
+    if it does not."""
     reached = np.flatnonzero(function >= share)
     return float(grid[reached[0]]) if reached.size else None

@@ -24,7 +24,7 @@ from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.populations.reading import INTERFACE_FACTOR, Reading
 
 _INTERFACE = "contact.interface_stiffness"
-_SCENE_KEYS = ("initial.", _INTERFACE)  # of draws that are overrides as they are
+_SCENE_KEYS = ("initial.", _INTERFACE)  # names of draws that are overrides without a change
 
 
 class Error(NamedTuple):
@@ -109,7 +109,7 @@ def _laws(scene: Scene, reading: Reading) -> dict[str, Distribution]:
     if reading.angles == "shared":
         found["angle"] = whole_turn
     if reading.initial:
-        assert scene.contact is not None  # or ``source`` has refused the reading
+        assert scene.contact is not None  # otherwise ``source`` has refused the reading
         found |= {
             f"initial.position.{axis}": law("uniform", low=-gap, high=gap)
             for axis, gap in zip("yz", scene.contact.gaps()[1:])
@@ -139,14 +139,12 @@ def _overrides(reading: Reading, drawn: Numbers) -> Numbers:
 
 
 def pointing(value: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Size and angle of signed values (n,) at ``angle`` (n,), rad: an offset of a scene is not
-    negative."""
+    """Size and angle of signed values (n,) at ``angle`` (n,), rad: a scene has no negative offset."""
     return np.abs(value), np.where(value < 0.0, angle + math.pi, angle)
 
 
 def _polar(y: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    # One number at a time: NumPy's vector code may round the end of an array differently from its
-    # middle.
+    # One number at a time, because NumPy's vector code may round the end of an array differently.
     pairs = list(zip(y.tolist(), z.tolist()))
     return np.array([math.hypot(*pair) for pair in pairs]), np.array(
         [math.atan2(b, a) for a, b in pairs]

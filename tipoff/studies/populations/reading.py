@@ -5,15 +5,15 @@ from typing import Annotated, Literal
 
 import typer
 
-# Known to this factor either way: ground metal under light pressure, docs/interface_stiffness.md.
+# Uncertainty, up and down: ground metal under light pressure, docs/interface_stiffness.md.
 INTERFACE_FACTOR = 4.0
 
 
 @dataclass(frozen=True)
 class Reading:
-    """``values`` and ``angles`` as in ``random_factors``, the ``rule`` of truncation; whether
-    the ``initial`` position inside the clearance is random too, and the ``interface`` stiffness, its
-    logarithm uniform within a factor of ``INTERFACE_FACTOR``."""
+    """``values`` and ``angles`` as in ``random_factors``; the ``rule`` of truncation; whether the
+    ``initial`` position inside the clearance is random too; whether the ``interface`` stiffness is,
+    with a uniform logarithm within a factor of ``INTERFACE_FACTOR``."""
 
     values: Annotated[
         Literal["signed", "half", "components"],
@@ -65,5 +65,5 @@ class Reading:
 
     @property
     def needs_contact(self) -> bool:
-        """Whether a scene without contact has not what is drawn."""
+        """Whether the reading draws inputs that only a scene with contact has."""
         return self.initial or self.interface

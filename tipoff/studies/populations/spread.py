@@ -17,8 +17,8 @@ _BINS = 80
 
 @dataclass(frozen=True)
 class Quantile:
-    """The ``value`` that a ``share`` of the cases is below, and its two bounds; None where there is none:
-    a value that is an event of a case that never comes, a bound of few or dependent cases."""
+    """The ``value`` that a ``share`` of the cases is below, and its two bounds. A value is None if
+    the event of its case does not occur; a bound is None for few or dependent cases."""
 
     share: float
     value: float | None
@@ -29,7 +29,7 @@ class Quantile:
 def quantiles(
     values: np.ndarray, shares: Sequence[float] = SHARES, bounded: bool = True
 ) -> tuple[Quantile, ...]:
-    """The quantile of each of ``shares`` of values (n,), with its bounds where it is ``bounded``."""
+    """The quantile of values (n,) for each of ``shares``, with its bounds if ``bounded``."""
 
     def bounds(share: float) -> tuple[float | None, float | None]:
         return order_statistics.bounds(values, share, CONFIDENCE) if bounded else (None, None)
@@ -53,7 +53,7 @@ class Moments:
 
 
 def moments(values: np.ndarray) -> Moments:
-    """Those of the values (n,); the error of the standard deviation is from the fourth moment."""
+    """Moments of the values (n,); the error of the standard deviation is from the fourth moment."""
     count, mean, sd = values.size, float(values.mean()), float(values.std(ddof=1))
     fourth = float(((values - mean) ** 4).mean())
     error = math.sqrt(max(fourth - sd**4, 0.0) / count) / (2.0 * sd) if sd > 0.0 else 0.0
@@ -90,7 +90,7 @@ def histograms(first: np.ndarray, values: np.ndarray) -> Histogram:
 
 def convergence(values: np.ndarray, shares: Sequence[float]) -> list[tuple[int, Quantile]]:
     """Quantiles of the first 100, 200, 500, 1000 ... cases and of all (n,), each with the number of
-    cases. One that did not settle, NaN, counts as a case; a part without settled cases is left out."""
+    cases. A case that did not settle (NaN) counts; a part without settled cases is left out."""
     counts = [
         scale * 10**power
         for power in range(2, 10)

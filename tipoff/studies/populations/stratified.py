@@ -1,20 +1,20 @@
 """An upper bound of the probability of an event in the reference, from strata of the surrogate.
 
-The surrogate puts each of N independent cases into a stratum: it shows the event itself (above), it nearly
-does (near), or not (far). The reference runs some cases of the last two, of which some show the event. With
-the weight W of a stratum, and P the probability of the event in it,
+The surrogate puts each of N independent cases into a stratum: it shows the event (above), is near the
+event (near), or far from it (far). The reference runs some cases of the strata near and far. With the
+weight W of a stratum, and the probability P of the event in it,
 
     p = W_above P_above + W_near P_near + W_far P_far
       <= U_far + (U_near - U_far) V_near + (1 - U_near) V_above,     U_near >= U_far
 
-where the U bound P, V_above bounds W_above and V_near bounds W_above + W_near: upper bounds of Clopper and
-Pearson, whose error probabilities add up to 1 - confidence. So the bound holds for any population. P_above
-is at most one and takes no run.
+U is an upper bound of P, V_above of W_above, and V_near of W_above + W_near. All are bounds of Clopper
+and Pearson, and their error probabilities add up to 1 - confidence. So the bound holds for any
+population. P_above is at most one and needs no run.
 
-n runs without the event leave a bound of -ln(a) / n at an error probability a: 1.5 % after 200 plain runs,
-and no stratum of most cases has a smaller one. What strata remove is chance in the events
-themselves: how many cases are above or near is known from many cases of the surrogate, and a difference
-of both models near the limit counts with the small weight of the cases there.
+n runs without the event give a bound of -ln(a) / n at an error probability a: 1.5 % after 200 plain runs.
+A stratum with most of the cases has no smaller bound. Strata remove the chance in the number of events:
+many cases of the surrogate give the weights of above and near, and a difference of both models near the
+limit counts only with the small weight of the cases there.
 """
 
 import math
@@ -47,9 +47,9 @@ class Bound:
 
 
 def upper_bound(cases: tuple[int, int, int], near: Runs, far: Runs, confidence: float) -> Bound:
-    """The bound from the numbers of ``cases`` of the surrogate that are above, near and far, and the
-    ``near`` and ``far`` runs of the reference. The estimate takes a case above as one, and so does
-    not fall below the surrogate's own."""
+    """The bound from the numbers of ``cases`` of the surrogate that are above, near and far, and
+    the ``near`` and ``far`` runs of the reference. The estimate takes P_above = 1, so it is at
+    least the estimate of the surrogate."""
     total, error = sum(cases), 1.0 - confidence
     far_share = _at_most(far, _OF_FAR * error)
     near_share = max(_at_most(near, _OF_NEAR * error), far_share)
@@ -70,8 +70,8 @@ def _at_most(found: Runs, error: float) -> float:
 
 
 def allocated(cases: tuple[int, int, int], runs: int, confidence: float) -> tuple[int, int]:
-    """Runs near and far, at most the ``cases`` there: the smallest bound W ln(1/a) / n of both if
-    no run shows the event, so n is proportional to sqrt(W ln(1/a))."""
+    """Runs near and far, at most the ``cases`` there. They give the smallest sum of bounds W
+    ln(1/a) / n if no run shows the event, so n is proportional to sqrt(W ln(1/a))."""
     _, near, far = cases
     wish_near, wish_far = (
         math.sqrt(-count * math.log(part * (1.0 - confidence)))

@@ -1,5 +1,4 @@
-"""The printed tables of the work this project starts from, as data, and the arithmetic that can be
-checked on them.
+"""The printed tables of the paper that this project starts from, as data, and checks of their arithmetic.
 
 Z. Jin, Z. Ma, H. Yang, S. Wu, Z. Tan, X. Tao: Rapid Modeling Method and Analysis of Factors
 Affecting the Dynamics of On-Orbit Launch Systems for Micro-Spacecraft. Aerospace 13 (2026) 541, doi
@@ -50,8 +49,8 @@ class Sensitivity(NamedTuple):
         return self.changed - self.baseline[:, None, :]
 
     def largest_relative(self) -> np.ndarray:
-        """Largest change per axis (3,) as a fraction of the rate, on conditions 2 and 4: that of z
-        on 3 is near zero."""
+        """Largest change per axis (3,) as a fraction of the rate, on conditions 2 and 4. On
+        condition 3 the rate about z is near zero."""
         share = np.abs(self.deviations() / self.baseline[:, None, :])
         return share[[0, 2]].max(axis=(0, 1))
 
@@ -100,7 +99,7 @@ def headline() -> dict[str, str]:
 
 
 def slips() -> list[str]:
-    """Where a printed number is not what the printed tables give, in words."""
+    """Printed numbers that do not follow from the printed tables, in words."""
     largest, claimed = 100.0 * sensitivity().largest_relative()[2], CLAIMED_DEVIATION[2]
     stiffness, damping, depth = (
         100.0 * (value - BASELINE[name]) / BASELINE[name] for name, value in CHANGES[1::2]

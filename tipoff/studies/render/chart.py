@@ -16,7 +16,7 @@ from tipoff.files import replacing
 from tipoff.studies.render.palette import GREY, INK, NAVY, RULE
 
 _OFFSETS = {"top center": (4, 6), "top right": (7, 3), "bottom right": (7, -9)}  # points
-_MARKERS = 20000  # of a line in an SVG, beyond which it contains a picture of them
+_MARKERS = 20000  # largest number in a line of an SVG; longer lines become a bitmap
 
 
 @dataclass(frozen=True)
@@ -63,8 +63,8 @@ class Panel:
 
 @dataclass(frozen=True)
 class Chart:
-    """Panels in rows of ``columns``; ``name`` is the file name and the id, ``height`` (px) that of
-    one row."""
+    """Panels in rows of ``columns``; ``name`` is the file name and the id; ``height`` (px) of one
+    row."""
 
     name: str
     panels: list[Panel] = field(default_factory=list)
@@ -79,14 +79,14 @@ class Chart:
 
 @dataclass(frozen=True)
 class Picture:
-    """A ``figure`` of matplotlib that is no chart of lines: a map, bars."""
+    """A ``figure`` of matplotlib that is not a chart of lines: a map, bars."""
 
     name: str
     figure: Any
 
 
 def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
-    """Draw a chart as a PNG and an SVG file called after it; their paths."""
+    """Draw a chart as a PNG and an SVG file with its name; returns their paths."""
     if isinstance(chart, Picture):
         return save(chart.figure, folder / chart.name)
     from matplotlib.figure import Figure
@@ -128,9 +128,9 @@ def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
                 )
         _dress(axes, panel)
         if chart.columns > 1 and axes.get_xscale() == "linear":
-            axes.locator_params(axis="x", nbins=5)  # long numbers would touch
+            axes.locator_params(axis="x", nbins=5)  # otherwise long numbers would touch
     if len(handles) > 1:
-        widest = 5.2 * max(map(len, handles)) + 45.0  # points, with the line before the words
+        widest = 5.2 * max(map(len, handles)) + 45.0  # points, with the line sample before the text
         figure.legend(
             handles.values(),
             handles.keys(),
@@ -143,8 +143,8 @@ def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
 
 
 def save(figure, stem: Path) -> list[Path]:
-    """Write a figure of matplotlib to ``stem``.png and ``stem``.svg, each in one piece and the same
-    bytes every time; their paths."""
+    """Write a figure of matplotlib to ``stem``.png and ``stem``.svg, atomically and with the same
+    bytes every time; returns their paths."""
     import matplotlib
 
     paths = [stem.with_name(f"{stem.name}.{kind}") for kind in ("png", "svg")]
@@ -200,15 +200,14 @@ def _dress(axes, panel: Panel) -> None:
 
 
 def across(panel: Panel) -> tuple[float, float]:
-    """Limits of a logarithmic x, whole decades that hold every point, or the ticks, with some
-    air."""
+    """Limits of a logarithmic x: whole decades around all points, or the ticks, with a margin."""
     if panel.ticks:
         return min(panel.ticks) / 1.5, max(panel.ticks) * 1.5
     return _decades([value for line in panel.lines for value in line.x])
 
 
 def upwards(panel: Panel) -> tuple[float, float]:
-    """The same of y, with the band."""
+    """The same for y, with the band."""
     return _decades(
         [value for line in panel.lines for value in line.y]
         + ([panel.band[0]] if panel.band else [])
@@ -216,6 +215,6 @@ def upwards(panel: Panel) -> tuple[float, float]:
 
 
 def _decades(values: list[float]) -> tuple[float, float]:
-    shown = [value for value in values if value > 0.0]  # a logarithm has no place for zero
+    shown = [value for value in values if value > 0.0]  # zero has no logarithm
     low, high = min(shown, default=1.0) / 1.5, max(shown, default=1.0) * 1.5
     return 10.0 ** math.floor(math.log10(low)), 10.0 ** math.ceil(math.log10(high))

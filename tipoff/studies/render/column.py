@@ -1,4 +1,4 @@
-"""A column of a table: its head, and how the numbers below it are shown."""
+"""A column of a table: its head, and the format of the numbers below it."""
 
 import re
 import typing
@@ -12,11 +12,11 @@ from tipoff.studies.render.uncertain import uncertain as with_uncertainty
 
 @dataclass(frozen=True)
 class Column:
-    """Head of a column, and how the numbers below it are shown.
+    """Head of a column, and the format of the numbers below it.
 
-    ``unit`` stands in brackets behind the ``title``. A number is multiplied by ``scale`` and shown
-    in ``form``, a format of Python, without digits below the smallest step of its unit; a whole
-    number is shown as it is, and ``nothing`` where there is none.
+    ``unit`` is in brackets after the ``title``. A number is multiplied by ``scale`` and shown in
+    ``form``, a format of Python, without digits below the smallest step of its unit. An integer has
+    all digits, and ``nothing`` stands for None.
     """
 
     title: str
@@ -32,8 +32,8 @@ class Column:
 
     @property
     def least(self) -> float:
-        """The smallest step that is shown; 0 where the unit has none. The unit may stand in brackets
-        at the end of the title."""
+        """The smallest step that is shown; 0 if the unit has none. The unit may be in brackets at
+        the end of the title."""
         return STEPS.get(self.unit or _unit(self.title), 0.0)
 
     def text(self, value: float) -> str:
@@ -41,12 +41,17 @@ class Column:
         return number(self.scale * value, self.form, self.least)
 
     def of_row(self, row: Sequence[Any]) -> "Column":
-        """The column as it is in a row: without a unit it has that of the row, which stands in
-        brackets at the end of its first cell."""
+        """The column in a row. Without a unit of its own it has the unit of the row, in brackets at
+        the end of the first cell."""
         if self.least or self.unit or not row or not (unit := _unit(row[0])):
             return self
         return _InRow(
-            self.title, self.unit, self.form, self.scale, self.nothing, STEPS.get(unit, 0.0)
+            self.title,
+            self.unit,
+            form=self.form,
+            scale=self.scale,
+            nothing=self.nothing,
+            own=STEPS.get(unit, 0.0),
         )
 
     def measured(self, cell: Measured) -> str:

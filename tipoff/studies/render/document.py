@@ -1,5 +1,5 @@
-"""What a study reports: paragraphs, lists, tables and figures in order, rendered as HTML, as
-Markdown and for the terminal."""
+"""The report of a study: paragraphs, lists, tables and figures in order, rendered as HTML, as Markdown
+and for the terminal."""
 
 import base64
 from collections.abc import Callable, Iterable, Sequence
@@ -39,7 +39,7 @@ class Notice:
 
 @dataclass(frozen=True)
 class Missing:
-    """A paragraph that says how to make a result that is missing."""
+    """A paragraph that states how to make a missing result."""
 
     text: str
 
@@ -70,7 +70,7 @@ class Bullets:
 
 @dataclass(frozen=True)
 class Figure:
-    """A chart, and what it shows."""
+    """A chart and its caption."""
 
     chart: Chart | Picture
     caption: str
@@ -78,8 +78,8 @@ class Figure:
 
 @dataclass(frozen=True)
 class Image:
-    """An image file that the page contains; ``text`` stands in its place where it is not shown.
-    Where a page is dark, ``dark`` is shown."""
+    """An image file that the page contains; ``text`` replaces it if it cannot be shown. A dark page
+    shows ``dark``."""
 
     path: Path
     text: str
@@ -88,7 +88,7 @@ class Image:
 
 @dataclass(frozen=True)
 class Fold:
-    """Detail that the page opens on demand; the terminal leaves it out."""
+    """Details that the page opens on demand; the terminal leaves them out."""
 
     title: str
     parts: "Sequence[Part]"
@@ -154,7 +154,7 @@ def _html(part: Part, figure: Callable[[Chart | Picture, str], str]) -> Markup:
 
 
 def _image(image: Image) -> Markup:
-    """The image with its content; with its ``dark`` one for screens with a dark scheme."""
+    """The image with its content, and its ``dark`` one for screens with a dark scheme."""
     shown = Markup('<img alt="{}" src="{}">').format(image.text, _data(image.path))
     if image.dark is not None:
         shown = Markup(
@@ -164,7 +164,7 @@ def _image(image: Image) -> Markup:
 
 
 def _data(path: Path) -> str:
-    """The address that is the content of an image file."""
+    """The data address with the content of an image file."""
     return f"data:{_MIME[path.suffix]};base64,{base64.b64encode(path.read_bytes()).decode()}"
 
 
@@ -175,7 +175,8 @@ def with_figures(
     found: _Result, figures: Callable[[_Result], Iterable[Figure]], folder: Path
 ) -> tuple[_Result, list[Path]]:
     """The result ``found`` of a stage, and the PNG and SVG files of its ``figures`` in ``folder``.
-    Where they cannot be drawn, ``failed`` of the result says why: hours of runs are not lost."""
+    If they cannot be drawn, ``failed`` of the result has the reason, and the results of long runs
+    are kept."""
 
     def drawn() -> list[Path]:
         return [path for item in figures(found) for path in charts.to_files(item.chart, folder)]

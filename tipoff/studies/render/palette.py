@@ -1,8 +1,8 @@
-"""The colours of figures, light and dark: the page sets them by CSS, so that charts follow the colour
-scheme of the reader and are light on paper.
+"""The colours of figures, light and dark. The page sets them by CSS, so charts have the colour scheme of
+the reader, and are light on paper.
 
-A figure is drawn with its light colours. On the page each is a custom property of CSS, with another
-value in a dark scheme. Colours differ in lightness, so that figures read in grey.
+A figure is drawn with light colours. On the page each colour is a custom property of CSS, with another
+value in a dark scheme. Colours differ in lightness, so figures are clear in grey.
 """
 
 import re
@@ -45,9 +45,9 @@ def css() -> str:
 
 
 def themed(svg: str, name: str, words: str) -> str:
-    """An SVG of matplotlib as part of the page: its colours are the properties, text without a colour
-    has that of the page, its id is ``name``, and all ids in it begin so. ``words`` say what it shows
-    to a reader who does not see it."""
+    """An SVG of matplotlib as part of the page. Its colours are the properties, and text without a
+    colour has the colour of the page. Its id is ``name``, and all ids in it begin with ``name``.
+    ``words`` describe it for a reader who does not see it."""
     body = svg[svg.index("<svg") :]
     body = re.sub(r"<metadata>.*?</metadata>", "", body, flags=re.DOTALL)
     body = re.sub(

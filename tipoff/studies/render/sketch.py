@@ -71,7 +71,7 @@ class View:
 
     def dimension(self, begin: tuple[float, float], end: tuple[float, float], words: str) -> None:
         """A line with arrows at both ends between two places (px), and words beside its middle:
-        above one that runs across, to the right of one that runs up."""
+        above a horizontal line, to the right of a vertical one."""
         (a, b), (c, d) = begin, end
         self.shapes.append(
             f'<line class="size" x1="{a:.1f}" y1="{b:.1f}" x2="{c:.1f}" y2="{d:.1f}" '
@@ -96,7 +96,7 @@ class View:
 
 
 def svg(title: str, shapes: Iterable[str]) -> str:
-    """The SVG of ``shapes``, the title for those who do not see it."""
+    """The SVG of ``shapes``; ``title`` is for a reader who does not see it."""
     return (
         f'<svg viewBox="0 0 {WIDTH:g} {HEIGHT:g}" role="img" aria-label="{title}">'
         '<defs><marker id="tip" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" '

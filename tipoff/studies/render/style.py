@@ -1,4 +1,4 @@
-"""The look of the page: one column, system fonts, no colour that carries meaning alone."""
+"""The style of the page: one column, system fonts; colour is never the only sign of a meaning."""
 
 from tipoff.studies.render import palette
 

@@ -1,4 +1,4 @@
-"""A table, described once and rendered as HTML, as Markdown and for the terminal."""
+"""A table that is rendered as HTML, as Markdown and for the terminal."""
 
 import io
 import re
@@ -19,14 +19,15 @@ from tipoff.studies.render.uncertain import LEAST, NOTHING, STEPS, Measured, num
 
 @dataclass(frozen=True)
 class Noted:
-    """A cell with a remark behind it, which the page shows in small type."""
+    """A cell with a remark after it, which the page shows in small type."""
 
     value: Any
     remark: str
 
 
 Cells = Sequence[tuple[Column | str, str | Callable[[Any], Any]]]
-"""Columns with their cells: the key of the cell in a record, or what makes the cell of the record."""
+"""Columns with their cells: the key of the cell in a record, or a function that makes the cell "
+"from the record."""
 
 
 @dataclass(frozen=True)
@@ -65,10 +66,10 @@ class Table:
         kind: type | None = None,
         **others: Any,
     ) -> "Table":
-        """The table of ``records`` of the dataclass ``kind``, by default that of the first. A column is
-        the name of a field, which declares it (``column.of_record``), or a head with what makes the
-        cell of the record; without ``columns`` all fields that declare one. ``others`` are further
-        fields."""
+        """The table of ``records`` of the dataclass ``kind``, by default that of the first record.
+        A column is the name of a field that declares it (``column.of_record``), or a head with a
+        function that makes the cell from the record. Without ``columns``: all fields that declare
+        one. ``others`` are further fields."""
         declared = of_record(kind or type(records[0]))
         chosen = columns or tuple(declared)
         heads = [declared[item] if isinstance(item, str) else item[0] for item in chosen]
@@ -87,15 +88,15 @@ def percent(value: float | None, form: str = ".3g") -> str:
 
 
 def span(low: float | None, high: float | None, form: str = ".3g") -> str:
-    """From ``low`` to ``high``; a dash where both are missing."""
+    """From ``low`` to ``high``; a dash if both are missing."""
     return (
         NOTHING if low is None and high is None else f"{number(low, form)} to {number(high, form)}"
     )
 
 
 def estimate(row: Any, form: str = ".3g") -> Any:
-    """The ``value`` of a record, with its bounds ``low`` and ``high`` as a remark where it has one; all
-    rounded to half the width between both bounds."""
+    """The ``value`` of a record, with its bounds ``low`` and ``high`` as a remark if it has any;
+    all rounded to half the width between the bounds."""
     return bounded(row.value, row.low, row.high, form)
 
 
@@ -138,7 +139,7 @@ def markdown(table: Table) -> str:
 
 
 def terminal(table: Table) -> str:
-    """The table with its title and notes as lines of text, as wide as the terminal."""
+    """The table with its title and notes as lines of text, as wide as the terminal at most."""
     from rich import box
     from rich.console import Console
     from rich.table import Table as Grid
@@ -161,7 +162,7 @@ def terminal(table: Table) -> str:
 
 
 def _widths(columns: Sequence[Sequence[str]], limit: int) -> list[int]:
-    """Widths of columns of text, together at most ``limit`` where that cuts no word."""
+    """Widths of columns of text, in all at most ``limit`` if this cuts no word."""
     widths = [max(map(len, cells)) for cells in columns]
     words = [max(map(len, " ".join(cells).split()), default=0) for cells in columns]
     while sum(widths) > limit and widths != words:
@@ -183,7 +184,7 @@ def html(table: Table) -> Markup:
 
 
 def inline(text: str) -> Markup:
-    """Text as HTML: escaped, with powers of ten written out and code marked."""
+    """Text as HTML: escaped, with powers of ten as exponents and code marked."""
     if hasattr(text, "__html__"):
         return Markup(text)
     shown = _POWER.sub(lambda found: f"·10<sup>{int(found[1])}</sup>", str(escape(text)))
@@ -236,7 +237,7 @@ def _line(cells: Iterable[str]) -> str:
 
 
 def _cell(value: Any, column: Column) -> tuple[bool, Markup]:
-    """Whether a cell stands on the right, and what it is on the page."""
+    """Whether a cell is aligned right, and its HTML."""
     if hasattr(value, "__html__"):
         return _numeric(Markup(value).striptags()), Markup(value)
     if isinstance(value, Noted):
@@ -249,5 +250,5 @@ def _cell(value: Any, column: Column) -> tuple[bool, Markup]:
 
 
 def _numeric(text: str) -> bool:
-    """Whether a cell is a number with little text, such as a unit, behind it."""
+    """Whether a cell is a number with a short text, such as a unit, after it."""
     return bool(_NUMBER.match(text)) and len(re.findall("[A-Za-z]", text)) <= 6

@@ -1,16 +1,16 @@
-"""Numbers as text, rounded to their uncertainty: no digit stands that the uncertainty makes
-meaningless, and none below the smallest step that has a meaning in its unit."""
+"""Numbers as text, rounded to their uncertainty. Digits below the uncertainty, or below the smallest
+useful step of the unit, are left out."""
 
 import math
 from dataclasses import dataclass
 from typing import Any
 
 NOTHING = "–"
-SHARE = 0.02  # of a range, the digit to which its ends are rounded
-LEAST = 1e-3  # the smallest step that is shown where no unit says otherwise
+SHARE = 0.02  # share of a range to which its ends are rounded
+LEAST = 1e-3  # the smallest step that is shown of other units
 _POWERS = 1e7  # larger numbers are written with a power of ten
-# The smallest step (in the unit) that has a meaning in this field. A gyroscope of a payload reads
-# 0.001 deg/s at best; no gate of an agreement is below 0.1 %.
+# The smallest useful step (in the unit). The best gyroscope of a payload resolves 0.001 deg/s; all
+# gates of agreement are at least 0.1 %.
 STEPS = {
     "deg/s": LEAST,
     "deg/s per µm": LEAST,
@@ -26,12 +26,12 @@ STEPS = {
 @dataclass(frozen=True)
 class Measured:
     """A ``value``, or a sequence of values, with the ``uncertainty`` to which it is rounded (same
-    unit, None if not known). Where ``apart``, the uncertainty stands in a cell of its own."""
+    unit, None if not known). With ``apart``, the uncertainty has a cell of its own."""
 
     value: Any
     uncertainty: float | None
     apart: bool = False
-    unit: str = ""  # where its column has none
+    unit: str = ""  # if its column has none
 
 
 def number(value: float | None, form: str = ".3g", least: float = 0.0) -> str:
@@ -54,9 +54,9 @@ def number(value: float | None, form: str = ".3g", least: float = 0.0) -> str:
 
 
 def uncertain(value: float | None, uncertainty: float | None = None, least: float = LEAST) -> str:
-    """``value ± uncertainty``, both rounded to the first digit of the uncertainty, to the second
-    where the first is a one. Digits below ``least`` are left out; without an uncertainty they are
-    the only ones. None is a dash."""
+    """``value ± uncertainty``, both rounded to the first digit of the uncertainty, or to the second
+    if the first is a one. Digits below ``least`` are left out. Without an uncertainty the value is
+    rounded to ``least``. None is a dash."""
     if value is None:
         return NOTHING
     shown = rounded(value, uncertainty, least)
@@ -71,7 +71,7 @@ def rounded(
     value: float | None, uncertainty: float | None, least: float = LEAST, sign: str = ""
 ) -> str:
     """``value`` alone, with the digits that ``uncertain`` gives it; "<0.001" for a smaller one.
-    ``sign`` "+" signs a positive one too. None is a dash."""
+    ``sign`` "+" also marks a positive one. None is a dash."""
     if value is None:
         return NOTHING
     if uncertainty is None or uncertainty < 0.5 * least:
@@ -82,7 +82,7 @@ def rounded(
 
 
 def range_of(low: float, high: float) -> str:
-    """``low to high``, both rounded to a part of the width of the range; one number where they agree."""
+    """``low to high``, both rounded to a part of the width of the range; one number if they agree."""
     ends = [rounded(end, SHARE * (high - low)) for end in (low, high)]
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
@@ -100,7 +100,7 @@ def _shown_decimals(shown: str) -> int:
 
 
 def _fixed(value: float, decimals: int, sign: str = "") -> str:
-    shown = round(value, decimals) + 0.0  # no minus zero
+    shown = round(value, decimals) + 0.0  # avoids minus zero
     if abs(shown) >= _POWERS:
         digits = math.floor(math.log10(abs(shown))) + decimals + 1
         return f"{shown:{sign}.{min(max(digits, 1), 6)}g}"

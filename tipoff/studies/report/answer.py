@@ -55,8 +55,8 @@ _HAND_NOTE = (
 
 
 def draw(page: "Page") -> list[Part]:
-    """The answer of the scene itself, key figures over all conditions, what the answer rests on, the
-    launcher with its axes, and one row a condition."""
+    """The answer of the scene itself, key figures over all conditions, the basis of the answer, the
+    launcher with its axes, and a row for each condition."""
     nominal = page.documents.get("nominal")
     first = nominal_page.draw(nominal_stage.STAGE.read(nominal)) if nominal else []
     rows = page.rows()["highfi"]
@@ -80,7 +80,7 @@ def draw(page: "Page") -> list[Part]:
 
 
 def above(settled: Settled, limits: Sequence[Limit]) -> list[str]:
-    """The axes of the limits that the rates of a condition are above."""
+    """The axes on which the rates of a condition are above a limit."""
     rates = settled.rate_deg_s
     return [
         limit.axis
@@ -91,8 +91,8 @@ def above(settled: Settled, limits: Sequence[Limit]) -> list[str]:
 
 
 def _spreads(agreement: Agreement | None) -> dict[str, Distribution]:
-    """The distributions by condition; a range needs two neighbours that settled. A value with an
-    uncertainty larger than itself says nothing there."""
+    """The distributions by condition; a range needs two neighbours that settled. It replaces a
+    value whose uncertainty is larger than the value."""
     found = agreement.distributions if agreement else ()
     return {item.condition: item for item in found if len(item.settled_deg_s) > 1}
 
@@ -242,12 +242,12 @@ def _rates(settled: Settled, uncertainty: float | None, spread: Distribution | N
 
 
 def _by_hand(rows: Sequence[Row]) -> bool:
-    """Whether one of the rates can be computed by hand."""
+    """Whether any of the rates can be computed by hand."""
     return any(row.by_hand for row in rows)
 
 
 def _hand(row: Row) -> str | None:
-    """Roll and transverse rate from moment impulse over inertia, where nothing or one pad touches."""
+    """Roll and transverse rate from moment impulse over inertia, if at most one pad touches."""
     if row.by_hand is None:
         return None
     rate = row.by_hand.rate_deg_s
@@ -279,7 +279,8 @@ def stated(page: "Page", name: str) -> str:
 
 
 def _short(key: str) -> str:
-    """The last word of a key; an eccentricity with its owner, since thrust and mass have one."""
+    """The last word of a key; for an eccentricity also its owner, since both thrust and mass have
+    one."""
     owner, _, last = key.rpartition(".")
     words = f"{owner.removesuffix('_offset')} {last}" if last == "eccentricity" else last
     return words.replace("_", " ")

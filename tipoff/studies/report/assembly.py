@@ -61,7 +61,7 @@ def render(page: Page) -> str:
         _drawn(page, Section("colophon", "Origin", _colophon, "Origin of the results")),
     ]
     answered = Section("answer", "Answer", answer.draw, "Velocity and rates after exit")
-    # Drawn after the others, whose failures it names.
+    # Drawn last, because it names the failures of the other sections.
     first = _drawn(page, answered, [Notice(text) for text in _warnings(page)])
     groups = [
         Group("", [first]),
@@ -73,15 +73,15 @@ def render(page: Page) -> str:
 
 
 def _warnings(page: Page) -> list[str]:
-    """What the reader must know before the answer."""
+    """Warnings that the reader must know before the answer."""
     found = [f"Implausible: {warning}" for warning in plausibility.of_all_conditions(page.scene)]
     found += [f"{stage}: {reason}" for stage, reason in page.problems.items()]
     return found + [f"Section {name} failed: {reason}" for name, reason in page.failures.items()]
 
 
 def _drawn(page: Page, item: Section, before: Sequence[Part] = ()) -> Drawn:
-    """A section, with the parts ``before`` it below its heading; empty where there is nothing to show,
-    its reason where it fails."""
+    """A section, with the parts ``before`` it below its heading; empty if there is nothing to show,
+    the reason if it fails."""
 
     def made() -> str:
         parts = item.draw(page)

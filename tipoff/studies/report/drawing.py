@@ -18,7 +18,7 @@ _EDGE = 46.0  # px
 
 def launcher(scene: Scene) -> Markup:
     """Both views with their labels as HTML."""
-    # all of it is made here; what comes from the scene are numbers
+    # safe: all markup is made here, and the scene gives numbers only
     return Markup(
         '<div class="drawing">'
         f"{svg('Launcher from the side', _side(scene))}{svg('From the open end', _end(scene))}"
@@ -27,7 +27,7 @@ def launcher(scene: Scene) -> Markup:
 
 
 def halves(scene: Scene) -> tuple[float, float, float]:
-    """Half sizes (m) of the payload; those of the box of its pads where it has no size."""
+    """Half sizes (m) of the payload; of the box around its pads if it has no size."""
     pads = [max(abs(pad.position[axis]) for pad in scene.pads) for axis in range(3)]
     size = scene.payload.size
     return (
@@ -181,7 +181,7 @@ def _pad(
 
 
 def thickness(scene: Scene) -> float:
-    """Thickness (m) of a wall as drawn: its own, else a twentieth of the payload's width."""
+    """Thickness (m) of a drawn wall: its own, or a twentieth of the payload's width."""
     own = getattr(scene.rail, "thickness", None)
     return own or 0.05 * halves(scene)[1]
 
@@ -191,7 +191,7 @@ def _leg(scene: Scene) -> float:
 
 
 def _mounts(scene: Scene) -> list[tuple[float, float]]:
-    """Stretches (m) along X at which a built-in rail is held."""
+    """Intervals (m) along X at which a built-in rail is held."""
     if not isinstance(scene.rail, SectionTable):
         return []
     start = scene.rail.start

@@ -20,8 +20,7 @@ _APART = {"name", "description", "conditions", "provenance", "agreement", "pads"
 
 
 def values(table_: BaseModel, prefix: str = "") -> Iterator[tuple[str, Any, str, bool]]:
-    """(dotted key, value, SI unit, whether the file states it) of every field that has a value and
-    is written with the scene."""
+    """(dotted key, value, SI unit, whether the file states it) of every field with a value."""
     for name, field in type(table_).model_fields.items():
         value, key = getattr(table_, name), f"{prefix}{name}"
         if value is None or field.exclude or (not prefix and name in _APART):

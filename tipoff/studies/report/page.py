@@ -1,4 +1,4 @@
-"""What a section of the page is drawn from: the results, and the scene they belong to."""
+"""Data for the sections of the page: the results and their scene."""
 
 import shlex
 from collections.abc import Callable, Sequence
@@ -22,10 +22,10 @@ from tipoff.workspace.stage import Stage
 
 
 class Page:
-    """One report: its results, and what its sections are drawn with.
+    """One report: its results, and the tools for its sections.
 
     ``documents`` are result files by stage (None where missing). ``problems`` are the reasons why a
-    stage has no result. ``limits`` are those of the rates that the user gave.
+    stage has no result. ``limits`` are the limits of rates from the user.
     """
 
     def __init__(
@@ -45,7 +45,8 @@ class Page:
         self.pictures: list[Path] = []
 
     def shown(self, result: str, body: Callable[[dict], Sequence[Part]], target: str) -> list[Part]:
-        """What ``body`` makes of a ``result``; without the result, how to make it."""
+        """The parts that ``body`` makes of a ``result``; without the result, the command that makes
+        it."""
         found = self.documents.get(result)
         return list(body(found)) if found else [self.missing(result, target)]
 
@@ -56,7 +57,7 @@ class Page:
 
     @property
     def equal_accuracy(self) -> EqualAccuracy | None:
-        """The speed-up at equal accuracy, where the convergence study measured it."""
+        """The speed-up at equal accuracy; None if the convergence study did not measure it."""
         found = self.read(convergence.STAGE)
         return found.equal_accuracy if found else None
 

@@ -42,7 +42,7 @@ _CHECKS = tuple(
     )
 )
 _WELL = "no NaN leaves the program; every run ends well"
-_ENDED_WELL = ("exited", "jammed")  # a run that reached its time limit gave no answer
+_ENDED_WELL = ("exited", "jammed")  # a run that reached its time limit has no answer
 _NOT_MEASURED = (
     "orders of accuracy are as stated",
     "mirror image, contact order and turned frames give the same answer",
@@ -92,7 +92,7 @@ def _worst(rows: Sequence[Row], name: str) -> tuple[float | None, str]:
     measured = [
         (row.checks[name], row.condition) for row in rows if row.checks.get(name) is not None
     ]
-    # a number that is none is the worst
+    # NaN is the worst value
     return max(measured, key=lambda pair: (pair[0] != pair[0], pair)) if measured else (None, "")
 
 
@@ -183,7 +183,7 @@ def _calibration(calibration: Fit | None, agreement: Agreement | None) -> Promis
     held_out = agreement.held_out if agreement else ()
     judged = [row for row in held_out if row.judgement != verdicts.CANNOT]
     informed = bool(calibration.information)
-    # without a judged condition no agreement is given, and without one compared it is not known
+    # no judged condition: no agreement is given; no compared condition: not known
     reported = False if not informed else bool(judged) if held_out else None
     return Promise(
         "calibration reports its information matrix and weak directions; agreement is given on "

@@ -27,10 +27,10 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
     of text, ``verdict`` is one sentence on the agreement of both models, ``failed`` contains the
     failures of all stages and sections.
 
-    A result or a section that fails leaves the others on the page, and so does a result that the scene
-    does not allow. Raises InputError where the scene does not allow one before any is made.
-    With ``every``, each study without a present result is made too; the page gives the reason where
-    the scene does not allow one. The page says whether the rates are within ``limits``.
+    The page has all other results and sections if one fails, or if the scene does not allow one.
+    Raises InputError, before a result is made, if the scene does not allow a required one. With
+    ``every``, each study without a present result is made too; the page gives the reason if the
+    scene does not allow a study. The page states whether the rates are within ``limits``.
     """
     documents: dict[str, dict | None] = {}
     problems: dict[str, str] = {}
@@ -92,7 +92,7 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
 
 
 def _answer(nominal: dict | None) -> list[str]:
-    """The answer of the scene itself with its range; empty where it could not be made."""
+    """The answer of the scene itself with its range; empty if it could not be made."""
     if not nominal:
         return []
     from tipoff.studies.nominal import page, stage
@@ -101,7 +101,7 @@ def _answer(nominal: dict | None) -> list[str]:
 
 
 def _verdict(agreement: dict | None) -> str:
-    """How many conditions agree, and the speed-up; empty where both models were not compared."""
+    """How many conditions agree, and the speed-up; empty if the models were not compared."""
     if not agreement:
         return ""
     from tipoff.studies.agreement import page
@@ -114,8 +114,8 @@ def _verdict(agreement: dict | None) -> str:
 
 
 def _made(study: Study, listed: list[Result]) -> tuple[dict[str, str], dict[str, str]]:
-    """Make every missing optional result. Returns reasons by name: where the scene or its settings
-    do not allow one, and where one failed."""
+    """Make every missing optional result. Returns reasons by name for results that the scene or its
+    settings do not allow, and for those that failed."""
     refused: dict[str, str] = {}
     failed: dict[str, str] = {}
     for name, make, stored in listed:
@@ -134,7 +134,7 @@ def _made(study: Study, listed: list[Result]) -> tuple[dict[str, str], dict[str,
 def _missing(
     study: Study, make: Callable[[Study], dict], stored: Callable[[Study], Any]
 ) -> dict | None:
-    """The new result of a stage; None where there is a stored one."""
+    """The new result of a stage; None if there is a stored one."""
     return make(study) if stored(study) is None else None
 
 
@@ -162,7 +162,7 @@ def _trajectories(study: Study, documents: dict):
 
 
 def _stored(study: Study, requested: dict[str, Run]) -> dict:
-    """The stored runs: the page makes none."""
+    """The stored runs; the page makes no new ones."""
     return {
         name: found
         for name, run in requested.items()

@@ -29,7 +29,7 @@ class Runs(NamedTuple):
 
 
 # In the order of the legend. Width, dash, opacity: the reference is a broad pale line under the
-# thin ones of the surrogate.
+# thin lines of the surrogate.
 _STYLES = {
     "highfi": ("finite elements", 5.0, "-", 0.35),
     "compliant": ("compliant", 1.5, "-", 1.0),
@@ -43,13 +43,16 @@ def thrust_curve(scene: Scene) -> Chart:
     """Thrust until the expected end of the run."""
     time = np.linspace(0.0, scene.expected_end, 600)
     force = thrust_law.sample(scene.thrust.record(), time)
-    line = Line(1e3 * time, 1e-3 * force, "thrust", NAVY, 2.0, legend=False)
-    return Chart("thrust", [Panel("", _MILLISECONDS, "thrust (kN)", [line])], height=260)
+    line = Line(1e3 * time, 1e-3 * force, name="thrust", colour=NAVY, width=2.0, legend=False)
+    return Chart(
+        "thrust", [Panel("", _MILLISECONDS, y_label="thrust (kN)", lines=[line])], height=260
+    )
 
 
 def figure6(runs: Runs, conditions: list[str]) -> Chart:
-    """Figure 6 of the paper: v_x of each condition and its three rates, all models, with what the
-    surrogates differ from the reference beside them. The colour is the axis, the line the model."""
+    """Figure 6 of the paper: v_x and the three rates of each condition, all models; beside them the
+    differences of the surrogates from the reference. The colour shows the axis, the line the model.
+    """
     first = conditions[0]
     speed = [
         _line(found.time, found.velocity[:, 0], NAVY, kind, legend=False)
@@ -58,8 +61,8 @@ def figure6(runs: Runs, conditions: list[str]) -> Chart:
     speed += _legend(runs, first)
     slower = _differences(runs, first, lambda run: run.velocity[:, :1], {"x": NAVY}, 1e3)
     panels = [
-        Panel(f"(a) {first}: velocity along X", _MILLISECONDS, "v_x (m/s)", speed),
-        Panel("difference of v_x", _MILLISECONDS, "difference (mm/s)", slower),
+        Panel(f"(a) {first}: velocity along X", _MILLISECONDS, y_label="v_x (m/s)", lines=speed),
+        Panel("difference of v_x", _MILLISECONDS, y_label="difference (mm/s)", lines=slower),
     ]
     for letter, name in zip("bcdefghijk", conditions):
         lines = [
@@ -69,8 +72,13 @@ def figure6(runs: Runs, conditions: list[str]) -> Chart:
         ]
         other = _differences(runs, name, lambda run: np.degrees(run.rate), AXIS_COLOURS)
         panels += [
-            Panel(f"({letter}) {name}: rates", _MILLISECONDS, "rate (deg/s)", lines),
-            Panel(f"{name}: difference of the rates", _MILLISECONDS, "difference (deg/s)", other),
+            Panel(f"({letter}) {name}: rates", _MILLISECONDS, y_label="rate (deg/s)", lines=lines),
+            Panel(
+                f"{name}: difference of the rates",
+                _MILLISECONDS,
+                y_label="difference (deg/s)",
+                lines=other,
+            ),
         ]
     return Chart("figure6", panels, columns=2, height=290)
 
@@ -79,7 +87,7 @@ def _legend(runs: Runs, name: str) -> list[Line]:
     """Lines without points for the legend: one colour for each axis, one line for each model."""
     nowhere = [math.nan]
     axes = [
-        Line(nowhere, nowhere, f"along or about {axis.upper()}", colour, 3.0)
+        Line(nowhere, nowhere, name=f"along or about {axis.upper()}", colour=colour, width=3.0)
         for axis, colour in AXIS_COLOURS.items()
     ]
     models = [_line(np.array(nowhere), nowhere, INK, kind) for kind in _of(runs, name)]
@@ -98,8 +106,8 @@ def _differences(
     colours: Mapping[str, str],
     factor: float = 1.0,
 ) -> list[Line]:
-    """Surrogates minus reference, as long as both have samples; uncalibrated springs, which differ
-    most, are left out."""
+    """Surrogates minus reference, up to the end of the shorter run; uncalibrated springs, which
+    differ most, are left out."""
     found = _of(runs, name)
     if (reference := found.get("highfi")) is None:
         return []
@@ -117,7 +125,16 @@ def _differences(
 
 def _line(time, values, colour: str, kind: str, legend: bool = True) -> Line:
     model, width, dash, opacity = _STYLES[kind]
-    return Line(1e3 * time, values, model, colour, width, dash, opacity, legend=legend)
+    return Line(
+        1e3 * time,
+        values,
+        name=model,
+        colour=colour,
+        width=width,
+        dash=dash,
+        opacity=opacity,
+        legend=legend,
+    )
 
 
 def contact_forces(scene: Scene, runs: Runs, condition: str) -> Chart:
@@ -142,11 +159,9 @@ def contact_forces(scene: Scene, runs: Runs, condition: str) -> Chart:
         Panel(
             _pad_title(scene, pad),
             _MILLISECONDS,
-            "force (N)",
-            [
-                Line(
-                    1e3 * time, force[:, pad], _STYLES[kind][0], _COLOURS[kind], *_STYLES[kind][1:]
-                )
+            y_label="force (N)",
+            lines=[
+                _line(time, force[:, pad], _COLOURS[kind], kind)
                 for kind, (time, force) in forces.items()
             ],
         )
@@ -188,8 +203,8 @@ def energy_ledgers(runs: Runs, condition: str) -> Chart:
                 Line(
                     1e3 * run.time,
                     factor * entries[:, i],
-                    name.replace("_", " "),
-                    _LEDGER_COLOURS[name],
+                    name=name.replace("_", " "),
+                    colour=_LEDGER_COLOURS[name],
                 )
                 for i, name in enumerate(ledger.ENTRIES)
                 if np.abs(entries[:, i]).max() > 1e-6 * largest
@@ -198,15 +213,18 @@ def energy_ledgers(runs: Runs, condition: str) -> Chart:
                 Line(
                     1e3 * run.time,
                     factor * ledger.residual(entries),
-                    "residual",
-                    "#000000",
-                    1.6,
-                    "--",
+                    name="residual",
+                    colour="#000000",
+                    width=1.6,
+                    dash="--",
                 )
             )
             panels.append(
                 Panel(
-                    f"{title} ledger, {_STYLES[kind][0]}", _MILLISECONDS, f"energy ({unit})", lines
+                    f"{title} ledger, {_STYLES[kind][0]}",
+                    _MILLISECONDS,
+                    y_label=f"energy ({unit})",
+                    lines=lines,
                 )
             )
     return Chart("energy-ledgers", panels, columns=2, height=290)

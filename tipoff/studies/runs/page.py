@@ -86,7 +86,7 @@ def _energy(page: "Page", name: str) -> Part:
 
 
 def _of_one_condition(page: "Page", draw: Callable[["Page", str], Part]) -> list[Part]:
-    """What ``draw`` makes of the first refined, fitted or other condition with a run."""
+    """The parts that ``draw`` makes of the first refined, fitted or other condition with a run."""
     preferred = [*page.scene.agreement.refined, *page.scene.agreement.fitted, *page.runs.highfi]
     name = next((name for name in preferred if name in page.runs.highfi), None)
     return [page.missing("highfi", "highfi") if name is None else draw(page, name)]

@@ -22,28 +22,28 @@ class Settled:
 
 @dataclass(frozen=True)
 class ByHand:
-    """Rates of a rigid payload from moment impulses, and which impulses count."""
+    """Rates of a rigid payload from moment impulses, and the impulses that are included."""
 
     rate_deg_s: Vector
     words: str
 
 
 def roll(rate: Sequence[float]) -> float:
-    """Of a ``rate`` (3,) the part about the payload's axis, with its sign."""
+    """The part of a ``rate`` (3,) about the payload's axis, with its sign."""
     return rate[0]
 
 
 def transverse(rate: Sequence[float]) -> float:
-    """Of a ``rate`` (3,) the part across the payload's axis."""
+    """The part of a ``rate`` (3,) across the payload's axis."""
     return math.hypot(*rate[1:])
 
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """One run. ``settled`` is None where it did not settle; ``advice`` is empty unless it ended too early;
-    ``by_hand`` None where more than one pad touches; ``rail_compliance``, what that of the run states about
-    its elements; ``trajectory``, the file in the folder of the scene. The fields from ``elements`` on are
-    those of the reference; stresses are None for a run without them."""
+    """One run. ``settled`` is None if it did not settle; ``advice`` is empty unless the run ended
+    too early; ``by_hand`` is None if more than one pad touches; ``rail_compliance``: its statement
+    about its elements; ``trajectory``: the file in the folder of the scene. Only the reference has
+    the fields from ``elements`` on; stresses are None for a run without stresses."""
 
     condition: Annotated[str, Column("condition")]
     model: Annotated[str, Column("model")]
@@ -64,7 +64,7 @@ class Row:
     cost: dict[str, Any]
     numerics: dict[str, Any]
     advice: str = ""
-    thrust: dict[str, Any] | None = None  # what acted
+    thrust: dict[str, Any] | None = None  # acting forces
     rail_compliance: dict[str, Any] | None = None
     by_hand: ByHand | None = None
     elements: int | None = None

@@ -58,8 +58,8 @@ STAGES = {fidelity: _stage(fidelity) for fidelity in ("highfi", "lowfi")}
 
 
 def fill(study: Study, name: str, requested: dict[str, Run]) -> dict[str, Trajectory]:
-    """The runs of ``requested`` by their names, those that are not stored made under the ``name`` of
-    a stage. What must be compiled first is said once."""
+    """The runs of ``requested`` by their names. Runs that are not stored are made under the
+    ``name`` of a stage. A compilation is announced once."""
     asked = list(requested.values())
     missing = [run for run in asked if not study.store.path(run).is_file()]
     for run in missing:
@@ -71,7 +71,7 @@ def fill(study: Study, name: str, requested: dict[str, Run]) -> dict[str, Trajec
 
 
 def failure(name: str, request: Run, found: Trajectory) -> list[str]:
-    """One line on the run of a condition that is no success; empty for one that exited or jammed."""
+    """One line on an unsuccessful run of a condition; empty for a run that exited or jammed."""
     if found.status not in (*FAILED, "time_limit"):
         return []
     words = "; ".join(filter(None, [found.message, unfinished.advice(request.scene, found)]))
@@ -79,7 +79,7 @@ def failure(name: str, request: Run, found: Trajectory) -> list[str]:
 
 
 def row(name: str, run: Trajectory, path: str, request: Run | None = None) -> Row:
-    """The row of a condition; advice, thrust and rates by hand are those of the ``request``."""
+    """The row of a condition; advice, thrust and rates by hand belong to the ``request``."""
     cost, checks = run.cost, run.checks
     beside = {} if request is None else _beside(request, run)
     if run.model == FINITE_ELEMENTS:
@@ -113,7 +113,7 @@ def row(name: str, run: Trajectory, path: str, request: Run | None = None) -> Ro
 def _settled(found: Outcome) -> Settled | None:
     if found.rate is None:
         return None
-    # a settled run has all of them
+    # a settled run has all these values
     assert found.velocity and found.direction_error is not None
     assert found.lateral_velocity is not None
     return Settled(

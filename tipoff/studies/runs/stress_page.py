@@ -25,8 +25,8 @@ def draw(page: "Page") -> list[Part]:
 
 
 def shown(rows: Sequence[Row], views: "Sequence[View]", folder: Path, command: str) -> list[Part]:
-    """The section: ``rows`` of highfi.json, ``views`` results of the stage ``view``, whose files
-    are below ``folder``, ``command`` the one that makes them."""
+    """The section: ``rows`` of highfi.json; ``views``, results of the stage ``view``, with files
+    below ``folder``; ``command``, which makes these results."""
     measured = [row for row in rows if row.peak_stress_pa is not None]
     if not measured:
         return ["No run of the reference contains peak stresses."]
@@ -71,7 +71,7 @@ def _rotation(row: Row) -> float | None:
 
 
 def _pictures(view: "View", folder: Path) -> Iterator[Part]:
-    """The pictures of one condition, or how to make them."""
+    """The pictures of one condition, or the command that makes them."""
     name = view.condition
     yield (
         f"Condition {name}: {counted(len(view.frames), 'frame')} for ParaView in `{view.collection}`. "

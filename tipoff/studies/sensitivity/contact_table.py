@@ -1,9 +1,9 @@
 """Contact constants changed one at a time, in the form of Table 2 of the paper
 (``studies.published``).
 
-A deviation is absolute, w - w0, and relative, (w - w0)/w0. The relative one is left out where w0 is
-below a twentieth of the total rate of its condition. A change of the clearance by one micrometre is
-added for comparison: it is the floor of every agreement.
+Deviations are absolute, w - w0, and relative, (w - w0)/w0. The relative deviation is left out if w0 is
+below a twentieth of the total rate of its condition. For comparison, the clearance changes by one
+micrometre, which is the floor of every agreement.
 """
 
 from collections.abc import Mapping, Sequence
@@ -71,7 +71,7 @@ Axes = tuple[float | None, float | None, float | None]  # about x, y, z
 
 @dataclass(frozen=True, kw_only=True)
 class Deviations:
-    """Deviations by axis; None where a case did not settle. A relative one is None where the rate of the
+    """Deviations by axis; None if a case did not settle. A relative one is None if the rate of the
     baseline is below a twentieth of its total rate."""
 
     absolute_deg_s: Axes | None = None
@@ -80,8 +80,9 @@ class Deviations:
 
 @dataclass(frozen=True, kw_only=True)
 class Row(Deviations):
-    """A ``Change`` of a ``condition``: the changed value, rates, and ``values`` of further quantities by
-    name, with the change of each. None where a case did not settle, and where the paper has none."""
+    """A ``Change`` of a ``condition``: the changed value, rates, and ``values`` of further
+    quantities by name, with the change of each. None if a case did not settle or the paper has no
+    value."""
 
     condition: str
     symbol: str
@@ -94,7 +95,7 @@ class Row(Deviations):
 
 
 def deviations(baseline: Sequence[float], rates: Sequence[float]) -> Deviations:
-    """Those of ``rates`` (3,) from the ``baseline`` (3,), deg/s."""
+    """Deviations of ``rates`` (3,) from the ``baseline`` (3,), deg/s."""
     nominal = np.asarray(baseline, dtype=float)
     moved = np.asarray(rates, dtype=float) - nominal
     meaningful = (abs(nominal) >= _NEARLY_ZERO * np.linalg.norm(nominal)) & (nominal != 0.0)

@@ -6,10 +6,10 @@ With V the variance of y over all inputs, x_i one of them and x_~i all others::
     first order  S_i = V[E(y | x_i)] / V           share of the variance that x_i causes alone
     total        T_i = E[V(y | x_~i)] / V           its share with all interactions
 
-n base points take n (d + 2) cases: A, A with column i from B for each of the d inputs, and B. S_i
-is estimated by mean(B (A_B,i - A))/V and T_i by mean((A - A_B,i)^2)/(2 V) (Saltelli et al., Comput.
-Phys. Commun. 181, 2010); their intervals come from a bootstrap over base points. The points are a
-scrambled Sobol' sequence, whose first half is such a sequence too.
+n base points take n (d + 2) cases: A, A with column i from B for each of the d inputs, and B. S_i is
+estimated by mean(B (A_B,i - A))/V and T_i by mean((A - A_B,i)^2)/(2 V) (Saltelli et al., Comput. Phys.
+Commun. 181, 2010); their intervals come from a bootstrap over base points. The points are a scrambled
+Sobol' sequence; its first half is a Sobol' sequence too.
 """
 
 from dataclasses import dataclass
@@ -54,8 +54,8 @@ def whole_blocks(settled: np.ndarray, inputs: int) -> np.ndarray:
 def indices(
     values: np.ndarray, inputs: int, seed: int, resamples: int = RESAMPLES
 ) -> Indices | None:
-    """Indices of a result ``values`` (n (inputs + 2),) at the points of ``points``; None where it
-    does not vary.
+    """Indices of a result ``values`` (n (inputs + 2),) at the points of ``points``; None if it does
+    not vary.
 
     A base point with NaN in one of its cases is left out: the estimators need all its cases.
     """

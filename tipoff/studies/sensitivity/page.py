@@ -156,7 +156,7 @@ def table_of_largest(item: Constants, paper: Paper) -> Table:
     heads = ("contact constants", "clearance", "the paper")
     columns = [(Column(head), Column("%", "", ".2g", 100.0)) for head in heads]
     title = f"Largest change of each quantity, {item.title}"
-    return Table(["quantity", *chain.from_iterable(columns)], rows, (_LARGEST,), title)
+    return Table(["quantity", *chain.from_iterable(columns)], rows, notes=(_LARGEST,), title=title)
 
 
 def _change(value: float | None) -> float | str | None:
@@ -165,7 +165,7 @@ def _change(value: float | None) -> float | str | None:
 
 
 def _used(sobol: Sobol) -> str:
-    """How many cases the indices are from."""
+    """The number of cases of the indices."""
     return (
         f"{sobol.cases['asked']:,} cases of {counted(len(sobol.inputs), 'input')}, "
         f"{sobol.not_settled:,} did not settle; {sobol.used:,} of {sobol.base_points:,} "
@@ -220,7 +220,7 @@ def _beside_paper(item: Constants, paper: Paper) -> Table:
     ]
     without = f" No rate changes with {' or '.join(idle)}." if idle else ""
     title = f"{item.title.capitalize()}: {item.law}, SI: {constants}.{without}"
-    return Table(_HEADS, rows, (_TABLE,), title, dense=True)
+    return Table(_HEADS, rows, notes=(_TABLE,), title=title, dense=True)
 
 
 def _changed(row: Row) -> str:
@@ -321,9 +321,15 @@ def _convergence(sobol: Sobol, rates: _Indexed) -> Chart:
         names = [name_of(each.key) for each in sobol.inputs]
         lines = [
             Line(
-                points, [total[n] for _, total in steps], names[n], colour, 1.6, dash, marker=marker
+                points,
+                [total[n] for _, total in steps],
+                name=names[n],
+                colour=colour,
+                width=1.6,
+                dash=dash,
+                marker=marker,
             )
             for n, (colour, dash, marker) in zip(order, _LINES)
         ]
-        panels.append(Panel(item.label, "base points", "total Sobol' index", lines))
+        panels.append(Panel(item.label, "base points", y_label="total Sobol' index", lines=lines))
     return Chart("sensitivity-convergence", panels, columns=2, height=280)

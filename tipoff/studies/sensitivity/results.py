@@ -34,13 +34,14 @@ class Constants(Paper):
 
 @dataclass(frozen=True, kw_only=True)
 class Varied:
-    """An input of the indices: 95 % of its numbers are within ``low`` to ``high``; ``factor``: whether the
-    distribution is that of a factor of the ``nominal`` value, None where the scene has none."""
+    """An input of the indices: 95 % of its values are between ``low`` and ``high``; ``factor``:
+    whether the distribution is of a factor of the ``nominal`` value, None if the scene has no such
+    value."""
 
     key: Annotated[str, Column("input")]
     unit: str
     nominal: Annotated[float | None, Column("nominal", form=".4g")]
-    low: float
+    low: float  # SI, or a factor
     high: float
     factor: bool
     distribution: str
@@ -49,19 +50,19 @@ class Varied:
 
 @dataclass(frozen=True, kw_only=True)
 class Step:
-    """Indices of the first ``base_points``; None where the quantity does not vary there."""
+    """Indices of the first ``base_points``; None if the quantity does not vary there."""
 
     base_points: int
-    first: tuple[float, ...] | None = None
+    first: tuple[float, ...] | None = None  # first-order indices, by input
     first_half_width: tuple[float, ...] | None = None
-    total: tuple[float, ...] | None = None
+    total: tuple[float, ...] | None = None  # total indices, by input
     total_half_width: tuple[float, ...] | None = None
     points: int | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Shares(Named):
-    """Spread of a quantity and its indices, None where it does not vary."""
+    """Spread of a quantity and its indices, None if it does not vary."""
 
     mean: float
     sd: float
@@ -86,8 +87,8 @@ class Sobol:
 
 @dataclass(frozen=True, kw_only=True)
 class Sensitivity(Answering):
-    """``tables`` of the constants of the surrogate, and of those of the scene where a calibration changed
-    them; none without contact."""
+    """``tables`` of the constants of the surrogate, and of the constants of the scene if a
+    calibration changed them; none without contact."""
 
     asked: Options
     citation: str

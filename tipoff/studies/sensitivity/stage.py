@@ -31,14 +31,14 @@ from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study, StudyError
 
 NAME = "sensitivity"
-_FINE = Numerics().relative_tolerance  # the tables show changes of a thousandth
+_FINE = Numerics().relative_tolerance  # the tables show relative changes of a thousandth
 
 
 def run(study: Study, options: Options = Options()) -> dict:
     """The content of ``Sensitivity``.
 
-    Raises SceneError for bad input, before anything runs, and StudyError where the scene itself or
-    too few cases settle.
+    Raises SceneError for bad input, before anything runs, and StudyError if the scene itself does
+    not settle or too few cases do.
     """
     vary = options.vary or tolerances.DEFAULT
     together(
@@ -70,11 +70,11 @@ def _varied(study: Study, options: Options) -> str:
     return tolerances.digest(options.vary or tolerances.DEFAULT)
 
 
-STAGE = Stage(NAME, __name__, Options, _varied, result=Sensitivity)
+STAGE = Stage(NAME, __name__, options=Options, inputs=_varied, result=Sensitivity)
 
 
 def tables(study: Study, model: Surrogate) -> list[Constants]:
-    """One table for the constants of the surrogate, and one for those of the scene where a
+    """A table for the constants of the surrogate, and one for the constants of the scene if a
     calibration changed them."""
     if model.scene.contact is None:
         return []
@@ -87,7 +87,7 @@ def tables(study: Study, model: Surrogate) -> list[Constants]:
 
 def _table(study: Study, model: Surrogate) -> Constants:
     contact = model.scene.contact
-    assert contact is not None  # or there was no table
+    assert contact is not None  # otherwise there is no table
     changed = contact_table.changes(model.scene, model.name)
     names: list[str | None] = [*contact_table.conditions(study.scene)] or [None]
     rows = [
@@ -116,7 +116,7 @@ def _table(study: Study, model: Surrogate) -> Constants:
 
 
 def _sobol(study: Study, model: Surrogate, options: Options) -> tuple[Sobol, Surrogate]:
-    """The indices, and the surrogate with the modes of their cases."""
+    """The indices, and the surrogate with the rail modes of the cases."""
     spread = tolerances.load(options.vary or tolerances.DEFAULT, model.scene, model.name)
     inputs = len(spread.inputs)
     points = indices.points(options.points, inputs, options.seed)

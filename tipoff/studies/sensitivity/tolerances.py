@@ -1,9 +1,9 @@
 """The uncertain inputs of a launcher from a file (by default ``tolerances.toml`` here), and the
 cases at points of the unit cube.
 
-Each key has a distribution of ``scenes.distributions``: under ``[vary]`` that of the number itself,
-under ``[factor]`` that of a factor of its nominal value. An offset, which a scene has as size r and
-angle a, may be given by its components::
+Each key has a distribution of ``scenes.distributions``: under ``[vary]`` of the number itself, under
+``[factor]`` of a factor of its nominal value. A scene states an offset by size r and angle a; the file
+may state its components::
 
     misalignment  y = r cos a, z = r sin a
     eccentricity  y = r sin a, z = r cos a    (angles as in ``scenes.effects``)
@@ -44,7 +44,7 @@ _SPRINGS = (
 
 
 class Input(NamedTuple):
-    """An uncertain input: its dotted key, whether the distribution is that of a factor, the nominal
+    """An uncertain input: its dotted key, whether the distribution is of a factor, the nominal
     value in the scene or None, unit (SI)."""
 
     key: str
@@ -60,7 +60,7 @@ class Input(NamedTuple):
 
 
 class Tolerances(NamedTuple):
-    """Inputs that apply to a ``scene``, and by key the reason why another one does not."""
+    """Inputs that apply to a ``scene``, and the reason by key why an input does not."""
 
     scene: Scene
     inputs: list[Input]
@@ -73,13 +73,13 @@ class Tolerances(NamedTuple):
         }
         if "contact.exponent" in found:
             contact = self.scene.contact
-            assert contact is not None  # without it the exponent is left out
+            assert contact is not None  # an input of the exponent needs it
             stiffness = found.get("contact.stiffness", contact.stiffness)
             found["contact.stiffness"] = stiffness * REFERENCE_PENETRATION ** (
                 contact.exponent - found["contact.exponent"]
             )
         if "friction.dynamic" in found and "friction.static" not in found:
-            assert self.scene.friction is not None  # without it the coefficient is left out
+            assert self.scene.friction is not None  # an input of the coefficient needs it
             if self.scene.friction.dynamic > 0.0:
                 found |= friction(self.scene, found["friction.dynamic"])
         polar = _polar(found)
@@ -141,7 +141,7 @@ def load(path: str | Path, scene: Scene, model: str = COMPLIANT) -> Tolerances:
 
 
 def _tables(raw: dict, source: str, faults: list[Fault]) -> list[tuple[str, str, dict[str, Any]]]:
-    """(kind, key, table) of every distribution, whether the file quotes the key or nests it."""
+    """(kind, key, table) of every distribution; the file may quote a key or nest it."""
     found: dict[tuple[str, str], dict[str, Any]] = {}
     for kind in _KINDS:
         if not isinstance(raw.get(kind, {}), dict):
@@ -178,7 +178,7 @@ def _input(
 
 
 def _idle(item: Input, scene: Scene, model: str) -> str | None:
-    """The reason why an input does not vary in this scene; None where it does."""
+    """The reason why an input does not vary in this scene; None if it varies."""
     table = item.key.partition(".")[0]
     if table in ("contact", "friction") and getattr(scene, table) is None:
         return f"the scene has no {table}"
@@ -198,7 +198,7 @@ def _idle(item: Input, scene: Scene, model: str) -> str | None:
 
 
 def _number(scene: Scene, key: str) -> float | None:
-    """The number under a dotted key, or None where the scene holds none."""
+    """The number under a dotted key, or None if the scene has none."""
 
     def inside(table: Any, part: str) -> Any:
         if isinstance(table, tuple):

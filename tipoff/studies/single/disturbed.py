@@ -1,7 +1,7 @@
-"""How far 1 um of clearance and a tighter tolerance move the settled rates of one surrogate run.
+"""Change of the settled rates of one surrogate run by 1 um of clearance and by a tighter tolerance.
 
-In a chaotic ejection both grow from contact to contact (``studies.agreement.growth``). No single
-run predicts the rates of such a case better than this.
+In a chaotic ejection both changes grow from contact to contact (``studies.agreement.growth``). They limit
+the accuracy of any single run of such a case.
 """
 
 from dataclasses import dataclass, replace
@@ -14,8 +14,9 @@ from tipoff.workspace.run import Run, execute, with_modes_of
 
 @dataclass(frozen=True, kw_only=True)
 class Disturbed:
-    """Largest changes of a settled rate, None where the disturbed run does not settle: at a tighter
-    ``tolerance``, and by ``clearance_change_m`` of every clearance either way, None without contact."""
+    """Largest changes of a settled rate, None if the disturbed run does not settle: at a tighter
+    ``tolerance``, and by plus or minus ``clearance_change_m`` of every clearance, None without
+    contact."""
 
     tolerance: float
     by_tolerance_deg_s: float | None
@@ -25,7 +26,7 @@ class Disturbed:
 
 def of(run: Run, nominal: Trajectory, clearance_change: float) -> Disturbed:
     """Changes by ``clearance_change`` (m), and by a tighter tolerance."""
-    if run.calibration is not None:  # its clearance is the one that is changed
+    if run.calibration is not None:  # its clearance is changed
         run = replace(run, scene=run.calibration.apply(run.scene), calibration=None)
     run = with_modes_of(nominal, run)
     tight = twins.tight(run.numerics)
@@ -48,7 +49,7 @@ def _change(nominal: Trajectory, changed: Run) -> float | None:
 
 
 def lines(found: Disturbed, limit: float) -> list[str]:
-    """The result as text, with a warning where a change is above ``limit`` (deg/s) or the run does not
+    """The result as text, with a warning if a change is above ``limit`` (deg/s) or the run does not
     settle."""
     changes = {f"tolerance {found.tolerance:g}": found.by_tolerance_deg_s}
     if found.clearance_change_m is not None:

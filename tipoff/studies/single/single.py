@@ -29,8 +29,8 @@ from tipoff.workspace.study import Study, StudyError
 
 @dataclass(frozen=True, kw_only=True)
 class Single(Row):
-    """A run alone: its ``agreement`` as text, how it changes when ``disturbed`` (None for the reference
-    and where it does not settle), and ``failed``, a line where it is no success."""
+    """A single run: its ``agreement`` as text, its changes when ``disturbed`` (None for the
+    reference and if it does not settle), and ``failed``, a line if it is no success."""
 
     implausible: tuple[str, ...]
     agreement: str
@@ -43,8 +43,8 @@ def run(
 ) -> dict:
     """The result of the run, as in the result file of a stage; prints it unless ``quiet``.
 
-    Raises SceneError for an unreadable calibration and for options of another model, StudyError
-    where no model is named and the agreement table rejects the default on ``condition``.
+    Raises SceneError for an unreadable calibration and for options of another model, StudyError if
+    no model is named and the agreement table rejects the default on ``condition``.
     """
     fitted = constants(options.calibration, options.model, study.scene.name)
     scene = study.condition(condition)
@@ -63,9 +63,9 @@ def run(
 
 
 def several(names: Sequence[str], make: Callable[[str], dict]) -> dict:
-    """The result that ``make`` has for one condition; of more than one, ``conditions`` holds a
-    result each and ``failed`` the failures of all. An error of the program in one leaves the
-    others."""
+    """The result of ``make`` for one condition. For more conditions, ``conditions`` has a result
+    for each and ``failed`` the failures of all. An error in one condition does not stop the others.
+    """
     if len(names) == 1:
         return make(names[0])
     rows, failed = [], []
@@ -87,10 +87,10 @@ def rows(found: dict) -> tuple[Row, ...]:
 def chosen(
     study: Study, condition: str, accuracy: float | None, budget: float | None, quiet: bool = False
 ) -> dict:
-    """The same in the model that the cost study recommends; ``chosen`` is the model and the reason.
-    Raises StudyError where no model meets the limits, or without a cost study of this scene and
-    code."""
-    whole = study.unrestricted()  # stored results are those of all conditions
+    """The same with the model that the cost study recommends; ``chosen`` has the model and the
+    reason. Raises StudyError if no model meets the limits, or without a cost study of this scene
+    and code."""
+    whole = study.unrestricted()  # stored results are of all conditions
     measured = cost.stored(whole)
     if measured is None:
         raise StudyError(

@@ -19,7 +19,7 @@ from tipoff.scenes.scene import Scene, parse
 from tipoff.studies.stability import weaker_methods as weaker
 from tipoff.studies.stability.verdict import Control, Measure, Verdict, stability, verdict
 
-DEFAULT_STEP = 1e-4  # s: what a careless user of a fixed-step code would take
+DEFAULT_STEP = 1e-4  # s: a typical fixed step chosen without a step limit
 _MASS, _LINEAR = 20.0, 7e7
 _CARELESS = "explicit Euler, fixed step 0.1 ms"
 
@@ -124,7 +124,7 @@ def _impact(name: str, stiffness: float, exponent: float, limit: float) -> Verdi
         found.time[touching[-1]] - found.time[touching[0]],
         found.velocity[-1, 1],
     ]
-    # At its deepest the pad is as steep as exponent x force / depth.
+    # At the largest depth the stiffness of the pad is exponent x force / depth.
     return verdict(
         name,
         "lowfi",
@@ -148,12 +148,14 @@ def stiff_pad() -> Verdict:
 
 
 def steep_pad() -> Verdict:
-    """k p^0.5: infinitely steep at first touch, where a step from the slope would be nothing."""
+    """k p^0.5: infinite stiffness at first touch, where a step limit from the stiffness would be
+    zero."""
     return _impact("pad with exponent 0.5", 7e5, 0.5, 1e-2)
 
 
 def flat_pad() -> Verdict:
-    """k p^3: no slope at first touch, where a step from the slope would be infinite."""
+    """k p^3: zero stiffness at first touch, where a step limit from the stiffness would be
+    infinite."""
     return _impact("pad with exponent 3", 7e4 * 1000.0**3, 3.0, 1e-2)
 
 
@@ -189,7 +191,7 @@ def interference() -> Verdict:
 
 
 def grazing() -> Verdict:
-    """A wall a thousand times stiffer still, passed at 5 m/s: the contact lasts 2 us, 1/50 of the
+    """A wall another thousand times stiffer, passed at 5 m/s: the contact lasts 2 us, 1/50 of the
     default step."""
     stiffness, speed, gap = 7e13, 0.05, 1e-4
     found = run(

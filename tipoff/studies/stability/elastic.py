@@ -66,7 +66,7 @@ class _Rail:
 
 
 def step_above_the_limit() -> Verdict:
-    """Steps 0.1 %, 1 % and 100 % above the limit are refused; a loop without this check diverges."""
+    """Steps 0.1 %, 1 % and 100 % above the limit are refused. A loop without this check diverges."""
     from tipoff import highfi
     from tipoff.highfi.dynamics.stable_step import StepError
 
@@ -98,8 +98,8 @@ def step_above_the_limit() -> Verdict:
 
 
 def long_vibration() -> Verdict:
-    """A ringing rail over 20,000 steps: central differences keep its energy, an explicit method of
-    the same cost does not."""
+    """A vibrating rail over 20,000 steps: central differences keep its energy. Explicit Euler, at
+    the same cost, does not."""
     rail = _Rail()
     step = 0.9 * rail.limit
     drift = rail.leapfrog(step, 20000)[1]
@@ -127,7 +127,7 @@ def sliding_over_facets() -> Verdict:
             lambda numerics: highfi.run(scene, numerics, threads=1), choices
         )
     ours, theirs = settled_change(fine, usual), settled_change(fine, poor)
-    assert ours is not None and theirs is not None  # all three leave their rail
+    assert ours is not None and theirs is not None  # all three runs leave their rail
     return verdict(
         "pads slide over facet borders",
         "highfi",

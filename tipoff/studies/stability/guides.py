@@ -1,8 +1,8 @@
 """Hard guides for the rigid surrogate: no clearance, wedging, a platform that turns. Stick-slip
 belongs here.
 
-A slider guided over s without clearance and pushed at an offset r keeps F (1 - 2 mu r / s), and
-locks from 2 mu r / s = 1 on (moments about its middle).
+A slider on a guide of length s without clearance, pushed by F at an offset r, has the net force F (1 - 2
+mu r / s). It locks for 2 mu r / s >= 1 (moments about its middle).
 """
 
 import math
@@ -106,7 +106,7 @@ def _slider(mu: float, offset: float, duration: float, transition: float) -> Sce
 
 
 def _whole(scene: Scene) -> Trajectory:
-    """The run to the end of the scene, even if it jams before."""
+    """The run to the end of the scene, also after a jam."""
     from tipoff.lowfi import Numerics
     from tipoff.lowfi.single_run import Run
 
@@ -163,8 +163,8 @@ _TURN = (0.7, -1.1, 0.4)
 
 
 def _spinning() -> Scene:
-    """A launcher that turns at 0.5 rad/s while the payload creeps along 3 m of rail, held in a
-    corner by a thrust across it."""
+    """A launcher that rotates at 0.5 rad/s while the payload moves slowly along 3 m of rail. A
+    lateral thrust presses the payload into a corner."""
     rate, arm = np.array([0.5, 0.003, -0.002]), np.array([0.1, 1.2e-4, 1.2e-4])
     turning = dict(zip("xyz", rate.tolist()))
     carried = np.cross(rate, arm) + np.array([0.12, 0.0, 0.0])

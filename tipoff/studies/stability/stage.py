@@ -18,7 +18,8 @@ CASES = {**contacts.CASES, **guides.CASES, **thrusts.CASES, **elastic.CASES}
 
 @dataclass(frozen=True)
 class HardCases:
-    """``cases``, a verdict each; ``failed``: those that are not held or whose control did not fail."""
+    """``cases``: a verdict for each; ``failed``: cases that are not held or whose control did not
+    fail."""
 
     cases: tuple[Verdict, ...]
     failed: tuple[str, ...]
@@ -44,5 +45,5 @@ def run(study: Study) -> dict:
     return STAGE.run(study, None, make)
 
 
-# The cases bring their own scenes.
+# The cases have their own scenes.
 STAGE = Stage("stability", __name__, result=HardCases, of_scene=False)

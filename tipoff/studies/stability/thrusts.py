@@ -1,5 +1,5 @@
-"""Hard thrusts for the rigid surrogate: shorter than a step, and corners that no step falls on. v =
-J / m (momentum)."""
+"""Hard thrusts for the rigid surrogate: a pulse shorter than a step, and corners between steps. v = J / m
+(momentum)."""
 
 from tipoff.scenes.effects import thrust_law
 from tipoff.studies.stability import weaker_methods as weaker
@@ -40,7 +40,7 @@ def _pushed(
 
 
 def short_pulse() -> Verdict:
-    """100 N s in a pulse of 10 us: an integrator that looks only at the state steps over it."""
+    """100 N s in a pulse of 10 us: an integrator whose step depends on the state alone misses it."""
     pulse = {"kind": "gaussian", "impulse": 100.0, "width": 1e-5, "centre": 2.5e-4}
     return _pushed("short pulse, sigma 10 us", pulse, 2e-3, 5.0, 1e-5, DEFAULT_STEP)
 

@@ -11,10 +11,10 @@ _INFINITE = "infinite"
 
 
 class Stability(NamedTuple):
-    """``largest_step_s``: the proven limit at its smallest, which no step passed (rigid surrogate),
-    or the step taken (reference); ``critical_step_s``: 2 / omega of the linearised case, beyond
-    which central differences grow; ``energy_drift``: largest residual of the total ledger over its
-    scale. None where nothing touches or vibrates."""
+    """``largest_step_s``: the smallest value of the proven limit, which no step exceeds (rigid
+    surrogate), or the time step (reference); ``critical_step_s``: 2 / omega of the linearised case,
+    above which central differences diverge; ``energy_drift``: largest residual of the total ledger
+    over its scale. None if nothing touches or vibrates."""
 
     largest_step_s: float | None = None
     critical_step_s: float | None = None
@@ -23,9 +23,9 @@ class Stability(NamedTuple):
 
 @dataclass(frozen=True)
 class Verdict:
-    """One line of the stability table. ``figure`` is what was measured against ``limit``
-    (dimensionless unless ``measure`` says otherwise), ``control_figure`` the same measure of the
-    weaker method; infinite values are given as None. The last three are those of ``Stability``."""
+    """One line of the stability table. ``figure`` is the measured value, to be at most ``limit``
+    (dimensionless unless ``measure`` states a unit); ``control_figure`` is the same measure of the
+    weaker method. An infinite value is None. The last three fields are those of ``Stability``."""
 
     name: Annotated[str, Column("case")]
     fidelity: Annotated[str, Column("model")]
@@ -73,8 +73,8 @@ def verdict(
     holds: bool = True,
     stable: Stability = Stability(),
 ) -> Verdict:
-    """The verdict from both figures; ``holds`` is a further condition that is not a number, such as
-    a status."""
+    """The verdict from both figures; ``holds`` is a further condition without a number, such as a
+    status."""
     return Verdict(
         name=name,
         fidelity=fidelity,

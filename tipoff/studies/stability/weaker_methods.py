@@ -1,8 +1,7 @@
 """Simpler integrators, used only as controls: fixed-step Runge-Kutta of order four, semi-implicit
 and explicit Euler.
 
-All solve x'' = a(t, x, v) for one coordinate, or for an array of them, with a step that looks at
-nothing.
+All solve x'' = a(t, x, v) for one coordinate, or an array of coordinates, with a constant step.
 """
 
 from collections.abc import Callable
@@ -43,7 +42,7 @@ def semi_implicit_euler(
 def explicit_euler(
     acceleration: Acceleration[X], x: X, v: X, step: float, count: int
 ) -> tuple[X, X]:
-    """Both from the old state."""
+    """Position and velocity from the old state."""
     for n in range(count):
         x, v = x + step * v, v + step * acceleration(n * step, x, v)
     return x, v

@@ -14,20 +14,20 @@ from tipoff.scenes.scene import Scene
 from tipoff.studies.populations.population import TOLERANCE, Surrogate
 
 _LEAVES_UNDER_THRUST, _BURNS_OUT = 0.15, 0.001  # share of the impulse after the exit
-_ROUNDING = 1e-12  # of a difference of two equal impulses
+_ROUNDING = 1e-12  # relative error of a difference of two equal impulses
 _MOST = 7  # doublings of the stretch
 
 
 class Exit(NamedTuple):
-    """Exit of a launch without errors: its time (s) and the share of the impulse after it, zero where
-    the thrust has none: a launch by gravity or by its speed at ignition."""
+    """Exit of a launch without errors: its time (s) and the share of the impulse after it. The
+    share is zero without thrust: a launch by gravity or by the speed at ignition."""
 
     time: float
     share_after: float
 
 
 def exit_of(model: Surrogate) -> Exit | None:
-    """The exit of the payload; None where it does not leave."""
+    """The exit of the payload; None if it does not leave."""
     time = lowfi.run(
         model.scene,
         model.name,
@@ -38,15 +38,15 @@ def exit_of(model: Surrogate) -> Exit | None:
         return None
     record, duration = model.scene.thrust.record(), model.scene.time_limit
     before, whole = thrust.impulse(record, time), thrust.impulse(record, duration)
-    # the larger one: a thrust that pushes and then pulls may have no impulse in the end
+    # the larger one, because a thrust that pushes and then pulls may have no total impulse
     scale = max(abs(before), abs(whole))
     after = abs(whole - before) / scale if scale > 0.0 else 0.0
     return Exit(time, after if after > _ROUNDING else 0.0)
 
 
 def stretched(scene: Scene, factor: float) -> dict[str, float] | None:
-    """Overrides (SI) that stretch the thrust, and with a longer thrust a stated duration.
-    None for a kind of thrust without such numbers."""
+    """Overrides (SI) that stretch the thrust and, if it becomes longer, a stated duration. None for
+    a kind of thrust without such numbers."""
     table = scene.thrust
     if table.kind == "constant":
         found = {
@@ -74,7 +74,7 @@ def other_way(model: Surrogate) -> tuple[float, Surrogate, Exit] | None:
     """Stretch, surrogate and exit with thrust after the exit if ``model`` has none there, and
     without it if ``model`` has some.
 
-    None where the payload does not leave, or where no stretch up to 2^7 is enough.
+    None if the payload does not leave, or if no stretch up to 2^7 is enough.
     """
     nominal = exit_of(model)
     if nominal is None:

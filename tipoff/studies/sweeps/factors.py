@@ -1,5 +1,5 @@
-"""The errors that section 3 of the paper sweeps over size and direction, one at a time, and the
-rates that each gives to a free payload.
+"""The errors that section 3 of the paper varies in size and direction, one at a time, and the rates of a
+free payload by each.
 
 A free payload of inertia I leaves with w = I^-1 L, where L = J (r x f) is the moment impulse of
 ``scenes.moments``. On the reference scene that is 26 deg/s per millimetre of arm. Gyroscopic
@@ -57,7 +57,7 @@ def alone(scene: Scene) -> Scene:
 
 
 def cases(directions: np.ndarray) -> Listed:
-    """Every case of every factor, in their order, sizes outermost, as one list."""
+    """All cases of all factors as one list, in order, sizes outermost."""
     return Listed([row for factor in FACTORS for row in factor.rows(SIZES, directions)])
 
 

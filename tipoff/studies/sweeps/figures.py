@@ -15,8 +15,8 @@ _LOOKS = {
     "rate_y_deg_s": ("y", "s", "-"),
     "rate_z_deg_s": ("z", "^", "--"),
 }
-_APART = 0.018  # shift, as a share of the axis: points of three axes do not hide each other
-_WALLS = {"-y": NAVY, "+y": TEAL, "-z": AMBER, "+z": "#dfe3e8"}  # darker to lighter
+_APART = 0.018  # shift as a share of the axis, so that points of three axes do not hide each other
+_WALLS = {"-y": NAVY, "+y": TEAL, "-z": AMBER, "+z": "#dfe3e8"}  # dark to light
 _FIGURES = {"misalignment": 11, "thrust_eccentricity": 13, "mass_eccentricity": 15}
 _ANGLE = {
     "misalignment": "phi, from +y towards +z",
@@ -54,7 +54,7 @@ def figures(found: Sweeps) -> list[Figure]:
 
 
 def _jumps(jumps: tuple[float | None, float | None]) -> str:
-    """The change of the rates where the most loaded face changes, and elsewhere."""
+    """The change of the rates between neighbours with another most loaded face, and between others."""
     if None in jumps:
         return (
             "The most loaded face never changes."
@@ -84,7 +84,7 @@ def _scatter(factor: Swept) -> Chart:
             lines.append(Line(*line, dash="", opacity=0.65, marker=marker, size=3.5))
     direction = f"direction {_ANGLE[factor.name].split(',')[0]} (deg)"
     panels = [
-        Panel("", label, "settled rate (deg/s)", lines)
+        Panel("", label, y_label="settled rate (deg/s)", lines=lines)
         for label, lines in ((factor.title, over_size), (direction, over_angle))
     ]
     return Chart(f"sweep-{factor.name}", panels, columns=2, height=330)
@@ -100,8 +100,18 @@ def _grown(launch: Launch, factor: Swept) -> Panel:
     for name, (axis, marker, dash) in _LOOKS.items():
         values = [np.nan if value is None else value for value in factor.largest[name]]
         top = max(top, np.nanmax(values, initial=0.0))
-        look = f"about {axis}", AXIS_COLOURS[axis], 1.4, dash
-        lines.append(Line(sizes, values, *look, marker=marker, size=6.0))
+        lines.append(
+            Line(
+                sizes,
+                values,
+                name=f"about {axis}",
+                colour=AXIS_COLOURS[axis],
+                width=1.4,
+                dash=dash,
+                marker=marker,
+                size=6.0,
+            )
+        )
         bent = factor.growth[name]
         if axis == "x" or bent is None or bent.verdict != "plateau":
             continue
@@ -109,14 +119,25 @@ def _grown(launch: Launch, factor: Swept) -> Panel:
             spans.append((bent.low, bent.high))
     for name, (axis, _, dash) in _LOOKS.items():
         free = np.array(factor.free[name])
-        # a free payload may turn much faster, and would flatten the other lines
+        # a free payload may rotate much faster, which would flatten the other lines
         shown = free <= 1.15 * top
         place, named = (np.array(sizes)[shown], free[shown]), axis == "y"
-        lines.append(Line(*place, "free payload", GREY, 0.9, dash, legend=named))
-    lines.append(Line([factor.paper] * 2, [0.0, top], "the paper's plateau", GREY, 1.6, ":"))
+        lines.append(
+            Line(*place, name="free payload", colour=GREY, width=0.9, dash=dash, legend=named)
+        )
+    lines.append(
+        Line(
+            [factor.paper] * 2,
+            [0.0, top],
+            name="the paper's plateau",
+            colour=GREY,
+            width=1.6,
+            dash=":",
+        )
+    )
     how = "as given" if launch.stretch == 1.0 else f"thrust x {launch.stretch:g} as long"
     title, size = f"{factor.label}, {how}", f"size ({factor.unit})"
-    return Panel(title, size, "largest rate (deg/s)", lines, spans=tuple(spans))
+    return Panel(title, size, y_label="largest rate (deg/s)", lines=lines, spans=tuple(spans))
 
 
 def _map(factor: Swept, sides: Sides, faces: Sequence[str]) -> Picture:
@@ -203,7 +224,7 @@ def _side_map(
     from matplotlib.colors import ListedColormap
 
     walls = list(_WALLS)
-    # the last for no contact, which is -1
+    # the last is for no contact, -1
     code = np.array([walls.index(name.split()[1]) for name in names] + [len(walls)])[faces]
     colours = ListedColormap([*_WALLS.values(), "white"])
     axes.pcolormesh(

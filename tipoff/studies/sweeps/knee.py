@@ -1,5 +1,5 @@
-"""The end of growth: which of five simple laws fits the largest rate g over the size s of an error
-best.
+"""The end of growth: selects which of five simple laws fits the largest rate g over the size s of an
+error best.
 
     proportional   g = b s
     straight       g = a + b s
@@ -13,10 +13,10 @@ information criterion (Hurvich and Tsai, Biometrika 76, 1989) is taken::
     AICc = n ln(RSS/n) + 2 K + 2 K (K + 1)/(n - K - 1),   K = constants + 1
 
 which penalises additional constants. An rms residual below 1/500 of the largest rate, the error of
-integration of most cases, counts as 1/500. The interval of k is a percentile bootstrap: angles are
-drawn again with replacement, the largest rate is taken over them, and the chosen law is fitted
-again. A resample of the angles can only lower the maximum, so the interval is about the position of
-the knee, not about the height of the curve.
+integration of most cases, counts as 1/500. The interval of k is a percentile bootstrap: angles are drawn
+again with replacement, the largest rate is taken over them, and the chosen law is fitted again. A
+resample of the angles can only lower the maximum, so the interval applies to the position of the knee and
+not to the height of the curve.
 """
 
 from dataclasses import dataclass
@@ -27,10 +27,10 @@ import numpy as np
 RESAMPLES = 400
 LAWS = ("proportional", "straight", "levelling", "plateau", "knee")
 MISFIT = 0.1  # rms residual over the largest value, above which no law fits the curve
-# largest growth of a plateau: beyond the knee, over the value there; or of the height that a
-# levelling curve approaches
+# largest growth of a plateau: beyond the knee, over the value at the knee; for a levelling curve,
+# the remaining growth over its limit
 LEVEL = 0.1
-# of the largest value: error of 95 % of the cases at the coarsest tolerance, lowfi.Numerics
+# of the largest value: error of 95 % of the cases at the coarsest tolerance of lowfi.Numerics
 _RESOLUTION = 2e-3
 _LEAST = 6  # sizes; with fewer, AICc of the knee law is not defined
 _SCANNED = 121
@@ -38,10 +38,10 @@ _SCANNED = 121
 
 @dataclass(frozen=True)
 class Growth:
-    """The chosen ``law`` and its ``verdict``; ``knee`` with the ends of its 95 % interval, None
-    where the law has no knee; slopes before and after the knee (or the only slope); ``misfit``, the
-    rms residual over the largest value; ``plateau_share``, the share of resamples whose verdict is
-    a plateau; AICc by law."""
+    """The chosen ``law`` and its ``verdict``; ``knee`` with the ends of its 95 % interval, None if
+    the law has no knee; slopes before and after the knee (or the only slope); ``misfit``, the rms
+    residual over the largest value; ``plateau_share``, the share of resamples whose verdict is a
+    plateau; AICc by law."""
 
     law: str
     verdict: str
@@ -71,7 +71,7 @@ def growth(
     """The growth of the largest of ``values`` (s,a), one column per angle, over ``sizes`` (s,)
     above zero. NaN marks a case that did not settle.
 
-    None where fewer than six sizes have a value, or all values are zero.
+    None if fewer than six sizes have a value, or all values are zero.
     """
     some = np.isfinite(values).any(axis=1)
     sizes, values = np.asarray(sizes, dtype=float)[some], np.asarray(values, dtype=float)[some]
@@ -100,14 +100,16 @@ def growth(
     return Growth(
         str(law),
         verdicts[0],
-        float(fit.scanned[0]) if bent else None,
-        None if low is None else float(low),
-        None if high is None else float(high),
-        before,
-        after,
-        _misfit(fit, curves[0], 0),
-        float(np.mean([each == "plateau" for each in verdicts[1:]])) if len(curves) > 1 else 0.0,
-        {name: float(item.criterion[0]) for name, item in fits.items()},
+        knee=float(fit.scanned[0]) if bent else None,
+        low=None if low is None else float(low),
+        high=None if high is None else float(high),
+        slope_before=before,
+        slope_after=after,
+        misfit=_misfit(fit, curves[0], 0),
+        plateau_share=float(np.mean([each == "plateau" for each in verdicts[1:]]))
+        if len(curves) > 1
+        else 0.0,
+        criteria={name: float(item.criterion[0]) for name, item in fits.items()},
     )
 
 
@@ -173,7 +175,7 @@ def _verdict(law: str, sizes: np.ndarray, fit: _Fit, curve: np.ndarray, index: i
     if _misfit(fit, curve, index) > MISFIT:
         return "none of the laws"
     if law == "levelling":
-        left = np.exp(-sizes[-1] / fit.scanned[index])  # of the way to the height it tends to
+        left = np.exp(-sizes[-1] / fit.scanned[index])  # share of the limit that remains
         return "levels off without a knee" if left <= LEVEL else "no plateau, grows ever slower"
     if law != "knee":
         return {

@@ -8,7 +8,7 @@ import typer
 from tipoff.studies.commands.options import Surrogate
 from tipoff.workspace.options import between
 
-FEWEST = 8  # directions: fewer do not separate the walls
+FEWEST = 8  # smallest number of directions that separates the walls
 
 
 @dataclass(frozen=True)

@@ -87,11 +87,11 @@ def table_of_verdicts(launch: Launch) -> Table:
         )
         for factor, first, rate, bent in _judged(launch)
     ]
-    return Table(_VERDICT, rows, (_INTERVAL,))
+    return Table(_VERDICT, rows, notes=(_INTERVAL,))
 
 
 def _judged(launch: Launch) -> Iterator[tuple[Swept, bool, str, Growth]]:
-    """Factor, whether its rate is the first one, the rate, and its growth."""
+    """Factor, whether the rate is the first of the factor, the rate, and its growth."""
     for factor in launch.factors:
         judged = [(name, bent) for name, bent in factor.growth.items() if bent]
         for name, bent in judged:
@@ -109,11 +109,11 @@ def table_of_largest(launch: Launch) -> Table:
         for item in answers.ALL
     ]
     note = "Largest magnitude of the settled cases, over all sizes and directions."
-    return Table(["largest", *(factor.label for factor in launch.factors)], rows, (note,))
+    return Table(["largest", *(factor.label for factor in launch.factors)], rows, notes=(note,))
 
 
 def _details(launch: Launch) -> list[Part]:
-    """Slopes, and every quantity at every size, in magnitude."""
+    """Slopes, and the magnitude of every quantity at every size."""
     slopes = [
         (
             *((factor.title, factor.departs_from_free_at) if first else ("", "")),
@@ -132,7 +132,7 @@ def _details(launch: Launch) -> list[Part]:
         for factor in launch.factors
     ]
     note = Caption("Largest magnitude of the settled cases, over all directions.")
-    return [Table(_SLOPES, slopes, (_FREE,), dense=True), *tables, note]
+    return [Table(_SLOPES, slopes, notes=(_FREE,), dense=True), *tables, note]
 
 
 def _why(launches: Sequence[Launch]) -> list[Part]:

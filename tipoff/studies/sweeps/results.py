@@ -8,13 +8,14 @@ from tipoff.studies.render.column import Column
 from tipoff.studies.sweeps.knee import Growth
 from tipoff.studies.sweeps.options import Options
 
-Curve = tuple[float | None, ...]  # over the sizes; None where no case settled
+Curve = tuple[float | None, ...]  # over the sizes; None if no case settled
 
 
 @dataclass(frozen=True, kw_only=True)
 class Sides:
-    """Numbers of the face that touched ``first`` and of the one with the ``most`` impulse, over sizes and
-    directions, -1 without contact; median change of the rates where the latter changes, and elsewhere."""
+    """Numbers of the face that touched ``first`` and of the face with the ``most`` impulse, over
+    sizes and directions, -1 without contact; median change of the rates between neighbours with
+    another face of most impulse, and between other neighbours."""
 
     angles_deg: tuple[float, ...]
     first: tuple[tuple[int, ...], ...]
@@ -24,15 +25,15 @@ class Sides:
 
 @dataclass(frozen=True, kw_only=True)
 class Swept:
-    """An error over ``sizes`` in its ``unit`` and directions: ``values`` of ``answers.ALL`` by name, the
-    ``largest`` over all directions, that of a ``free`` payload, and the ``growth`` of the largest rates,
-    None where too few cases settled; ``paper``: size at which the plateau of the paper begins; ``sides``:
-    None without contact, and with another thrust."""
+    """An error over ``sizes`` in its ``unit`` and directions: ``values`` of ``answers.ALL`` by
+    name, the ``largest`` over all directions, the same of a ``free`` payload, and the ``growth`` of
+    the largest rates, None if too few cases settled; ``paper``: size at which the plateau of the
+    paper begins; ``sides``: None without contact, and for a stretched thrust."""
 
     name: str
     label: str
     unit: str
-    paper: float
+    paper: float  # in ``unit``, as ``sizes``
     sizes: tuple[float, ...]
     angles_deg: tuple[float, ...]
     values: dict[str, tuple[Curve, ...]]
@@ -50,8 +51,9 @@ class Swept:
 
 @dataclass(frozen=True, kw_only=True)
 class Launch:
-    """All sweeps with a thrust ``stretch`` times as long; exit and impulse None where the payload does not
-    leave; ``cases`` by status; ``faces``: the names of the faces that ``sides`` numbers."""
+    """All sweeps with a thrust ``stretch`` times as long; exit and impulse are None if the payload
+    does not leave; ``cases`` by status; ``faces``: names of the faces by the numbers in ``sides``.
+    """
 
     stretch: Annotated[float, Column("thrust, times as long", form="g")]
     cases: dict[str, int]
@@ -65,8 +67,8 @@ class Launch:
 
 @dataclass(frozen=True, kw_only=True)
 class Sweeps(Answering):
-    """``launches``: the scene as given, and with a stretched thrust where that changes the impulse after
-    the exit."""
+    """``launches``: the scene as given, and with a stretched thrust if this changes the impulse
+    after the exit."""
 
     asked: Options
     citation: str

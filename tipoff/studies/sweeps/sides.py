@@ -1,7 +1,7 @@
 """The pad faces that touch a wall: the first one, and the one with the largest impulse.
 
-An ensemble keeps no pad forces, so this uses single runs of ``lowfi.run`` on a coarser grid of
-directions. The normal of a face is that of the pad, so a face "-y" presses on the wall at -y.
+An ensemble keeps no pad forces, so single runs of ``lowfi.run`` are made on a coarser grid of directions.
+A face has the normal of the pad, so a face "-y" presses on the wall at -y.
 """
 
 from collections.abc import Callable
@@ -19,7 +19,7 @@ NONE = -1  # no face touched
 
 
 class Sides(NamedTuple):
-    """Number of the face that touched first and of the one with the largest impulse, (n,) each,
+    """Number of the face that touched first and of the face with the largest impulse, (n,) each,
     ``NONE`` without contact; settled rates (n,3) in rad/s, NaN where a run did not settle."""
 
     first: np.ndarray
@@ -66,8 +66,8 @@ def of(time: np.ndarray, force: np.ndarray) -> tuple[int, int]:
     if not touched.any():
         return NONE, NONE
     began = np.where(touched.any(axis=0), touched.argmax(axis=0), len(time))
-    # Of faces that touch within one sample, such as both legs of a corner, the one with the larger
-    # force counts.
+    # If several faces touch within one sample, such as both legs of a corner, the face with the
+    # largest force counts.
     earliest = np.flatnonzero(began == began.min())
     first = earliest[np.argmax(force[began.min(), earliest])]
     return int(first), int(np.argmax(np.trapezoid(force, time, axis=0)))
@@ -75,8 +75,8 @@ def of(time: np.ndarray, force: np.ndarray) -> tuple[int, int]:
 
 def jumps(walls: np.ndarray, rate: np.ndarray) -> tuple[float | None, float | None]:
     """Median change of the ``rate`` (s,a,3), in its unit, between neighbours in size or direction:
-    where their labels ``walls`` (s,a) differ, and where they do not. The directions are the second
-    axis. None where there is no such pair."""
+    with different labels ``walls`` (s,a), and with equal labels. The directions are the second
+    axis. None without such a pair."""
     differing, moves = [], []
     for one, other in (
         (np.s_[:-1], np.s_[1:]),

@@ -22,11 +22,12 @@ from tipoff.workspace.study import Study
 
 NAME = "sweeps"
 JUDGED = (*answers.RATES, answers.TOTAL_RATE)  # quantities whose growth is judged
-# at the tolerance of other ensembles, a long thrust without contact takes six steps and loses 0.5 %
-# of its impulse
+# the default tolerance of ensembles takes six steps over a long thrust without contact, and loses
+# 0.5 % of the impulse
 _TOLERANCE = 1e-4
 _COARSER = 5  # directions of the ensemble for each direction of the maps of walls
-_DEPARTS = 0.05  # of the rate of a free payload: a larger difference is an effect of the rail
+# relative to the rate of a free payload; a larger difference is an effect of the rail
+_DEPARTS = 0.05
 
 
 def run(study: Study, options: Options = Options()) -> dict:
@@ -52,14 +53,14 @@ def run(study: Study, options: Options = Options()) -> dict:
     return STAGE.run(study, options, make)
 
 
-STAGE = Stage(NAME, __name__, Options, result=Sweeps)
+STAGE = Stage(NAME, __name__, options=Options, result=Sweeps)
 
 
 def _launch(
     study: Study, model: Surrogate, options: Options, stretch: float, leaves: burnout.Exit | None
 ) -> tuple[Launch, Surrogate]:
-    """All cases of one surrogate in one ensemble, and the results of each factor; the surrogate with
-    the modes of its cases."""
+    """All cases of one surrogate in one ensemble: the results of each factor, and the surrogate
+    with the rail modes of its cases."""
     directions = factors.angles(options.angles)
     found = population.run(study, NAME, model, factors.cases(directions), _TOLERANCE)
     count = len(SIZES) * options.angles
@@ -122,7 +123,7 @@ def _sides(
         )
     shape = len(FACTORS), len(SIZES), len(directions)
     names = sides.names(model.scene)
-    faces = np.array([*names, ""])  # the last for no face, which is -1
+    faces = np.array([*names, ""])  # the last is for no face, -1
     return tuple(names), [
         Sides(
             angles_deg=tuple(np.degrees(directions).tolist()),

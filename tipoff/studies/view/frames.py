@@ -1,15 +1,14 @@
 """Frames of a run of the reference, seen from the platform: fields on the rails, positions of
 payload and pads.
 
-The axes are those of the platform, which coincide with scene axes at ignition. In them the motion of
-the rails is their deformation alone. Contact pressure is the
-pressure of the interface at the nodes of the walls::
+The axes are those of the platform, which coincide with scene axes at ignition. In these axes the motion
+of the rails is only their deformation. Contact pressure is the pressure of the interface at the nodes of
+the walls::
 
     p = k_p max(0, -h - relief (xi^4 + eta^4))    for |xi|, |eta| <= 1
     h: height of the node over the pad face
 
-which the run integrates at the Gauss points of the facets
-(``highfi.contact.pads``).
+The run integrates this pressure at the Gauss points of the facets (``highfi.contact.pads``).
 """
 
 from typing import NamedTuple
@@ -22,8 +21,8 @@ from tipoff.kernels import rotation
 from tipoff.mechanics.model import Model
 from tipoff.scenes.scene import Scene
 
-_BATCH = 8192  # elements at once; bounds the memory
-_PAD_DEPTH = 6e-3  # m, how thick pads are drawn; the scene gives their faces only
+_BATCH = 8192  # elements at once, which limits the memory
+_PAD_DEPTH = 6e-3  # m, drawn thickness of pads; the scene has their faces only
 
 
 class Frame(NamedTuple):
@@ -41,8 +40,7 @@ class Frame(NamedTuple):
 
 
 class Camera:
-    """Takes frames of a ``highfi.run.Loop`` at its present sample; what they share is computed
-    once."""
+    """Takes frames of a ``highfi.run.Loop`` at its present sample; common data is computed once."""
 
     def __init__(self, loop):
         self.system, mesh = loop.system, loop.system.mesh
@@ -67,11 +65,11 @@ class Camera:
         return Frame(
             loop.steps * loop.stepping.dt_s,
             displacement,
-            hexahedral_recovery.von_mises(mean),
-            worst,
-            self._pressure(displacement, turn, centre),
-            turn,
-            centre + system.origin,
+            von_mises=hexahedral_recovery.von_mises(mean),
+            worst=worst,
+            pressure=self._pressure(displacement, turn, centre),
+            turn=turn,
+            centre=centre + system.origin,
         )
 
     def _stresses(self, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -127,8 +125,8 @@ class Camera:
 
 def bodies(scene: Scene, model: Model) -> tuple[np.ndarray, np.ndarray]:
     """Boxes (b,8,3) m in payload axes from its mass centre, corners in VTK order: the payload, then
-    a slab behind each pad face; and the number (b,) of its pad counted from 1, 0 for the payload. A
-    scene that gives no size has a payload as large as its pads reach."""
+    a slab behind each pad face; and the number (b,) of its pad counted from 1, 0 for the payload.
+    Without a size in the scene, the payload is the box around its pads."""
     faces, middle = model.faces, -np.array(model.payload.mass_centre)
     reach = np.abs([pad.position for pad in scene.pads]).max(axis=0)
     half = 0.5 * np.array(scene.payload.size) if scene.payload.size else reach

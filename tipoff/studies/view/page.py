@@ -1,4 +1,4 @@
-"""What the terminal shows of the frames of a run."""
+"""The frames of a run for the terminal."""
 
 from pathlib import Path
 
@@ -8,8 +8,8 @@ from tipoff.studies.view.stage import View
 
 
 def terminal(found: View, out: Path) -> list[Part]:
-    """The largest stress of the run and where it is, the frames, the exaggeration; and the files below
-    the folder ``out``."""
+    """The largest stress of the run and its place, the frames, the exaggeration, and the files
+    below the folder ``out``."""
     own = found.peak
     place = ", ".join(f"{1e3 * value:.4g}" for value in own.place_m)
     cells = (

@@ -1,9 +1,9 @@
 """Pictures of a series of frames, drawn off-screen with pyvista: a still at the peak stress, and an
 animation of the ejection. Each is drawn for a light page and for a dark one.
 
-Runs as a separate process (``python -m tipoff.studies.view.pictures``, with an order as JSON on
-standard input), since a graphics library that cannot draw may end its process. The rails are drawn
-with their deformation times a factor, payload and pads to scale.
+Runs as a separate process (``python -m tipoff.studies.view.pictures``, with an order as JSON on standard
+input), because a graphics library that cannot draw may end its process. The rails are drawn with their
+deformation times a factor, payload and pads to scale.
 """
 
 import json
@@ -18,21 +18,22 @@ from tipoff.files import replacing
 from tipoff.highfi.mesh.rail_mesh import boundary_facets
 from tipoff.studies.view.vtk_files import DISPLACEMENT, PAD, VON_MISES
 
-LARGEST = 1_500_000  # bytes of an animation; a report carries two inside it
+LARGEST = 1_500_000  # largest animation in bytes; a report contains two
 _STILL_SIZE, _SIZE = (1500, 620), (840, 430)
 _MOST = 120  # frames of an animation
-_SECONDS = 6.0  # it lasts
-_VIEW = (0.52, -0.80, 0.45)  # from where the eye looks, in platform axes
-# how far the closer eye looks along the rail, and half the height (m) it sees
+_SECONDS = 6.0  # duration
+_VIEW = (0.52, -0.80, 0.45)  # direction towards the camera, in platform axes
+# of the closer view: distance along the rail, and half the visible height (m)
 _ALONG, _REACH = 0.9, 0.030
-# Falling lightness, so that it reads in grey too, and a rail without stress looks like bare metal.
+# The lightness falls, so colours are clear in grey too; a rail without stress looks like bare
+# metal.
 _COLOURS = ("#e4e8ec", "#f6d78b", "#ee9b46", "#d1495b", "#7d2050", "#2c0d33")
 _NODE = "node"
-_LIFT = -8.0  # towards the eye, in steps of the depth buffer
+_LIFT = -8.0  # towards the camera, in steps of the depth buffer
 
 
 class Look(NamedTuple):
-    """Colours of a picture, and what the names of its files end with."""
+    """Colours of a picture, and the ending of the names of its files."""
 
     suffix: str
     paper: str
@@ -43,13 +44,22 @@ class Look(NamedTuple):
     mark: str  # of the worst node
 
 
-LIGHT = Look("", "#ffffff", "#24292f", "#8a96a3", "#39434e", "#5b6570", "#1b6ca8")
-DARK = Look("-dark", "#13181e", "#e6e8eb", "#8a96a3", "#78848f", "#5b6570", "#6db3ea")
+LIGHT = Look(
+    "", "#ffffff", ink="#24292f", body="#8a96a3", pads="#39434e", edge="#5b6570", mark="#1b6ca8"
+)
+DARK = Look(
+    "-dark",
+    "#13181e",
+    ink="#e6e8eb",
+    body="#8a96a3",
+    pads="#78848f",
+    edge="#5b6570",
+    mark="#6db3ea",
+)
 
 
 class Drawing:
-    """One plotter that is moved from frame to frame. ``order`` is what ``studies.view.stage`` asks
-    for."""
+    """One plotter for all frames. ``order`` is the request of ``studies.view.stage``."""
 
     def __init__(
         self,
@@ -64,8 +74,8 @@ class Drawing:
         self.plotter = pyvista.Plotter(off_screen=True, window_size=size, shape=shape, border=False)
         self.plotter.set_background(look.paper)
         grid = pyvista.read(self.folder / order["frames"][0]["rails"])
-        # Point ids that VTK keeps are wrong where it parts the facets of quadratic elements; a
-        # field of its own is carried along.
+        # VTK splits the facets of quadratic elements and then keeps wrong point ids, so the ids are
+        # a field of their own.
         grid[_NODE] = np.arange(grid.n_points, dtype=float)
         self.surface = grid.extract_surface(algorithm="dataset_surface", nonlinear_subdivision=1)
         self._node = np.rint(self.surface[_NODE]).astype(int)
@@ -87,14 +97,14 @@ class Drawing:
         self.outline = self.surface.extract_feature_edges(
             30, boundary_edges=False, non_manifold_edges=False
         )
-        # Nodes of the outline among those of the surface, which stay the same however it is
-        # deformed.
+        # Places of the nodes of the outline among those of the surface; deformation does not change
+        # them.
         self._along = np.array(
             [self.surface.find_closest_point(place) for place in self.outline.points]
         )
 
     def show(self, index: int) -> None:
-        """Bring all to frame ``index``."""
+        """Move all parts to frame ``index``."""
         import pyvista
 
         frame = self.order["frames"][index]
@@ -115,7 +125,7 @@ class Drawing:
 
     def fill(self, close: bool, bar: bool) -> None:
         """Put the parts into the present panel; ``close`` shows elements and leaves out the
-        payload, which stands in the way."""
+        payload, which would hide them."""
         from matplotlib.colors import LinearSegmentedColormap
 
         colours = LinearSegmentedColormap.from_list("stress", _COLOURS)
@@ -140,7 +150,7 @@ class Drawing:
             show_scalar_bar=bar,
             scalar_bar_args=look if bar else None,
             smooth_shading=False,
-            # shade may not pass for stress
+            # shade could look like stress
             copy_mesh=False,
             ambient=0.55,
             diffuse=0.5,
@@ -149,7 +159,7 @@ class Drawing:
             net = self.plotter.add_mesh(
                 self.net, color=self.look.edge, line_width=1, copy_mesh=False
             )
-            # The lines lie in the surface, which would hide every other bit of them.
+            # The lines lie in the surface, which would hide parts of them.
             net.mapper.SetResolveCoincidentTopologyToPolygonOffset()
             net.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0.0, _LIFT)
             self.plotter.add_mesh(self.corners, color=self.look.mark, line_width=2, copy_mesh=False)
@@ -162,7 +172,8 @@ class Drawing:
             self.plotter.add_mesh(self.edges, color=self.look.body, line_width=1.5, copy_mesh=False)
 
     def write(self, lines: list[str], name: str) -> None:
-        """Text in the upper left corner of the present panel, on the paper."""
+        """Text in the upper left corner of the present panel, on a background of the paper's
+        colour."""
         import pyvista
 
         text = self.plotter.add_text(
@@ -172,8 +183,8 @@ class Drawing:
         text.prop.SetBackgroundOpacity(0.85)
 
     def frame_all(self, bounds, zoom: float) -> None:
-        """Look at everything within ``bounds``, its least and largest places (m), alike from near
-        and far."""
+        """Show everything within ``bounds``, smallest and largest places (m), by parallel
+        projection."""
         low, high = np.array(bounds)
         self.plotter.enable_parallel_projection()
         self.plotter.camera_position = [
@@ -183,7 +194,7 @@ class Drawing:
         ]
         self.plotter.reset_camera(bounds=(low[0], high[0], low[1], high[1], low[2], high[2]))
         self.plotter.camera.zoom(zoom)
-        # The colour scale stands below, so the view is moved up by a little.
+        # The colour scale is below, so the view is moved up a little.
         camera, shift = (
             self.plotter.camera,
             np.array([0.0, 0.0, -0.07 * self.plotter.camera.parallel_scale]),
@@ -195,7 +206,7 @@ class Drawing:
         self.plotter.add_axes(color=self.look.ink, line_width=2, viewport=(0.0, 0.0, 0.16, 0.26))
 
     def close_in(self, node: int) -> None:
-        """Look at a node of the surface from outside the rail and from its open end."""
+        """Show a node of the surface, seen from outside the rail and from its open end."""
         place = self.surface.points[node]
         outside = self.surface.compute_normals(
             cell_normals=False, auto_orient_normals=True, split_vertices=False
@@ -212,7 +223,7 @@ class Drawing:
 
 
 def still(order: dict, look: Look = LIGHT) -> Path:
-    """The worst moment: everything, and the elements around the worst node."""
+    """The instant of the peak stress: everything, and the elements around the worst node."""
     drawing, peak = Drawing(order, _STILL_SIZE, (1, 2), look), order["peak"]
     drawing.show(peak["frame"])
     drawing.plotter.subplot(0, 0)
@@ -246,7 +257,7 @@ def still(order: dict, look: Look = LIGHT) -> Path:
 
 
 def animation(order: dict, look: Look = LIGHT) -> Path:
-    """The whole ejection, as an animated WebP no larger than LARGEST."""
+    """The whole ejection as an animated WebP of at most LARGEST bytes."""
     from PIL import Image
 
     drawing = Drawing(order, _SIZE, look=look)
@@ -284,8 +295,8 @@ def animation(order: dict, look: Look = LIGHT) -> Path:
 
 
 def _net(cells: np.ndarray) -> np.ndarray:
-    """Edges of the facets of a solid of elements (e,k), through the middles where they have such,
-    as pyvista wants lines."""
+    """Edges of the facets of a solid of elements (e,k) as lines of pyvista, through the middle
+    nodes of quadratic elements."""
     facets = boundary_facets(cells)
     corners = facets[:, :4] if facets.shape[1] == 4 else facets[:, :3]
     parts = [corners, facets[:, corners.shape[1] :], np.roll(corners, -1, axis=1)]
@@ -296,7 +307,7 @@ def _net(cells: np.ndarray) -> np.ndarray:
 
 
 def _bounds(drawing: Drawing) -> list[np.ndarray]:
-    """Least and largest places of what is shown now."""
+    """Smallest and largest places of the parts that are shown."""
     points = np.concatenate([drawing.surface.points, drawing.payload.points, drawing.pads.points])
     return [points.min(axis=0), points.max(axis=0)]
 
@@ -310,7 +321,7 @@ def _words(order: dict, index: int) -> list[str]:
 
 
 def main() -> None:
-    """Draw what standard input asks for; every line of output is JSON."""
+    """Draw the order on standard input; every line of output is JSON."""
     order = json.load(sys.stdin)
     if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")

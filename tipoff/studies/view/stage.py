@@ -30,7 +30,7 @@ from tipoff.workspace.words import counted
 if TYPE_CHECKING:
     from tipoff.studies.view.frames import Camera
 
-_SHOWN = 8e-3  # m, the size of the largest deformation in a picture
+_SHOWN = 8e-3  # m, size of the largest deformation in a picture
 _HOW = "pictures need pyvista (0.6 GB): pip install pyvista; in a clone, make pictures"
 
 
@@ -45,7 +45,7 @@ class Instant:
     rails: str
     bodies: str
     largest_stress_pa: float
-    largest_mean_stress_pa: float  # of means over the elements that meet at a node
+    largest_mean_stress_pa: float  # largest mean over the elements that meet at a node
     largest_displacement_m: float
     largest_pressure_pa: float
 
@@ -74,7 +74,7 @@ class View:
     peak: Peak
     bounds_m: tuple[Vector, Vector]
     element_size_m: float
-    factor: float
+    factor: float  # of the deformation in pictures
     title: str
     pictures: dict[str, str]
     without_pictures: str
@@ -109,7 +109,7 @@ def stage_of(condition: str) -> Stage:
     def inputs(study: Study, _: Options) -> list:
         return [study.highfi(condition).key, pyvista_version()]
 
-    return Stage(f"view/{condition}", __name__, Options, inputs, result=View)
+    return Stage(f"view/{condition}", __name__, options=Options, inputs=inputs, result=View)
 
 
 def read(found: dict) -> View:
@@ -133,8 +133,9 @@ def pyvista_version() -> str | None:
 
 
 def chosen(frames: int, original: Trajectory) -> list[int]:
-    """Samples of the frames: evenly spread over the run, one of them moved to the peak stress."""
-    assert original.stress is not None  # as of every run of the reference that went well
+    """Samples of the frames: evenly spread over the run; the one nearest to the peak stress is
+    moved there."""
+    assert original.stress is not None  # every successful run of the reference has it
     last = original.time.size - 1
     samples = sorted({round(place) for place in np.linspace(0, last, min(frames, last + 1))})
     peak = int(np.abs(original.time - original.stress["peak_stress_time_s"]).argmin())
@@ -224,7 +225,7 @@ def _view(
     files.append(vtk_files.write_collection(folder, [each.time_s for each in taken.frames], paths))
     vtk_files.discard_others(folder, files)
     stress = original.stress
-    assert stress is not None  # by which the frames were chosen
+    assert stress is not None  # the frames depend on it
     apart = [abs(frame.time_s - stress["peak_stress_time_s"]) for frame in taken.frames]
     peak = Peak(
         stress_pa=stress["peak_stress_pa"],
@@ -251,8 +252,8 @@ def _view(
 
 
 def exaggeration(frames: Sequence[Instant]) -> float:
-    """Factor, 1, 2 or 5 times a power of ten, at which the largest deformation has the size
-    ``_SHOWN``; 1 without deformation."""
+    """Factor, 1, 2 or 5 times a power of ten, that shows the largest deformation with about the
+    size ``_SHOWN``; 1 without deformation."""
     largest = max(frame.largest_displacement_m for frame in frames)
     if largest <= 0.0:
         return 1.0
@@ -263,14 +264,14 @@ def exaggeration(frames: Sequence[Instant]) -> float:
 
 def rounded_up(value: float) -> float:
     """The end of a scale of five parts: the next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of
-    ten; 1 for nothing."""
+    ten; 1 for zero."""
     power = 10.0 ** math.floor(math.log10(value)) if value > 0.0 else 1.0
     steps = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
     return next(step * power for step in steps if value <= step * power * (1.0 + 1e-9))
 
 
 def draw_pictures(found: View, folder: Path) -> tuple[list[str], str]:
-    """Names of the pictures, and the reason where there are none."""
+    """Names of the pictures, or the reason if there are none."""
     if pyvista_version() is None:
         return [], _HOW
     order = {
@@ -283,7 +284,7 @@ def draw_pictures(found: View, folder: Path) -> tuple[list[str], str]:
         "mesh": f"elements of {1e3 * found.element_size_m:g} mm",
         "scale_pa": rounded_up(max(frame.largest_mean_stress_pa for frame in found.frames)),
     }
-    # Complaints go to a file: a full pipe that nobody reads would stop the child.
+    # Messages go to a file: a full pipe without a reader would stop the child.
     with Board("view", 1) as board, tempfile.TemporaryFile("w+") as complaints:
         report = board.callback("pictures")
         report(0.0)

@@ -1,9 +1,9 @@
 """Frames as a time series for ParaView: a .vtu of the rails and one of the bodies a frame, and a
 .pvd that lists them by time.
 
-Positions are in platform axes (``studies.view.frames``) and undeformed, so "Warp By Vector" shows
-the deformation at any scale. Fields have single precision, which halves the files. Every file is
-written atomically and the list last, so all files in it are complete.
+Positions are in platform axes (``studies.view.frames``) and undeformed, so "Warp By Vector" shows the
+deformation at any scale. Fields have single precision, which halves the files. Every file is written
+atomically, and the list is written last, so all files in the list are complete.
 """
 
 from pathlib import Path
@@ -28,8 +28,8 @@ COLLECTION = "run.pvd"
 def write_frame(
     folder: Path, index: int, frame: Frame, mesh: RailMesh, boxes: np.ndarray, pads: np.ndarray
 ) -> list[Path]:
-    """Write rails and bodies of one frame; ``boxes`` (b,8,3) m are in payload axes, ``pads`` (b,) are
-    their pads."""
+    """Write rails and bodies of one frame; ``boxes`` (b,8,3) m in payload axes, ``pads`` (b,) their
+    pad numbers."""
     import meshio
 
     rails = meshio.Mesh(
