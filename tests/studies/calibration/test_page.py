@@ -44,18 +44,6 @@ def shown(found, tmp_path):
     return document.terminal(page.terminal(found, tmp_path))
 
 
-def test_constants_and_residuals_are_tables(tmp_path):
-    lines = shown(FIT, tmp_path).splitlines()
-    force = next(line for line in lines if line.strip().startswith("force at"))
-    assert force.split()[-5:] == ["6.3", "N", "6.0", "to", "6.5"]
-    assert any(
-        line.split()[:3] == ["mu", "0.25", "1"] and "not determined" in line for line in lines
-    )
-    assert any(line.split() == ["phi15", "0.0123"] for line in lines)
-    assert "Weak: mu with the force" in lines
-    assert lines[-1] == f"  {tmp_path / 'calibration.toml'}"
-
-
 def test_model_error_is_a_column_where_there_is_one(tmp_path):
     assert "with model error" not in shown(FIT, tmp_path)
     wider = replace(FIT, with_model_error=[(5.0, 7.0), (0.1, 0.4)])
