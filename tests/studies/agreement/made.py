@@ -56,9 +56,7 @@ EQUAL = EqualAccuracy(
     surer=True,
 )
 EMPTY = {
-    item.name: ()
-    for item in fields(KEPT)
-    if isinstance(getattr(KEPT, item.name), tuple | list)
+    item.name: () for item in fields(KEPT) if isinstance(getattr(KEPT, item.name), tuple | list)
 }
 
 
