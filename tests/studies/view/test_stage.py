@@ -165,7 +165,7 @@ def test_scales_end_at_round_numbers(value, end):
     assert view.rounded_up(value) == pytest.approx(end)
 
 
-def test_command_writes_prints_and_refuses(viewed, monkeypatch):
+def test_command_writes_and_prints(viewed, monkeypatch):
     study, found = viewed
     monkeypatch.setattr(view, "pyvista_version", lambda: None)
     arguments = [
@@ -184,11 +184,6 @@ def test_command_writes_prints_and_refuses(viewed, monkeypatch):
     said = CliRunner().invoke(app, arguments, catch_exceptions=False)
     assert said.stdout.splitlines()[-1] == f"  {study.path(found['collection'])}"
     assert f"{1e-6 * found['peak']['stress_pa']:.4g}" in said.stdout and "(MPa)" in said.stdout
-    assert CliRunner().invoke(app, [*arguments, "--frames", "1"]).exit_code == 2
-    refused = CliRunner().invoke(
-        app, ["view", "--scene", "tiny", "--condition", "phi99", "--out", str(study.folder.parent)]
-    )
-    assert refused.exit_code == 2 and "phi99" in refused.stderr
 
 
 def known(**parts):
