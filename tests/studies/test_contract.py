@@ -12,6 +12,7 @@ from tests.studies import kept
 from tipoff.scenes.faults import SceneError
 from tipoff.studies import registry
 from tipoff.studies.cli import app
+from tipoff.studies.runs import stage as runs
 from tipoff.workspace import options as rules
 
 ENTRIES = (*registry.COMPARISON, *registry.ON_DEMAND, *registry.QUESTIONS)
@@ -69,7 +70,11 @@ def test_an_option_beyond_its_rule_is_bad_input(command, path, flag, value, word
     assert [(one.source, one.expected) for one in fault.value.faults] == [(flag, words)]
 
 
-@pytest.mark.parametrize("stage", [stage for _, stage in kept.modules()], ids=lambda one: one.name)
+@pytest.mark.parametrize(
+    "stage",
+    [*(stage for _, stage in kept.modules()), *runs.STAGES.values()],
+    ids=lambda one: one.name,
+)
 def test_a_result_has_the_fields_of_its_type(stage):
     """Read and written again, a result is the same, and has nothing that its type does not know.
     Control: a result without one of its fields is refused."""

@@ -7,7 +7,7 @@ import numpy as np
 from pydantic_core import to_jsonable_python
 
 from tests.studies import kept
-from tests.studies.synthetic import flight
+from tests.studies.synthetic import COSTS, flight
 from tipoff import scenes
 from tipoff.studies.convergence.ripple import Ripple
 from tipoff.studies.convergence.stage import STAGE
@@ -43,14 +43,7 @@ def motion(run, **parts):
     force = np.zeros((601, 16, 3))
     if run.scene.contact:
         force[:, 2, 1] = 20.0
-    cost = {
-        "wall_s": 1.0,
-        "compile_s": 0.0,
-        "steps": 10,
-        "dt_s": step(run),
-        "elements": 8,
-        "ns_per_element_step": 1.0,
-    }
+    cost = COSTS | {"dt_s": step(run)}
     return flight(
         lambda t: np.tile(np.radians(settled(run)), (t.size, 1)),
         pad_force=force,
