@@ -15,17 +15,6 @@ ARRAYS = (  # of a trajectory of the surrogate
     "transverse_energy",
 )
 ARRAYS_OF_REFERENCE = (*ARRAYS, "wall_stress")
-AGREEMENT_ROW = {
-    "condition",
-    "velocity_relative_l2",
-    "rate_relative_l2",
-    "iso18571",
-    "settled_rate_error_deg_s",
-    "settled_rate_error_xyz_deg_s",
-    "floor_deg_s",
-    "floor_l2",
-    "reference_uncertainty_deg_s",
-}
 RUN_ROW = {
     "condition",
     "status",

@@ -23,7 +23,6 @@ from tipoff.scenes.scene import Scene
 REFERENCE = scenes.load("reference")
 # the kernels of friction, without its forces
 SMOOTH = {"friction.static": 0.0, "friction.dynamic": 0.0}
-UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 
 
 @cache

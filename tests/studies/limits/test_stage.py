@@ -271,7 +271,6 @@ def test_too_few_cases_and_nonsense_are_refused_with_every_fault(tmp_path):
             ("--probability", "--confidence", "--limit", "--draws", "4 faults"),
         ),
         (["--limit", "x=1 deg/s", "--limit", "x=2 deg/s"], ("two limits",)),
-        (["--condition", "phi99"], ("phi99",)),
         (
             ["--condition", "phi99", "--draws", "-1", "--limit", "q=1 deg/s"],
             ("phi99", "--draws", "--limit", "3 faults"),

@@ -21,7 +21,6 @@ from tipoff.studies.montecarlo.options import Cases as Options
 from tipoff.studies.populations import answers, population, spread
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render import chart
-from tipoff.studies.render import table as tables
 from tipoff.studies.render.document import terminal
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study, StudyError
@@ -208,26 +207,6 @@ def test_distance_and_probability_of_two_samples():
     )
     # Kolmogorov and Smirnov: two samples of three, one wholly above the other.
     assert spread.apart([np.arange(3.0)], [np.arange(3.0) + 5.0])[0] == 1.0
-
-
-def test_section_of_the_page(found):
-    shown = html(pictures.draw(found))
-    assert all(
-        words in shown
-        for words in (
-            "montecarlo-histograms",
-            "two normal components",
-            "Figure 9",
-            "rate about y 6",
-        )
-    )
-
-
-def test_the_terminal_shows_the_tables_of_the_page(found):
-    shown = terminal(pictures.summary(found))
-    for table in (pictures.table_of_quantities(found), pictures.table_of_tails(found)):
-        assert tables.terminal(table) in shown
-    assert "readings with other distributions of the rates: two normal components" in shown
 
 
 def test_bad_input_is_refused_and_nothing_written(tmp_path):

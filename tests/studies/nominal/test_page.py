@@ -5,14 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.studies import kept
 from tests.studies.shown import html
 from tests.studies.synthetic import COSTS, flight
 from tipoff.studies.nominal import page, spread
 from tipoff.studies.nominal.spread import Range
-from tipoff.studies.nominal.stage import Nominal, answer
+from tipoff.studies.nominal.stage import STAGE, answer
 from tipoff.studies.runs.results import Row
 from tipoff.studies.runs.stage import row
 
+KEPT = kept.result(STAGE)
 LOW = {"rate_deg_s": 0.4123, "rate_x_deg_s": -4.0}
 
 
@@ -31,35 +33,17 @@ def ends(name) -> Range:
 
 def ended(*statuses) -> tuple[Row, ...]:
     """Runs of both models with these statuses."""
-    one = row("nominal", flight(cost=COSTS), "")
-    models = ("finite-elements", "compliant")
-    return tuple(
-        replace(one, model=model, status=status) for model, status in zip(models, statuses)
-    )
+    return tuple(replace(one, status=status) for one, status in zip(KEPT.rows, statuses))
 
 
 @pytest.fixture
 def found():
-    known = spread.Spread(
-        errors="paper",
-        vary=("thrust_offset.misalignment.axial", "thrust_offset.misalignment.radial"),
-        seed=1,
-        cases=4000,
-        settled=4000,
-        model="compliant",
-        shares=spread.SHARES,
-        ranges={item.name: ends(item.name) for item in spread.QUANTITIES},
-        store="",
-    )
-    return Nominal(
-        rows=ended("exited", "exited"),
-        answer={
-            "finite-elements": answered(-2.0, 1.0, 2.0),
-            "compliant": answered(-2.0, 1.25, 2.0),
-        },
-        spread=known,
-        failed=(),
-    )
+    ranges = {item.name: ends(item.name) for item in spread.QUANTITIES}
+    answers = {
+        "finite-elements": answered(-2.0, 1.0, 2.0),
+        "compliant": answered(-2.0, 1.25, 2.0),
+    }
+    return replace(KEPT, answer=answers, spread=replace(KEPT.spread, ranges=ranges))
 
 
 def test_each_number_has_its_unit_its_meaning_and_its_range(found):

@@ -10,7 +10,7 @@ from tests.studies.agreement import made
 from tests.studies.agreement.made import ROW
 from tests.studies.convergence import stub
 from tests.studies.shown import html
-from tests.studies.synthetic import flight
+from tests.studies.synthetic import COSTS, flight
 from tipoff import scenes
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.populations.exceedance import Limit
@@ -23,8 +23,7 @@ from tipoff.studies.runs.stage import row
 def settled(x, y, z):
     rate = [float(np.radians(value)) for value in (x, y, z)]
     outcome = flight().outcome._replace(rate=rate, velocity=[13.6457, 0.0, 0.0])
-    cost = {"wall_s": 1.0, "compile_s": 0.0, "steps": 1, "dt_s": 1e-6}
-    return flight(outcome=outcome, cost=cost | {"elements": 1, "ns_per_element_step": 1.0})
+    return flight(outcome=outcome, cost=COSTS)
 
 
 def judged(name, uncertainty, **others):

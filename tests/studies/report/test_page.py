@@ -16,7 +16,6 @@ from tipoff import scenes
 from tipoff.studies import registry
 from tipoff.studies.agreement import other_rails, verdicts
 from tipoff.studies.agreement.page import starred
-from tipoff.studies.calibration.page import calibration
 from tipoff.studies.cost.page import picture as cost_picture
 from tipoff.studies.render.chart import Chart, Line, Panel, to_files
 from tipoff.studies.render.table import Table, markdown, number
@@ -147,15 +146,7 @@ def test_broken_promise_is_called_broken():
             "angular_momentum_error": 1e-13,
             "friction_power_max": 0.0,
         },
-        cost={
-            "wall_s": 1.0,
-            "compile_s": 0.0,
-            "steps": 1,
-            "dt_s": 1e-6,
-            "dt_limit_s": 2e-6,
-            "elements": 1,
-            "ns_per_element_step": 1.0,
-        },
+        cost=COSTS | {"dt_limit_s": 2e-6},
     )
     found = {item.text: item for item in promises({"highfi": [row("phi15", run, "")], "lowfi": []})}
     assert found["linear momentum of the free system, finite elements"].kept is False
@@ -322,14 +313,3 @@ def test_a_study_the_scene_gives_no_occasion_for_stops_nothing(tmp_path, monkeyp
         and not re.search(r"Not made: [^.]*\bflight\b", page.read_text())
         and "[flight]" in page.read_text()
     )
-
-
-def test_calibration_shows_intervals_and_constants_without_one():
-    found = replace(
-        FIT,
-        parameters=["contact.force", "contact.damping"],
-        fitted=[400.0, 0.0],
-        intervals=[(350.0, 450.0), (None, None)],
-    )
-    shown = html(calibration(found))
-    assert ">350 to 450<" in shown and ">not determined by the curves<" in shown

@@ -8,15 +8,12 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from tests.studies.shown import html
 from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.columns import STATUSES
 from tipoff.scenes import load
 from tipoff.studies.cli import app
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate
-from tipoff.studies.render import table as tables
-from tipoff.studies.sensitivity import page as section
 from tipoff.studies.sensitivity import stage as sensitivity
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.study import Study, StudyError, read
@@ -94,11 +91,6 @@ def test_the_command(tiny, tmp_path, monkeypatch):
         >= max(abs(value - attitude[0]) for value in attitude)
         > 0.0
     )
-    for shown in (
-        section.table_of_largest(table, found.paper),
-        section.table_of_indices(found.sobol),
-    ):
-        assert tables.terminal(shown) in result.stdout
     sobol = found.sobol
     assert [item.name for item in sobol.quantities] == [item.name for item in answers.ALL]
     assert [item.key for item in sobol.inputs] == [
@@ -118,8 +110,6 @@ def test_the_command(tiny, tmp_path, monkeypatch):
         for name in ("indices", "map", "convergence")
         for kind in ("png", "svg")
     } == {path.name for path in (tmp_path / "out" / "tiny" / "figures").iterdir()}
-    drawn = html(section.draw(found))
-    assert "misalignment y" in drawn and "-2.355, -2.554, 2.502" in drawn and "0.71 %" in drawn
     assert (
         sensitivity.STAGE.stored(Study(load("tiny"), tmp_path / "out" / "tiny", defaults("tiny")))
         == kept

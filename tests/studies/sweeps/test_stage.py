@@ -8,13 +8,11 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from tests.studies.shown import html
 from tipoff.scenes import load, moments
 from tipoff.scenes.effects import thrust, thrust_offset
 from tipoff.studies.cli import app
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Surrogate
-from tipoff.studies.render import table as tables
 from tipoff.studies.sweeps import burnout, factors, sides
 from tipoff.studies.sweeps import page as sections
 from tipoff.studies.sweeps import stage as sweeps
@@ -222,9 +220,6 @@ def test_the_command_with_contact(tmp_path, monkeypatch):
     assert result.exit_code == 0
     kept = read(tmp_path / "tiny" / "sweeps.json")
     found = sweeps.STAGE.read(kept)
-    for launch in found.launches:
-        for table in (sections.table_of_verdicts(launch), sections.table_of_largest(launch)):
-            assert tables.terminal(table) in result.stdout
     given = found.launches[0]
     assert (
         given.faces[:2] == ("rear -y", "rear -z")
@@ -244,8 +239,6 @@ def test_the_command_with_contact(tmp_path, monkeypatch):
             if row[0] == f"{item.label} ({item.unit})"
         )
         assert row[1] == np.nanmax(abs(cases))
-    page = html(sections.draw(found))
-    assert all(f"{item.label} ({item.unit})" in page for item in answers.ALL)
     # Thrust above the mass centre turns the front down and the rear up; at 90 deg, alpha from +z
     # towards +y, it does so towards +y.
     seen = factor.sides.first
@@ -253,7 +246,6 @@ def test_the_command_with_contact(tmp_path, monkeypatch):
         "rear +y",
         "front -y",
     )
-    assert html(sections.draw(found)).count("map-thrust_eccentricity") == 1
     assert {path.name for path in (tmp_path / "tiny" / "figures").iterdir()} == {
         f"{name}.{kind}"
         for name in ("sweep-growth", "sweep-thrust_eccentricity", "map-thrust_eccentricity")
@@ -262,7 +254,3 @@ def test_the_command_with_contact(tmp_path, monkeypatch):
     monkeypatch.setattr(population, "surrogate", lambda *_: pytest.fail("made again"))
     again = CliRunner().invoke(app, [*arguments, "--json"], catch_exceptions=False)
     assert json.loads(again.stdout) == kept
-    too_few = CliRunner().invoke(app, [*arguments[:-1], str(tmp_path / "none"), "--angles", "4"])
-    assert (
-        too_few.exit_code == 2 and "--angles" in too_few.stderr and not (tmp_path / "none").exists()
-    )
