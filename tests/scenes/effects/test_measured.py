@@ -49,8 +49,8 @@ def test_curve_files_that_are_no_text(tmp_path):
 
 
 def test_the_rows_of_a_curve_are_read_once(tmp_path, monkeypatch):
-    """By scene, conditions and variations; each has arrays of its own. Control: other content in the
-    same file is read."""
+    """By scene, conditions and variations; each has arrays of its own. Other content in the same
+    file is read."""
     read, listed = [], csv_file.listed
     monkeypatch.setattr(csv_file, "listed", lambda *file: read.append(file) or listed(*file))
     path = write(tmp_path, "curve.csv", "time_s,force_N\n0,0\n0.004,30125\n0.009,0\n")
