@@ -6,6 +6,8 @@ the same compliance, and a surrogate is judged with the compliance of its result
 
 import time
 from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -21,10 +23,7 @@ from tipoff.scenes.scene import Scene
 from tipoff.scenes.studies import element_size as own_size
 
 _SAID: set[Path] = set()  # files whose uncertainty was reported
-# Tables that determine ``made_from``, and its last values: a loop over scenes asks for each.
-_DECIDES = {"rail", "pads", "contact", "platform"}
-_DIGESTS: dict[tuple, str] = {}
-_MOST = 64
+_DECIDES = {"rail", "pads", "contact", "platform"}  # tables that determine ``made_from``
 _PLACES = 4  # stations along the rail at which meshes are compared
 # A loop over scenes with one rail reads it once.
 KEPT: cache.Cache[RailCompliance] = cache.binary(content, RailCompliance.load, cache.Held)
@@ -126,12 +125,23 @@ def made_from(scene: Scene) -> str:
     and of its rail and pads. Scenes with the same digest share a compliance. Raises SceneError if
     the built-in section does not fit the pads."""
     text = scene.model_dump_json(include=_DECIDES)
-    key = text, *scene.rail.contents().items()
-    while len(_DIGESTS) > _MOST:
-        _DIGESTS.pop(next(iter(_DIGESTS)), None)
-    if key not in _DIGESTS:
-        _DIGESTS[key] = content_hash(digest(scene), inputs.of(statics.nominal(scene)).digest())
-    return _DIGESTS[key]
+    return _digest_of(_Asked(text, tuple(scene.rail.contents().items()), scene))
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """A scene; equal to others with the same ``text`` (JSON) of the tables ``_DECIDES`` and the same
+    ``contents`` of files."""
+
+    text: str
+    contents: tuple[tuple[str, str], ...]
+    scene: Scene = field(compare=False)
+
+
+@lru_cache(maxsize=16)  # each call of the surrogate in a loop over scenes asks
+def _digest_of(asked: _Asked) -> str:
+    scene = asked.scene
+    return content_hash(digest(scene), inputs.of(statics.nominal(scene)).digest())
 
 
 def direct(scene: Scene, element_size: float) -> np.ndarray:

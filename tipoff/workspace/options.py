@@ -79,8 +79,8 @@ def require(options: Any) -> None:
 
 
 def rules(hint: Any) -> typing.Iterator[Rule]:
-    """The rules in the type ``hint`` of an option; the least and the largest number that a
-    ``typer.Option`` names are one too."""
+    """The rules in the annotations of the type ``hint`` of an option. A ``typer.Option`` with a least
+    or a largest number is a rule too."""
     for note in getattr(hint, "__metadata__", ()):
         least, most = getattr(note, "min", None), getattr(note, "max", None)
         if isinstance(note, Rule):
