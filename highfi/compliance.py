@@ -206,7 +206,7 @@ def of_mesh(
     if not 1 <= patterns <= PATTERNS:
         raise ValueError(f"patterns: given {patterns!r}, expected 1 to {PATTERNS}")
     stations = np.asarray(travel, dtype=float)
-    count, pattern = faces.axis.size, np.arange(patterns)
+    count = faces.axis.size
     half = scene_model.half_sizes(faces)
     matrix, gram = (
         np.zeros((stations.size, count, patterns, count, patterns)),
@@ -222,22 +222,18 @@ def of_mesh(
         if not patches.found:
             continue
         # An additional last place without response, for faces without a wall (number -1).
+        pairs, number_of = _pairs(places, len(patches.found))
         answer, heated, frequency, swung, terms = patches.solved(
-            material, joint, 0.5 * (reach[0] + reach[1]), modes
+            material, joint, 0.5 * (reach[0] + reach[1]), modes, pairs
         )
-        between = np.pad(answer, [(0, 1), (0, 0), (0, 1), (0, 0)])
+        between = np.pad(answer, [(0, 1), (0, 0), (0, 0)])
         heated, swung = (np.pad(moved, [(0, 1), (0, 0), (0, 0)]) for moved in (heated, swung))
         grams = np.array([patch.gram for patch in patches.found] + [np.zeros((patterns, patterns))])
         for number, signs in zip(places, images):
             gram += grams[number]
             # the fields linear in y and z change sign with the image
             warm += heated[number] * np.r_[1.0, signs, 1.0]
-            matrix += between[
-                number[:, :, None, None, None],
-                pattern[:, None, None],
-                number[:, None, None, :, None],
-                pattern,
-            ]
+            matrix += between[number_of(number)].transpose(0, 1, 3, 2, 4)
             shape += swung[number]
             here = (number >= 0).any(axis=0)
             if here.any():
@@ -311,28 +307,36 @@ class Patches:
         return number
 
     def solved(
-        self, material: MaterialTable, joint: MountStiffness | None, middle: float, modes: int
+        self,
+        material: MaterialTable,
+        joint: MountStiffness | None,
+        middle: float,
+        modes: int,
+        pairs: np.ndarray,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, joint_terms.Terms | None]:
-        """Displacement (m,p,m,p) in m of all places under the loads of all places, normals of the
-        faces positive, and (m,p,t) under a unit of each field of temperature around X = ``middle``
-        (m); frequencies (n,) rad/s of the lowest modes and their displacement (m,p,n); the terms of
-        a ``joint`` if there are modes."""
+        """Displacement (q,p,p) in m of the first place of each of the ``pairs`` (q,2) under the
+        loads of the second, normals of the faces positive, and (m,p,t) of all places under a unit
+        of each field of temperature around X = ``middle`` (m); frequencies (n,) rad/s of the lowest
+        modes and their displacement (m,p,n); the terms of a ``joint`` if there are modes."""
         operator = assembly.of_material(self._rail, material, joint=joint)
-        clamped, loads = Clamped(operator), self.loads()
+        loads = self.loads()
+        clamped = Clamped(operator, loads.shape[1])
         load, held = thermal.of_each_field(self._rail, operator, material, middle)
         warm = loads.T @ clamped.displaced(load, held)
         loads = loads[clamped.free]
-        answer = _under_each_other(clamped, loads)
+        answer = _under_each_other(clamped, loads, pairs, self._patterns)
         frequency, shape = vibration.modes(
             clamped.stiffness, np.repeat(operator.mass, 3)[clamped.free], clamped.solve, modes
         )
         terms = None
         if operator.joints is not None and modes:
             heat = load + operator.joints @ held
-            terms = joint_terms.solved(operator, clamped, loads, heat, shape)
+            direct = answer[pairs[:, 0] == pairs[:, 1]]
+            own = np.einsum("maa->ma", direct).ravel()
+            terms = joint_terms.solved(operator, clamped, loads, heat, shape, own)
         under = len(self.found), self._patterns
         return (
-            answer.reshape(2 * under),
+            answer,
             warm.reshape(*under, FIELDS),
             frequency,
             (loads.T @ shape).reshape(*under, modes),
@@ -357,10 +361,38 @@ class Patches:
         )
 
 
-def _under_each_other(clamped: Clamped, loads: csc_array) -> np.ndarray:
-    """Displacement (c,c) of each of the ``loads`` (d,c) under each other one, L' K^-1 L. Threads
+def _pairs(
+    places: list[np.ndarray], count: int
+) -> tuple[np.ndarray, Callable[[np.ndarray], np.ndarray]]:
+    """All pairs (q,2) of the ``count`` places that are pressed at the same travel, ascending, for
+    ``places`` (s,f) under the faces of each image; and the function from such an array to the
+    number (s,f,f) of the pair, -1 without a wall."""
+
+    def keys(number: np.ndarray) -> np.ndarray:
+        first, second = number[:, :, None], number[:, None, :]
+        return np.where((first >= 0) & (second >= 0), first * count + second, -1)
+
+    every = np.unique(np.concatenate([keys(number).ravel() for number in places]))
+    every = every[every >= 0]
+
+    def number_of(number: np.ndarray) -> np.ndarray:
+        key = keys(number)
+        return np.where(key >= 0, np.searchsorted(every, key), -1)
+
+    return np.stack(np.divmod(every, count), axis=1), number_of
+
+
+def _under_each_other(
+    clamped: Clamped, loads: csc_array, pairs: np.ndarray, width: int
+) -> np.ndarray:
+    """Displacement (q,w,w) of the first place of each of the ``pairs`` (q,2) under the second,
+    L' K^-1 L, for ``loads`` (d,mw) with ``width`` columns for each place. Without a chain, threads
     solve batches in parallel; the bits of a batch do not depend on the others."""
-    answer, report = [], reported()
+    report = reported()
+    if clamped.chain is not None:
+        with one_thread():
+            return clamped.chain.under(loads, pairs, width, report)
+    answer = []
     starts = range(0, loads.shape[1], BATCH)
 
     def under(start: int) -> np.ndarray:
@@ -370,4 +402,5 @@ def _under_each_other(clamped: Clamped, loads: csc_array) -> np.ndarray:
         for start, found in zip(starts, pool.map(under, starts)):
             answer.append(found)
             report(min(start + BATCH, loads.shape[1]) / loads.shape[1])
-    return np.concatenate(answer, axis=1)
+    every = np.concatenate(answer, axis=1).reshape(-1, width, loads.shape[1] // width, width)
+    return every[pairs[:, 0], :, pairs[:, 1]]

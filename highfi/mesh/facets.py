@@ -16,7 +16,7 @@ from skfem.quadrature import get_quadrature
 _DEGREE = {3: 2, 6: 4, 12: 6, 16: 8, 19: 9, 25: 10, 33: 12, 42: 14, 61: 17, 73: 19}
 INSIDE = 1e-6  # in local coordinates: a point with a smaller excess is inside its facet
 _NEWTON = 20
-_ARRIVED = 1e-14  # in local coordinates, a step that changes nothing
+_ARRIVED = 1e-12  # in local coordinates; the next step changes only the last bits
 _FAR = 3.0  # local coordinates; beyond, the iteration stops
 
 

@@ -29,10 +29,16 @@ class Terms(NamedTuple):
 
 
 def solved(
-    operator: Operator, held: Clamped, loads: csc_array, heat: np.ndarray, modes: np.ndarray
+    operator: Operator,
+    held: Clamped,
+    loads: csc_array,
+    heat: np.ndarray,
+    modes: np.ndarray,
+    direct: np.ndarray,
 ) -> Terms:
     """Terms of a rail that only its joints hold, under nodal ``loads`` (3n,l) and thermal loads
-    ``heat`` (3n,t) N, with its ``modes`` (3n,c)."""
+    ``heat`` (3n,t) N, with its ``modes`` (3n,c); ``direct`` (l,) m is the displacement of each load
+    under itself."""
     assert operator.joints is not None
     joints = operator.joints
     own = np.flatnonzero(np.diff(joints.indptr))
@@ -48,7 +54,7 @@ def solved(
         inner[part], heated[part] = answer[own].T @ root, answer.T @ heat
     share, turn = eigh(0.5 * (inner + inner.T))
     moved = moved @ turn
-    kept = _large(moved, _direct(held, loads))
+    kept = _large(moved, direct)
     basis = _basis(operator, modes)
     return Terms(
         share=share[kept],
@@ -58,15 +64,6 @@ def solved(
         stiffness=basis.T @ (held.stiffness @ basis),
         joint=basis.T @ (joints @ basis),
     )
-
-
-def _direct(held: Clamped, loads: csc_array) -> np.ndarray:
-    """Displacement (l,) of each load under itself."""
-    found = []
-    for start in range(0, loads.shape[1], _BATCH):
-        part = loads[:, start : start + _BATCH].toarray()
-        found.append((part * held.solve(part)).sum(axis=0))
-    return np.concatenate(found)
 
 
 def _large(moved: np.ndarray, direct: np.ndarray) -> np.ndarray:

@@ -10,6 +10,7 @@ from threadpoolctl import ThreadpoolController
 
 from tipoff.highfi.mesh.rail_mesh import MeshError
 from tipoff.highfi.statics import assembly
+from tipoff.highfi.statics.chain import Chain, is_cheaper, layers
 
 
 @cache
@@ -26,9 +27,10 @@ def one_thread():
 
 class Clamped:
     """The ``stiffness`` of ``operator`` for its ``free`` degrees of freedom, the fixed nodes held.
-    Raises MeshError if nothing holds it."""
+    With many ``loads`` a slender rail has the factor ``chain``, else it is None and the factor is
+    sparse. Raises MeshError if nothing holds it."""
 
-    def __init__(self, operator: assembly.Operator):
+    def __init__(self, operator: assembly.Operator, loads: int = 0):
         self._joints = operator.joints
         if operator.free.all() and (self._joints is None or not self._joints.nnz):
             raise MeshError(
@@ -37,6 +39,13 @@ class Clamped:
         self.free = np.repeat(operator.free, 3)
         self._free_rows: csr_array = assembly.sparse(operator)[self.free]
         self.stiffness = csc_array(self._free_rows[:, self.free])
+        self.chain: Chain | None = None
+        if loads:
+            order = layers(csr_array(self.stiffness))
+            if is_cheaper(order, loads):
+                with one_thread():
+                    self.chain = Chain(self.stiffness, order)
+                return
         # A positive definite matrix needs no pivoting; an ordering for symmetric matrices keeps its
         # factors sparse.
         with one_thread():
@@ -51,7 +60,7 @@ class Clamped:
         """Displacement (m) of the free degrees of freedom under ``loads`` (N) on them, (3k,) or
         (3k,c)."""
         with one_thread():
-            return self._factor.solve(loads)
+            return (self.chain or self._factor).solve(loads)
 
     def displaced(self, loads: np.ndarray, held: np.ndarray) -> np.ndarray:
         """Displacement (3n,c) m under ``loads`` (3n,c) N and prescribed displacements ``held``
