@@ -20,7 +20,7 @@ from tipoff.studies.runs.results import Row
 from tipoff.studies.runs.stage import failure, row
 from tipoff.studies.single import disturbed
 from tipoff.studies.single.disturbed import Disturbed
-from tipoff.workspace import kernel_marks, models, words
+from tipoff.workspace import models, words
 from tipoff.workspace.attempt import attempt
 from tipoff.workspace.progress import say
 from tipoff.workspace.run import Run
@@ -115,11 +115,7 @@ def chosen(
 
 
 def result_of(study: Study, condition: str, request: Run, quiet: bool) -> dict:
-    found = study.store.load(request)
-    if found is None:
-        kernel_marks.announce(request)
-        found = study.store.get(request)
-        kernel_marks.remember(request)
+    found = study.store.get(request)
     calibrated, modes = request.calibration is not None, getattr(request.numerics, "modes", AUTO)
     moved = None
     if request.fidelity == "lowfi" and found.outcome.rate is not None:
