@@ -19,8 +19,8 @@ from concurrent.futures import as_completed
 from pathlib import Path
 
 from tipoff import cache
-from tipoff.files import discard, netcdf
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.files import discard
+from tipoff.mechanics.trajectory import Trajectory, content
 from tipoff.scenes.faults import InputError
 from tipoff.workspace import kernel_marks
 from tipoff.workspace.attempt import attempt
@@ -31,7 +31,7 @@ from tipoff.workspace.run import Run, execute, prepare
 
 # stop all runs: bad input, Ctrl-C, and refusals of this machine
 _STOPPING = (InputError, StudyError, Interrupted, OSError, MemoryError)
-RUNS: cache.Cache[Trajectory] = cache.binary(lambda run: netcdf(run.to_xarray()), Trajectory.load)
+RUNS: cache.Cache[Trajectory] = cache.binary(content, Trajectory.load)
 
 
 def _surrogate(

@@ -185,7 +185,7 @@ def _trends(trends: Sequence[Trend]) -> Table:
         (
             trend.task,
             trend.size,
-            ", ".join(f"{size:.3g}" for size in trend.sizes),
+            ", ".join(f"{size:,.4g}" for size in trend.sizes),
             ", ".join(f"{seconds:.2g}" for seconds in trend.times_s),
             exponent(trend.law),
             f"{trend.expected:g}",
