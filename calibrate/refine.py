@@ -10,7 +10,7 @@ this fit. v_x during the thrust determines it, for any contact.
 """
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy  # its submodules load at their first use
 
 from tipoff.calibration.discrepancy import RATE, VELOCITY, Curve
 from tipoff.calibration.information import jacobian
@@ -46,7 +46,7 @@ def refined(objective: Objective, shares: np.ndarray) -> np.ndarray:
             own = jacobian(lambda share: root * left(objective, share), at[:count])
             return np.hstack([own, late])
 
-        point = least_squares(
+        point = scipy.optimize.least_squares(
             weighted,
             point,
             slopes,

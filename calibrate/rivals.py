@@ -10,7 +10,7 @@ import copy
 import math
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy  # its submodules load at their first use
 
 from tipoff.calibration.information import jacobian
 from tipoff.calibration.misfit import KINDS, NEAR, Kind, misfits
@@ -28,7 +28,7 @@ def likely(objective: Objective, name: str, best: Kind) -> tuple[Kind, float]:
     own, tried = np.clip(own, 0.0, 1.0), []
     for kind in _candidates(best):
         turned = _turned(objective, name, kind)
-        end = least_squares(
+        end = scipy.optimize.least_squares(
             turned,
             own,
             lambda shares, turned=turned: jacobian(turned, shares),

@@ -16,7 +16,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import least_squares, minimize_scalar
+import scipy  # its submodules load at their first use
 
 from tipoff.calibration.information import jacobian
 
@@ -125,7 +125,7 @@ def _scalar(
     lowest = np.flatnonzero((heights[1:-1] < heights[:-2]) & (heights[1:-1] <= heights[2:])) + 1
     found = []
     for place in lowest[np.argsort(heights[lowest], kind="stable")][: plan.starts].tolist():
-        end = minimize_scalar(
+        end = scipy.optimize.minimize_scalar(
             lambda share: objective(np.array([share])),
             bounds=(around[place - 1], around[place + 1]),
             method="bounded",
@@ -166,7 +166,7 @@ def _evolve(
 
 def _polish(residuals, value: float, shares: np.ndarray, plan: Plan) -> tuple[float, np.ndarray]:
     """Value and point that least squares reaches, or the given ones without an improvement."""
-    found = least_squares(
+    found = scipy.optimize.least_squares(
         residuals, shares, lambda x: jacobian(residuals, x), bounds=(0.0, 1.0), max_nfev=plan.polish
     )
     return (2.0 * float(found.cost), found.x) if 2.0 * found.cost < value else (value, shares)

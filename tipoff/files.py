@@ -33,6 +33,10 @@ _LINE = re.compile(_MARK + rb"([0-9a-f]{64})\n")
 _LENGTH = len(_MARK) + 64 + 1
 _KEY_LINE = re.compile(rb"\n# key ([0-9a-f]{64})\n")
 _KEY_LENGTH = len("\n# key \n") + 64
+# Dimensions, values (array, or a list of texts), and attributes, such as the units.
+Labelled = tuple[tuple[str, ...], Any, Mapping[str, Any]]
+# The name that netCDF gives to the scale of a dimension without a coordinate.
+_NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable."
 _temporaries: set[Path] = set()  # of this process, not yet renamed
 _CARRIES_NONE = "has no digest of its content, or a damaged one"
 _DIFFERS = "differs from its digest (damaged, or edited)"
@@ -152,6 +156,32 @@ def netcdf(found: Any) -> bytes | memoryview:
     """An xarray Dataset or DataTree as a netCDF file. It is made in memory, because HDF5 ends the
     whole process if the disk is full."""
     return found.to_netcdf(engine="h5netcdf")
+
+
+def labelled_netcdf(variables: Mapping[str, Labelled], attributes: Mapping[str, Any]) -> memoryview:
+    """The same from ``variables`` by name, in a tenth of the time. A variable with the name of its
+    only dimension is the coordinate of that dimension."""
+    import h5py  # slow to load
+
+    content = io.BytesIO()
+    with h5py.File(content, "w", track_order=True) as file:
+        written, scales = {}, {}
+        for name, (dimensions, values, units) in variables.items():
+            kind = h5py.string_dtype() if isinstance(values, list) else None
+            written[name] = file.create_dataset(name, data=values, dtype=kind)
+            written[name].attrs.update(units)
+            for dimension, size in zip(dimensions, written[name].shape):
+                if dimension not in variables and dimension not in scales:
+                    scales[dimension] = file.create_dataset(dimension, (size,), ">f4")
+                    scales[dimension].make_scale(f"{_NO_VARIABLE}{size:10}")
+            if (name,) == tuple(dimensions):
+                scales[name] = written[name]
+                scales[name].make_scale(name)
+        for name in sorted(written.keys() - scales.keys()):
+            for place, dimension in enumerate(variables[name][0]):
+                h5py.h5ds.attach_scale(written[name].id, scales[dimension].id, place)
+        file.attrs.update(attributes)
+    return content.getbuffer()
 
 
 def write_netcdf(path: str | Path, found: Any) -> None:

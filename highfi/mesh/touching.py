@@ -7,7 +7,7 @@ within the other.
 """
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy  # its submodules load at their first use
 
 from tipoff.highfi.mesh import facets
 from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
@@ -38,7 +38,7 @@ def touching(mesh: RailMesh) -> np.ndarray:
     corners = mesh.points[every][:, : 4 if every.shape[1] == 4 else 3]
     middles, normals = corners.mean(axis=1), facets.normals(mesh.points[every])
     reach = np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
-    tree = cKDTree(middles)
+    tree = scipy.spatial.cKDTree(middles)
     near = min(_NEAREST, len(every))
     _, other = tree.query(middles, near, distance_upper_bound=reach.max(initial=0.0) + _SAME)
     one, column = np.nonzero(other < len(every))

@@ -27,7 +27,7 @@ from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.lowfi.ensemble.store import CHUNK, Chunk, Store, StoreError
 from tipoff.mechanics.rail_compliance import RailCompliance
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.mechanics.trajectory import Trajectory, content
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.agreement import other_rails
 from tipoff.studies.calibration import forecast
@@ -192,7 +192,7 @@ def _attribute(rng: Rng, text: str) -> Any:
 
 @cache
 def _kept_run() -> bytes:
-    return bytes(synthetic.flight(samples=61).to_xarray().to_netcdf(engine="h5netcdf"))
+    return bytes(content(synthetic.flight(samples=61)))
 
 
 def _checkpoint(rng: Rng, folder: Path) -> None:

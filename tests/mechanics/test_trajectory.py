@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray
 
 from tests.scenes.support import motion
 from tests.written_names import ARRAYS
@@ -94,6 +95,24 @@ def test_units_and_names_are_in_the_file():
     assert all(data[name].attrs["units"] for name in data.data_vars)
     assert list(data["axis"].values) == ["x", "y", "z"]
     assert list(data["entry"].values) == list(ledger.ENTRIES)
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [{}, {"wall_stress": np.ones((7, 2, 6))}, {"pad_force": np.ones((7, 0, 3))}],
+    ids=["springs", "stress", "no contact"],
+)
+def test_a_file_is_what_xarray_writes(tmp_path, parts):
+    """A file that xarray wrote, such as those of earlier versions, is read too."""
+    run = random_trajectory(**parts)
+    run.save(tmp_path / "a.nc")
+    write_netcdf(tmp_path / "b.nc", run.to_xarray())
+    with (
+        xarray.open_dataset(tmp_path / "a.nc") as one,
+        xarray.open_dataset(tmp_path / "b.nc") as two,
+    ):
+        assert one.identical(two) and list(one) == list(two) and one.sizes == two.sizes
+    assert Trajectory.load(tmp_path / "b.nc").to_xarray().identical(run.to_xarray())
 
 
 @pytest.mark.parametrize("name", ARRAYS)

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tipoff.scenes import units
 from tipoff.scenes.units import parse, to_si
 
 
@@ -77,6 +78,22 @@ def test_a_bare_number_is_si_only_where_allowed():
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_si_text_is_read_to_the_bit(value):
     assert to_si(f"{value!r} m", "m") == value
+
+
+@given(number=st.floats(-1e9, 1e9))
+def test_factors_of_common_units_are_those_of_pint(number):
+    for unit, known in units._FACTORS.items():
+        for text, factor in {**known, unit: 1.0}.items():
+            expected = units.registry().Quantity(number, text).to(unit).magnitude
+            assert number * factor == expected == to_si(f"{number!r} {text}", unit)
+
+
+def test_a_scene_of_common_units_is_read_without_pint():
+    code = (
+        "import sys; from tipoff import scenes; scenes.load('reference'); "
+        "assert 'pint' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
 
 
 def test_threads_that_read_the_first_unit_together_share_one_registry():

@@ -1,5 +1,8 @@
 """Kernels that several runs need are compiled side by side, each once."""
 
+import sys
+from types import ModuleType
+
 import pytest
 
 from tests.lowfi.compliance import REFERENCE, reference_compliance
@@ -31,9 +34,9 @@ def machine_codes(folder):
 
 @pytest.mark.slow
 def test_each_kernel_is_compiled_once(runs, tmp_path, capfd):
-    compiling.compile_ahead("kernels", runs, workers=2)
+    Store(tmp_path / "out", workers=2).fill("lowfi", runs)
     assert machine_codes(tmp_path) == 2
-    assert "kernels 2/2" in capfd.readouterr().err
+    assert "lowfi, kernels 2/2" in capfd.readouterr().err
     compiling.compile_ahead("kernels", runs, workers=2)
     assert capfd.readouterr().err == ""
 
@@ -41,6 +44,15 @@ def test_each_kernel_is_compiled_once(runs, tmp_path, capfd):
 @pytest.mark.parametrize("count, workers", [(3, 1), (1, 2)])
 def test_a_run_alone_compiles_its_own(runs, tmp_path, count, workers):
     compiling.compile_ahead("kernels", runs[:count], workers)
+    assert machine_codes(tmp_path) == 0
+
+
+def test_a_script_compiles_its_own(runs, tmp_path, monkeypatch):
+    """Each further process would run the script once more. Control: above, as a module."""
+    script = ModuleType("__main__")
+    script.__file__ = str(tmp_path / "launches.py")
+    monkeypatch.setitem(sys.modules, "__main__", script)
+    compiling.compile_ahead("kernels", runs, workers=2)
     assert machine_codes(tmp_path) == 0
 
 
@@ -128,4 +140,4 @@ def test_a_run_that_chooses_modes_announces_their_kernels_before_it_goes_on(
     store.fill("lowfi", [asked])
     assert ["with modes of the rails" in text for text in said] == ([True, False] if chosen else [])
     assert kernel_marks.are_there(asked, chosen=True) == bool(chosen)
-    assert not kernel_marks.are_there(asked)  # who asked for the run notes what it begins with
+    assert kernel_marks.are_there(asked)

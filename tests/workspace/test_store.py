@@ -217,11 +217,11 @@ MOMENTS = (0.0, 0.001, 0.002, 0.003, 0.005, 0.007, 0.009, 0.012)  # s after a sm
 # The bytes are made once, so that the loop hardly does anything but write.
 KILLED = """
 import os, sys
-import xarray
 from tests.studies.synthetic import flight
+from tipoff.mechanics import trajectory
 run = flight(samples=int(sys.argv[1]))
-content = run.to_xarray().to_netcdf(engine="h5netcdf")
-xarray.Dataset.to_netcdf = lambda *_, **__: content
+content = trajectory.content(run)
+trajectory.content = lambda _: content
 for path in sys.argv[2:]:  # a process each
     child = os.fork()
     while child == 0:

@@ -17,7 +17,14 @@ import numpy as np
 
 from tipoff import sources
 from tipoff.cards import Carded
-from tipoff.files import DamageError, require_whole, write_csv, write_netcdf
+from tipoff.files import (
+    DamageError,
+    Labelled,
+    labelled_netcdf,
+    require_whole,
+    write_csv,
+    write_sealed,
+)
 from tipoff.mechanics import ledger, outcome, shown
 from tipoff.mechanics.model_names import MODELS
 
@@ -235,41 +242,7 @@ class Trajectory(Carded):
         """
         import xarray  # slow to load, and a run that writes no file does not need it
 
-        variables = {
-            name: (dims, getattr(self, name), {"units": _UNITS[name]})
-            for name, dims in _DIMENSIONS.items()
-        }
-        relative = outcome.relative_motion(self)
-        for name, unit in (
-            ("relative_position", "m"),
-            ("relative_velocity", "m/s"),
-            ("relative_rate", "rad/s"),
-        ):
-            variables[name] = (("time", "axis"), relative[name], {"units": unit})
-        coordinates = {
-            "time": ("time", self.time, {"units": "s"}),
-            "axis": list(_VECTOR),
-            "component": ["w", "x", "y", "z"],
-            "entry": list(ledger.ENTRIES),
-        }
-        assert self.wall_stress is not None  # since __post_init__
-        if self.wall_stress.size:
-            coordinates["stress_component"] = list(_STRESS)
-        else:
-            # netCDF takes a dimension of length zero as unlimited
-            del variables["wall_stress"]
-        plain = {name: json.dumps(getattr(self, name), allow_nan=False) for name in _PLAIN}
-        return xarray.Dataset(
-            variables,
-            coordinates,
-            attrs={
-                "model": self.model,
-                "status": self.status,
-                "message": self.message,
-                "outcome": json.dumps(self.outcome._asdict()),
-                **plain,
-            },
-        )
+        return xarray.Dataset(_variables(self), attrs=_attributes(self))
 
     def save(self, path: str | Path) -> None:
         """Write netCDF with its digest, atomically: an interrupted call leaves the earlier file, or
@@ -284,7 +257,7 @@ class Trajectory(Carded):
         Example:
             >>> tipoff.run(tipoff.load("tiny"), "springs").save("run.nc")
         """
-        write_netcdf(path, self.to_xarray())
+        write_sealed(path, content(self))
 
     @classmethod
     def load(cls, path: str | Path) -> "Trajectory":
@@ -334,6 +307,45 @@ class Trajectory(Carded):
             ) from fault
         except Exception as error:  # the type from HDF5 depends on the foreign file
             raise OSError(f"{path}: not a whole trajectory file ({error})") from error
+
+
+def content(run: Trajectory) -> memoryview:
+    """The netCDF file of a run, without its digest; the same data as of ``to_xarray``."""
+    return labelled_netcdf(_variables(run), _attributes(run))
+
+
+def _variables(run: Trajectory) -> dict[str, Labelled]:
+    found: dict[str, Labelled] = {
+        name: (dims, getattr(run, name), {"units": _UNITS[name]})
+        for name, dims in _DIMENSIONS.items()
+    }
+    relative = outcome.relative_motion(run)
+    for name, unit in (
+        ("relative_position", "m"),
+        ("relative_velocity", "m/s"),
+        ("relative_rate", "rad/s"),
+    ):
+        found[name] = ("time", "axis"), relative[name], {"units": unit}
+    texts = {"axis": _VECTOR, "component": ("w", "x", "y", "z"), "entry": ledger.ENTRIES}
+    assert run.wall_stress is not None  # since __post_init__
+    if run.wall_stress.size:
+        texts["stress_component"] = _STRESS
+    else:
+        # netCDF takes a dimension of length zero as unlimited
+        del found["wall_stress"]
+    found["time"] = ("time",), run.time, {"units": "s"}
+    return found | {name: ((name,), list(labels), {}) for name, labels in texts.items()}
+
+
+def _attributes(run: Trajectory) -> dict[str, str]:
+    plain = {name: json.dumps(getattr(run, name), allow_nan=False) for name in _PLAIN}
+    return {
+        "model": run.model,
+        "status": run.status,
+        "message": run.message,
+        "outcome": json.dumps(run.outcome._asdict()),
+        **plain,
+    }
 
 
 def _require_plain(plain: dict[str, Any]) -> None:

@@ -13,8 +13,8 @@ NumPy's vector code may treat the end of an array differently from its middle.
 from typing import Annotated, Any, Literal
 
 import numpy as np
+import scipy  # its submodules load at their first use
 from pydantic import BeforeValidator, ValidationInfo, field_validator
-from scipy.special import exp2, log1p, ndtr, ndtri
 
 from tipoff.scenes.rounding import at_most
 from tipoff.scenes.table import Table
@@ -86,7 +86,7 @@ class LogUniform(_Limits):
 
     def ppf(self, u: np.ndarray) -> np.ndarray:
         """Quantiles (SI) of probabilities ``u``, any shape."""
-        return self.low * exp2(u * np.log2(self.high / self.low))
+        return self.low * scipy.special.exp2(u * np.log2(self.high / self.low))
 
 
 class Normal(Table):
@@ -101,7 +101,7 @@ class Normal(Table):
 
     def ppf(self, u: np.ndarray) -> np.ndarray:
         """Quantiles (SI) of probabilities ``u``, any shape."""
-        return self.mean + self.sd * ndtri(u)
+        return self.mean + self.sd * scipy.special.ndtri(u)
 
 
 class TruncatedNormal(_Limits):
@@ -123,7 +123,7 @@ class TruncatedNormal(_Limits):
             # Probabilities near one have no digits left, so limits above the mean are mirrored.
             z = -_between(-b, -a, 1.0 - u) if a > 0.0 else _between(a, b, u)
         else:
-            z = ndtri(u)
+            z = scipy.special.ndtri(u)
         return np.clip(self.mean + self.sd * z, self.low, self.high)
 
 
@@ -138,12 +138,12 @@ class Rayleigh(Table):
 
     def ppf(self, u: np.ndarray) -> np.ndarray:
         """Quantiles (SI) of probabilities ``u``, any shape."""
-        return self.scale * np.sqrt(-2.0 * log1p(-u))
+        return self.scale * np.sqrt(-2.0 * scipy.special.log1p(-u))
 
 
 def _between(a: float, b: float, u: np.ndarray) -> np.ndarray:
-    below = ndtr(a)
-    return ndtri(below + u * (ndtr(b) - below))
+    below = scipy.special.ndtr(a)
+    return scipy.special.ndtri(below + u * (scipy.special.ndtr(b) - below))
 
 
 Distribution = Fixed | Uniform | LogUniform | Normal | TruncatedNormal | Rayleigh

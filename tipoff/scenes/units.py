@@ -33,7 +33,19 @@ _UNIT = re.compile(rf"(?:{_POWER}(?!\s*(?:\*\*|\^))|[^\W\d]\w*|1(?![\w.])|[%°()
 # Magnitudes (SI) beyond these are typing errors. Products of quantities would overflow, and the
 # place of a rail would be lost in rounding.
 _LARGEST, _LARGEST_LENGTH = 1e200, 1e9
-
+# Factors of units that scenes often have, by the unit of the field. pint has the same factors, but it
+# takes longer to load than a stored run.
+_FACTORS = {
+    "m": {"mm": 1e-3, "um": 1e-6, "km": 1e3},
+    "s": {"ms": 1e-3},
+    "rad": {"deg": math.pi / 180.0},
+    "m/s": {"mm/s": 1e-3},
+    "rad/s": {"deg/s": math.pi / 180.0},
+    "N": {"kN": 1e3},
+    "Pa": {"MPa": 1e6, "GPa": 1e9},
+    "N*s/m": {"N*s/mm": 1e3},
+    "N/m**1.5": {"N/mm**1.5": 1e3**1.5},
+}
 
 _LOADING = threading.Lock()
 
@@ -69,6 +81,9 @@ def to_si(text: str, unit: str, absolute: bool = False) -> float:
     number, given_unit = float(match[1]), match[2] or "dimensionless"
     if not math.isfinite(number):
         raise ValueError(f"{named(unit)}, neither NaN nor infinite")
+    factor = 1.0 if given_unit == unit else _FACTORS.get(unit, {}).get(given_unit)
+    if factor is not None:
+        return _finite(number * factor, unit)
     if len(given_unit) > _LONGEST or not _UNIT.fullmatch(given_unit):
         raise ValueError(f"{named(unit)} ({given_unit[:_LONGEST]!r} is no unit)")
     import pint

@@ -11,7 +11,6 @@ import sys
 
 OLDEST_PYTHON = (3, 11)
 
-# No module here imports h5py, but h5netcdf needs it to write files.
 MODULES = (
     "numpy", "scipy", "numba", "skfem", "meshio", "pint", "pydantic", "typer", "rich",
     "xarray", "h5netcdf", "h5py", "cma", "matplotlib",

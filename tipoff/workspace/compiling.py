@@ -4,11 +4,13 @@ In one process Numba compiles one kernel at a time, so threads that make runs wi
 would wait for each other.
 """
 
+import sys
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from multiprocessing import get_context
+from pathlib import Path
 
 from tipoff.workspace import kernel_marks
 from tipoff.workspace.progress import Board, say
@@ -30,11 +32,12 @@ def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
     with progress under ``title`` on standard error.
 
     Runs with the same model and the same effects count as one. With one worker, or one kernel, this
-    does nothing: the run compiles its kernel itself.
+    does nothing: the run compiles its kernel itself. The same in a script of the user, because each
+    process would begin by running the script again.
     """
     named = {kernel_marks.mark(run): run for run in reversed(runs)}
     missing = {mark: run for mark, run in named.items() if not kernel_marks.are_there(run)}
-    if min(workers, len(missing)) < 2:
+    if min(workers, len(missing)) < 2 or _is_script():
         return
     pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"))
     try:
@@ -52,3 +55,10 @@ def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
         say("  a process that compiled kernels was ended; the runs compile their own")
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _is_script() -> bool:
+    """Whether the program is a script other than the command, so not a module or a session."""
+    main = sys.modules["__main__"]
+    path = getattr(main, "__file__", None)
+    return path is not None and main.__spec__ is None and Path(path).stem != "tipoff"

@@ -19,18 +19,19 @@ from concurrent.futures import as_completed
 from pathlib import Path
 
 from tipoff import cache
-from tipoff.files import discard, netcdf
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.files import discard
+from tipoff.mechanics.trajectory import Trajectory, content
 from tipoff.scenes.faults import InputError
 from tipoff.workspace import kernel_marks
 from tipoff.workspace.attempt import attempt
+from tipoff.workspace.compiling import compile_ahead
 from tipoff.workspace.errors import StudyError
 from tipoff.workspace.progress import Board, Interrupted, say, team
 from tipoff.workspace.run import Run, execute, prepare
 
 # stop all runs: bad input, Ctrl-C, and refusals of this machine
 _STOPPING = (InputError, StudyError, Interrupted, OSError, MemoryError)
-RUNS: cache.Cache[Trajectory] = cache.binary(lambda run: netcdf(run.to_xarray()), Trajectory.load)
+RUNS: cache.Cache[Trajectory] = cache.binary(content, Trajectory.load)
 
 
 def _surrogate(
@@ -83,6 +84,7 @@ class Store:
     def _make(self, title: str, runs: list[Run]) -> dict[str, Trajectory]:
         for run in runs:
             prepare(run)
+        compile_ahead(f"{title}, kernels", runs, self.workers)
         made: dict[str, Trajectory] = {}
         # Parallel runs are fastest with one thread each: threads of one run would wait for each
         # other.
@@ -105,7 +107,8 @@ class Store:
         progress = board.callback(run.label)
         progress(0.0)
         make = self._kept if run.fidelity == "highfi" else _surrogate
-        trajectory = make(run, progress, threads)
+        with kernel_marks.first_use(run):
+            trajectory = make(run, progress, threads)
         RUNS.put(self.path(run), run.key, trajectory)
         discard(self.checkpoint(run))
         message = f" ({trajectory.message})" if trajectory.message else ""

@@ -11,7 +11,7 @@ from tipoff import scenes
 from tipoff.mechanics.model import build
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.studies.ablation.stage import Ablation, Row
-from tipoff.studies.cost import scaling
+from tipoff.studies.cost import scaling, trends
 from tipoff.studies.cost import scaling_page as page
 from tipoff.studies.cost.results import Laws, MeshGrowth, PowerLaw, Scaling, Timing
 from tipoff.studies.cost.scaling import effects, fitted, power_law, shares, with_pads
@@ -38,7 +38,8 @@ def timing(n, steps, seconds, element_size=None) -> Timing:
 def growth(meshes, finest, fixed, each, pads) -> Scaling:
     """All growth of the scene tiny."""
     elements = MeshGrowth(**vars(meshes), finest=finest, fixed_s=fixed, element_s=each)
-    return Scaling(elements=elements, pads=(pads,), effects=effects(scenes.load("tiny"), ABLATION))
+    priced = effects(scenes.load("tiny"), ABLATION)
+    return Scaling(elements=elements, pads=(pads,), effects=priced, trends=())
 
 
 def test_exponent_of_an_exact_law():
@@ -143,6 +144,39 @@ def test_mesh_from_a_file_is_not_run_ten_times(monkeypatch, tmp_path):
         "channel": [SPRINGS, COMPLIANT],
         "tiny": [FINITE_ELEMENTS, SPRINGS, COMPLIANT],
     }
+
+
+def test_longer_rails_are_rails_end_to_end():
+    scene = scenes.load("reference")
+    rail, longer = scene.rail, trends.lengthened(scene, 3).rail
+    length = rail.end - rail.start
+    assert longer.end - longer.start == pytest.approx(3.0 * length, rel=1e-12)
+    assert len(longer.mounts) == 3 * len(rail.mounts)
+    first, last = rail.mounts[0], longer.mounts[-len(rail.mounts)]
+    assert last.start == pytest.approx(first.start + 2.0 * length, rel=1e-12)
+    assert trends.lengthened(scenes.load("channel"), 2) is None  # its rail is a file
+
+
+def test_each_trend_has_its_size_and_the_exponent_of_the_method(monkeypatch, tmp_path):
+    """With calls of 1 s for each unit of their size, and of 1 s shared by threads."""
+    scene = scenes.load("tiny")
+    study = Study(scene, tmp_path, replace(defaults(scene), element_size=8e-3))
+    laws = iter([(1.0, 2.0, 4.0), (256.0, 1024.0, 4096.0), (1.0, 0.5), (1.0, 0.5)])
+    monkeypatch.setattr(trends, "_threads", lambda: [1, 2])
+    monkeypatch.setattr(trends, "_seconds", lambda calls, clock: list(next(laws))[: len(calls)])
+    found = trends.measured(study, next(iter(study.conditions)))
+    assert [trend.size for trend in found] == [
+        "length of the rails (m)",
+        "cases",
+        "threads",
+        "threads",
+    ]
+    for trend in found:
+        assert trend.law.exponent == pytest.approx(trend.expected, abs=1e-9)
+    # Control: without contact, no compliance
+    laws = iter([(256.0, 1024.0, 4096.0), (1.0, 0.5), (1.0, 0.5)])
+    bare = Study(scene.replace({"contact": None, "friction": None}), tmp_path, study.settings)
+    assert len(trends.measured(bare, next(iter(bare.conditions)))) == 3
 
 
 def rows(times) -> tuple[Row, ...]:

@@ -9,6 +9,7 @@ from tipoff import lowfi, scenes
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.single import disturbed
 from tipoff.workspace.run import Run
+from tipoff.workspace.store import Store
 
 REFERENCE = scenes.load("reference")
 
@@ -57,6 +58,29 @@ def test_clearances_along_the_axes_are_disturbed_too():
     found = disturbed.of(Run("lowfi", "phi60", scene, lowfi.Numerics()), nominal, 1e-6)
     expected = moved("phi60")[0].by_clearance_deg_s
     assert found.by_clearance_deg_s == pytest.approx(expected, rel=0.05)
+
+
+def test_disturbed_runs_are_made_once(tmp_path, monkeypatch, capsys):
+    """A second call reads their result. Control: another change, another run and a damaged file make
+    them again."""
+    calls, execute = [], disturbed.execute
+    monkeypatch.setattr(disturbed, "execute", lambda run: calls.append(run) or execute(run))
+    store, numerics = Store(tmp_path), lowfi.Numerics(relative_tolerance=1e-6)
+
+    def kept(condition: str = "phi60", change: float = 1e-6) -> tuple[disturbed.Disturbed, int]:
+        run = Run("lowfi", condition, REFERENCE.condition(condition), numerics)
+        before = len(calls)
+        found = disturbed.kept(store, run, lowfi.run(run.scene, "springs"), change)
+        return found, len(calls) - before
+
+    first, made = kept()
+    assert made == 3 and kept() == (first, 0)
+    assert kept(change=2e-6)[1] == 3 and kept("phi35")[1] == 3
+    assert kept() == (first, 3)  # one file beside the run
+    for path in tmp_path.rglob("*.disturbed.json"):
+        path.write_text(path.read_text().replace("by_tolerance", "by_"))
+    assert kept() == (first, 3)
+    assert "its disturbed runs are made again" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("condition, warned", [("phi60", False), ("h8", True)])

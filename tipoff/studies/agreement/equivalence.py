@@ -35,7 +35,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
-from scipy.special import betainc, ndtr, stdtrit
+import scipy  # its submodules load at their first use
 
 from tipoff.comparison import order_statistics
 from tipoff.studies.render.column import Column
@@ -140,7 +140,10 @@ def harrell_davis(samples: np.ndarray) -> np.ndarray:
     count = samples.shape[1]
     places = np.arange(count + 1) / count
     steps = np.array(
-        [np.diff(betainc((count + 1) * p, (count + 1) * (1.0 - p), places)) for p in SHARES]
+        [
+            np.diff(scipy.special.betainc((count + 1) * p, (count + 1) * (1.0 - p), places))
+            for p in SHARES
+        ]
     )
     return np.einsum("bnc,qn->bcq", np.sort(samples, axis=1), steps)
 
@@ -166,7 +169,11 @@ def _resampled(values: np.ndarray, generator: np.random.Generator) -> np.ndarray
 def _tails(level: float, count: int) -> tuple[float, float]:
     """Shares of bootstrap replicates beyond one-sided bounds at a ``level``: smaller for few draws,
     because Student's t is wider than the normal distribution."""
-    tail = float(ndtr(math.sqrt(count / (count - 1.0)) * stdtrit(count - 1, level)))
+    tail = float(
+        scipy.special.ndtr(
+            math.sqrt(count / (count - 1.0)) * scipy.special.stdtrit(count - 1, level)
+        )
+    )
     return tail, 1.0 - tail
 
 

@@ -130,12 +130,26 @@ class EffectTimes:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Trend:
+    """Times of a task over a size, their power law, and the exponent ``expected`` of the method."""
+
+    task: str
+    size: str
+    sizes: tuple[float, ...]
+    times_s: tuple[float, ...]
+    law: PowerLaw
+    expected: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Scaling:
-    """Growth of the time with elements, with pads of each model, and with effects of each model."""
+    """Growth of the time with elements, with pads of each model, with effects of each model, and
+    with length of the rails, cases and threads (``trends``)."""
 
     elements: MeshGrowth
     pads: tuple[Growth, ...]
     effects: tuple[EffectTimes, ...]
+    trends: tuple[Trend, ...]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,6 +15,7 @@ from tipoff.studies.cost.results import (
     Rung,
     Scaling,
     Timing,
+    Trend,
 )
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Part
@@ -36,6 +37,11 @@ _EXPECTED = (
     "Time t = c n^p, p with its standard error. Expected over elements: 1 for a step, 4/3 for a "
     "run. Values are smaller if part of a step takes the same time on any mesh, or if the "
     "thickness of the walls limits the time step. Other numbers of pads also change the motion."
+)
+_TRENDS = (
+    "Processor time over length and cases, wall time over threads; the shorter of two calls. Longer "
+    "rails have the mounts of several rails end to end. The magnitude of p is smaller if a part of "
+    "the task does not depend on the size, or if threads share one processor."
 )
 _TIMES = (
     "In brackets: time relative to that without effects. First rows: nested sets of effects. "
@@ -115,7 +121,13 @@ def _ladder(item: EffectTimes) -> Line:
 def tables(found: Scaling) -> list[Part]:
     """Exponents, the points they are fitted to, and the time of each effect."""
     elements = found.elements
-    return [_exponents(found), _meshes(elements), _pads(found.pads), _times(found.effects)]
+    return [
+        _exponents(found),
+        _meshes(elements),
+        _pads(found.pads),
+        _trends(found.trends),
+        _times(found.effects),
+    ]
 
 
 def exponent(law: PowerLaw) -> str:
@@ -166,6 +178,21 @@ def _pads(laws: Sequence[Growth]) -> Table:
     ]
     counts = [f"pads: {point.n}" for point in laws[0].points]
     return Table(["time of a run (ms); of a step (µs)", *counts], rows)
+
+
+def _trends(trends: Sequence[Trend]) -> Table:
+    rows = [
+        (
+            trend.task,
+            trend.size,
+            ", ".join(f"{size:,.4g}" for size in trend.sizes),
+            ", ".join(f"{seconds:.2g}" for seconds in trend.times_s),
+            exponent(trend.law),
+            f"{trend.expected:g}",
+        )
+        for trend in trends
+    ]
+    return Table(["task", "over", "sizes", "times (s)", "p", "expected"], rows, notes=(_TRENDS,))
 
 
 def _times(found: Sequence[EffectTimes]) -> Table:

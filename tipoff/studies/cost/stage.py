@@ -1,5 +1,6 @@
 """Stage ``cost``: error of the settled rates over wall time, both fidelities on one condition; and
-growth of time with elements, pads and effects (``studies.cost.scaling``).
+growth of time with elements, pads and effects (``studies.cost.scaling``), and with length of the
+rails, cases and threads (``studies.cost.trends``).
 
 Errors are relative to the finest finite-element mesh. Its uncertainty is the band below which an error
 cannot be distinguished from zero; a smaller error counts as the band in the Pareto front. Every run is
@@ -26,7 +27,7 @@ from tipoff.studies.agreement import refinement, verdicts
 from tipoff.studies.agreement.candidates import Candidate, candidates
 from tipoff.studies.agreement.verdicts import Context
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.cost import choice, scaling
+from tipoff.studies.cost import choice, scaling, trends
 from tipoff.studies.cost.choice import Trusted
 from tipoff.studies.cost.results import Cost, Match, Point, Scaling
 from tipoff.workspace import machine
@@ -59,6 +60,7 @@ def run(study: Study) -> dict:
             elements=scaling.elements(study, name),
             pads=scaling.pads(study, name),
             effects=scaling.effects(study.condition(name), without),
+            trends=trends.measured(study, name),
         )
         path, points = study.path(POINTS), marked(points, band)
         write_text(path, json.dumps(list(map(asdict, points)), indent=1, allow_nan=False) + "\n")

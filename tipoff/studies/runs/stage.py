@@ -12,7 +12,6 @@ from tipoff.mechanics.outcome import Outcome
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.convergence import stresses
 from tipoff.studies.runs.results import ByHand, Row, Runs, Settled, Vector
-from tipoff.workspace import kernel_marks
 from tipoff.workspace.run import Run
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import FAILED, Study
@@ -59,15 +58,8 @@ STAGES = {fidelity: _stage(fidelity) for fidelity in ("highfi", "lowfi")}
 
 def fill(study: Study, name: str, requested: dict[str, Run]) -> dict[str, Trajectory]:
     """The runs of ``requested`` by their names. Runs that are not stored are made under the
-    ``name`` of a stage. A compilation is announced once."""
-    asked = list(requested.values())
-    missing = [run for run in asked if not study.store.path(run).is_file()]
-    for run in missing:
-        kernel_marks.announce(run)
-    found = dict(zip(requested, study.store.fill(name, asked)))
-    for run in missing:
-        kernel_marks.remember(run)
-    return found
+    ``name`` of a stage."""
+    return dict(zip(requested, study.store.fill(name, list(requested.values()))))
 
 
 def failure(name: str, request: Run, found: Trajectory) -> list[str]:

@@ -1,15 +1,18 @@
 """Change of the settled rates of one surrogate run by 1 um of clearance and by a tighter tolerance.
 
 In a chaotic ejection both changes grow from contact to contact (``studies.agreement.growth``). They limit
-the accuracy of any single run of such a case.
+the accuracy of any single run of such a case. The changes are stored beside the run, ``lowfi/*.disturbed.json``.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 
+from tipoff import cache, sources
+from tipoff.files import content_hash
 from tipoff.lowfi.ensemble import twins
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.agreement.verdicts import largest, settled_change
 from tipoff.workspace.run import Run, execute, with_modes_of
+from tipoff.workspace.store import Store
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,6 +25,24 @@ class Disturbed:
     by_tolerance_deg_s: float | None
     clearance_change_m: float | None = None
     by_clearance_deg_s: float | None = None
+
+
+def _loaded(found: dict) -> Disturbed:
+    return Disturbed(**{item.name: found[item.name] for item in fields(Disturbed)})
+
+
+_KEPT: cache.Cache[Disturbed] = cache.documents(asdict, _loaded)
+
+
+def kept(store: Store, run: Run, nominal: Trajectory, clearance_change: float) -> Disturbed:
+    """As ``of``, read from the ``store`` if it is there with the same key, else computed and stored."""
+    key = content_hash(run.key, clearance_change, sources.program(__name__))
+    return _KEPT.get_or_make(
+        store.path(run).with_suffix(".disturbed.json"),
+        key,
+        "its disturbed runs are made again",
+        lambda: of(run, nominal, clearance_change),
+    )
 
 
 def of(run: Run, nominal: Trajectory, clearance_change: float) -> Disturbed:

@@ -11,16 +11,13 @@ from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.scenes.faults import InputError
 from tipoff.studies.agreement import kept, verdicts
-from tipoff.studies.agreement import stage as compare
 from tipoff.studies.calibration.files import constants
-from tipoff.studies.cost import choice
-from tipoff.studies.cost import stage as cost
 from tipoff.studies.render.uncertain import uncertain
 from tipoff.studies.runs.results import Row
 from tipoff.studies.runs.stage import failure, row
 from tipoff.studies.single import disturbed
 from tipoff.studies.single.disturbed import Disturbed
-from tipoff.workspace import kernel_marks, models, words
+from tipoff.workspace import models, words
 from tipoff.workspace.attempt import attempt
 from tipoff.workspace.progress import say
 from tipoff.workspace.run import Run
@@ -90,6 +87,10 @@ def chosen(
     """The same with the model that the cost study recommends; ``chosen`` has the model and the
     reason. Raises StudyError if no model meets the limits, or without a cost study of this scene
     and code."""
+    from tipoff.studies.agreement import stage as compare  # these load the finite elements,
+    from tipoff.studies.cost import choice  # and a stored run of a named model does without
+    from tipoff.studies.cost import stage as cost
+
     whole = study.unrestricted()  # stored results are of all conditions
     measured = cost.stored(whole)
     if measured is None:
@@ -115,15 +116,11 @@ def chosen(
 
 
 def result_of(study: Study, condition: str, request: Run, quiet: bool) -> dict:
-    found = study.store.load(request)
-    if found is None:
-        kernel_marks.announce(request)
-        found = study.store.get(request)
-        kernel_marks.remember(request)
+    found = study.store.get(request)
     calibrated, modes = request.calibration is not None, getattr(request.numerics, "modes", AUTO)
     moved = None
     if request.fidelity == "lowfi" and found.outcome.rate is not None:
-        moved = disturbed.of(request, found, study.settings.clearance_change)
+        moved = disturbed.kept(study.store, request, found, study.settings.clearance_change)
     made = Single(
         **vars(row(condition, found, study.relative(study.store.path(request)), request)),
         implausible=tuple(request.scene.warnings),
