@@ -16,7 +16,7 @@ from tipoff import cache, sources
 from tipoff.files import content_hash
 from tipoff.highfi import compliance as statics
 from tipoff.highfi import discretisation
-from tipoff.highfi.statics import inputs
+from tipoff.highfi.statics import inputs, places
 from tipoff.mechanics import model as scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance, content, digest
 from tipoff.scenes.scene import Scene
@@ -77,7 +77,7 @@ def _made(
         f"{500 * element_size:g} mm for its uncertainty; takes seconds to minutes"
     )
     began = time.perf_counter()
-    with statics.progress_to(_Waiting(say, time.perf_counter)):
+    with places.progress_to(_Waiting(say, time.perf_counter)):
         found = compliance(scene, element_size)
     say(f"  computed in {time.perf_counter() - began:.3g} s, stored in {path}")
     return found

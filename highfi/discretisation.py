@@ -28,12 +28,13 @@ import numpy as np
 from scipy.linalg import eigh
 from scipy.sparse import csc_array, csr_array, kron
 
-from tipoff.highfi.compliance import Patches, nominal
+from tipoff.highfi.compliance import nominal
 from tipoff.highfi.mesh import pieces, split
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.run import prepare
 from tipoff.highfi.statics import assembly, inputs, vibration
+from tipoff.highfi.statics.places import Patches
 from tipoff.highfi.statics.solve import Clamped, one_thread
 from tipoff.mechanics import model as scene_model
 from tipoff.mechanics.model import Faces

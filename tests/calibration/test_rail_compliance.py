@@ -11,6 +11,7 @@ from tests.in_memory import memory
 from tipoff import calibration
 from tipoff.calibration import rail_compliance
 from tipoff.highfi import compliance as statics
+from tipoff.highfi.statics import places
 from tipoff.mechanics.rail_compliance import digest
 from tipoff.scenes import SceneError, load
 from tipoff.scenes.scene import Scene
@@ -145,7 +146,7 @@ def _said(monkeypatch, tmp_path, seconds: float) -> list[str]:
 
     def condense(scene, size):
         nonlocal now
-        report = statics.reported()
+        report = places.reported()
         for part in range(4):
             now += seconds
             report(0.25 * (part + 1))
@@ -189,9 +190,9 @@ def test_the_elements_and_their_uncertainty_are_stored_and_said_once(tmp_path):
 
 def test_the_loads_solved_for_are_reported(monkeypatch):
     """Every batch of a rail, up to all of it."""
-    monkeypatch.setattr(statics, "BATCH", 2)
+    monkeypatch.setattr(places, "BATCH", 2)
     seen = []
-    with statics.progress_to(seen.append):
+    with places.progress_to(seen.append):
         rail_compliance.direct(load("tiny"), 16e-3)
     assert seen == sorted(seen) and seen[-1] == 1.0 and len(seen) > 3
     rail_compliance.direct(load("tiny"), 16e-3)
@@ -200,9 +201,9 @@ def test_the_loads_solved_for_are_reported(monkeypatch):
 
 def test_threads_do_not_change_a_bit(monkeypatch):
     """Batches that are solved for side by side, and one after another."""
-    monkeypatch.setattr(statics, "BATCH", 2)
+    monkeypatch.setattr(places, "BATCH", 2)
     found = []
     for cores in (1, 4):
-        monkeypatch.setattr(statics, "processors", lambda cores=cores: cores)
+        monkeypatch.setattr(places, "processors", lambda cores=cores: cores)
         found.append(statics.condense(load("tiny"), 16e-3).hash)
     assert found[0] == found[1]

@@ -35,7 +35,7 @@ _UNIT = re.compile(rf"(?:{_POWER}(?!\s*(?:\*\*|\^))|[^\W\d]\w*|1(?![\w.])|[%°()
 _LARGEST, _LARGEST_LENGTH = 1e200, 1e9
 # Factors of units that scenes often have, by the unit of the field. pint has the same factors, but it
 # takes longer to load than a stored run.
-_FACTORS = {
+COMMON_FACTORS = {
     "m": {"mm": 1e-3, "um": 1e-6, "km": 1e3},
     "s": {"ms": 1e-3},
     "rad": {"deg": math.pi / 180.0},
@@ -81,7 +81,7 @@ def to_si(text: str, unit: str, absolute: bool = False) -> float:
     number, given_unit = float(match[1]), match[2] or "dimensionless"
     if not math.isfinite(number):
         raise ValueError(f"{named(unit)}, neither NaN nor infinite")
-    factor = 1.0 if given_unit == unit else _FACTORS.get(unit, {}).get(given_unit)
+    factor = 1.0 if given_unit == unit else COMMON_FACTORS.get(unit, {}).get(given_unit)
     if factor is not None:
         return _finite(number * factor, unit)
     if len(given_unit) > _LONGEST or not _UNIT.fullmatch(given_unit):

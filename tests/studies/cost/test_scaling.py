@@ -162,8 +162,8 @@ def test_each_trend_has_its_size_and_the_exponent_of_the_method(monkeypatch, tmp
     scene = scenes.load("tiny")
     study = Study(scene, tmp_path, replace(defaults(scene), element_size=8e-3))
     laws = iter([(1.0, 2.0, 4.0), (256.0, 1024.0, 4096.0), (1.0, 0.5), (1.0, 0.5)])
-    monkeypatch.setattr(trends, "_threads", lambda: [1, 2])
-    monkeypatch.setattr(trends, "_seconds", lambda calls, clock: list(next(laws))[: len(calls)])
+    monkeypatch.setattr(trends, "thread_counts", lambda: [1, 2])
+    monkeypatch.setattr(trends, "seconds", lambda calls, clock: list(next(laws))[: len(calls)])
     found = trends.measured(study, next(iter(study.conditions)))
     assert [trend.size for trend in found] == [
         "length of the rails (m)",

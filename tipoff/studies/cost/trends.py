@@ -69,7 +69,7 @@ def _over_length(study: Study, name: str, board: Board) -> Trend | None:
     if len(rails) < 2:
         return None
     size = 2.0 * study.settings.coarse_size
-    times = _seconds(
+    times = seconds(
         [partial(highfi.condense, scene, element_size=size) for scene in rails],
         time.process_time,
     )
@@ -90,10 +90,10 @@ def _over_cases_and_threads(study: Study, name: str, board: Board) -> list[Trend
         return lambda: sum(map(len, completed(family, pieces, threads)))
 
     call(1, 1)()  # compiles its kernels
-    of_cases = _seconds([call(count, 1) for count in _CASES], time.process_time)
+    of_cases = seconds([call(count, 1) for count in _CASES], time.process_time)
     board.finished("ensemble", f"{len(_CASES)} numbers of cases timed")
-    threads = _threads()
-    of_threads = _seconds([call(_CASES[-1], number) for number in threads], time.perf_counter)
+    threads = thread_counts()
+    of_threads = seconds([call(_CASES[-1], number) for number in threads], time.perf_counter)
     board.finished("ensemble, threads", f"up to {threads[-1]} threads timed")
     task = f"ensemble, {COMPLIANT}" if walls is not None else "ensemble"
     return [
@@ -103,9 +103,9 @@ def _over_cases_and_threads(study: Study, name: str, board: Board) -> list[Trend
 
 
 def _of_reference_over_threads(study: Study, name: str, board: Board) -> Trend:
-    run, threads = study.coarse(name), _threads()
+    run, threads = study.coarse(name), thread_counts()
     warm_up(run)
-    times = _seconds(
+    times = seconds(
         [partial(execute, run, None, number) for number in threads],
         time.perf_counter,
     )
@@ -113,13 +113,13 @@ def _of_reference_over_threads(study: Study, name: str, board: Board) -> Trend:
     return _trend(FINITE_ELEMENTS, "threads", threads, times, -1.0)
 
 
-def _threads() -> list[int]:
+def thread_counts() -> list[int]:
     """Powers of two up to the processors of the machine."""
     count = os.cpu_count() or 1
     return [2**power for power in range(count.bit_length())]
 
 
-def _seconds(calls: Sequence[Callable[[], object]], clock: Callable[[], float]) -> list[float]:
+def seconds(calls: Sequence[Callable[[], object]], clock: Callable[[], float]) -> list[float]:
     """Seconds of each call by ``clock``: the shorter of two rounds."""
 
     def one(call: Callable[[], object]) -> float:
