@@ -37,7 +37,8 @@ def compliance(scene: Scene, element_size: float | None = None) -> RailComplianc
     Takes seconds to minutes, once for a rail and its pads. Raises SceneError or MeshError.
     """
     size = element_size or own_size(scene.studies)
-    return discretisation.stated(scene, size, statics.condense(scene, size))
+    rails = statics.rails(scene, size)
+    return discretisation.stated(scene, size, statics.condense(scene, size, held=rails), rails)
 
 
 def walls(scene: Scene, element_size: float | None = None) -> RailCompliance | None:

@@ -22,19 +22,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.highfi.mesh import pieces
-from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.rail import drawn_walls
 from tipoff.highfi.run import prepare
 from tipoff.highfi.statics import inputs, joint_terms
+from tipoff.highfi.statics.held import HeldRail, distinct
 from tipoff.highfi.statics.places import Patches, pressed_together
 from tipoff.mechanics import model as scene_model
 from tipoff.mechanics.rail_compliance import MODES, PATTERNS, RailCompliance, digest
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
-from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from tipoff.scenes.effects.thermal import FIELDS
-from tipoff.scenes.rail import MaterialTable, SectionTable
+from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
 
 _SPACING = 4e-3  # m between stations; mounts and ends act over about the length of a leg
@@ -61,17 +59,24 @@ class Compliance(NamedTuple):
 
 
 def condense(
-    scene: Scene, element_size: float, spacing: float = _SPACING, modes: int = MODES
+    scene: Scene,
+    element_size: float,
+    spacing: float = _SPACING,
+    modes: int = MODES,
+    held: Sequence[HeldRail] | None = None,
 ) -> RailCompliance:
     """Flexibility and lowest ``modes`` of the rails of ``scene`` in elements of about
     ``element_size`` (m), at stations about ``spacing`` (m) apart from ignition until the last pad
-    begins to leave. The result is valid for any factor on the stiffness of the mounts.
+    begins to leave. The result is valid for any factor on the stiffness of the mounts. With
+    ``rails(scene, element_size)`` as ``held``, their factors can be used again.
 
     Raises SceneError or MeshError.
     """
     scene = nominal(scene)
     stations = _stations(scene, spacing)
-    found = along(scene, element_size, stations, PATTERNS, modes)
+    own = inputs.of(scene)
+    held = held or rails(scene, element_size)
+    found = of_rails(held, own.faces, own.reach, stations, PATTERNS, modes)
     inverse = np.linalg.pinv(found.gram, rcond=_SINGULAR, hermitian=True)
     flexibility = np.einsum("siab,sibjc,sjcd->siajd", inverse, found.matrix, inverse, optimize=True)
     warm = np.einsum("siab,sibt->tsia", inverse, found.warm)
@@ -138,6 +143,15 @@ def nominal(scene: Scene) -> Scene:
     return scene.replace({"rail.mount_stiffness.factor": 1.0})
 
 
+def rails(scene: Scene, element_size: float) -> list[HeldRail]:
+    """The distinct rails of ``scene`` in elements of about ``element_size`` (m) on their mounts, with
+    a factor of 1 on the stiffness of these. Raises SceneError or MeshError."""
+    scene = nominal(scene)
+    mesh = prepare(scene, Numerics(element_size=element_size))
+    own = inputs.of(scene)
+    return distinct(mesh, own.material, own.joint)
+
+
 def along(
     scene: Scene,
     element_size: float,
@@ -153,21 +167,20 @@ def along(
     """
     own = inputs.of(scene)
     mesh = prepare(scene, Numerics(element_size=element_size))
-    return of_mesh(mesh, own.material, own.faces, own.reach, travel, patterns, modes, own.joint)
+    held = distinct(mesh, own.material, own.joint)
+    return of_rails(held, own.faces, own.reach, travel, patterns, modes)
 
 
-def of_mesh(
-    mesh: RailMesh,
-    material: MaterialTable,
+def of_rails(
+    held: Sequence[HeldRail],
     faces: scene_model.Faces,
     reach: tuple[float, float],
     travel: Sequence[float] | np.ndarray,
     patterns: int = PATTERNS,
     modes: int = 0,
-    joint: MountStiffness | None = None,
 ) -> Compliance:
-    """As ``along``, for a mesh whose points are in the axes of ``faces.centre`` and ``faces.wall``,
-    between the X (m) of ``reach``, on rigid mounts or on a ``joint``.
+    """As ``along``, for ``held`` rails whose points are in the axes of ``faces.centre`` and
+    ``faces.wall``, between the X (m) of ``reach``.
 
     Raises MeshError for a rail under a face without a mount, ValueError for an unavailable number
     of patterns or modes.
@@ -185,20 +198,20 @@ def of_mesh(
     frequencies: list[np.ndarray] = []
     parts: list[joint_terms.Part] = []
     warm = np.zeros((stations.size, count, patterns, FIELDS))
-    for rail, images in pieces.distinct(mesh):
-        patches = Patches(rail, patterns)
-        places = [patches.under(faces, half, signs, reach, stations) for signs in images]
+    for rail in held:
+        patches = Patches(rail.rail, patterns)
+        places = [patches.under(faces, half, signs, reach, stations) for signs in rail.images]
         if not patches.found:
             continue
         # An additional last place without response, for faces without a wall (number -1).
         pairs, number_of = pressed_together(places, len(patches.found))
         answer, heated, frequency, swung, terms = patches.solved(
-            material, joint, 0.5 * (reach[0] + reach[1]), modes, pairs
+            rail, 0.5 * (reach[0] + reach[1]), modes, pairs
         )
         between = np.pad(answer, [(0, 1), (0, 0), (0, 0)])
         heated, swung = (np.pad(moved, [(0, 1), (0, 0), (0, 0)]) for moved in (heated, swung))
         grams = np.array([patch.gram for patch in patches.found] + [np.zeros((patterns, patterns))])
-        for number, signs in zip(places, images):
+        for number, signs in zip(places, rail.images):
             gram += grams[number]
             # the fields linear in y and z change sign with the image
             warm += heated[number] * np.r_[1.0, signs, 1.0]

@@ -20,34 +20,37 @@ Analysis of the Finite Element Method, 1973, chapter 8, the rate at singular poi
 Methods for Sparse Linear Systems, 2003, chapter 9.
 """
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import eigh
-from scipy.sparse import csc_array, csr_array, kron
+from scipy.sparse import csc_array, csr_array
 
+from tipoff.highfi import compliance
 from tipoff.highfi.compliance import nominal
-from tipoff.highfi.mesh import pieces, split
+from tipoff.highfi.mesh import split
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.run import prepare
-from tipoff.highfi.statics import assembly, inputs, vibration
+from tipoff.highfi.statics import assembly, inputs
+from tipoff.highfi.statics.held import HeldRail
+from tipoff.highfi.statics.operator import internal_force
 from tipoff.highfi.statics.places import Patches
 from tipoff.highfi.statics.solve import Clamped, one_thread
 from tipoff.mechanics import model as scene_model
 from tipoff.mechanics.model import Faces
 from tipoff.mechanics.rail_compliance import RailCompliance
-from tipoff.scenes.effects.mount_stiffness import MountStiffness
-from tipoff.scenes.rail import MaterialTable, MeshTable
+from tipoff.scenes.rail import MeshTable
 from tipoff.scenes.scene import Scene
 
 SAFETY_FACTOR = 1.25
 _PLACES = 4  # along the way of the pads
+_SOLUTIONS = 12  # about as many for each load, of the iteration and the modes
 _MODES = 3  # close modes may change places; the lowest is then still among them
-MOST_ENTRIES = 1.5e8  # in the matrices of all elements: bounds memory and time
-_CHUNK = 10_000  # elements assembled at once, for the same reason
+MOST_BYTES = 3e9  # on the finer mesh
+_ROWS = 6  # of each load, in the iteration
 _ACCURACY = 1e-4  # of the compliance, in the norm of the preconditioner
 _MOST_ITERATIONS = 500
 _SMOOTHING = 0.5  # share of the diagonal in the preconditioner
@@ -61,12 +64,18 @@ class Uncertainty(NamedTuple):
     why: str = ""
 
 
-def stated(scene: Scene, element_size: float, found: RailCompliance) -> RailCompliance:
+def stated(
+    scene: Scene,
+    element_size: float,
+    found: RailCompliance,
+    rails: Sequence[HeldRail] | None = None,
+) -> RailCompliance:
     """``found`` with the size (m) of its elements and their uncertainty. ``compliance.condense``
-    made it for ``scene`` and ``element_size`` (m). Raises SceneError or MeshError."""
+    made it for ``scene`` and ``element_size`` (m); ``rails`` are those that it used. Raises
+    SceneError or MeshError."""
     mesh = prepare(nominal(scene), Numerics(element_size=element_size))
     size = split.shortest(mesh) if isinstance(scene.rail, MeshTable) else element_size
-    known = of(scene, element_size)
+    known = of(scene, element_size, rails)
     return replace(
         found,
         element_size=size,
@@ -76,44 +85,38 @@ def stated(scene: Scene, element_size: float, found: RailCompliance) -> RailComp
     )
 
 
-def of(scene: Scene, element_size: float) -> Uncertainty:
-    """Uncertainty of ``compliance.condense`` in elements of ``element_size`` (m). Raises SceneError or
-    MeshError."""
+def of(scene: Scene, element_size: float, rails: Sequence[HeldRail] | None = None) -> Uncertainty:
+    """Uncertainty of ``compliance.condense`` in elements of ``element_size`` (m), with the same
+    ``rails``. Raises SceneError or MeshError."""
     scene = nominal(scene)
     own = inputs.of(scene)
-    mesh = prepare(scene, Numerics(element_size=element_size))
     way = own.reach[1] - own.faces.half_length - own.faces.centre[:, 0]
     travel = np.linspace(0.0, way.max(), _PLACES)
-    return of_mesh(mesh, own.material, own.faces, own.reach, travel, own.joint)
+    return of_rails(rails or compliance.rails(scene, element_size), own.faces, own.reach, travel)
 
 
-def of_mesh(
-    mesh: RailMesh,
-    material: MaterialTable,
+def of_rails(
+    rails: Sequence[HeldRail],
     faces: Faces,
     reach: tuple[float, float],
     travel: np.ndarray,
-    joint: MountStiffness | None = None,
 ) -> Uncertainty:
-    """Uncertainty of ``compliance.of_mesh``. Raises MeshError as it does."""
+    """Uncertainty of ``compliance.of_rails``. Raises MeshError as it does."""
     half = scene_model.half_sizes(faces)
     coarse, fine = (np.zeros((travel.size, faces.axis.size)) for _ in range(2))
     lowest: list[tuple[float, float]] = []
-    for rail, images in pieces.distinct(mesh):
-        elements = 8 * len(rail.cells)
-        if elements * (3 * rail.cells.shape[1]) ** 2 > MOST_ENTRIES:
-            return Uncertainty(
-                None, None, f"elements of half the size: {elements:,} on a rail, too many"
-            )
-        finer, weights = split.refined(rail)
-        both = Patches(rail, 1), Patches(finer, 1)
-        numbers = [
-            [patches.under(faces, half, signs, reach, travel) for signs in images]
-            for patches in both
-        ]
-        if not both[0].found:
+    for held in rails:
+        own = Patches(held.rail, 1)
+        numbers = [[own.under(faces, half, signs, reach, travel) for signs in held.images]]
+        if not own.found:
             continue
-        made = _pair(rail, finer, weights, (both[0].loads(), both[1].loads()), material, joint)
+        if _bytes(held, len(own.found)) > MOST_BYTES:
+            many = f"elements of half the size: {8 * len(held.rail.cells):,} on a rail, too many"
+            return Uncertainty(None, None, many)
+        finer, weights = split.refined(held.rail)
+        other = Patches(finer, 1)
+        numbers.append([other.under(faces, half, signs, reach, travel) for signs in held.images])
+        made = _pair(held, finer, weights, (own.loads(), other.loads()))
         if made is None:
             return Uncertainty(
                 None, None, "no convergence of the solution with elements of half the size"
@@ -141,79 +144,114 @@ class _Pair(NamedTuple):
     frequency: tuple[float, float]  # rad/s, the lowest
 
 
+def _bytes(held: HeldRail, loads: int) -> float:
+    """About the memory on the finer mesh: matrices of elements, of which each has at most eight
+    shapes, and rows of all degrees of freedom."""
+    return 8.0 * (
+        8 * held.operator.stiffness.size + _ROWS * (loads + _MODES) * 24 * len(held.rail.points)
+    )
+
+
 def _pair(
-    rail: RailMesh,
-    finer: RailMesh,
-    weights: csr_array,
-    loads: tuple[csc_array, csc_array],
-    material: MaterialTable,
-    joint: MountStiffness | None,
+    rail: HeldRail, finer: RailMesh, weights: csr_array, loads: tuple[csc_array, csc_array]
 ) -> _Pair | None:
     """Both solutions; None if the iteration on the finer mesh does not converge."""
-    operator = assembly.of_material(rail, material, joint=joint)
-    held = Clamped(operator)
+    held = rail.clamped(_SOLUTIONS * (loads[0].shape[1] + _MODES))
     own_load = loads[0][held.free].toarray()
     own = (own_load * held.solve(own_load)).sum(axis=0)
-    frequency, shape = vibration.modes(
-        held.stiffness, np.repeat(operator.mass, 3)[held.free], held.solve, _MODES
-    )
-    fine = assembly.of_material(finer, material, joint=joint)
-    free = np.repeat(fine.free, 3)
-    stiffness = _assembled(fine)[free][:, free]
-    between = csr_array(kron(weights, np.eye(3)))[free][:, held.free]
-    share = _SMOOTHING / stiffness.diagonal()[:, None]
-
-    def nearly(residual: np.ndarray) -> np.ndarray:
-        return between @ held.solve(between.T @ residual) + share * residual
-
-    mass = np.repeat(fine.mass, 3)[free]
-    pressed = loads[1][free].toarray()
-    swung = mass[:, None] * (between @ shape)
-    solved = _solved(stiffness, np.concatenate([pressed, swung], axis=1), nearly)
+    frequency, shape = rail.modes(_MODES)
+    operator = assembly.of_material(finer, rail.material, joint=rail.joint)
+    fine = _Finer(operator, weights, held)
+    pressed = fine.held_still(loads[1].toarray().T)
+    swung = fine.mass * fine.interpolated(shape.T)
+    solved = _solved(fine, np.concatenate([pressed, swung]))
     if solved is None:
         return None
     moved, rest = solved
-    count = pressed.shape[1]
-    compliance = (moved[:, :count] * (pressed + rest[:, :count])).sum(axis=0)
-    basis = moved[:, count:]
-    squares = eigh(
-        basis.T @ (stiffness @ basis), basis.T @ (mass[:, None] * basis), eigvals_only=True
-    )
-    return _Pair((own, compliance), (float(frequency[0]), float(np.sqrt(squares[0]))))
+    count = len(pressed)
+    finest = (moved[:count] * (pressed + rest[:count])).sum(axis=1)
+    basis = moved[count:]
+    squares = eigh(basis @ fine.force(basis).T, basis @ (fine.mass * basis).T, eigvals_only=True)
+    return _Pair((own, finest), (float(frequency[0]), float(np.sqrt(squares[0]))))
 
 
-def _assembled(operator: assembly.Operator) -> csr_array:
-    """``assembly.sparse``, in chunks that bound the memory."""
-    size = 3 * len(operator.mass)
-    found = csr_array((size, size)) if operator.joints is None else operator.joints
-    for start in range(0, len(operator.cells), _CHUNK):
-        part = slice(start, start + _CHUNK)
-        found = found + assembly.sparse(
-            operator._replace(
-                cells=operator.cells[part], shape_class=operator.shape_class[part], joints=None
+class _Finer:
+    """Statics of the finer mesh with all its 3n degrees of freedom; rows are loads or displacements.
+    The stiffness is not assembled: that would take longer than all products with it."""
+
+    def __init__(self, operator: assembly.Operator, weights: csr_array, coarse: Clamped):
+        self._operator, self._coarse = operator, coarse
+        self._weights, self._sums = weights, csr_array(weights.T)
+        self._fixed = np.flatnonzero(np.repeat(~operator.free, 3))
+        self._share = _SMOOTHING / self._diagonal()
+        self.mass = np.repeat(operator.mass, 3)
+
+    def _diagonal(self) -> np.ndarray:
+        own = self._operator
+        shares = np.einsum("cii->ci", own.stiffness)[own.shape_class]
+        freedoms = 3 * own.cells[:, :, None].astype(np.int64) + np.arange(3)
+        found = np.bincount(freedoms.ravel(), shares.ravel(), minlength=3 * len(own.mass))
+        return found if own.joints is None else found + own.joints.diagonal()
+
+    def held_still(self, rows: np.ndarray) -> np.ndarray:
+        """``rows`` with zeros for the fixed degrees of freedom, in place."""
+        rows[:, self._fixed] = 0.0
+        return rows
+
+    def force(self, moved: np.ndarray) -> np.ndarray:
+        """Force (l,3n) N of displacements (l,3n) m."""
+        own, found = self._operator, np.empty_like(moved)
+        for row, out in zip(moved, found):
+            internal_force(
+                row.reshape(-1, 3), own.cells, own.shape_class, own.stiffness, out.reshape(-1, 3)
             )
-        )
-    return csr_array(found)
+            if own.joints is not None:
+                out += own.joints @ row
+        return self.held_still(found)
+
+    def interpolated(self, moved: np.ndarray) -> np.ndarray:
+        """Displacements (l,3n) of those (l,d) of the free degrees of freedom of the coarse mesh."""
+        whole = np.zeros(self._coarse.free.size)
+        found = np.empty((len(moved), self.mass.size))
+        for row, out in zip(moved, found):
+            whole[self._coarse.free] = row
+            out[:] = (self._weights @ whole.reshape(-1, 3)).ravel()
+        return self.held_still(found)
+
+    def nearly_solved(self, residual: np.ndarray) -> np.ndarray:
+        """The preconditioner: displacements (l,3n) m that nearly have the forces ``residual``
+        (l,3n)."""
+        summed = np.empty((self._coarse.stiffness.shape[0], len(residual)))
+        for number, row in enumerate(residual):
+            summed[:, number] = (self._sums @ row.reshape(-1, 3)).ravel()[self._coarse.free]
+        found = self.interpolated(self._coarse.solve(summed).T)
+        for row, out in zip(residual, found):
+            out += self._share * row
+        return found
 
 
-def _solved(
-    stiffness: csr_array, loads: np.ndarray, nearly: Callable[[np.ndarray], np.ndarray]
-) -> tuple[np.ndarray, np.ndarray] | None:
-    """Displacement (d,l) under ``loads`` (d,l) and its residual (d,l), by conjugate gradients for
-    all loads; None if they do not converge. ``nearly`` is the preconditioner."""
+def _solved(fine: _Finer, loads: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """Displacement (l,3n) under ``loads`` (l,3n) and its residual (l,3n), by conjugate gradients for
+    all loads; None if they do not converge."""
     moved, rest = np.zeros_like(loads), loads.copy()
     towards = np.zeros_like(loads)
-    before = np.ones(loads.shape[1])
+    before = np.ones(len(loads))
     with one_thread():
-        for iteration in range(_MOST_ITERATIONS):
-            better = nearly(rest)
-            now = (rest * better).sum(axis=0)
-            if (now <= _ACCURACY * np.abs((loads * moved).sum(axis=0))).all():
+        for _ in range(_MOST_ITERATIONS):
+            better = fine.nearly_solved(rest)
+            now = _products(rest, better)
+            if (now <= _ACCURACY * np.abs(_products(loads, moved))).all():
                 return moved, rest
-            towards = better + (now / before if iteration else 0.0) * towards
-            pulled = stiffness @ towards
-            length = now / (towards * pulled).sum(axis=0)
+            towards *= (now / before)[:, None]
+            towards += better
+            pulled = fine.force(towards)
+            length = (now / _products(towards, pulled))[:, None]
             moved += length * towards
             rest -= length * pulled
             before = now
     return None
+
+
+def _products(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Scalar product (l,) of each row."""
+    return np.einsum("lk,lk->l", first, second)

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from tipoff.highfi.mesh.cells import HEXAHEDRON, edge_lengths, kind
-from tipoff.highfi.mesh.halve import halved, halved_with_weights, interpolation
+from tipoff.highfi.mesh.halve import Points, halved, halved_with_weights, interpolation
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 
 # Corners of the unit square and cube in VTK order.
@@ -66,22 +66,18 @@ def _split(mesh: RailMesh, parts: int) -> tuple[RailMesh, csr_array]:
     # seen from.
     names = np.random.default_rng(0).integers(1, 2**63, len(mesh.points), dtype=np.uint64)
     cells, weights = _lattice(_CUBE, parts)
-    found, first, number = np.unique(
-        names[mesh.cells] @ weights.T, return_index=True, return_inverse=True
-    )
+    points = Points(names[mesh.cells] @ weights.T)
     places = np.einsum("pc,eci->epi", weights / float(parts**3), mesh.points[mesh.cells]).reshape(
         -1, 3
     )
-    hexes = number.reshape(len(mesh.cells), -1)[:, cells].reshape(-1, 8)
+    hexes = points.number[:, cells].reshape(-1, 8)
     quads, shares = _lattice(_SQUARE, parts)
     surfaces = {
-        name: np.searchsorted(found, names[facets] @ (shares * np.uint64(parts)).T)[
-            :, quads
-        ].reshape(-1, 4)
+        name: points.named(names[facets] @ (shares * np.uint64(parts)).T)[:, quads].reshape(-1, 4)
         for name, facets in mesh.surfaces.items()
     }
-    finer = replace(mesh, points=places[first], cells=hexes, surfaces=surfaces)
-    return finer, interpolation(mesh, first, weights / float(parts**3))
+    finer = replace(mesh, points=places[points.first], cells=hexes, surfaces=surfaces)
+    return finer, interpolation(mesh, points.first, weights / float(parts**3))
 
 
 def _lattice(corners: np.ndarray, parts: int) -> tuple[np.ndarray, np.ndarray]:

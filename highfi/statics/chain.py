@@ -229,8 +229,8 @@ class Chain:
 
 def _inverse(block: np.ndarray) -> np.ndarray:
     """Inverse of a symmetric positive definite ``block``."""
-    found = dpotri(dpotrf(block, lower=True)[0], lower=True)[0]
-    return np.tril(found) + np.tril(found, -1).T
+    found = dpotri(dpotrf(block, lower=True)[0], lower=True)[0]  # zero above its diagonal
+    return found + np.tril(found, -1).T
 
 
 def _spread(places: np.ndarray, width: int) -> np.ndarray:

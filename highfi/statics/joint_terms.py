@@ -82,7 +82,7 @@ def _basis(operator: Operator, modes: np.ndarray) -> np.ndarray:
     assert joints is not None
     found = [modes]
     for factor in (LEAST, MOST):
-        other = Clamped(operator._replace(joints=factor * joints))
+        other = Clamped(operator._replace(joints=factor * joints), 8 * modes.shape[1])
         found.append(vibration.modes(other.stiffness, mass, other.solve, modes.shape[1])[1])
     root = np.sqrt(mass)[:, None]
     return svd(root * np.concatenate(found, axis=1), full_matrices=False)[0] / root

@@ -12,13 +12,12 @@ from scipy.sparse import coo_array, csc_array
 from tipoff.highfi.contact import surface
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.state.threads import processors
-from tipoff.highfi.statics import assembly, joint_terms, thermal, vibration
-from tipoff.highfi.statics.pressure import Pressed, pressed
+from tipoff.highfi.statics import joint_terms, thermal
+from tipoff.highfi.statics.held import HeldRail
+from tipoff.highfi.statics.pressure import Pressed, Wall
 from tipoff.highfi.statics.solve import Clamped, one_thread
 from tipoff.mechanics import model as scene_model
-from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from tipoff.scenes.effects.thermal import FIELDS
-from tipoff.scenes.rail import MaterialTable
 
 BATCH = 64  # loads solved for at once; bounds the memory
 _MOST_THREADS = 8  # also bounds the memory
@@ -77,9 +76,12 @@ class Patches:
         )
         number = np.full((travel.size, axis.size), -1)
         for face in range(axis.size):
-            wall = self._facets[surface.in_reach(self._rail.points[self._facets], seen, face)]
+            facets = self._facets[surface.in_reach(self._rail.points[self._facets], seen, face)]
+            if not facets.size:
+                continue
+            wall = Wall(self._rail.points, facets, across[face])
             size = half[face] * [1.0, signs[across[face]]]
-            for station, moved in enumerate(travel if wall.size else ()):
+            for station, moved in enumerate(travel):
                 x = np.clip(seen.centre[face, 0] + moved, reach[0] + size[0], reach[1] - size[0])
                 middle = np.array([x, seen.centre[face, across[face]]])
                 key = (
@@ -88,9 +90,7 @@ class Patches:
                     *np.round([*middle, *size, seen.wall[face]], _DIGITS),
                 )
                 if key not in self._number:
-                    patch = pressed(
-                        self._rail.points, wall, across[face], middle, size, self._patterns
-                    )
+                    patch = wall.pressed(middle, size, self._patterns)
                     self._number[key] = -1 if patch is None else len(self.found)
                     if patch is not None:
                         self.found.append(patch)
@@ -99,30 +99,22 @@ class Patches:
         return number
 
     def solved(
-        self,
-        material: MaterialTable,
-        joint: MountStiffness | None,
-        middle: float,
-        modes: int,
-        pairs: np.ndarray,
+        self, held: HeldRail, middle: float, modes: int, pairs: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, joint_terms.Terms | None]:
         """Displacement (q,p,p) in m of the first place of each of the ``pairs`` (q,2) under the
         loads of the second, normals of the faces positive, and (m,p,t) of all places under a unit
         of each field of temperature around X = ``middle`` (m); frequencies (n,) rad/s of the lowest
-        modes and their displacement (m,p,n); the terms of a ``joint`` if there are modes."""
-        operator = assembly.of_material(self._rail, material, joint=joint)
-        loads = self.loads()
-        clamped = Clamped(operator, loads.shape[1])
-        load, held = thermal.of_each_field(self._rail, operator, material, middle)
-        warm = loads.T @ clamped.displaced(load, held)
+        modes and their displacement (m,p,n); the terms of a joint if there are modes."""
+        operator, loads = held.operator, self.loads()
+        clamped = held.clamped(loads.shape[1])
+        load, still = thermal.of_each_field(self._rail, operator, held.material, middle)
+        warm = loads.T @ clamped.displaced(load, still)
         loads = loads[clamped.free]
         answer = _under_each_other(clamped, loads, pairs, self._patterns)
-        frequency, shape = vibration.modes(
-            clamped.stiffness, np.repeat(operator.mass, 3)[clamped.free], clamped.solve, modes
-        )
+        frequency, shape = held.modes(modes)
         terms = None
         if operator.joints is not None and modes:
-            heat = load + operator.joints @ held
+            heat = load + operator.joints @ still
             direct = answer[pairs[:, 0] == pairs[:, 1]]
             own = np.einsum("maa->ma", direct).ravel()
             terms = joint_terms.solved(operator, clamped, loads, heat, shape, own)

@@ -28,32 +28,48 @@ class Pressed(NamedTuple):
     load: np.ndarray  # (p,q,k), to be summed over q
 
 
-def pressed(
-    points: np.ndarray,
-    facets: np.ndarray,
-    across: int,
-    middle: np.ndarray,
-    half: np.ndarray,
-    patterns: int,
-) -> Pressed | None:
-    """The first so many ``patterns`` on a face with its ``middle`` (2,) m and ``half`` its size
-    (2,) m along X and the axis ``across``, over a wall of ``facets`` (m,k) between points (n,3) m;
-    None without a wall.
+class Wall:
+    """A wall of ``facets`` (m,k) between ``points`` (n,3) m in its plane, X and the axis ``across``.
+    Facets are found by X, so a place costs the same on a long wall as on a short one."""
 
-    xi and eta run from -1 to 1 over the face, opposite to the axis if ``half`` is negative.
-    """
-    plane = points[facets][:, :, [0, across]]
-    control = geometry.hull(plane)
-    low = np.maximum(middle - np.abs(half), control.min(axis=(0, 1)))
-    high = np.minimum(middle + np.abs(half), control.max(axis=(0, 1)))
-    if (high - low < _SAME).any():
-        return None
-    place, area = _gauss(low, high, np.median(np.ptp(plane, axis=1), axis=0) / _CELLS_PER_FACET)
-    found, facet, weight = located(plane, control, place)
-    local = (place[found] - middle) / half
-    phi = (local[:, None] ** POWERS[:patterns]).prod(axis=2)
-    part = area / (4.0 * np.abs(half).prod())
-    return Pressed(part * phi.T @ phi, facets[facet], part * phi.T[:, :, None] * weight)
+    def __init__(self, points: np.ndarray, facets: np.ndarray, across: int):
+        self._facets = facets
+        self._plane = points[facets][:, :, [0, across]]
+        self._control = geometry.hull(self._plane)
+        self._low, self._high = (
+            self._control.min(axis=(0, 1)),
+            self._control.max(axis=(0, 1)),
+        )
+        self._cell = np.median(np.ptp(self._plane, axis=1), axis=0) / _CELLS_PER_FACET
+        self._order = np.argsort(self._control[:, :, 0].min(axis=1), kind="stable")
+        self._starts = self._control[self._order, :, 0].min(axis=1)
+        self._longest = np.ptp(self._control[:, :, 0], axis=1).max()
+
+    def pressed(self, middle: np.ndarray, half: np.ndarray, patterns: int) -> Pressed | None:
+        """The first so many ``patterns`` on a face with its ``middle`` (2,) m and ``half`` its size
+        (2,) m along X and across it; None without a wall.
+
+        xi and eta run from -1 to 1 over the face, opposite to the axis if ``half`` is negative.
+        """
+        low = np.maximum(middle - np.abs(half), self._low)
+        high = np.minimum(middle + np.abs(half), self._high)
+        if (high - low < _SAME).any():
+            return None
+        place, area = _gauss(low, high, self._cell)
+        near = self._near(low[0], high[0])
+        found, facet, weight = located(self._plane[near], self._control[near], place)
+        local = (place[found] - middle) / half
+        phi = (local[:, None] ** POWERS[:patterns]).prod(axis=2)
+        part = area / (4.0 * np.abs(half).prod())
+        return Pressed(
+            part * phi.T @ phi, self._facets[near[facet]], part * phi.T[:, :, None] * weight
+        )
+
+    def _near(self, first: float, last: float) -> np.ndarray:
+        """Facets, ascending, that may be between two X (m)."""
+        slack = (1.0 + geometry.INSIDE) * self._longest
+        begin, end = np.searchsorted(self._starts, [first - slack, last + slack])
+        return np.sort(self._order[begin:end])
 
 
 def _gauss(low: np.ndarray, high: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, float]:
@@ -76,20 +92,22 @@ def located(
     functions there; ``plane`` and ``control`` (m,k,2) m are nodes and control points of the facets.
     A place on the border of two facets belongs to the first."""
     point, facet, values = every(plane, control, place)
-    found, first = np.unique(point, return_index=True)
-    return found, facet[first], values[first]
+    first = np.flatnonzero(np.diff(point, prepend=-1))  # points ascend
+    return point[first], facet[first], values[first]
 
 
 def every(
     plane: np.ndarray, control: np.ndarray, place: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """As ``located``, but a place on a border belongs to each facet there."""
+    """As ``located``, but a place on a border belongs to each facet there; places ascend."""
     slack = geometry.INSIDE * np.ptp(control, axis=1)
     low, high = control.min(axis=1) - slack, control.max(axis=1) + slack
     near = np.flatnonzero(((low < place.max(axis=0)) & (place.min(axis=0) < high)).all(axis=1))
-    point, facet = np.nonzero(
-        ((low[near] < place[:, None]) & (place[:, None] < high[near])).all(axis=2)
-    )
+    beside = [
+        (low[near, axis] < place[:, None, axis]) & (place[:, None, axis] < high[near, axis])
+        for axis in (0, 1)
+    ]
+    point, facet = np.nonzero(beside[0] & beside[1])
     facet = near[facet]
     values, inside = geometry.weights(plane[facet], place[point])
     return point[inside], facet[inside], values[inside]

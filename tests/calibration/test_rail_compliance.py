@@ -133,8 +133,10 @@ def test_the_faces_of_a_rail_from_a_file_are_part_of_it():
 
 
 def test_the_elements_are_those_that_are_asked_for_or_of_the_scene(monkeypatch):
-    monkeypatch.setattr(rail_compliance.statics, "condense", lambda scene, size: size)
-    monkeypatch.setattr(rail_compliance.discretisation, "stated", lambda scene, size, found: found)
+    monkeypatch.setattr(rail_compliance.statics, "condense", lambda scene, size, held: size)
+    monkeypatch.setattr(
+        rail_compliance.discretisation, "stated", lambda scene, size, found, rails: found
+    )
     assert calibration.compliance(load("tiny"), 6e-3) == 6e-3
     assert calibration.compliance(load("tiny")) == 8e-3
     assert calibration.compliance(load("reference").replace({"name": "tiny"})) == 2e-3
@@ -144,7 +146,7 @@ def _said(monkeypatch, tmp_path, seconds: float) -> list[str]:
     """What is said while four equal parts of the loads take ``seconds`` each."""
     now = 0.0
 
-    def condense(scene, size):
+    def condense(scene, size, held):
         nonlocal now
         report = places.reported()
         for part in range(4):
@@ -155,7 +157,9 @@ def _said(monkeypatch, tmp_path, seconds: float) -> list[str]:
     monkeypatch.setattr(rail_compliance, "KEPT", memory())
     monkeypatch.setattr(rail_compliance.time, "perf_counter", lambda: now)
     monkeypatch.setattr(rail_compliance.statics, "condense", condense)
-    monkeypatch.setattr(rail_compliance.discretisation, "stated", lambda scene, size, found: found)
+    monkeypatch.setattr(
+        rail_compliance.discretisation, "stated", lambda scene, size, found, rails: found
+    )
     lines: list[str] = []
     rail_compliance.kept(load("tiny"), tmp_path, 8e-3, lines.append)
     return lines

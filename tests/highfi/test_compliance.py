@@ -14,6 +14,7 @@ from tipoff.highfi.mesh import pieces
 from tipoff.highfi.mesh.rail_mesh import MeshError, boundary_facets
 from tipoff.highfi.rail.scene_mesh import make_mesh
 from tipoff.highfi.statics import pressure
+from tipoff.highfi.statics.held import distinct
 from tipoff.mechanics.model import Faces
 from tipoff.scenes.rail import MaterialTable
 
@@ -72,8 +73,8 @@ def beam_theory(first, second):
 def test_beam_under_two_pads():
     """Means and slopes of the deflection under either pad, wherever the pads are on the mesh."""
     rear, front, travel = 0.20, 0.45, (0.0, 0.05, 0.0973)
-    found = compliance.of_mesh(
-        beam(), elastic(), pads(rear, front), (0.0, LENGTH), travel, patterns=2
+    found = compliance.of_rails(
+        distinct(beam(), elastic()), pads(rear, front), (0.0, LENGTH), travel, patterns=2
     ).matrix
     for moved, matrix in zip(travel, found):
         places = [rear + moved, front + moved]
@@ -97,11 +98,11 @@ def test_beam_under_two_pads():
 
 
 def test_a_pad_over_the_end_keeps_its_last_whole_place():
-    over = compliance.of_mesh(
-        beam(), elastic(), pads(LENGTH), (0.0, LENGTH), (0.0, 2.0 * HALF), patterns=1
+    over = compliance.of_rails(
+        distinct(beam(), elastic()), pads(LENGTH), (0.0, LENGTH), (0.0, 2.0 * HALF), patterns=1
     )
-    last = compliance.of_mesh(
-        beam(), elastic(), pads(LENGTH - HALF), (0.0, LENGTH), (0.0,), patterns=1
+    last = compliance.of_rails(
+        distinct(beam(), elastic()), pads(LENGTH - HALF), (0.0, LENGTH), (0.0,), patterns=1
     )
     assert (over.matrix == last.matrix).all()
 
@@ -110,10 +111,9 @@ def test_half_a_wall_is_pressed_at_its_place():
     """A wall that ends under the middle of a pad has the compliance under the half of the pad over
     it."""
     wall = (0.0, LENGTH + HALF)  # as if a wall went on where the beam ends
-    half = compliance.of_mesh(beam(), elastic(), pads(LENGTH), wall, (0.0,), patterns=1)
-    short = compliance.of_mesh(
-        beam(),
-        elastic(),
+    half = compliance.of_rails(distinct(beam(), elastic()), pads(LENGTH), wall, (0.0,), patterns=1)
+    short = compliance.of_rails(
+        distinct(beam(), elastic()),
         pads(LENGTH - 0.5 * HALF, half_length=0.5 * HALF),
         wall,
         (0.0,),
@@ -126,8 +126,8 @@ def test_half_a_wall_is_pressed_at_its_place():
 
 def test_compliance_falls_with_the_modulus():
     soft, hard = (
-        compliance.of_mesh(
-            beam((10, 1, 2)), elastic(modulus, 0.33), pads(0.3), (0.0, LENGTH), (0.0,)
+        compliance.of_rails(
+            distinct(beam((10, 1, 2)), elastic(modulus, 0.33)), pads(0.3), (0.0, LENGTH), (0.0,)
         ).matrix
         for modulus in (MODULUS, 1024.0 * MODULUS)
     )
@@ -136,13 +136,13 @@ def test_compliance_falls_with_the_modulus():
 
 def test_faults():
     with pytest.raises(ValueError, match="patterns: given 7, expected 1 to 6"):
-        compliance.of_mesh(
-            beam((10, 1, 2)), elastic(), pads(0.3), (0.0, LENGTH), (0.0,), patterns=7
+        compliance.of_rails(
+            distinct(beam((10, 1, 2)), elastic()), pads(0.3), (0.0, LENGTH), (0.0,), patterns=7
         )
     loose = beam((10, 1, 2))
     loose.surfaces["mount"] = loose.surfaces["mount"][:0]
     with pytest.raises(MeshError, match="no mount"):
-        compliance.of_mesh(loose, elastic(), pads(0.3), (0.0, LENGTH), (0.0,))
+        compliance.of_rails(distinct(loose, elastic()), pads(0.3), (0.0, LENGTH), (0.0,))
 
 
 def test_loads_have_the_force_and_moment_of_their_pressure():
@@ -154,7 +154,7 @@ def test_loads_have_the_force_and_moment_of_their_pressure():
     inner = (points[:, :2] > 0.0).all(axis=1) & (points[:, 0] < LENGTH) & (points[:, 1] < WIDTH)
     points[inner, :2] += 0.002 * random.uniform(-1.0, 1.0, (inner.sum(), 2))
     middle, half = np.array([0.3071, 0.0143]), np.array([0.0307, -0.0121])
-    found = pressure.pressed(points, mesh.surfaces["contact"], 1, middle, half, 6)
+    found = pressure.Wall(points, mesh.surfaces["contact"], 1).pressed(middle, half, 6)
     assert found.gram[0, 0] == pytest.approx(1.0, rel=1e-12)
     local = (points[found.node][:, :, :2] - middle) / half
     assert found.load.sum(axis=(1, 2)) == pytest.approx(

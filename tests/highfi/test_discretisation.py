@@ -7,6 +7,7 @@ import pytest
 from tests.highfi import sections, tets
 from tipoff.highfi import compliance, discretisation
 from tipoff.highfi.mesh import split
+from tipoff.highfi.statics.held import distinct
 from tipoff.scenes import load
 
 REACH = (0.0, sections.LENGTH)
@@ -14,13 +15,15 @@ TRAVEL = np.linspace(0.0, sections.LENGTH - 0.016, 4)
 
 
 def uncertainty(mesh):
-    return discretisation.of_mesh(mesh, sections.ALUMINIUM, sections.pad(), REACH, TRAVEL)
+    return discretisation.of_rails(
+        distinct(mesh, sections.ALUMINIUM), sections.pad(), REACH, TRAVEL
+    )
 
 
 def solved(mesh):
     """Sum of the compliance over all places, and the lowest frequency, by direct solutions."""
-    found = compliance.of_mesh(
-        mesh, sections.ALUMINIUM, sections.pad(), REACH, TRAVEL, patterns=1, modes=1
+    found = compliance.of_rails(
+        distinct(mesh, sections.ALUMINIUM), sections.pad(), REACH, TRAVEL, patterns=1, modes=1
     )
     return found.matrix[:, 0, 0, 0, 0].sum(), found.frequency[0, 0]
 
@@ -84,7 +87,7 @@ def test_values_are_interpolated_to_the_finer_nodes():
 
 def test_a_mesh_that_is_too_large_has_no_uncertainty(monkeypatch):
     """None with the reason, not zero."""
-    monkeypatch.setattr(discretisation, "MOST_ENTRIES", 1e5)
+    monkeypatch.setattr(discretisation, "MOST_BYTES", 1e5)
     found = uncertainty(sections.rail("tee", 8e-3))
     assert found.compliance is None and found.frequency is None
     assert "1,040 on a rail, too many" in found.why

@@ -27,6 +27,7 @@ from tipoff.highfi.mesh import facets
 from tipoff.highfi.mesh.rail_mesh import MeshError, boundary_facets
 from tipoff.highfi.rail.fit import check_areas
 from tipoff.highfi.rail.scene_mesh import make_mesh
+from tipoff.highfi.statics.held import distinct
 from tipoff.mechanics.model import built
 from tipoff.meshes import solid
 from tipoff.scenes import load
@@ -153,7 +154,9 @@ def test_rails_in_tetrahedra_are_as_compliant_as_the_built_in_ones(tmp_path):
         origin = np.array(scene.platform.record().mass_centre)
         seen = faces._replace(wall=faces.wall + origin[faces.axis])
         reach = (scene.rail.start, scene.rail.end)
-        found = compliance.of_mesh(mesh, scene.rail.material, seen, reach, [0.03], patterns=1)
+        found = compliance.of_rails(
+            distinct(mesh, scene.rail.material), seen, reach, [0.03], patterns=1
+        )
         return np.einsum("sff->sf", found.matrix[:, :, 0, :, 0])[0, 0]
 
     coarse, fine = (under_a_pad(make_mesh(scene, size)) for size in (0.004, 0.002))

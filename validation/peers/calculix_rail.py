@@ -15,7 +15,7 @@ from tipoff.highfi.elements import hexahedron
 from tipoff.highfi.mesh import pieces
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.statics import assembly, thermal
-from tipoff.highfi.statics.pressure import pressed
+from tipoff.highfi.statics.pressure import Wall
 from tipoff.highfi.statics.solve import Clamped
 from tipoff.scenes.rail import MaterialTable
 from tipoff.scenes.scene import Scene, load
@@ -83,7 +83,7 @@ def loaded_here(chosen: Setting) -> dict[str, float]:
     scene, mesh = rail("reference", chosen.ours)
     square, wall = patch(mesh), mesh.surfaces["contact_y"]
     half = np.full(2, 0.5 * _PATCH)
-    under = pressed(mesh.points, wall, 2, square.middle, half, 1)
+    under = Wall(mesh.points, wall, 2).pressed(square.middle, half, 1)
     assert under is not None
     force = np.zeros(mesh.points.shape)
     np.add.at(force[:, 1], under.node, FORCE * square.side * under.load[0])

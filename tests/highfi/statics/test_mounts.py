@@ -12,7 +12,7 @@ from tests.highfi.tets import split
 from tipoff.highfi.mesh import pieces
 from tipoff.highfi.mesh.rail_mesh import MeshError, read
 from tipoff.highfi.statics import assembly, mounts, thermal, vibration
-from tipoff.highfi.statics.pressure import pressed
+from tipoff.highfi.statics.pressure import Wall
 from tipoff.highfi.statics.solve import Clamped
 from tipoff.meshes import l_rail
 from tipoff.scenes.effects.mount_stiffness import MountStiffness
@@ -68,10 +68,8 @@ def solved(rail, joint):
     geometry = l_rail.LRailGeometry()
     x, z = np.mean(other.PATCH_X), np.mean(other.PATCH_Z)
     outer = geometry.inner_corner_z + geometry.thickness
-    patch = pressed(
-        rail.points,
-        rail.surfaces["contact_y"],
-        2,
+    wall = Wall(rail.points, rail.surfaces["contact_y"], 2)
+    patch = wall.pressed(
         np.array([geometry.x_start + x, np.sign(rail.points[0, 2]) * (outer - z)]),
         0.5 * np.array([np.ptp(other.PATCH_X), np.ptp(other.PATCH_Z)]),
         1,

@@ -10,6 +10,7 @@ from tests.exact import elasticity
 from tests.highfi.test_compliance import HEIGHT, LENGTH, MODULUS, WIDTH, beam, pads
 from tipoff.highfi import compliance
 from tipoff.highfi.statics import assembly, vibration
+from tipoff.highfi.statics.held import distinct
 from tipoff.scenes.rail import MaterialTable
 
 DENSITY = 2700.0
@@ -24,7 +25,9 @@ PADS = pads(0.21, 0.45)
 @pytest.mark.case("O7")
 def test_frequencies_of_a_cantilever():
     """The modes that move its top up and down are those that bend it across its height."""
-    found = compliance.of_mesh(beam(), MATERIAL, PADS, (0.0, LENGTH), (0.0,), patterns=1, modes=8)
+    found = compliance.of_rails(
+        distinct(beam(), MATERIAL), PADS, (0.0, LENGTH), (0.0,), patterns=1, modes=8
+    )
     moving = np.abs(found.shape[0, :, 0]).max(axis=0)
     across = found.frequency[0][moving > 0.1 * moving.max()] / (2.0 * np.pi)
     exact = elasticity.timoshenko_cantilever(3, LENGTH, WIDTH, HEIGHT, MODULUS, 0.0, DENSITY)
@@ -35,8 +38,13 @@ def test_frequencies_of_a_cantilever():
 @pytest.fixture(scope="module")
 def coarse():
     """Compliance and all modes under two pads of a beam of 180 freedoms."""
-    return compliance.of_mesh(
-        beam((10, 1, 2)), MATERIAL, PADS, (0.0, LENGTH), (0.0, 0.03), patterns=3, modes=180
+    return compliance.of_rails(
+        distinct(beam((10, 1, 2)), MATERIAL),
+        PADS,
+        (0.0, LENGTH),
+        (0.0, 0.03),
+        patterns=3,
+        modes=180,
     )
 
 
@@ -77,8 +85,8 @@ def test_residual_compliance_is_never_negative(coarse):
 
 def test_few_modes_are_the_lowest_of_all(coarse):
     """An iteration finds the same frequencies, and shapes but for their signs."""
-    found = compliance.of_mesh(
-        beam((10, 1, 2)), MATERIAL, PADS, (0.0, LENGTH), (0.0, 0.03), patterns=3, modes=12
+    found = compliance.of_rails(
+        distinct(beam((10, 1, 2)), MATERIAL), PADS, (0.0, LENGTH), (0.0, 0.03), patterns=3, modes=12
     )
     assert found.frequency[0] == pytest.approx(coarse.frequency[0, :12], rel=1e-9)
     assert np.abs(found.shape) == pytest.approx(
@@ -112,8 +120,8 @@ def test_stiffer_and_lighter_material_vibrates_faster():
         changed = MATERIAL.model_copy(
             update={"youngs_modulus": factor * MODULUS, "density": DENSITY / lighter}
         )
-        return compliance.of_mesh(
-            beam((10, 1, 2)), changed, PADS, (0.0, LENGTH), (0.0,), patterns=1, modes=4
+        return compliance.of_rails(
+            distinct(beam((10, 1, 2)), changed), PADS, (0.0, LENGTH), (0.0,), patterns=1, modes=4
         )
 
     plain, changed = found(1.0, 1.0), found(16.0, 4.0)
