@@ -92,8 +92,10 @@ def prepared(
     platform_inertia = model.platform.inertia if model.platform is not None else np.eye(3)
     rows = np.zeros((samples + 1, _SIZE))
     rows[0] = _start(model)
+    thermal_offset.require(scene, compliance)
+    walls = compliance.of(scene) if compliance and scene.contact else None
     return (
-        build(model, thermal_offset=thermal_offset.under_pads(scene, model, compliance)),
+        build(model, thermal_offset=thermal_offset.under_pads(model, walls)),
         model.payload.inertia,
         platform_inertia,
         interval / steps_per_sample,

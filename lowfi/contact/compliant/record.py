@@ -103,12 +103,11 @@ class Compliance(NamedTuple):
 def under_pads(
     scene: Scene, model: Model, found: data.RailCompliance | None, modes: int = 0
 ) -> Compliance | None:
-    """Record of the compliance ``found``, with so many vibrating ``modes`` of each rail; None
-    without contact and for rigid walls. Raises SceneError for the compliance of another rail or
-    without these modes, and for friction with sticking."""
-    if found is None or found.flexibility is None or model.contact is None:
+    """Record of the compliance ``found`` of ``scene``, with so many vibrating ``modes`` of each
+    rail; None for rigid walls. Raises SceneError for a compliance without these modes, and for
+    friction with sticking."""
+    if found is None or found.flexibility is None:
         return None
-    found = found.of(scene)
     require_two_step(scene)
     data.require_modes(scene.name, found, modes)
     return build(found, model, modes=modes, damping=damping_of(scene))

@@ -72,7 +72,7 @@ def test_opposed_interference_is_in_equilibrium(contact, stored, tolerance):
     ]
     asked = scene(0.004, 1e-4, pads=opposed, contact=contact | {"clearance": 0.0})
     run = Run(asked, numerics(tolerance))
-    run.system.faces[:, WALL] -= 20e-6  # a scene has no negative clearance, walls bent inwards do
+    run.cases.faces[..., WALL] -= 20e-6  # a scene has no negative clearance, walls bent inwards do
     run.loop = integrate.ready(run.system, state.initial(run.model), run.interval)
     run.begin()
     run.integrate(None)
