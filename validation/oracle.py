@@ -225,17 +225,17 @@ def thrust(record, offset, time, turn):
 
 
 @kernel
-def pad_contact(laws, system, face, place, axes, body, base):
+def pad_contact(contact, system, face, place, axes, body, base):
     """Force (N) of one face on the payload and its arm from the payload's mass centre (m), scene
     axes.
 
     ``place`` (m) and ``axes`` (nine numbers) of the payload are in platform axes.
     """
     force, arm = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    if laws is not None:
+    if contact is not None:
         c = rotation.rotate(axes, (face[0], face[1], face[2]))
         x = (place[0] + c[0], place[1] + c[1], place[2] + c[2])
-        away, slope = _thermal_offset(laws.thermal_offset, face, x[0])
+        away, slope = _thermal_offset(contact.thermal_offset, face, x[0])
         p = face[3] * x[1] + face[4] * x[2] - face[5] - away
         side = (x[1] if face[3] == 0.0 else x[2]) - face[SIDE_MIDDLE]
         if (
@@ -253,7 +253,7 @@ def pad_contact(laws, system, face, place, axes, body, base):
             )
             n = (-slope, face[3], face[4])
             closing = rotation.dot(n, u)
-            elastic, damping = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p, closing)
+            elastic, damping = law.parts(contact.law, p, closing)
             normal = max(0.0, elastic + damping)
             off = closing / rotation.dot(n, n)
             slip = (u[0] - off * n[0], u[1] - off * n[1], u[2] - off * n[2])
