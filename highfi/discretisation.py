@@ -36,9 +36,9 @@ from tipoff.highfi.run import prepare
 from tipoff.highfi.statics import assembly, inputs, vibration
 from tipoff.highfi.statics.places import Patches
 from tipoff.highfi.statics.solve import Clamped, one_thread
-from tipoff.mechanics import model as scene_model
-from tipoff.mechanics.model import Faces
+from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.mechanics.scene_model import Faces
 from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from tipoff.scenes.rail import MaterialTable, MeshTable
 from tipoff.scenes.scene import Scene

@@ -9,7 +9,7 @@ from tipoff.lowfi import faces
 from tipoff.lowfi.contact.compliant.neglected import Neglected
 from tipoff.lowfi.contact.compliant.record import Compliance
 from tipoff.lowfi.contact.thermal_offset import ThermalOffset
-from tipoff.mechanics.model import Model
+from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.effects.body_force import BodyForce
 from tipoff.scenes.effects.contact import ContactLaw
 from tipoff.scenes.effects.friction import Friction

@@ -18,7 +18,7 @@ from tipoff.kernels.jit import kernel, njit
 from tipoff.lowfi.contact import thermal_offset
 from tipoff.lowfi.faces import BACK, NUMBER, SIDE_MIDDLE, SIDE_REACH
 from tipoff.lowfi.system import System, build
-from tipoff.mechanics import model as scene_model
+from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.effects import contact as law
 from tipoff.scenes.effects.body_force import acceleration

@@ -15,7 +15,7 @@ from tipoff.highfi.state.threads import processors
 from tipoff.highfi.statics import assembly, joint_terms, thermal, vibration
 from tipoff.highfi.statics.pressure import Pressed, pressed
 from tipoff.highfi.statics.solve import Clamped, one_thread
-from tipoff.mechanics import model as scene_model
+from tipoff.mechanics import scene_model
 from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from tipoff.scenes.effects.thermal import FIELDS
 from tipoff.scenes.rail import MaterialTable

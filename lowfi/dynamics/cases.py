@@ -15,7 +15,7 @@ from tipoff.lowfi import state
 from tipoff.lowfi.faces import CENTRE
 from tipoff.lowfi.system import Body, System
 from tipoff.mechanics.ending import BOOK_SIZE
-from tipoff.mechanics.model import Model
+from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.effects.thrust_offset import ThrustOffset
 
 # Columns of the results: whether the case is left to ``lowfi.run``, steps, the book.

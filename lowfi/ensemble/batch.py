@@ -14,10 +14,9 @@ from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
 from tipoff.lowfi.numerics import AUTO, Numerics, promises_of
 from tipoff.lowfi.preparation import prepare
 from tipoff.lowfi.run import solved
-from tipoff.mechanics import comoving, ending, outcome
-from tipoff.mechanics import model as scene_model
-from tipoff.mechanics.model import Built
+from tipoff.mechanics import comoving, ending, outcome, scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance, may_vibrate
+from tipoff.mechanics.scene_model import Built
 from tipoff.scenes import changes
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import SceneError

@@ -27,7 +27,7 @@ from tipoff.highfi.mesh import facets
 from tipoff.highfi.mesh.rail_mesh import MeshError, boundary_facets
 from tipoff.highfi.rail.fit import check_areas
 from tipoff.highfi.rail.scene_mesh import make_mesh
-from tipoff.mechanics.model import built
+from tipoff.mechanics.scene_model import built
 from tipoff.meshes import solid
 from tipoff.scenes import load
 

@@ -8,7 +8,7 @@ from tipoff.kernels.memory import zeros
 from tipoff.kernels.reference import by_reference
 from tipoff.mechanics import drawn_walls
 from tipoff.mechanics import rail_compliance as data
-from tipoff.mechanics.model import Model
+from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.effects.friction import require_two_step
 from tipoff.scenes.effects.structural_damping import Damping
 from tipoff.scenes.scene import Scene

@@ -12,7 +12,7 @@ from tipoff import lowfi
 from tipoff.lowfi import Numerics
 from tipoff.lowfi import system as systems
 from tipoff.lowfi.contact import springs, thermal_offset
-from tipoff.mechanics import model as scene_model
+from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import GRAM, PATTERNS
 from tipoff.scenes.effects.thermal import FIELDS
 from validation import oracle
