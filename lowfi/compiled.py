@@ -7,7 +7,7 @@ from tipoff.lowfi.contact.compliant import modes, solution
 from tipoff.lowfi.dynamics import equations
 from tipoff.lowfi.dynamics.integrate import integrate
 from tipoff.lowfi.numerics import Numerics
-from tipoff.lowfi.single_run import Run
+from tipoff.lowfi.single_run import SingleRun
 from tipoff.mechanics.ledger import BODY_FORCE
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.effects.friction import coefficient_over_speed
@@ -45,4 +45,4 @@ def compiled_code(
 
 def _arguments(scene: Scene, numerics: Numerics | None, compliance: RailCompliance | None) -> tuple:
     """Arguments of ``integrate``."""
-    return Run(scene, numerics or Numerics(), compliance).arguments(0)
+    return SingleRun(scene, numerics or Numerics(), compliance).arguments(0)

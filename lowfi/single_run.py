@@ -28,7 +28,7 @@ _REASONS = {
 _RERUNS = 4  # each at a tenth of the tolerance, while that halves the errors of the ledgers
 
 
-class Run:
+class SingleRun:
     """State of a run in progress and its samples; the last has the number ``end``. A ``whole`` run
     continues to the end of the scene even if exit and jam are settled. It keeps the promises of
     ``numerics``, with the steps of ``finer`` ones if given. A run that ``watches`` finds the effect
@@ -187,7 +187,9 @@ class Run:
         return cost | again | ({"dt_limit_s": limit} if np.isfinite(limit) else {})
 
 
-def integrated(run_: Run, progress: Callable[[float], None] | None, spent: dict[str, float]) -> Run:
+def integrated(
+    run_: SingleRun, progress: Callable[[float], None] | None, spent: dict[str, float]
+) -> SingleRun:
     """``run_`` integrated, and repeated with smaller steps if necessary; adds its times (s) to
     ``spent``."""
     compiled, cpu = len(integrate.integrate.overloads), clock.thread_time()
@@ -203,7 +205,7 @@ def integrated(run_: Run, progress: Callable[[float], None] | None, spent: dict[
     return run_
 
 
-def improved(first: Run, progress: Callable[[float], None] | None = None) -> Run:
+def improved(first: SingleRun, progress: Callable[[float], None] | None = None) -> SingleRun:
     """``first``, which is integrated, or the same scene with smaller steps if its ledgers need
     them."""
     best, numerics = first, first.numerics
@@ -215,7 +217,7 @@ def improved(first: Run, progress: Callable[[float], None] | None = None) -> Run
         ):
             break
         numerics = numerics.tightened()
-        finer = Run(
+        finer = SingleRun(
             first.scene,
             first.numerics,
             first.compliance,
