@@ -17,7 +17,7 @@ from tipoff.files import content_hash
 from tipoff.highfi import compliance as statics
 from tipoff.highfi import discretisation
 from tipoff.highfi.statics import inputs, places
-from tipoff.mechanics import model as scene_model
+from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance, content, digest
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.studies import element_size as own_size

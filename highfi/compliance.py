@@ -28,7 +28,7 @@ from tipoff.highfi.run import prepare
 from tipoff.highfi.statics import inputs, joint_terms
 from tipoff.highfi.statics.held import HeldRail, distinct
 from tipoff.highfi.statics.places import Patches, pressed_together
-from tipoff.mechanics import model as scene_model
+from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import MODES, PATTERNS, RailCompliance, digest
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 from tipoff.scenes.effects.thermal import FIELDS
@@ -162,7 +162,7 @@ def along(
     """Compliance of the rails of ``scene`` in elements of about ``element_size`` (m), the payload
     aligned and moved by each ``travel`` (m) from its place at ignition.
 
-    Faces are those of ``mechanics.model.Faces``. Raises SceneError, MeshError, and ValueError for
+    Faces are those of ``mechanics.scene_model.Faces``. Raises SceneError, MeshError, and ValueError for
     an unavailable number of patterns or modes.
     """
     own = inputs.of(scene)

@@ -39,9 +39,9 @@ from tipoff.highfi.statics.held import HeldRail
 from tipoff.highfi.statics.operator import internal_force
 from tipoff.highfi.statics.places import Patches
 from tipoff.highfi.statics.solve import Clamped, one_thread
-from tipoff.mechanics import model as scene_model
-from tipoff.mechanics.model import Faces
+from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.mechanics.scene_model import Faces
 from tipoff.scenes.rail import MeshTable
 from tipoff.scenes.scene import Scene
 

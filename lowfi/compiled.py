@@ -5,11 +5,9 @@ from tipoff.kernels.jit import machine_code
 from tipoff.lowfi.contact import springs, stick_slip, thermal_offset
 from tipoff.lowfi.contact.compliant import modes, solution
 from tipoff.lowfi.dynamics import equations
-from tipoff.lowfi.dynamics.cases import alone
 from tipoff.lowfi.dynamics.integrate import integrate
-from tipoff.lowfi.dynamics.loop import Sampling
 from tipoff.lowfi.numerics import Numerics
-from tipoff.lowfi.single_run import Run
+from tipoff.lowfi.single_run import SingleRun
 from tipoff.mechanics.ledger import BODY_FORCE
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.effects.friction import coefficient_over_speed
@@ -47,21 +45,4 @@ def compiled_code(
 
 def _arguments(scene: Scene, numerics: Numerics | None, compliance: RailCompliance | None) -> tuple:
     """Arguments of ``integrate``."""
-    begun = Run(scene, numerics or Numerics(), compliance)
-    sampling = Sampling(
-        interval=begun.interval,
-        last=begun.last,
-        number=0,
-        whole=begun.whole,
-        rows=begun.rows,
-        forces=begun.forces,
-    )
-    return (
-        begun.system,
-        begun.plan,
-        begun.tolerance,
-        begun.marks,
-        begun.loop,
-        sampling,
-        alone(begun.system, begun.loop.start, begun.tolerance.reach),
-    )
+    return SingleRun(scene, numerics or Numerics(), compliance).arguments(0)

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tipoff.lowfi.single_run import Run
+from tipoff.lowfi.single_run import SingleRun
 
 THRESHOLD = math.radians(0.02)  # rad/s, of the settled rates
 _MOST_RUNS = 3
@@ -31,7 +31,7 @@ class Choice:
 
     modes: int  # vibrating modes of each rail
     why: str  # one line of text
-    runs: tuple[Run, ...] = ()  # made for the choice, without the result
+    runs: tuple[SingleRun, ...] = ()  # made for the choice, without the result
 
     def cost(self) -> dict[str, int]:
         """``modes``, the number of runs without the result, and their steps."""
@@ -41,8 +41,8 @@ class Choice:
 
 
 def choose(
-    run: Callable[[int], Run], accurate: Callable[[], Run] | None = None
-) -> tuple[Run, Choice]:
+    run: Callable[[int], SingleRun], accurate: Callable[[], SingleRun] | None = None
+) -> tuple[SingleRun, Choice]:
     """The run with the necessary modes, and the choice. ``run`` makes a run with so many modes that
     watches the others. ``accurate``, for a tolerance above the default, makes the run without modes
     at the default."""
@@ -75,7 +75,7 @@ def needed(effect: np.ndarray) -> int:
     return int(np.argmax(rest <= THRESHOLD))
 
 
-def _enlarged(last: list[Run], effect: np.ndarray) -> float:
+def _enlarged(last: list[SingleRun], effect: np.ndarray) -> float:
     """Change of the settled rates from one run to the next, over the sum that predicted it."""
     before, after = (found.judged()[1].rate for found in last)
     if before is None or after is None:
@@ -85,7 +85,7 @@ def _enlarged(last: list[Run], effect: np.ndarray) -> float:
     return change / stood if change > THRESHOLD else 1.0
 
 
-def _why(made: list[Run], effects: list[np.ndarray], enlarged: float) -> str:
+def _why(made: list[SingleRun], effects: list[np.ndarray], enlarged: float) -> str:
     held = effects[0].size
     if held == 0:
         return "none: this rail compliance holds no modes"

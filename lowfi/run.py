@@ -7,7 +7,7 @@ from dataclasses import replace
 from tipoff.lowfi import modes
 from tipoff.lowfi.models import require
 from tipoff.lowfi.numerics import AUTO, Numerics
-from tipoff.lowfi.single_run import Run, integrated
+from tipoff.lowfi.single_run import SingleRun, integrated
 from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.mechanics.rail_compliance import RailCompliance, may_vibrate
 from tipoff.mechanics.trajectory import Trajectory
@@ -58,10 +58,10 @@ def solved(
         {"compile_s": 0.0, "compile_cpu_s": 0.0, "kernel_s": 0.0},
     )
 
-    def made(asked: Numerics, watches: bool = False) -> Run:
+    def made(asked: Numerics, watches: bool = False) -> SingleRun:
         if watches and asked.count and vibrates:
             vibrates(asked.count)
-        return integrated(Run(scene, asked, compliance, watches=watches), progress, spent)
+        return integrated(SingleRun(scene, asked, compliance, watches=watches), progress, spent)
 
     if numerics.modes == AUTO and may_vibrate(scene, compliance):
         accurate = numerics.accurate()

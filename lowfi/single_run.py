@@ -5,16 +5,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from tipoff.lowfi import state, system
-from tipoff.lowfi.contact import thermal_offset, wall_ends
-from tipoff.lowfi.contact.compliant import neglected
-from tipoff.lowfi.contact.compliant import record as compliance_record
-from tipoff.lowfi.dynamics import audit, balance, cases, integrate, local_error, plan
+from tipoff.lowfi.contact import wall_ends
+from tipoff.lowfi.dynamics import audit, balance, integrate
 from tipoff.lowfi.dynamics.loop import Sampling
 from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
 from tipoff.lowfi.numerics import Numerics, promises_of
-from tipoff.mechanics import comoving, ending, outcome, promises
-from tipoff.mechanics import model as scene_model
+from tipoff.lowfi.preparation import prepare
+from tipoff.mechanics import comoving, ending, outcome, promises, scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
@@ -31,7 +28,7 @@ _REASONS = {
 _RERUNS = 4  # each at a tenth of the tolerance, while that halves the errors of the ledgers
 
 
-class Run:
+class SingleRun:
     """State of a run in progress and its samples; the last has the number ``end``. A ``whole`` run
     continues to the end of the scene even if exit and jam are settled. It keeps the promises of
     ``numerics``, with the steps of ``finer`` ones if given. A run that ``watches`` finds the effect
@@ -50,22 +47,15 @@ class Run:
         self.scene, self.numerics, self.compliance = scene, numerics, compliance
         self.watches, self.modes = watches, numerics.count
         self.promised = promises_of(numerics)
-        self.used = used = finer or numerics
+        self.used = finer or numerics
         self.model = model = scene_model.build(scene)
-        self.marks = outcome.milestones(scene, model)
         self.interval = scene.output.interval
         self.end = scene.output.last(scene.time_limit)
         self.expected = scene.output.last(scene.expected_end)
-        self.plan = plan.make(model, scene.time_limit, used)
-        reach = float(np.sqrt((model.faces.centre**2).sum(axis=1).max()))
-        self.tolerance = local_error.tolerance(used, self.promised, reach)
-        self.system = system.build(
-            model,
-            compliance=compliance_record.under_pads(scene, model, compliance, self.modes),
-            thermal_offset=thermal_offset.under_pads(scene, model, compliance),
-            neglected=neglected.watched(scene, model, compliance, self.modes, watches),
+        marks = outcome.milestones(scene, model)
+        self.system, self.plan, self.tolerance, self.marks, self.loop, self.cases = prepare(
+            scene, [model], marks, self.used, self.promised, compliance, watches
         )
-        self.loop = integrate.ready(self.system, state.initial(model), self.plan.first)
         first = min(self.end + 1, _ROWS)
         self.rows, self.forces = (
             np.zeros((first, SAMPLE_SIZE)),
@@ -96,22 +86,7 @@ class Run:
 
     def advance(self, number: int) -> None:
         """Take samples up to ``number``; fewer if exit or jam end the run."""
-        status = integrate.integrate(
-            self.system,
-            self.plan,
-            self.tolerance,
-            self.marks,
-            self.loop,
-            Sampling(
-                interval=self.interval,
-                last=self.last,
-                number=number,
-                whole=self.whole,
-                rows=self.rows,
-                forces=self.forces,
-            ),
-            cases.alone(self.system, self.loop.start, self.tolerance.reach),
-        )
+        status = integrate.integrate(*self.arguments(number))
         self.taken = int(self.loop.counts.samples)
         if status == integrate.STRUCK:
             self.message = self._strike()
@@ -119,6 +94,19 @@ class Run:
             self.message = f"{_REASONS[status]}, at {self.loop.clock.now:.6g} s"
         elif status == integrate.ENDED:
             self.end = self.taken - 1
+
+    def arguments(self, number: int) -> tuple:
+        """Arguments of ``integrate.integrate`` for samples up to ``number``."""
+        sampling = Sampling(
+            interval=self.interval,
+            last=self.last,
+            number=number,
+            whole=self.whole,
+            rows=self.rows,
+            forces=self.forces,
+        )
+        parts = self.system, self.plan, self.tolerance, self.marks, self.loop, self.cases
+        return *parts, sampling
 
     def _strike(self) -> str:
         """Message of a face that struck an edge of a wall, with place and time."""
@@ -199,7 +187,9 @@ class Run:
         return cost | again | ({"dt_limit_s": limit} if np.isfinite(limit) else {})
 
 
-def integrated(run_: Run, progress: Callable[[float], None] | None, spent: dict[str, float]) -> Run:
+def integrated(
+    run_: SingleRun, progress: Callable[[float], None] | None, spent: dict[str, float]
+) -> SingleRun:
     """``run_`` integrated, and repeated with smaller steps if necessary; adds its times (s) to
     ``spent``."""
     compiled, cpu = len(integrate.integrate.overloads), clock.thread_time()
@@ -215,7 +205,7 @@ def integrated(run_: Run, progress: Callable[[float], None] | None, spent: dict[
     return run_
 
 
-def improved(first: Run, progress: Callable[[float], None] | None = None) -> Run:
+def improved(first: SingleRun, progress: Callable[[float], None] | None = None) -> SingleRun:
     """``first``, which is integrated, or the same scene with smaller steps if its ledgers need
     them."""
     best, numerics = first, first.numerics
@@ -227,7 +217,7 @@ def improved(first: Run, progress: Callable[[float], None] | None = None) -> Run
         ):
             break
         numerics = numerics.tightened()
-        finer = Run(
+        finer = SingleRun(
             first.scene,
             first.numerics,
             first.compliance,

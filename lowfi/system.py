@@ -9,9 +9,9 @@ from tipoff.lowfi import faces
 from tipoff.lowfi.contact.compliant.neglected import Neglected
 from tipoff.lowfi.contact.compliant.record import Compliance
 from tipoff.lowfi.contact.thermal_offset import ThermalOffset
-from tipoff.mechanics.model import Model
+from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.effects.body_force import BodyForce
-from tipoff.scenes.effects.contact import HuntCrossley, Impact, Linear
+from tipoff.scenes.effects.contact import ContactLaw
 from tipoff.scenes.effects.friction import Friction
 from tipoff.scenes.effects.sticking import Sticking
 from tipoff.scenes.effects.thrust_law import Thrust
@@ -29,11 +29,9 @@ class Body(NamedTuple):
 
 @by_reference
 class Contact(NamedTuple):
-    """The one contact law of a scene; the other laws are None."""
+    """Contact springs."""
 
-    impact: Impact | None
-    hunt_crossley: HuntCrossley | None
-    linear: Linear | None
+    law: ContactLaw
     thermal_offset: ThermalOffset | None  # of the walls, None if they are not warm
 
 
@@ -73,7 +71,7 @@ def build(
     integrated. The effect of ``neglected`` modes is computed."""
     contact, friction = None, model.friction
     if model.contact is not None and compliance is None:
-        contact = Contact(*model.contact, thermal_offset)
+        contact = Contact(law=model.contact, thermal_offset=thermal_offset)
     return System(
         payload=_body(model.payload),
         platform=_body(model.platform) if model.platform is not None else None,

@@ -18,7 +18,7 @@ from tipoff.kernels.jit import kernel, njit
 from tipoff.lowfi.contact import thermal_offset
 from tipoff.lowfi.faces import BACK, NUMBER, SIDE_MIDDLE, SIDE_REACH
 from tipoff.lowfi.system import System, build
-from tipoff.mechanics import model as scene_model
+from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.effects import contact as law
 from tipoff.scenes.effects.body_force import acceleration
@@ -92,8 +92,10 @@ def prepared(
     platform_inertia = model.platform.inertia if model.platform is not None else np.eye(3)
     rows = np.zeros((samples + 1, _SIZE))
     rows[0] = _start(model)
+    thermal_offset.require(scene, compliance)
+    walls = compliance.of(scene) if compliance and scene.contact else None
     return (
-        build(model, thermal_offset=thermal_offset.under_pads(scene, model, compliance)),
+        build(model, thermal_offset=thermal_offset.under_pads(model, walls)),
         model.payload.inertia,
         platform_inertia,
         interval / steps_per_sample,
@@ -223,17 +225,17 @@ def thrust(record, offset, time, turn):
 
 
 @kernel
-def pad_contact(laws, system, face, place, axes, body, base):
+def pad_contact(contact, system, face, place, axes, body, base):
     """Force (N) of one face on the payload and its arm from the payload's mass centre (m), scene
     axes.
 
     ``place`` (m) and ``axes`` (nine numbers) of the payload are in platform axes.
     """
     force, arm = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    if laws is not None:
+    if contact is not None:
         c = rotation.rotate(axes, (face[0], face[1], face[2]))
         x = (place[0] + c[0], place[1] + c[1], place[2] + c[2])
-        away, slope = _thermal_offset(laws.thermal_offset, face, x[0])
+        away, slope = _thermal_offset(contact.thermal_offset, face, x[0])
         p = face[3] * x[1] + face[4] * x[2] - face[5] - away
         side = (x[1] if face[3] == 0.0 else x[2]) - face[SIDE_MIDDLE]
         if (
@@ -251,7 +253,7 @@ def pad_contact(laws, system, face, place, axes, body, base):
             )
             n = (-slope, face[3], face[4])
             closing = rotation.dot(n, u)
-            elastic, damping = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p, closing)
+            elastic, damping = law.parts(contact.law, p, closing)
             normal = max(0.0, elastic + damping)
             off = closing / rotation.dot(n, n)
             slip = (u[0] - off * n[0], u[1] - off * n[1], u[2] - off * n[2])

@@ -13,8 +13,7 @@ from tipoff.highfi.state import records
 from tipoff.highfi.statics import assembly, thermal
 from tipoff.kernels import rotation
 from tipoff.kernels.memory import zeros
-from tipoff.mechanics import comoving
-from tipoff.mechanics import model as scene_model
+from tipoff.mechanics import comoving, scene_model
 from tipoff.scenes.body import inverse, tensor
 from tipoff.scenes.effects.structural_damping import Damping
 from tipoff.scenes.faults import Fault, SceneError

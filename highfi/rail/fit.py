@@ -14,7 +14,7 @@ from tipoff.highfi.mesh import facets, pieces
 from tipoff.highfi.mesh.rail_mesh import MeshError, RailMesh
 from tipoff.highfi.rail import drawn_walls
 from tipoff.highfi.rail.drawn_walls import SAME
-from tipoff.mechanics import model
+from tipoff.mechanics import scene_model
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import GeometryTable, MeshTable, SectionTable
 from tipoff.scenes.scene import Scene
@@ -140,7 +140,7 @@ def _wall_faults(
 ) -> list[tuple[str, str, str]]:
     """Pad faces without a wall, walls that an offset cannot describe, and walls with another
     clearance than the scene."""
-    faces = model.in_scene_axes(scene, model.built(scene).nominal)
+    faces = scene_model.in_scene_axes(scene, scene_model.built(scene).nominal)
     drawn, file = rail.gap(clearance), rail.path().name
     # wrong ends are separate faults
     ends = max(rail.start, corners[..., 0].min()), min(rail.end, corners[..., 0].max())
@@ -175,7 +175,7 @@ def _wall_faults(
 
 
 def _hole_faults(
-    near: np.ndarray, faces: model.Faces, face: int, name: str, ends: tuple[float, float]
+    near: np.ndarray, faces: scene_model.Faces, face: int, name: str, ends: tuple[float, float]
 ) -> list[tuple[str, str, str]]:
     """Pieces of the track of a face without any wall."""
     low, high = near[:, :, 0].min(axis=1), near[:, :, 0].max(axis=1)
@@ -197,7 +197,7 @@ def _hole_faults(
 def _shape_faults(
     near: np.ndarray,
     found: drawn_walls.Track,
-    faces: model.Faces,
+    faces: scene_model.Faces,
     face: int,
     name: str,
     most: float,

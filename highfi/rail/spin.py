@@ -19,7 +19,7 @@ from tipoff.highfi.rail.scene_mesh import geometry, make_mesh
 from tipoff.highfi.rail.step_cost import spacing
 from tipoff.highfi.statics import assembly, vibration
 from tipoff.highfi.statics.solve import Clamped
-from tipoff.mechanics import model as scene_model
+from tipoff.mechanics import scene_model
 from tipoff.scenes.effects import thrust
 from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from tipoff.scenes.faults import Fault, SceneError

@@ -16,8 +16,8 @@ import numpy as np
 from tipoff.highfi.extruded.mesh import Columns
 from tipoff.kernels.reference import by_reference
 from tipoff.mechanics.ledger import BODY_FORCE, ENTRIES
-from tipoff.mechanics.model import Faces, Payload
 from tipoff.mechanics.outcome import Milestones
+from tipoff.mechanics.scene_model import Faces, Payload
 from tipoff.scenes.effects.body_force import BodyForce
 from tipoff.scenes.effects.friction import Friction
 from tipoff.scenes.effects.structural_damping import Damping

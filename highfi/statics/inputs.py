@@ -7,8 +7,8 @@ import numpy as np
 
 from tipoff.files import content_hash
 from tipoff.highfi.rail.scene_mesh import geometry
-from tipoff.mechanics import model as scene_model
-from tipoff.mechanics.model import Faces
+from tipoff.mechanics import scene_model
+from tipoff.mechanics.scene_model import Faces
 from tipoff.meshes.l_rail import LRailGeometry
 from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from tipoff.scenes.rail import MaterialTable

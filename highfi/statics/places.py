@@ -16,7 +16,7 @@ from tipoff.highfi.statics import joint_terms, thermal
 from tipoff.highfi.statics.held import HeldRail
 from tipoff.highfi.statics.pressure import Pressed, Wall
 from tipoff.highfi.statics.solve import Clamped, one_thread
-from tipoff.mechanics import model as scene_model
+from tipoff.mechanics import scene_model
 from tipoff.scenes.effects.thermal import FIELDS
 
 BATCH = 64  # loads solved for at once; bounds the memory

@@ -218,16 +218,16 @@ def friction_force(friction, normal_force, slip):
 
 
 @kernel
-def load(laws, friction, platform, face, p, body, base):
+def load(contact, friction, platform, face, p, body, base):
     """Load of ``face`` at penetration ``p`` >= 0."""
     point = pad_point(face, body)
-    n = gradient(laws.thermal_offset, face, base, point)
+    n = gradient(contact.thermal_offset, face, base, point)
     u = relative_velocity(platform, body, base, point)
     closing = rotation.dot(u, n)
-    elastic, damping = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p, closing)
+    elastic, damping = law.parts(contact.law, p, closing)
     raw = elastic + damping
     force = max(raw, 0.0)
-    slip = slip_velocity(laws.thermal_offset, u, closing, n)
+    slip = slip_velocity(contact.thermal_offset, u, closing, n)
     return Load(
         point=point,
         normal=(-force * n[0], -force * n[1], -force * n[2]),

@@ -28,7 +28,7 @@ _NUDGE = 1e-6
 
 
 @kernel
-def fastest_rate(laws, system, touching, stick, state, ahead):
+def fastest_rate(contact, system, touching, stick, state, ahead):
     """Bound S (1/s) of the eigenvalues of the ``touching`` faces (f,) at ``state``; 0 without a
     touching face.
 
@@ -36,7 +36,7 @@ def fastest_rate(laws, system, touching, stick, state, ahead):
     keep its speed.
     """
     rate = 0.0
-    if laws is not None:
+    if contact is not None:
         payload, platform = system.payload, system.platform
         body = slot.motion(payload, state, slot.PAYLOAD)
         base = slot.frame(platform, state)
@@ -45,13 +45,15 @@ def fastest_rate(laws, system, touching, stick, state, ahead):
         for i in range(touching.size):
             if touching[i]:
                 face = system.faces[i]
-                p = penetration(laws.thermal_offset, face, place, turn)
+                p = penetration(contact.thermal_offset, face, place, turn)
                 if p > 0.0:
-                    p += ahead * max(load(laws, None, platform, face, p, body, base).closing, 0.0)
-                    k, c = _normal(laws, system, face, p, body, base)
+                    p += ahead * max(
+                        load(contact, None, platform, face, p, body, base).closing, 0.0
+                    )
+                    k, c = _normal(contact, system, face, p, body, base)
                     row = row_of(system.sticking, stick, i)
                     held, rubbed = _tangential(
-                        system.sticking, laws, system, row, face, p, body, base
+                        system.sticking, contact, system, row, face, p, body, base
                     )
                     stiffness += k + held
                     damping += c + rubbed
@@ -60,13 +62,13 @@ def fastest_rate(laws, system, touching, stick, state, ahead):
 
 
 @kernel
-def _normal(laws, system, face, p, body, base):
+def _normal(contact, system, face, p, body, base):
     """Contribution of one face, with two-step friction, to K (1/s2) and C (1/s)."""
     friction, platform, payload = system.friction, system.platform, system.payload
-    now = load(laws, friction, platform, face, p, body, base)
-    n = gradient(laws.thermal_offset, face, base, now.point)
-    more = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p * (1.0 + _NUDGE), now.closing)
-    unit = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p, 1.0)
+    now = load(contact, friction, platform, face, p, body, base)
+    n = gradient(contact.thermal_offset, face, base, now.point)
+    more = law.parts(contact.law, p * (1.0 + _NUDGE), now.closing)
+    unit = law.parts(contact.law, p, 1.0)
     across = inverse_mass(platform, payload, body, base, now.point, n)
     stiffness = abs(more[0] + more[1] - now.raw) / (_NUDGE * p) * across
     damping = unit[1] * across + friction_damping(friction, now, platform, payload, body, base, n)
@@ -96,12 +98,12 @@ def friction_damping(friction, now, platform, payload, body, base, n):
 
 
 @kernel
-def _tangential(sticking, laws, system, row, face, p, body, base):
+def _tangential(sticking, contact, system, row, face, p, body, base):
     """Contribution of friction with sticking to K (1/s2) and C (1/s)."""
     stiffness, damping = 0.0, 0.0
     if sticking is not None:
         payload, platform = system.payload, system.platform
-        now, n = load(laws, None, platform, face, p, body, base), outward(face, base)
+        now, n = load(contact, None, platform, face, p, body, base), outward(face, base)
         if row[STICKS] != 0.0:
             a = _tangent(n)
             across = inverse_mass(platform, payload, body, base, now.point, a) + inverse_mass(

@@ -20,8 +20,8 @@ import scipy  # its parts load when they are first used
 from tipoff.kernels.jit import kernel
 from tipoff.kernels.reference import by_reference
 from tipoff.mechanics import drawn_walls
-from tipoff.mechanics.model import Model
 from tipoff.mechanics.rail_compliance import GRAM, RailCompliance, cubic
+from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
@@ -36,20 +36,16 @@ class ThermalOffset(NamedTuple):
     origin: np.ndarray  # (f,) m, X of the first station: the centre of the face at ignition
 
 
-def under_pads(
-    scene: Scene, model: Model, compliance: RailCompliance | None
-) -> ThermalOffset | None:
-    """Record for the kernels. None without contact, for walls without offset, and for compliant
-    contact, which contains the offset itself. Raises SceneError as ``require`` does."""
-    require(scene, compliance)
-    if compliance is None or model.contact is None or compliance.flexibility is not None:
+def under_pads(model: Model, compliance: RailCompliance | None) -> ThermalOffset | None:
+    """Record of the rail ``compliance`` of a scene. None for walls without offset, and for compliant
+    contact, which contains the offset itself."""
+    if compliance is None or compliance.flexibility is not None:
         return None
-    compliance.require(scene)
     platform = model.platform.mass_centre[0] if model.platform is not None else 0.0
     origin = model.faces.centre[:, 0] + (model.payload.mass_centre[0] - platform)
     travel, mean = compliance.travel, None
     if model.thermal is not None:
-        mean = compliance.of(scene).moved(model.thermal.amounts) @ GRAM[0]
+        mean = compliance.moved(model.thermal.amounts) @ GRAM[0]
     if compliance.drawn is not None:
         fine = drawn_walls.grid(travel[0], travel[-1])
         warm = 0.0 if mean is None else scipy.interpolate.CubicSpline(travel, mean)(fine)
@@ -99,12 +95,9 @@ def lacking(scene: Scene, compliance: RailCompliance | None) -> list[Fault]:
 
 
 def require(scene: Scene, compliance: RailCompliance | None) -> None:
-    """Raise SceneError for a scene whose walls are warm or from a file without rail compliance, and
-    for a warm scene with the compliance of another rail."""
+    """Raise SceneError with the faults of ``lacking``."""
     if faults := lacking(scene, compliance):
         raise SceneError(faults)
-    if compliance is not None and scene.thermal is not None and scene.contact is not None:
-        compliance.require(scene)
 
 
 @kernel

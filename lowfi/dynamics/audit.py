@@ -118,12 +118,12 @@ def _of_modes(compliance, state):
 
 
 @kernel
-def _in_springs(laws, engaged, surveyed):
+def _in_springs(contact, engaged, surveyed):
     energy = 0.0
-    if laws is not None:
+    if contact is not None:
         for i in range(engaged.size):
             if engaged[i]:
-                energy += stored(laws, surveyed[i, DEPTH])
+                energy += stored(contact, surveyed[i, DEPTH])
     return energy
 
 

@@ -5,13 +5,17 @@ those of ``lowfi.run``, bit for bit, or are missing: a case that fails, or whose
 ignition, needs a message too, and is left to ``lowfi.run``.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from tipoff.kernels.jit import kernel
+from tipoff.lowfi import state
+from tipoff.lowfi.faces import CENTRE
 from tipoff.lowfi.system import Body, System
 from tipoff.mechanics.ending import BOOK_SIZE
+from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.effects.thrust_offset import ThrustOffset
 
 # Columns of the results: whether the case is left to ``lowfi.run``, steps, the book.
@@ -33,19 +37,23 @@ class Cases(NamedTuple):
     results: np.ndarray  # (n, RESULT_SIZE) filled without samples
 
 
-def alone(system: System, start: np.ndarray, reach: float) -> Cases:
-    """``system`` as the only case."""
-    offset = system.thrust_offset
+def of_models(system: System, models: Sequence[Model]) -> Cases:
+    """A case of each of ``models``, with the faces of ``system`` at their centres."""
+    count, centre = len(models), np.array([model.faces.centre for model in models])
+    faces = np.repeat(system.faces[None], count, axis=0)
+    faces[:, :, CENTRE : CENTRE + 3] = centre
+    # all have one, or none
+    offsets = [model.thrust_offset for model in models if model.thrust_offset is not None]
     return Cases(
-        mass=np.array([system.payload.mass]),
-        inertia=system.payload.inertia[None],
-        inverse_inertia=system.payload.inverse_inertia[None],
-        faces=system.faces[None],
-        direction=None if offset is None else np.array([offset.direction]),
-        arm=None if offset is None else np.array([offset.arm]),
-        start=start[None],
-        reach=np.array([reach]),
-        results=np.zeros((1, RESULT_SIZE)),
+        mass=np.array([model.payload.mass for model in models]),
+        inertia=np.array([model.payload.inertia for model in models]),
+        inverse_inertia=np.array([model.payload.inverse_inertia for model in models]),
+        faces=faces,
+        direction=np.array([offset.direction for offset in offsets]) if offsets else None,
+        arm=np.array([offset.arm for offset in offsets]) if offsets else None,
+        start=np.array([state.initial(model) for model in models]),
+        reach=np.sqrt((centre**2).sum(axis=2).max(axis=1)),
+        results=np.zeros((count, RESULT_SIZE)),
     )
 
 

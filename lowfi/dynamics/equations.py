@@ -203,16 +203,16 @@ def _add_body_force(force, mass, first, ledger, body, out):
 
 
 @kernel
-def add_springs(laws, sticking, faces, touching, stick, bodies, out):
+def add_springs(contact, sticking, faces, touching, stick, bodies, out):
     """Add the contact springs of all ``touching`` faces."""
-    if laws is not None:
+    if contact is not None:
         body, base, platform = bodies.payload, bodies.base, bodies.platform
         place, turn = relative_pose(platform, body, base)
         for i in range(touching.size):
             if touching[i]:
-                p = penetration(laws.thermal_offset, faces[i], place, turn)
+                p = penetration(contact.thermal_offset, faces[i], place, turn)
                 if p > 0.0:
-                    pad = load(laws, bodies.friction, platform, faces[i], p, body, base)
+                    pad = load(contact, bodies.friction, platform, faces[i], p, body, base)
                     _add_pad(pad, bodies, out)
                     row = stick_slip.row_of(sticking, stick, i)
                     _add_traction(sticking, row, faces[i], pad, bodies, out)

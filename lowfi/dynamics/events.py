@@ -57,9 +57,9 @@ def first_event(system, loop, dt, span):
 
 
 @kernel
-def _event_on_springs(laws, system, loop, dt, span):
+def _event_on_springs(contact, system, loop, dt, span):
     first, blamed = 1.0, -1
-    if laws is not None:
+    if contact is not None:
         rail = (system.rail_start, system.rail_end)
         for i in range(loop.engaged.size):
             before, after = loop.before[i], loop.after[i]
@@ -226,18 +226,18 @@ def _quantity(is_compliant, system, loop, number, kind):
 
 
 @kernel
-def _quantity_on_springs(laws, sticking, row, platform, face, kind, motions):
+def _quantity_on_springs(contact, sticking, row, platform, face, kind, motions):
     value = 0.0 if kind == DEPTH else 1.0
-    if laws is not None:
+    if contact is not None:
         body, base = motions
         place, turn = relative_pose(platform, body, base)
-        p = penetration(laws.thermal_offset, face, place, turn)
+        p = penetration(contact.thermal_offset, face, place, turn)
         if kind == DEPTH:
             value = p
         elif kind == MARGIN:
-            value = margin(laws, sticking, row, platform, face, p, body, base)
+            value = margin(contact, sticking, row, platform, face, p, body, base)
         else:
-            value = pull(load(laws, None, platform, face, max(p, 0.0), body, base))
+            value = pull(load(contact, None, platform, face, max(p, 0.0), body, base))
     return value
 
 

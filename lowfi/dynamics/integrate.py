@@ -100,7 +100,7 @@ def _reset_stick(stick):
 
 
 @entry
-def integrate(common, plan, tolerance, marks, loop, sampling, cases):
+def integrate(common, plan, tolerance, marks, loop, cases, sampling):
     """Run ``cases`` of the ``common`` system. With samples, there is one case: it continues from
     the state of ``loop`` up to sample ``sampling.number``, or begins if the loop is ready; the
     result is the reason of its stop. Without samples, each case runs from its start until exit and

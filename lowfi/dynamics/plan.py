@@ -5,7 +5,7 @@ import numpy as np
 
 from tipoff.lowfi.dynamics.loop import Plan
 from tipoff.lowfi.numerics import Numerics
-from tipoff.mechanics.model import Model
+from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.effects import thrust_law
 
 # A Gaussian is below 2e-14 of its peak beyond this many widths. Stages of a step inside are at most

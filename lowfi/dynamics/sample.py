@@ -128,19 +128,19 @@ def _body(mass, state, first, body, row):
 
 
 @kernel
-def _observe_springs(laws, system, loop, body, base, forces):
+def _observe_springs(contact, system, loop, body, base, forces):
     """Fill ``forces`` of contact springs; returns the energy (J) stored in all faces."""
     energy = 0.0
     forces[:] = 0.0
-    if laws is not None:
+    if contact is not None:
         place, turn = relative_pose(system.platform, body, base)
         for i in range(loop.engaged.size):
             if loop.engaged[i]:
                 face = system.faces[i]
-                p = penetration(laws.thermal_offset, face, place, turn)
+                p = penetration(contact.thermal_offset, face, place, turn)
                 if p > 0.0:
-                    pad = load(laws, system.friction, system.platform, face, p, body, base)
-                    energy += stored(laws, p)
+                    pad = load(contact, system.friction, system.platform, face, p, body, base)
+                    energy += stored(contact, p)
                     for j in range(3):
                         forces[i, j] = pad.normal[j] + pad.drag[j]
                     row = stick_slip.row_of(system.sticking, loop.stick, i)

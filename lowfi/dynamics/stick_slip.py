@@ -43,12 +43,12 @@ def begin_contact(sticking, system, loop, face):
 def _change(sticking, system, loop, number, touched, touches, state):
     """Change the state of a face that begins to touch, slips, stops, or ceases to touch; returns
     the lost energy (J) and its new margin."""
-    face, row, laws = system.faces[number], loop.stick[number], system.contact
+    face, row, contact = system.faces[number], loop.stick[number], system.contact
     body = slot.motion(system.payload, state, slot.PAYLOAD)
     base = slot.frame(system.platform, state)
     place, turn = relative_pose(system.platform, body, base)
-    depth = max(penetration(laws.thermal_offset, face, place, turn), 0.0)
-    now = load(laws, None, system.platform, face, depth, body, base)
+    depth = max(penetration(contact.thermal_offset, face, place, turn), 0.0)
+    now = load(contact, None, system.platform, face, depth, body, base)
     lost = 0.0
     if not (touched and touches):
         lost = law.stored(sticking, row, face, now.point, base)

@@ -60,27 +60,27 @@ def _survey_compliance(compliance, faces, platform, payload, loop, solved):
 
 
 @kernel
-def _survey_springs(laws, sticking, faces, platform, payload, loop):
-    if laws is not None:
+def _survey_springs(contact, sticking, faces, platform, payload, loop):
+    if contact is not None:
         out = loop.after
         body = slot.motion(payload, loop.end, slot.PAYLOAD)
         base = slot.frame(platform, loop.end)
         place, turn = relative_pose(platform, body, base)
         drift, swing = relative_motion(platform, body, base, place, turn)
         for i in range(out.shape[0]):
-            p = penetration(laws.thermal_offset, faces[i], place, turn)
+            p = penetration(contact.thermal_offset, faces[i], place, turn)
             out[i, MODE], out[i, DEPTH], out[i, PULL] = OPEN, p, 1.0
             out[i, ALONG] = along(faces[i], place, turn)
-            out[i, CLOSING] = approach(laws.thermal_offset, faces[i], place, turn, drift, swing)
+            out[i, CLOSING] = approach(contact.thermal_offset, faces[i], place, turn, drift, swing)
             out[i, FORWARD] = forward(faces[i], drift, swing)
             out[i, SIDE] = across(faces[i], place, turn) - faces[i, SIDE_MIDDLE]
             out[i, SIDEWAYS] = sideways(faces[i], drift, swing)
             if p > 0.0:
-                pad = load(laws, None, platform, faces[i], p, body, base)
+                pad = load(contact, None, platform, faces[i], p, body, base)
                 out[i, MODE] = PRESSING if pad.raw >= 0.0 else CUT_OFF
                 out[i, PULL] = pull(pad)
             row = stick_slip.row_of(sticking, loop.stick, i)
-            out[i, MARGIN] = margin(laws, sticking, row, platform, faces[i], p, body, base)
+            out[i, MARGIN] = margin(contact, sticking, row, platform, faces[i], p, body, base)
 
 
 @kernel
@@ -92,13 +92,13 @@ def pull(pad):
 
 
 @kernel
-def margin(laws, sticking, row, platform, face, p, body, base):
+def margin(contact, sticking, row, platform, face, p, body, base):
     """Stick-slip margin of a face at penetration ``p`` (m); -1 for a sticking face with a gap."""
     left = 1.0
     if sticking is not None:
         if p > 0.0:
             left = stick_slip.margin(
-                sticking, row, face, load(laws, None, platform, face, p, body, base), base
+                sticking, row, face, load(contact, None, platform, face, p, body, base), base
             )
         elif row[stick_slip.STICKS] != 0.0:
             left = -1.0
@@ -118,7 +118,7 @@ def update_engaged(system, loop):
 
 
 @kernel
-def _update_engaged(laws, has_contact, rail, faces, loop):
+def _update_engaged(contact, has_contact, rail, faces, loop):
     changed, energy, returned, struck = False, 0.0, 0.0, -1
     if has_contact:
         engaged, surveyed, left = loop.engaged, loop.after, loop.depth_left
@@ -134,8 +134,8 @@ def _update_engaged(laws, has_contact, rail, faces, loop):
                     else surveyed[i, DEPTH] >= faces[i, BACK]
                 ):
                     struck = i
-                energy += (1.0 if engaged[i] else -1.0) * stored(laws, surveyed[i, DEPTH])
-                returned += stored(laws, min(surveyed[i, DEPTH], left[i])) if inside else 0.0
+                energy += (1.0 if engaged[i] else -1.0) * stored(contact, surveyed[i, DEPTH])
+                returned += stored(contact, min(surveyed[i, DEPTH], left[i])) if inside else 0.0
                 left[i] = 0.0 if inside else max(surveyed[i, DEPTH], 0.0)
                 engaged[i] = inside
     return changed, energy, returned, struck
@@ -163,10 +163,10 @@ def keeps_law(loop):
 
 
 @kernel
-def stored(laws, depth):
+def stored(contact, depth):
     """Elastic energy (J) of one face at penetration ``depth`` (m), zero across a gap."""
     energy = 0.0
-    if laws is not None:
+    if contact is not None:
         if depth > 0.0:
-            energy = stored_energy(laws.impact, laws.hunt_crossley, laws.linear, depth)
+            energy = stored_energy(contact.law, depth)
     return energy

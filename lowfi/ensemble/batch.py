@@ -7,20 +7,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tipoff.lowfi import state, system
 from tipoff.lowfi.contact import thermal_offset
-from tipoff.lowfi.contact.compliant import neglected
-from tipoff.lowfi.contact.compliant import record as compliance_record
-from tipoff.lowfi.dynamics import cases, integrate, local_error, plan
-from tipoff.lowfi.dynamics.loop import Plan, Sampling
+from tipoff.lowfi.dynamics import cases, integrate
+from tipoff.lowfi.dynamics.loop import Sampling
 from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
-from tipoff.lowfi.faces import CENTRE
 from tipoff.lowfi.numerics import AUTO, Numerics, promises_of
+from tipoff.lowfi.preparation import prepare
 from tipoff.lowfi.run import solved
-from tipoff.mechanics import comoving, ending, outcome
-from tipoff.mechanics import model as scene_model
-from tipoff.mechanics.model import Built
+from tipoff.mechanics import comoving, ending, outcome, scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance, may_vibrate
+from tipoff.mechanics.scene_model import Built
 from tipoff.scenes import changes
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import SceneError
@@ -41,9 +37,8 @@ class Case(NamedTuple):
 class _Group(NamedTuple):
     """Cases that share all records except those of ``cases.Cases``."""
 
-    built: Built
+    scene: Scene
     marks: outcome.Milestones
-    plan: Plan
     rows: list[tuple[int, Mapping[str, Any]]]  # number and overrides of each case
     models: list[scene_model.Model]  # of each case
 
@@ -73,7 +68,7 @@ class Family:
         self.changes = calibration.changes if calibration else {}
         self.stated = Variations(scene) if self.changes else None
         self.base = scene_model.built(calibrated)
-        self.marks = outcome.milestones(calibrated, self.base.model)
+        self.burnouts = outcome.burnouts(calibrated, self.base.model)
 
     def jobs(
         self, table: Sequence[Mapping[str, Any]]
@@ -130,40 +125,37 @@ class Family:
 
     def _require_compliance(self, built: Built) -> None:
         scene, base = built.scene, self.base.scene
-        if self.compliance is not None and not (
-            scene.rail is base.rail and scene.pads is base.pads
-        ):
-            self.compliance.require(scene)
-        if scene.thermal is not base.thermal or scene.rail is not base.rail:
+        changed = any(
+            getattr(scene, name) is not getattr(base, name) for name in ("rail", "pads", "thermal")
+        )
+        if changed and scene.contact is not None:
             thermal_offset.require(scene, self.compliance)
+            if self.compliance is not None:
+                self.compliance.require(scene)
 
     def _group(self, groups: dict, built: Built) -> _Group:
-        scene, model = built.scene, built.model
-        limit, base = scene.time_limit, self.base.scene
+        scene, limit, marks = built.scene, built.scene.time_limit, self._marks(built)
         # The damping of vibrating rails and the stiffness of mounts are not part of a model.
         key = (
             self._shared(built),
             scene.thrust.kind,
             limit,
+            marks,
             scene.rail.damping and scene.rail.damping.record(),
             scene.rail.joint(),
         )
         if key not in groups:
-            same = scene.thrust is base.thrust and limit == base.time_limit
-            marks = self.marks if same else outcome.milestones(scene, model)
             # The next row may overwrite the tables of this one.
-            kept = Built(scene.model_copy(deep=True), model, built.nominal)
-            groups[key] = _Group(
-                kept,
-                marks._replace(jam_speed=outcome.jam_speed(model)),
-                plan.make(model, limit, self.numerics),
-                [],
-                [],
-            )
+            groups[key] = _Group(scene.model_copy(deep=True), marks, [], [])
         return groups[key]
 
+    def _marks(self, built: Built) -> outcome.Milestones:
+        scene, base = built.scene, self.base.scene
+        same = scene.thrust is base.thrust and scene.time_limit == base.time_limit
+        return outcome.milestones(scene, built.model, self.burnouts if same else None)
+
     def _shared(self, built: Built) -> tuple:
-        """Content of all records of a model that ``_stacked`` does not take from each case; None
+        """Content of all records of a model that ``cases.Cases`` does not take from each case; None
         for records of the scene."""
 
         def parts(of: Built) -> tuple:
@@ -181,29 +173,26 @@ class Family:
         )
 
     def _kernel(self, group: _Group) -> Callable[[], np.ndarray]:
-        scene, model = group.built.scene, group.built.model
-        modes, found = self.numerics.count, self.compliance
-        common = system.build(
-            model,
-            compliance=compliance_record.under_pads(scene, model, found, modes),
-            thermal_offset=thermal_offset.under_pads(scene, model, found),
-            neglected=neglected.watched(scene, model, found, modes, watches=False),
+        prepared = prepare(
+            group.scene,
+            group.models,
+            group.marks,
+            self.numerics,
+            promises_of(self.numerics),
+            self.compliance,
         )
-        loop = integrate.ready(common, state.initial(model), group.plan.first)
-        allowed = local_error.tolerance(self.numerics, promises_of(self.numerics), 0.0)
         nothing = Sampling(
             interval=0.0,
             last=-1,
             number=-1,
             whole=False,
             rows=np.zeros((0, SAMPLE_SIZE)),
-            forces=np.zeros((0, model.faces.axis.size, 3)),
+            forces=np.zeros((0, len(prepared.system.faces), 3)),
         )
-        stacked = _stacked(common, group)
 
         def call() -> np.ndarray:
-            integrate.integrate(common, group.plan, allowed, group.marks, loop, nothing, stacked)
-            return stacked.results
+            integrate.integrate(*prepared, nothing)
+            return prepared.cases.results
 
         return call
 
@@ -268,23 +257,3 @@ def _content(record: Any) -> Any:
         return record.hex()  # distinguishes 0.0 and -0.0
     values = np.asarray(record)
     return values.dtype.str, values.shape, values.tobytes()
-
-
-def _stacked(common: system.System, group: _Group) -> cases.Cases:
-    of_cases = group.models
-    centre = np.stack([model.faces.centre for model in of_cases])
-    faces = np.repeat(common.faces[None], len(of_cases), axis=0)
-    faces[:, :, CENTRE : CENTRE + 3] = centre
-    # all cases of a group have one, or none
-    offsets = [model.thrust_offset for model in of_cases if model.thrust_offset is not None]
-    return cases.Cases(
-        mass=np.array([model.payload.mass for model in of_cases]),
-        inertia=np.stack([model.payload.inertia for model in of_cases]),
-        inverse_inertia=np.stack([model.payload.inverse_inertia for model in of_cases]),
-        faces=faces,
-        direction=np.array([offset.direction for offset in offsets]) if offsets else None,
-        arm=np.array([offset.arm for offset in offsets]) if offsets else None,
-        start=np.stack([state.initial(model) for model in of_cases]),
-        reach=np.sqrt((centre**2).sum(axis=2).max(axis=1)),
-        results=np.zeros((len(of_cases), cases.RESULT_SIZE)),
-    )

@@ -12,20 +12,28 @@ from tests.exact.contact import hunt_crossley_restitution
 from tests.exact.friction import stopping
 from tipoff.calibration import information, intervals
 from tipoff.calibration.correlation import correlation_time
-from tipoff.scenes.effects.contact import HuntCrossley, hunt_crossley
+from tipoff.scenes.effects.contact import ContactLaw, parts
 
 G = 9.80665
-PAD = HuntCrossley(70_000 * 1e3**1.5, 1.5, 2.0)
+CONSTANTS = np.array([70_000 * 1e3**1.5, 1.5, 2.0])
 SPEEDS = np.linspace(0.02, 0.2, 6)
 NAMES = ["stiffness", "exponent", "dissipation"]
 
 
-def bounce(law: HuntCrossley, speed: float, mass: float = 20.0) -> tuple[float, float]:
+def hunt_crossley(*constants: float) -> ContactLaw:
+    """The law with the constants of ``NAMES``."""
+    return ContactLaw(**dict(zip(NAMES, constants)))
+
+
+PAD = hunt_crossley(*CONSTANTS)
+
+
+def bounce(law: ContactLaw, speed: float, mass: float = 20.0) -> tuple[float, float]:
     """Restitution and deepest penetration (m) of a mass on the project's own law, integrated by
     DOP853 at 1e-12."""
 
     def slope(_, y):
-        return [y[1], -max(0.0, sum(hunt_crossley(law, y[0], y[1]))) / mass if y[0] > 0.0 else 0.0]
+        return [y[1], -max(0.0, sum(parts(law, y[0], y[1]))) / mass if y[0] > 0.0 else 0.0]
 
     def turned(_, y):
         return y[1]
@@ -51,7 +59,7 @@ def bounce_information(of_bounces) -> np.ndarray:
     middle = np.full(3, 0.5)  # inside the unit cube, where differences are central
 
     def data(shares):
-        law = HuntCrossley(*(np.array(PAD) * np.exp(shares - middle)))
+        law = hunt_crossley(*(CONSTANTS * np.exp(shares - middle)))
         return of_bounces(np.array([bounce(law, speed) for speed in SPEEDS]))
 
     return information.information(information.jacobian(data, middle))

@@ -21,7 +21,7 @@ from tipoff.highfi.mesh import touching
 from tipoff.highfi.mesh.rail_mesh import read
 from tipoff.highfi.rail import fit, solid_process, step_cost
 from tipoff.lowfi.ensemble.table import TableFile
-from tipoff.mechanics import model
+from tipoff.mechanics import scene_model
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.meshes import generator
 from tipoff.scenes import plausibility, reading, uncertainty
@@ -92,7 +92,7 @@ def _prepared(file: Path, folder: Path) -> None:
     assert scenes.parse(whole.resolved(), bare_numbers_are_si=True).hash == whole.hash
     for scene in list(study.conditions.values())[:2]:
         assert scene.hash and scene.absent_effects() is not None
-        model.build(scene)
+        scene_model.build(scene)
         request = study.highfi(next(iter(study.conditions)))
         if isinstance(scene.rail, SectionTable) or not _is_large(scene):
             highfi.prepare(scene, request.numerics)
@@ -138,7 +138,7 @@ def _override(rng: random.Random, folder: Path) -> None:
     }
     found = scene.replace(text)
     plausibility.of_all_conditions(found)
-    model.build(found)
+    scene_model.build(found)
 
 
 def _dotted(table: dict) -> list:

@@ -16,7 +16,7 @@ from tipoff.lowfi import system as systems
 from tipoff.lowfi.contact import springs
 from tipoff.lowfi.contact.compliant import record
 from tipoff.lowfi.dynamics import equations
-from tipoff.mechanics import model as scene_model
+from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import PATTERNS, POWERS, RailCompliance, digest
 from tipoff.scenes.scene import Scene
 

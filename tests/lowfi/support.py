@@ -11,7 +11,7 @@ from tipoff import lowfi, scenes
 from tipoff.kernels import rotation
 from tipoff.lowfi import state
 from tipoff.lowfi.dynamics import integrate
-from tipoff.lowfi.single_run import Run
+from tipoff.lowfi.single_run import SingleRun
 
 G = 9.80665
 PAPER_PAD = {
@@ -92,10 +92,10 @@ def numerics(tolerance: float) -> lowfi.Numerics:
     return lowfi.Numerics(relative_tolerance=tolerance, speed_floor=1e-4)
 
 
-def unwatched(asked: scenes.Scene, numerics: lowfi.Numerics, change=None) -> Run:
+def unwatched(asked: scenes.Scene, numerics: lowfi.Numerics, change=None) -> SingleRun:
     """A run over the scene's whole duration, from its state at ignition or that of ``change``: no
     exit and no jam ends it."""
-    run = Run(asked, numerics)
+    run = SingleRun(asked, numerics)
     if change is not None:
         run.loop = integrate.ready(run.system, change(state.initial(run.model)), run.plan.first)
     run.whole = True

@@ -12,7 +12,7 @@ from tests.highfi.support import COARSE
 from tests.lowfi.compliance import REFERENCE, reference_compliance
 from tipoff import highfi, lowfi
 from tipoff.lowfi import Numerics, modes
-from tipoff.lowfi.single_run import Run
+from tipoff.lowfi.single_run import SingleRun
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes import load
 
@@ -130,7 +130,7 @@ def test_a_coarse_integration_chooses_no_modes_that_the_contact_does_not_excite(
     assert auto.cost["steps"] == static.cost["steps"] < accurate.cost["steps"]
     assert (auto.cost["auto_runs"], auto.cost["auto_steps"]) == (1, accurate.cost["steps"])
 
-    control = Run(asked, coarse, compliance, watches=True)
+    control = SingleRun(asked, coarse, compliance, watches=True)
     control.begin()
     control.integrate(None)
     assert modes.needed(control.neglected()) > 0

@@ -36,7 +36,7 @@ import numpy as np
 from tipoff.lowfi import state, system
 from tipoff.lowfi.contact import step_limit
 from tipoff.lowfi.dynamics import equations
-from tipoff.mechanics import model
+from tipoff.mechanics import scene_model
 from tipoff.scenes import load
 from tipoff.scenes.effects.friction import coefficient_over_speed
 @numba.njit
@@ -44,7 +44,7 @@ def call(records, felt, begin, out):
     equations.derivative(records, felt, None, 0.0, begin, out)
     step_limit.fastest_rate(records.contact, records, felt, None, begin, 0.0)
 def evaluate(scene):
-    built = model.build(scene)
+    built = scene_model.build(scene)
     records, begin = system.build(built), state.initial(built)
     call(records, np.ones(16, dtype=np.bool_), begin, np.empty_like(begin))
     return len(coefficient_over_speed.signatures)

@@ -29,7 +29,7 @@ from tests.lowfi.random_scenes import (
 from tests.lowfi.support import RAIL, turned_state, unwatched
 from tipoff import lowfi
 from tipoff.lowfi import Numerics, state
-from tipoff.lowfi.single_run import Run
+from tipoff.lowfi.single_run import SingleRun
 from tipoff.mechanics import ledger
 
 QUICK = ("ejection", "guided", "frictionless", "free")  # kernels that other tests compile too
@@ -41,7 +41,7 @@ FEW = settings(max_examples=12, suppress_health_check=list(HealthCheck))
 MANY = settings(max_examples=420, suppress_health_check=list(HealthCheck))
 
 
-def moved(raw: dict, change=None) -> Run:
+def moved(raw: dict, change=None) -> SingleRun:
     """The run over its whole duration, from the scene's state at ignition or what ``change`` makes
     of it."""
     run = unwatched(scene_of(raw), Numerics(relative_tolerance=TOLERANCE), change)
@@ -57,7 +57,7 @@ def nudged(start: np.ndarray) -> np.ndarray:
     return new
 
 
-def speeds(run: Run) -> np.ndarray:
+def speeds(run: SingleRun) -> np.ndarray:
     """Velocity, and pad speed from turning, of the payload: (n,6) m/s."""
     motion = run.motion()
     return np.hstack([motion.velocity, REACH * motion.rate])

@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from tests.scenes.support import motion
-from tipoff.mechanics import ending, model, outcome
+from tipoff.mechanics import ending, outcome, scene_model
 from tipoff.scenes import load
 
 
@@ -157,7 +157,7 @@ def test_relative_motion_with_a_turning_platform():
 
 def test_milestones_of_the_reference():
     scene = load("reference")
-    found = outcome.milestones(scene, model.build(scene))
+    found = outcome.milestones(scene, scene_model.build(scene))
     assert found.settled_thrust == pytest.approx(
         0.012 + 0.004 * math.sqrt(2.0 * math.log(1e3)), abs=5e-6
     )
@@ -185,7 +185,7 @@ def test_a_body_force_has_time_to_set_a_payload_in_motion_before_it_counts_as_ja
 
     def spent(**changes) -> float:
         scene = resting.replace(changes)
-        return outcome.milestones(scene, model.build(scene)).spent_thrust
+        return outcome.milestones(scene, scene_model.build(scene)).spent_thrust
 
     assert spent(gravity={"x": pull}) == pytest.approx(2.0 * 0.01 / pull, rel=1e-9)
     # Control:

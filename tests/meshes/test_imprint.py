@@ -28,7 +28,7 @@ from tipoff.highfi.mesh.rail_mesh import MeshError, boundary_facets
 from tipoff.highfi.rail.fit import check_areas
 from tipoff.highfi.rail.scene_mesh import make_mesh
 from tipoff.highfi.statics.held import distinct
-from tipoff.mechanics.model import built
+from tipoff.mechanics.scene_model import built
 from tipoff.meshes import solid
 from tipoff.scenes import load
 

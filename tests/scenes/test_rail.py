@@ -5,7 +5,7 @@ import pytest
 
 from tests.scenes.support import CONTACT, SMALL, small
 from tipoff.calibration import parameters
-from tipoff.mechanics import model
+from tipoff.mechanics import scene_model
 from tipoff.scenes import SceneError, load, parse
 from tipoff.scenes.rail import MeshTable, SectionTable
 
@@ -129,6 +129,6 @@ def test_walls_of_a_file_stay_and_pads_meet_them_at_the_clearance(file, clearanc
         (own, 0.1002, 0.1002 - own.contact.clearance),
         (built, 0.1 + own.contact.clearance, 0.1),
     ):
-        faces = model.build(scene).faces
+        faces = scene_model.build(scene).faces
         assert faces.wall == pytest.approx(wall, rel=1e-12)
         assert faces.centre[[0, 1], faces.axis] == pytest.approx(pad, rel=1e-12)

@@ -81,7 +81,7 @@ def test_a_mesh_has_a_picture_for_each_page(tmp_path):
     mesh = highfi.prepare(tipoff.load("tiny"), highfi.Numerics(element_size=16e-3))
     ink = {}
     for name, dark in (("light", False), ("dark", True)):
-        picture.draw(mesh, tmp_path / f"{name}.png", dark)
+        picture.draw_mesh(mesh, tmp_path / f"{name}.png", dark)
         pixels = np.asarray(Image.open(tmp_path / f"{name}.png")).reshape(-1, 4)
         assert pixels[0, 3] == 0 and (pixels[:, 3] == 0).mean() > 0.5
         solid = pixels[pixels[:, 3] == 255, :3].astype(int)

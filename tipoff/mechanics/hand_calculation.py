@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tipoff.kernels import rotation
-from tipoff.mechanics import model as scene_model
+from tipoff.mechanics import scene_model
 from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.scene import Scene
 

@@ -89,9 +89,15 @@ class Milestones(NamedTuple):
     constant_thrust: bool  # whether a slow payload is jammed under the thrust: constant and strong
 
 
-def milestones(scene: Scene, model) -> Milestones:
-    """Milestones of a run of ``scene``."""
+def burnouts(scene: Scene, model) -> tuple[float, float]:
+    """Times (s) after which the thrust is below 0.1 % and 1 % of its peak."""
     settled, spent = thrust.burnouts(model.thrust, (1e-3, 1e-2), scene.time_limit)
+    return settled, spent
+
+
+def milestones(scene: Scene, model, burnt: tuple[float, float] | None = None) -> Milestones:
+    """Milestones of a run of ``scene``; ``burnt``: its ``burnouts``, if known."""
+    settled, spent = burnt or burnouts(scene, model)
     slow = jam_speed(model)
     return Milestones(
         settled_thrust=settled,

@@ -159,7 +159,7 @@ class _FileTable(_RailTable):
     ``clearance`` (m) is that of the file; a scene with another one has shims of the difference
     under its pads. ``thickness`` (m) of the walls and ``leg`` (m), their unsupported width, scale
     the bounds of a calibration. They also bound the walls for a pad that comes from behind or from
-    the side (``mechanics.model.Plate``).
+    the side (``mechanics.scene_model.Plate``).
     """
 
     #: Clearance for which the file is drawn; a scene with another one has shims of the

@@ -9,8 +9,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
-from tipoff.mechanics import model as scene_model
-from tipoff.mechanics import outcome
+from tipoff.mechanics import outcome, scene_model
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.scene import Scene

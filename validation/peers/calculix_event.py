@@ -15,7 +15,7 @@ from tipoff import highfi
 from tipoff.highfi.mesh import pieces
 from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
 from tipoff.kernels import rotation
-from tipoff.mechanics import model as scene_model
+from tipoff.mechanics import scene_model
 from tipoff.meshes import bricks
 from tipoff.scenes.scene import Scene, load
 from validation.peers import calculix

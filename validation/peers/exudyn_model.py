@@ -20,7 +20,7 @@ FIXED, ADAPTIVE = "RK44", "DOPRI5"
 _LONGEST, _SHORTEST = 2e-4, 1e-12
 
 
-class Run(NamedTuple):
+class Samples(NamedTuple):
     """Samples of the payload's motion, and processor time (s)."""
 
     time: np.ndarray  # (n,) s
@@ -105,7 +105,7 @@ class Wrench:
         return found
 
 
-def run(problem: Problem, law: Law, method: str, setting: float, until: float) -> Run:
+def run(problem: Problem, law: Law, method: str, setting: float, until: float) -> Samples:
     """Motion to the time ``until`` (s); ``setting`` is the step (s) of the ``method`` RK44 or the
     relative tolerance of DOPRI5."""
     exudyn = engine()
@@ -163,7 +163,7 @@ def run(problem: Problem, law: Law, method: str, setting: float, until: float) -
     )
     spent = clock.thread_time() - began
     table = system.GetSensorStoredData(sensor)
-    return Run(table[:, 0], table[:, 1:4], spent)
+    return Samples(table[:, 0], table[:, 1:4], spent)
 
 
 def _settings(exudyn, method: str, setting: float, until: float):

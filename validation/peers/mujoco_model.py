@@ -31,7 +31,7 @@ _FRICTION_DAMPING = 0.4  # N s/m
 _IMPRATIO = 1e3
 
 
-class Run(NamedTuple):
+class Samples(NamedTuple):
     """Samples of the payload's motion after every step, and processor time (s)."""
 
     time: np.ndarray  # (n,) s
@@ -54,7 +54,7 @@ def version() -> str:
     return engine().__version__
 
 
-def run(problem: Problem, law: dict, friction: float, step: float, until: float) -> Run:
+def run(problem: Problem, law: dict, friction: float, step: float, until: float) -> Samples:
     """Motion to the time ``until`` (s) by Runge-Kutta of order four with steps of ``step`` (s), on
     the linear ``law`` and a coefficient of ``friction``."""
     mujoco = engine()
@@ -85,7 +85,7 @@ def run(problem: Problem, law: dict, friction: float, step: float, until: float)
     finally:
         mujoco.set_mjcb_control(None)
     spent = clock.thread_time() - began
-    return Run(step * np.arange(count + 1), rate, data.qvel[:3].copy(), spent)
+    return Samples(step * np.arange(count + 1), rate, data.qvel[:3].copy(), spent)
 
 
 def _xml(problem: Problem, law: dict, friction: float, step: float, inverse: float) -> str:

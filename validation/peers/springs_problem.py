@@ -12,8 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff import lowfi
-from tipoff.mechanics import model as scene_model
-from tipoff.mechanics import outcome
+from tipoff.mechanics import outcome, scene_model
 from tipoff.mechanics.model_names import SPRINGS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene, load

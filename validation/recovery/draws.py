@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff import lowfi
+from tipoff import calibration, lowfi
 from tipoff.calibration import alignment, choice, parameters
 from tipoff.calibration.curves import Curves
-from tipoff.calibration.run import run, shares_in
+from tipoff.calibration.run import shares_in
 from tipoff.calibration.search import Plan
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes import changes as added
@@ -50,7 +50,7 @@ class Draw(NamedTuple):
         )
 
 
-def draw(
+def drawn_and_fitted(
     scene: Scene,
     conditions: Sequence[str],
     compliance: RailCompliance | None,
@@ -70,7 +70,7 @@ def draw(
         hidden = own.replace(constants | added.overrides(own, changes))
         exact = Curves.from_trajectory(lowfi.run(hidden, compliance=compliance))
         references[name] = noisy(exact, noise, generator)
-    found = run(scene, references, plan=LOCAL, compliance=compliance, fit=list(fit))
+    found = calibration.run(scene, references, plan=LOCAL, compliance=compliance, fit=list(fit))
     return Draw(list(values.values()), found, constants, changes)
 
 

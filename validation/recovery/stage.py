@@ -62,7 +62,7 @@ STAGE = Stage("recovery", __name__, options=Options)
 
 def _drawn(study: Study, options: Options) -> dict:
     from tipoff import lowfi
-    from validation.recovery.draws import draw
+    from validation.recovery.draws import drawn_and_fitted
 
     scene, names = study.scene, study.fitted()[:_CONDITIONS]
     other = (*scene.agreement.held_out, names[0])[0]
@@ -71,7 +71,7 @@ def _drawn(study: Study, options: Options) -> dict:
     with Board("recovery", 1) as board:
         report = board.callback(label := counted(options.draws, "draw"))
         for number in range(options.draws):
-            one = draw(scene, names, compliance, options.noise, generator)
+            one = drawn_and_fitted(scene, names, compliance, options.noise, generator)
             draws.append(one)
             varied = (one.truth(condition), one.found.apply(condition), condition)
             runs = {

@@ -39,7 +39,6 @@ from tipoff.lowfi.contact.compliant.solution import between_stations
 from tipoff.lowfi.contact.springs import outward, pad_point, relative_pose
 from tipoff.lowfi.contact.step_limit import inverse_mass
 from tipoff.lowfi.contact.wall_ends import CLOSING
-from tipoff.mechanics.model import Model
 from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance
 from tipoff.scenes.scene import Scene
 
@@ -72,17 +71,16 @@ class Neglected(NamedTuple):
 
 
 def watched(
-    scene: Scene, model: Model, found: RailCompliance | None, first: int, watches: bool
+    scene: Scene, found: RailCompliance | None, first: int, watches: bool
 ) -> Neglected | None:
-    """Record of the modes of the rail compliance ``found``; those from number ``first`` on are
-    neglected. If no run ``watches`` them, it has no modes, so that the kernels are the same. None
-    without contact and for rigid walls."""
-    if found is None or found.flexibility is None or model.contact is None:
+    """Record of the modes of the rail compliance ``found`` of ``scene``; those from number ``first``
+    on are neglected. If no run ``watches`` them, it has no modes, so that the kernels are the same.
+    None for rigid walls."""
+    if found is None or found.flexibility is None:
         return None
     if not watches:
         none = zeros((0, 0))
         return build(none, none, zeros((0, 0, 0, 0, 0)), 0)
-    found = found.of(scene)
     square = found.frequency**2
     return build(square, drag_of(square, damping_of(scene)), found.shapes, first)
 

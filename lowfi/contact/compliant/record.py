@@ -8,7 +8,7 @@ from tipoff.kernels.memory import zeros
 from tipoff.kernels.reference import by_reference
 from tipoff.mechanics import drawn_walls
 from tipoff.mechanics import rail_compliance as data
-from tipoff.mechanics.model import Model
+from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.effects.friction import require_two_step
 from tipoff.scenes.effects.structural_damping import Damping
 from tipoff.scenes.scene import Scene
@@ -103,12 +103,11 @@ class Compliance(NamedTuple):
 def under_pads(
     scene: Scene, model: Model, found: data.RailCompliance | None, modes: int = 0
 ) -> Compliance | None:
-    """Record of the compliance ``found``, with so many vibrating ``modes`` of each rail; None
-    without contact and for rigid walls. Raises SceneError for the compliance of another rail or
-    without these modes, and for friction with sticking."""
-    if found is None or found.flexibility is None or model.contact is None:
+    """Record of the compliance ``found`` of ``scene``, with so many vibrating ``modes`` of each
+    rail; None for rigid walls. Raises SceneError for a compliance without these modes, and for
+    friction with sticking."""
+    if found is None or found.flexibility is None:
         return None
-    found = found.of(scene)
     require_two_step(scene)
     data.require_modes(scene.name, found, modes)
     return build(found, model, modes=modes, damping=damping_of(scene))

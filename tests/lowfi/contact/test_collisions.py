@@ -35,7 +35,7 @@ def test_impact_spot_values(p_mm, closing, force):
     body = state.Motion(zero, (0.0, 0.0, -closing / 1e3), turn, zero, zero)
     face = (0.0, 0.0, -0.1, 0.0, -1.0, 0.1, 0.0)
     found = springs.load(
-        Contact(*law.laws(record), None),
+        Contact(law=record, thermal_offset=None),
         None,
         None,
         face,
@@ -49,7 +49,7 @@ def test_impact_spot_values(p_mm, closing, force):
     assert found == pytest.approx(force, abs=5e-4)
     # Controls: without the cut-off the law pulls while the pad opens fast; with its damping there
     # at once, not by the cubic step, it is off where the pad is shallow.
-    uncut = sum(law.impact(record, p_mm * 1e-3, closing / 1e3))
+    uncut = sum(law.parts(record, p_mm * 1e-3, closing / 1e3))
     assert uncut < -5.0 if closing < 0.0 else uncut == pytest.approx(force, abs=5e-4)
     if 0.0 < closing and p_mm < 0.3:
         assert K * (p_mm * 1e-3) ** 1.5 + 60000.0 * closing / 1e3 > force + 500.0

@@ -13,7 +13,7 @@ from tipoff import lowfi
 from tipoff.lowfi import state
 from tipoff.lowfi.dynamics import integrate
 from tipoff.lowfi.faces import WALL
-from tipoff.lowfi.single_run import Run
+from tipoff.lowfi.single_run import SingleRun
 from tipoff.mechanics import ledger
 from tipoff.studies.stability import weaker_methods as weaker
 
@@ -71,8 +71,8 @@ def test_opposed_interference_is_in_equilibrium(contact, stored, tolerance):
         for side, sign in ((-1, "-z"), (1, "+z"))
     ]
     asked = scene(0.004, 1e-4, pads=opposed, contact=contact | {"clearance": 0.0})
-    run = Run(asked, numerics(tolerance))
-    run.system.faces[:, WALL] -= 20e-6  # a scene has no negative clearance, walls bent inwards do
+    run = SingleRun(asked, numerics(tolerance))
+    run.cases.faces[..., WALL] -= 20e-6  # a scene has no negative clearance, walls bent inwards do
     run.loop = integrate.ready(run.system, state.initial(run.model), run.interval)
     run.begin()
     run.integrate(None)

@@ -12,7 +12,7 @@ from tipoff import lowfi
 from tipoff.lowfi import Numerics
 from tipoff.lowfi import system as systems
 from tipoff.lowfi.contact import springs, thermal_offset
-from tipoff.mechanics import model as scene_model
+from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import GRAM, PATTERNS
 from tipoff.scenes.effects.thermal import FIELDS
 from validation import oracle
@@ -44,7 +44,7 @@ def test_places_of_the_walls():
     ends."""
     scene, compliance = REFERENCE.replace(WARM), reference_compliance().rigid()
     model = scene_model.build(scene)
-    record = thermal_offset.under_pads(scene, model, compliance)
+    record = thermal_offset.under_pads(model, compliance)
     wanted = CubicSpline(
         compliance.travel,
         np.tensordot(scene.thermal.record(scene.rail).amounts, compliance.warm, 1) @ GRAM[0],
@@ -62,9 +62,9 @@ def test_places_of_the_walls():
             assert thermal_offset.offset_and_slope(
                 record, face, start + end + over
             ) == pytest.approx(beyond, rel=1e-9, abs=1e-15)
-    assert thermal_offset.under_pads(REFERENCE, scene_model.build(REFERENCE), None) is None
+    assert thermal_offset.under_pads(scene_model.build(REFERENCE), None) is None
     # compliant contact holds the offset itself
-    assert thermal_offset.under_pads(scene, model, reference_compliance()) is None
+    assert thermal_offset.under_pads(model, reference_compliance()) is None
 
 
 def test_force_is_along_the_gradient_of_the_penetration():
@@ -75,7 +75,7 @@ def test_force_is_along_the_gradient_of_the_penetration():
     system = systems.build(
         model,
         thermal_offset=thermal_offset.under_pads(
-            scene, model, standing_away(scene, 1e-3 * np.sin(20.0 * x))
+            model, standing_away(scene, 1e-3 * np.sin(20.0 * x))
         ),
     )
     upright, h = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), 1e-6

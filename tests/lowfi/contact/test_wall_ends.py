@@ -11,7 +11,7 @@ from tests.lowfi.compliance import handmade, in_one_cell
 from tests.lowfi.contact.compliant.test_runs import EFFECTS, RUB, STIFFNESS, on_springs
 from tests.lowfi.support import ONE_PAD, RAIL, numerics, scene, unwatched
 from tipoff import lowfi
-from tipoff.lowfi.single_run import Run
+from tipoff.lowfi.single_run import SingleRun
 from tipoff.mechanics import ledger
 from validation import oracle
 
@@ -227,7 +227,7 @@ def test_back_into_the_mouth(given):
 
 def unwatched_on(asked, compliance):
     """A run over the scene's whole duration, also after an exit or a jam."""
-    run = Run(asked, lowfi.Numerics(), compliance)
+    run = SingleRun(asked, lowfi.Numerics(), compliance)
     run.whole = True
     run.begin()
     run.integrate(None)

@@ -9,7 +9,7 @@ from tests.lowfi.random_scenes import EFFECTS, independent, scene_of
 from tests.lowfi.support import PAPER_PAD, scene, unwatched
 from tipoff import lowfi
 from tipoff.lowfi.dynamics import audit
-from tipoff.lowfi.single_run import Run, improved
+from tipoff.lowfi.single_run import SingleRun, improved
 from tipoff.mechanics import promises
 from tipoff.scenes import load
 
@@ -68,7 +68,7 @@ def test_hundreds_of_touches_keep_the_ledger_closed():
     run = lowfi.run(RATTLING, "springs")
     assert_kept(run)
     assert run.status == "time_limit" and run.cost["events"] > 200
-    free = Run(RATTLING, lowfi.Numerics())
+    free = SingleRun(RATTLING, lowfi.Numerics())
     free.tolerance = free.tolerance._replace(total=1.0, transverse=1.0)
     free.begin()
     free.integrate(None)
@@ -91,7 +91,7 @@ def test_a_wall_stiffer_than_numbers_resolve_diverges():
 def test_a_broken_ledger_is_run_again_with_smaller_steps():
     """One run loses energy and the next does not: the result has the bits of the tighter
     tolerance."""
-    first = Run(REFERENCE, lowfi.Numerics())
+    first = SingleRun(REFERENCE, lowfi.Numerics())
     first.begin()
     first.integrate(None)
     assert first.usage() <= 1.0
@@ -107,7 +107,7 @@ def test_a_broken_ledger_is_run_again_with_smaller_steps():
 def test_energy_given_back_by_lost_contacts_is_an_error():
     """A run in which the released energy decreases has created energy: both ledgers count it,
     though they close."""
-    run = Run(REFERENCE, lowfi.Numerics())
+    run = SingleRun(REFERENCE, lowfi.Numerics())
     run.begin()
     run.integrate(None)
     before = audit.errors(run.loop.audit, 1e-6, 1e-4)

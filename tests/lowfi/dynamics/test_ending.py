@@ -13,7 +13,7 @@ from tipoff import lowfi
 from tipoff.kernels import rotation
 from tipoff.lowfi import Numerics
 from tipoff.lowfi.ensemble import columns
-from tipoff.lowfi.single_run import Run
+from tipoff.lowfi.single_run import SingleRun
 from tipoff.mechanics.ending import DONE
 from tipoff.scenes import load
 
@@ -265,7 +265,7 @@ def test_jam_on_both_sides_of_its_duration(fall, jams, interval):
     asked = free(
         0.25, interval, initial={"velocity": {"x": speed}}, gravity={"x": -fall, "y": 0.0, "z": 0.0}
     )
-    run = Run(asked, Numerics())
+    run = SingleRun(asked, Numerics())
     run.begin()
     run.integrate(None)
     assert run.judged()[0] == ("jammed" if jams else "time_limit")

@@ -8,17 +8,17 @@ from tipoff import lowfi
 from tipoff.lowfi import Numerics
 from tipoff.lowfi.dynamics import integrate
 from tipoff.lowfi.dynamics.loop import Loop
-from tipoff.lowfi.single_run import Run
+from tipoff.lowfi.single_run import SingleRun
 from tipoff.scenes import load
 
 ASKED = load("sensitive").condition("phi35")
 
 
-def stopped_run(tolerance: float, last: int, path) -> Run:
+def stopped_run(tolerance: float, last: int, path) -> SingleRun:
     """A run that was stopped at sample ``last``, made anew from the scene and the arrays in a
     file."""
     numerics = Numerics(relative_tolerance=tolerance)
-    run = Run(ASKED, numerics)
+    run = SingleRun(ASKED, numerics)
     run.begin()
     run.advance(last)
     assert run.taken == last + 1
@@ -28,7 +28,7 @@ def stopped_run(tolerance: float, last: int, path) -> Run:
         forces=run.forces,
         **{name: array for name, array in run.loop._asdict().items() if array is not None},
     )
-    kept, other = np.load(path), Run(ASKED, numerics)
+    kept, other = np.load(path), SingleRun(ASKED, numerics)
     loop = {name: kept.get(name) for name in Loop._fields}
     for name in ("clock", "counts", "audit"):
         # Files do not say that records are aligned, and others need a kernel of their own.

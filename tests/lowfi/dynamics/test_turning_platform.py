@@ -17,7 +17,7 @@ from tests.lowfi.support import corners, scene, turned_state
 from tipoff.kernels import rotation
 from tipoff.lowfi import Numerics, state
 from tipoff.lowfi.dynamics import integrate
-from tipoff.lowfi.single_run import Run
+from tipoff.lowfi.single_run import SingleRun
 
 RATE, OFFSET, ARM = (0.5, 0.003, -0.002), 1.2e-4, (0.1, 1.2e-4, 1.2e-4)
 ISOTROPIC = {"xx": 4.9, "yy": 4.9, "zz": 4.9}
@@ -53,7 +53,7 @@ NUDGE = rotation.exponential((1e-9, 0.0, 0.0))
 
 def ejected(tolerance: float, turn=None, bodies=state.BODIES):
     """The run, its bodies turned beforehand about the scene's origin by the quaternion ``turn``."""
-    run = Run(TURNING, Numerics(relative_tolerance=tolerance))
+    run = SingleRun(TURNING, Numerics(relative_tolerance=tolerance))
     if turn:
         run.loop = integrate.ready(
             run.system, turned_state(state.initial(run.model), turn, bodies), run.interval

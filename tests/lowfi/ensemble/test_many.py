@@ -4,12 +4,14 @@ bit."""
 import numpy as np
 import pytest
 
+from tests.lowfi.support import PAPER_PAD, RAIL, scene
 from tipoff import lowfi
 from tipoff.lowfi.ensemble import columns
 from tipoff.scenes import load
 from tipoff.scenes.faults import SceneError
 from validation.bench.surrogate import varied
 
+HEAVY = {"gravity.x": -0.36, "payload.mass": 22.0}
 ROWS = [{"thrust_offset.misalignment.radial": f"{angle} deg"} for angle in (5, 25, 45, 65)]
 
 
@@ -81,6 +83,27 @@ def test_same_bits_as_single_runs(rows):
                 np.nan * case[name].values if expected is None else expected,
                 equal_nan=True,
             ), (row, name)
+
+
+@pytest.mark.parametrize(
+    "thrust, rows",
+    [
+        # a burnt thrust, and a slope down which the payload slides late
+        ({"force": 0.0, "duration": 1e-3}, [{"gravity.x": pull} for pull in (0.0, 0.1, 0.05)]),
+        # a thrust that holds one payload at its place and is too weak for a heavier one
+        ({"force": 8.4, "duration": 2.0}, [{"gravity.x": -0.36, "payload.mass": 20.0}, HEAVY]),
+        ({"force": 8.4, "duration": 2.0}, [HEAVY, {"gravity.x": -0.36, "payload.mass": 20.0}]),
+    ],
+)
+def test_every_case_is_jammed_by_its_own_limits(thrust, rows):
+    """The time from which a slow payload is jammed depends on its mass and on the slope, even if the
+    thrust of all cases is the same."""
+    rail = RAIL | {"start": -0.2, "end": 0.02}
+    thrust = {"kind": "constant", "start": 0.0} | thrust
+    base = scene(2.0, 1e-3, contact=PAPER_PAD, rail=rail, thrust=thrust).replace(rows[0])
+    found = lowfi.run_many(base, rows, "springs")
+    alone = [lowfi.run(base.replace(row), "springs").status for row in rows]
+    assert found.status.values.tolist() == alone and len(set(alone)) == 2 and "jammed" in alone
 
 
 def test_refused_rows_have_the_reason_of_replace():

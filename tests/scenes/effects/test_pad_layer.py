@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.scenes.support import CONTACT, refused, small
-from tipoff.mechanics import model
+from tipoff.mechanics import scene_model
 from tipoff.scenes import load, parse
 
 POLYMER = {"thickness": "5 mm", "youngs_modulus": "0.5 GPa"}
@@ -32,10 +32,10 @@ def test_layer_and_interface_are_springs_in_series(nu):
     """One metre squared under one pascal: the approaches add. Control: the interface alone is
     stiffer."""
     layer = POLYMER if nu is None else POLYMER | {"poisson_ratio": nu}
-    found = model.build(scene(**layer)).interface_stiffness
+    found = scene_model.build(scene(**layer)).interface_stiffness
     approach = 1.0 / JOINT + 0.005 / compression(0.5e9, 0.3 if nu is None else nu, nu is not None)
     assert found == pytest.approx(1.0 / approach, rel=1e-12)
-    assert found < 0.3 * JOINT == 0.3 * model.build(scene()).interface_stiffness
+    assert found < 0.3 * JOINT == 0.3 * scene_model.build(scene()).interface_stiffness
 
 
 def test_a_layer_that_cannot_bulge_is_stiffer_without_bound():

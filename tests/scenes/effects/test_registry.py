@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.scenes.support import small
-from tipoff.mechanics import ledger, model
+from tipoff.mechanics import ledger, scene_model
 from tipoff.scenes import scene as scenes
 from tipoff.scenes.effects import registry
 from tipoff.scenes.effects.body_force import BodyForce
@@ -42,11 +42,11 @@ def lifted(**tables) -> Lifted:
 
 
 def test_a_new_body_force_reaches_the_solvers():
-    assert model.build(lifted(lift={"up": 0.5})).body_force == (0.0, 0.0, 0.5)
+    assert scene_model.build(lifted(lift={"up": 0.5})).body_force == (0.0, 0.0, 0.5)
     both = lifted(lift={"up": 0.5}, gravity={"y": 2.0, "z": -1.0})
-    assert model.build(both).body_force == (0.0, 2.0, -0.5)
+    assert scene_model.build(both).body_force == (0.0, 2.0, -0.5)
     assert registry.body_forces(both) == {"gravity": (0.0, 2.0, -1.0), "lift": (0.0, 0.0, 0.5)}
-    assert model.build(lifted()).body_force is None
+    assert scene_model.build(lifted()).body_force is None
 
 
 def test_a_new_effect_is_listed_where_it_is_absent():

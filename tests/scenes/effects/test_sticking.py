@@ -3,14 +3,14 @@
 import pytest
 
 from tests.scenes.support import CONTACT, FRICTION, STICKING, small
-from tipoff.mechanics import model, outcome
+from tipoff.mechanics import outcome, scene_model
 from tipoff.scenes import load, parse
 from tipoff.scenes.effects.friction import Friction
 from tipoff.scenes.effects.sticking import Sticking
 
 
 def test_record():
-    found = model.build(parse(small(contact=CONTACT, friction=STICKING)))
+    found = scene_model.build(parse(small(contact=CONTACT, friction=STICKING)))
     assert found.friction == pytest.approx(Sticking(0.4, 0.3, 1e7, 1e4, 1e-6))
     assert outcome.jam_speed(found) == 0.01
 
@@ -22,7 +22,7 @@ def test_a_table_without_a_law_is_two_step():
         for table in (FRICTION, FRICTION | {"law": "two-step"})
     )
     assert silent.hash == named.hash and silent.resolved() == named.resolved()
-    assert isinstance(model.build(named).friction, Friction)
+    assert isinstance(scene_model.build(named).friction, Friction)
     assert "law" not in silent.resolved()["friction"]
 
 

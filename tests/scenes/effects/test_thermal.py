@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from tests.scenes.support import small
-from tipoff.mechanics import model
+from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import digest
 from tipoff.scenes import SceneError, load, parse
 from tipoff.scenes.effects.thermal import fields
@@ -101,7 +101,7 @@ def test_absent_table_is_no_effect():
     assert (
         cold.thermal is None
         and "thermal" in cold.absent_effects()
-        and model.build(cold).thermal is None
+        and scene_model.build(cold).thermal is None
     )
     assert "thermal" not in cold.resolved() and "thermal" not in parse(warm()).absent_effects()
 

@@ -39,7 +39,7 @@ def test_seed_is_that_of_code_and_scene(monkeypatch):
 
 
 def test_drawn_conditions_are_all_held_out():
-    drawn = blind.draw(study_of(), Options(cases=3, seed=1))
+    drawn = blind.with_drawn_conditions(study_of(), Options(cases=3, seed=1))
     assert (
         list(drawn.conditions)
         == ["blind1", "blind2", "blind3"]
@@ -53,7 +53,7 @@ def test_drawn_conditions_are_all_held_out():
     assert len(hashes) == 3 and hashes.isdisjoint(
         scene.hash for scene in study_of().conditions.values()
     )
-    again = blind.draw(study_of(), Options(cases=2, seed=1))
+    again = blind.with_drawn_conditions(study_of(), Options(cases=2, seed=1))
     assert [scene.hash for scene in again.conditions.values()] == [
         drawn.condition(name).hash for name in ("blind1", "blind2")
     ]
@@ -62,7 +62,7 @@ def test_drawn_conditions_are_all_held_out():
 def test_no_drawn_condition_borrows_its_uncertainty(monkeypatch):
     """Mesh, step and cells on each. Control: a scene that refines one only has the others borrow, and
     says so."""
-    drawn = blind.draw(study_of(), Options(cases=3, seed=1))
+    drawn = blind.with_drawn_conditions(study_of(), Options(cases=3, seed=1))
     alone = replace(drawn, scene=drawn.scene.replace({"agreement.refined": ["blind2"]}))
     monkeypatch.setattr(
         type(drawn.store), "fill", lambda store, title, runs: [flight() for _ in runs]
@@ -74,7 +74,7 @@ def test_no_drawn_condition_borrows_its_uncertainty(monkeypatch):
 
 def test_unknown_distributions_are_refused():
     with pytest.raises(SceneError, match="one of"):
-        blind.draw(study_of(), Options(vary="unheard"))
+        blind.with_drawn_conditions(study_of(), Options(vary="unheard"))
 
 
 class Cases:

@@ -7,8 +7,8 @@ import pytest
 
 from tests.studies.convergence import stub
 from tipoff import scenes
+from tipoff.studies.convergence import page
 from tipoff.studies.convergence import stage as convergence
-from tipoff.studies.convergence.page import draw
 from tipoff.studies.render import document
 from tipoff.studies.report.page import Page
 from tipoff.studies.runs.figures import Runs
@@ -76,6 +76,6 @@ def test_stress_is_judged_on_patches_and_never_at_its_peak(tmp_path, monkeypatch
     )
     assert peak.order < 0.0 and "mesh-dependent" in peak.method
     shown = document.markdown(
-        draw(Page(study.scene, study.folder, {"convergence": written}, Runs({}, {}, {}), {}))
+        page.draw(Page(study.scene, study.folder, {"convergence": written}, Runs({}, {}, {}), {}))
     )
     assert "patch stress below 1 kHz" in shown and "mesh-dependent" in shown

@@ -8,9 +8,10 @@ from tests.studies.synthetic import undrawn
 from tipoff import scenes
 from tipoff.scenes.faults import SceneError
 from tipoff.studies import registry
+from tipoff.studies.convergence import page as convergence_page
 from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.convergence.options import Options
-from tipoff.studies.convergence.page import draw, sentences
+from tipoff.studies.convergence.page import sentences
 from tipoff.studies.render import document
 from tipoff.studies.render.table import inline
 from tipoff.studies.report import stage as report
@@ -85,7 +86,7 @@ def test_ripple_of_both_meshes_beside_that_of_few_cells(finished):
     ]
     line = sentences(found)[-2]
     assert line.startswith("ripple") and "750 Hz, facets of 8 mm: 0.25 %" in line
-    shown = document.markdown(draw(page_of(study, written)))
+    shown = document.markdown(convergence_page.draw(page_of(study, written)))
     assert "ripple (%)" in shown
 
 
@@ -189,17 +190,17 @@ def test_stored_result_counts_only_while_nothing_changed(study):
 def test_page_shows_the_study_only_where_there_is_one(finished):
     study, written = finished
     found, page = convergence.STAGE.read(written), page_of(study, written)
-    shown = document.html(draw(page), page.figure)
+    shown = document.html(convergence_page.draw(page), page.figure)
     assert 'id="chart-convergence"' in shown
     assert all(f"{inline(line[1:])}." in shown for line in sentences(found))
     assert study.path("figures/convergence.png").is_file()
-    assert draw(Page(study.scene, study.folder, {}, Runs({}, {}, {}), {})) == []
+    assert convergence_page.draw(Page(study.scene, study.folder, {}, Runs({}, {}, {}), {})) == []
 
 
 def test_page_without_a_settled_run_has_no_figure(study, asked):
     asked.failing = {"phi15-4mm": "jammed"}
     page = page_of(study, convergence.run(study))
-    shown = document.html(draw(page), page.figure)
+    shown = document.html(convergence_page.draw(page), page.figure)
     assert "ripple" in shown and "chart-convergence" not in shown and page.pictures == []
 
 

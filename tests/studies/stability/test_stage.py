@@ -7,8 +7,7 @@ import pytest
 
 from tests.studies import kept
 from tests.studies.shown import html
-from tipoff.studies.stability import contacts, guides, thrusts
-from tipoff.studies.stability.page import draw
+from tipoff.studies.stability import contacts, guides, page, thrusts
 from tipoff.studies.stability.stage import STAGE, HardCases
 
 CASES = {**contacts.CASES, **guides.CASES, **thrusts.CASES}
@@ -33,6 +32,6 @@ def test_a_case_that_does_not_hold_is_marked():
     """One wrong figure, one control that holds too. Control: a case that holds is marked as good."""
     sound, *_ = kept.result(STAGE).cases
     missed, useless = replace(sound, held=False), replace(sound, control_failed=False)
-    page = html(draw(HardCases((sound, missed, useless), ())))
-    assert page.count('class="bad"') == 2 and page.count('class="good"') == 1
-    assert "not held" in page and "the simpler method holds too" in page
+    shown = html(page.draw(HardCases((sound, missed, useless), ())))
+    assert shown.count('class="bad"') == 2 and shown.count('class="good"') == 1
+    assert "not held" in shown and "the simpler method holds too" in shown

@@ -150,9 +150,14 @@ class ImpactTable(_ContactTable):
     #: Penetration at which the damping is full.
     damping_depth: PositiveLength
 
-    def record(self) -> "Impact":
+    def record(self) -> "ContactLaw":
         """Kernel record."""
-        return Impact(self.stiffness, self.exponent, self.damping, self.damping_depth)
+        return ContactLaw(
+            stiffness=self.stiffness,
+            exponent=self.exponent,
+            damping=self.damping,
+            damping_depth=self.damping_depth,
+        )
 
 
 class HuntCrossleyTable(_ContactTable):
@@ -163,9 +168,11 @@ class HuntCrossleyTable(_ContactTable):
     #: Dissipation factor a.
     dissipation: Dissipation
 
-    def record(self) -> "HuntCrossley":
+    def record(self) -> "ContactLaw":
         """Kernel record."""
-        return HuntCrossley(self.stiffness, self.exponent, self.dissipation)
+        return ContactLaw(
+            stiffness=self.stiffness, exponent=self.exponent, dissipation=self.dissipation
+        )
 
 
 class LinearTable(_ContactTable):
@@ -178,113 +185,74 @@ class LinearTable(_ContactTable):
     #: Damping coefficient.
     damping: ContactDamping = 0.0
 
-    def record(self) -> "Linear":
+    def record(self) -> "ContactLaw":
         """Kernel record."""
-        return Linear(self.stiffness, self.damping)
+        return ContactLaw(stiffness=self.stiffness, damping=self.damping)
 
 
 ContactTable = Annotated[ImpactTable | HuntCrossleyTable | LinearTable, Field(discriminator="law")]
 
 
-class Impact(NamedTuple):
-    """Kernel record of IMPACT."""
+class ContactLaw(NamedTuple):
+    """Kernel record of a law. A constant that the law does not have is None, so that its term is
+    not compiled."""
 
     stiffness: float  # N/m^e
-    exponent: float
-    damping: float  # N s/m
-    damping_depth: float  # m, depth of full damping
+    exponent: float | None = None  # e; None for 1
+    damping: float | None = None  # N s/m
+    damping_depth: float | None = None  # m, depth of full damping; None for any
+    dissipation: float | None = None  # s/m
 
 
-class HuntCrossley(NamedTuple):
-    """Kernel record of Hunt and Crossley's law."""
-
-    stiffness: float  # N/m^e
-    exponent: float
-    dissipation: float  # s/m
-
-
-class Linear(NamedTuple):
-    """Kernel record of the linear spring and damper."""
-
-    stiffness: float  # N/m
-    damping: float  # N s/m
-
-
-class Laws(NamedTuple):
-    """The law of a scene; the other laws are None, so only this one is compiled."""
-
-    impact: Impact | None
-    hunt_crossley: HuntCrossley | None
-    linear: Linear | None
-
-
-def laws(record: Impact | HuntCrossley | Linear | None) -> Laws | None:
-    """Kernel record of the contact law, or None for no contact."""
-    if record is None:
-        return None
-    return Laws(
-        impact=record if isinstance(record, Impact) else None,
-        hunt_crossley=record if isinstance(record, HuntCrossley) else None,
-        linear=record if isinstance(record, Linear) else None,
+@njit
+def parts(law, penetration, closing):
+    """Elastic and damping part (N) for penetration > 0 (m) and closing speed (m/s), before the
+    no-pull rule."""
+    elastic = law.stiffness * _power(penetration, law.exponent)
+    coefficient = _coefficient(
+        law.damping, law.damping_depth, law.dissipation, elastic, penetration
     )
+    return elastic, coefficient * closing
 
 
 @njit
 def _power(base, exponent):
-    # sqrt is several times cheaper than pow, and 1.5 (Hertz) is by far the most common exponent.
-    if exponent == 1.5:
-        return base * np.sqrt(base)
-    return base**exponent
+    power = base
+    if exponent is not None:
+        # sqrt is several times cheaper than pow, and 1.5 (Hertz) is by far the most common exponent
+        power = base * np.sqrt(base) if exponent == 1.5 else base**exponent
+    return power
 
 
 @njit
-def impact(law, penetration, closing):
-    """Elastic and damping parts of IMPACT (N), before the no-pull rule."""
-    x = min(penetration / law.damping_depth, 1.0)
-    elastic = law.stiffness * _power(penetration, law.exponent)
-    return elastic, law.damping * x * x * (3.0 - 2.0 * x) * closing
+def _coefficient(damping, damping_depth, dissipation, elastic, penetration):
+    """Damping force over closing speed (N s/m)."""
+    coefficient = 0.0
+    if dissipation is not None:
+        coefficient = elastic * dissipation
+    if damping is not None:
+        coefficient = _at_depth(damping, damping_depth, penetration)
+    return coefficient
 
 
 @njit
-def hunt_crossley(law, penetration, closing):
-    """Elastic and damping parts of Hunt-Crossley (N), before the no-pull rule."""
-    elastic = law.stiffness * _power(penetration, law.exponent)
-    return elastic, elastic * law.dissipation * closing
+def _at_depth(damping, damping_depth, penetration):
+    coefficient = damping
+    if damping_depth is not None:
+        x = min(penetration / damping_depth, 1.0)
+        coefficient = damping * x * x * (3.0 - 2.0 * x)
+    return coefficient
 
 
 @njit
-def linear(law, penetration, closing):
-    """Elastic and damping parts of the spring-damper (N), before the no-pull rule."""
-    return law.stiffness * penetration, law.damping * closing
-
-
-@njit
-def parts(impact_law, hunt_crossley_law, linear_law, penetration, closing):
-    """(elastic, damping) in N for penetration > 0 (m) and closing speed (m/s), by the law that is
-    not None."""
-    force = (0.0, 0.0)
-    if impact_law is not None:
-        force = impact(impact_law, penetration, closing)
-    if hunt_crossley_law is not None:
-        force = hunt_crossley(hunt_crossley_law, penetration, closing)
-    if linear_law is not None:
-        force = linear(linear_law, penetration, closing)
-    return force
-
-
-@njit
-def stored_energy(impact_law, hunt_crossley_law, linear_law, penetration):
+def stored_energy(law, penetration):
     """Elastic energy (J) stored at penetration > 0 (m)."""
-    energy = 0.0
-    if impact_law is not None:
-        energy = _stored(impact_law, penetration)
-    if hunt_crossley_law is not None:
-        energy = _stored(hunt_crossley_law, penetration)
-    if linear_law is not None:
-        energy = 0.5 * linear_law.stiffness * penetration * penetration
-    return energy
+    return _stored(law.stiffness, law.exponent, penetration)
 
 
 @njit
-def _stored(law, penetration):
-    return law.stiffness * penetration ** (law.exponent + 1.0) / (law.exponent + 1.0)
+def _stored(stiffness, exponent, penetration):
+    energy = 0.5 * stiffness * penetration * penetration
+    if exponent is not None:
+        energy = stiffness * penetration ** (exponent + 1.0) / (exponent + 1.0)
+    return energy

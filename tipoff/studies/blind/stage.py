@@ -46,7 +46,7 @@ class Blind:
 
 def run(study: Study, options: Options = Options()) -> dict:
     """The content of ``Blind``."""
-    drawn = draw(study, options)
+    drawn = with_drawn_conditions(study, options)
     compared = [calibrated(study), compliant(drawn, drawn.conditions)]
 
     def make() -> tuple[Blind, list[Path]]:
@@ -68,7 +68,7 @@ def run(study: Study, options: Options = Options()) -> dict:
     return STAGE.run(study, options, make)
 
 
-def draw(study: Study, options: Options) -> Study:
+def with_drawn_conditions(study: Study, options: Options) -> Study:
     """The study of the drawn conditions, in the same folder. All are held out. Each has its own
     floor and refinements, because another condition may be chaotic."""
     source = Drawn(
@@ -103,7 +103,7 @@ def seed_of(study: Study, options: Options) -> int:
 
 
 def _inputs(study: Study, options: Options) -> list:
-    conditions = draw(study, options).scene.conditions
+    conditions = with_drawn_conditions(study, options).scene.conditions
     return [conditions, calibrate.constants(study), asdict(verdicts.gates(study.scene))]
 
 

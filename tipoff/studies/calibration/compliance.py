@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tipoff.mechanics import model as scene_model
+from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.scene import Scene
 from tipoff.workspace.stage import Stage

@@ -24,9 +24,9 @@ def quantities(
     if scene.contact is None:
         return
     from tipoff.highfi import compliance  # slow to load
-    from tipoff.mechanics import model
+    from tipoff.mechanics import scene_model
 
-    faces = model.built(scene).nominal
+    faces = scene_model.built(scene).nominal
     way = (scene.rail.end - faces.half_length - faces.centre[:, 0]).max()
     places = np.linspace(0.0, way, _PLACES)
     found = [compliance.along(scene, size, places, patterns=1, modes=MODES) for size in sizes]

@@ -15,7 +15,7 @@ _METAL = "#c6cbd1"
 _LIGHT = np.array([0.35, 0.5, 0.8])
 
 
-def draw(mesh, path: Path, dark: bool = False) -> None:
+def draw_mesh(mesh, path: Path, dark: bool = False) -> None:
     """Write a PNG of ``mesh`` (a ``highfi.mesh.rail_mesh.RailMesh``) for a light or a ``dark``
     page."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg

@@ -58,13 +58,13 @@ def run(study: Study) -> dict:
         mesh = highfi.prepare(request.scene, request.numerics)
         for warning in mesh.warnings:
             say(f"mesh: {warning}")
-        from tipoff.studies.mesh.picture import draw
+        from tipoff.studies.mesh.picture import draw_mesh
 
         path, folder = study.path("mesh.vtu"), study.path("figures")
         pictures = [folder / "mesh.png", folder / "mesh-dark.png"]
         _save(mesh, path)
         for picture, dark in zip(pictures, (False, True)):
-            draw(mesh, picture, dark)
+            draw_mesh(mesh, picture, dark)
         lengths = checks.edge_lengths(mesh.points, mesh.cells)
         _, scaled = checks.jacobians(mesh.points, mesh.cells)
         surfaces = {

@@ -68,7 +68,7 @@ def power_pad(stiffness: float, exponent: float, clearance: float) -> dict:
     }
 
 
-def run(scene: Scene, relative_tolerance: float = 1e-9) -> Trajectory:
+def run_on_springs(scene: Scene, relative_tolerance: float = 1e-9) -> Trajectory:
     """The run of the surrogate."""
     from tipoff import lowfi
 
@@ -107,7 +107,7 @@ def _impact(name: str, stiffness: float, exponent: float, limit: float) -> Verdi
         / math.gamma(0.5 + share)
     )
     exact = np.array([depth, stiffness * depth**exponent, duration, -speed])
-    found = run(
+    found = run_on_springs(
         single_pad(
             _MASS,
             power_pad(stiffness, exponent, gap),
@@ -164,7 +164,7 @@ def interference() -> Verdict:
     depth, exponent = 20e-6, 1.0
     stored = _LINEAR * depth**2 / 2.0
     leaves = math.sqrt(2.0 * stored / _MASS)
-    found = run(
+    found = run_on_springs(
         single_pad(
             _MASS,
             power_pad(_LINEAR, exponent, 0.0),
@@ -194,7 +194,7 @@ def grazing() -> Verdict:
     """A wall another thousand times stiffer, passed at 5 m/s: the contact lasts 2 us, 1/50 of the
     default step."""
     stiffness, speed, gap = 7e13, 0.05, 1e-4
-    found = run(
+    found = run_on_springs(
         single_pad(
             _MASS,
             power_pad(stiffness, 1.0, gap),
@@ -226,7 +226,7 @@ def eight_pads() -> Verdict:
     speed, duration = 0.05, math.pi * math.sqrt(_MASS / (8.0 * _LINEAR))
     box = {"mass": _MASS, "inertia": {"xx": 0.3, "yy": 0.55, "zz": 0.6}}
     runs = [
-        run(
+        run_on_springs(
             single_pad(
                 _MASS,
                 power_pad(_LINEAR, 1.0, 1e-6),
@@ -270,7 +270,7 @@ def rail_end() -> Verdict:
     """A pad pressed with 500 N passes the end of the rail: its energy is accounted for, no force
     follows."""
     depth = 500.0 / _LINEAR
-    found = run(
+    found = run_on_springs(
         single_pad(
             _MASS,
             power_pad(_LINEAR, 1.0, 0.0),
@@ -301,7 +301,7 @@ def light_payload() -> Verdict:
     default step."""
     mass, heavy, speed = 1e-3, 150.0, 1.0
     platform = {"mass": heavy, "inertia": dict.fromkeys(("xx", "yy", "zz"), 10.0)}
-    found = run(
+    found = run_on_springs(
         single_pad(
             mass,
             power_pad(_LINEAR, 1.0, 1e-6),

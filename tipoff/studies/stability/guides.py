@@ -15,7 +15,7 @@ from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.scene import Scene, load, parse
 from tipoff.studies.stability import weaker_methods as weaker
-from tipoff.studies.stability.contacts import DEFAULT_STEP, run
+from tipoff.studies.stability.contacts import DEFAULT_STEP, run_on_springs
 from tipoff.studies.stability.verdict import (
     Control,
     Measure,
@@ -34,7 +34,7 @@ def zero_clearance() -> Verdict:
     scene = load("reference").replace(
         {"contact.clearance": 0.0, "friction": None, "thrust_offset": None, "platform": None}
     )
-    found, record, mass = run(scene, 1e-11), scene.thrust.record(), scene.payload.mass
+    found, record, mass = run_on_springs(scene, 1e-11), scene.thrust.record(), scene.payload.mass
     end = float(found.time[-1])
     exact = thrust_law.impulse(record, end) / mass
     stray = max(
@@ -108,9 +108,9 @@ def _slider(mu: float, offset: float, duration: float, transition: float) -> Sce
 def _whole(scene: Scene) -> Trajectory:
     """The run to the end of the scene, also after a jam."""
     from tipoff.lowfi import Numerics
-    from tipoff.lowfi.single_run import Run
+    from tipoff.lowfi.single_run import SingleRun
 
-    made = Run(scene, Numerics(relative_tolerance=1e-7))
+    made = SingleRun(scene, Numerics(relative_tolerance=1e-7))
     made.whole = True
     made.begin()
     made.integrate(None)
@@ -127,7 +127,7 @@ def _stopped(found: Trajectory, mu: float, offset: float, transition: float) -> 
 def wedged() -> Verdict:
     """mu 0.8 with the push at 130 mm, just beyond the lock: it jams, and there is no exit speed."""
     found, smooth = (_whole(_slider(0.8, 0.130, 0.2, transition)) for transition in (5e-4, 0.05))
-    jammed = run(_slider(0.8, 0.130, 0.2, 5e-4), 1e-7)
+    jammed = run_on_springs(_slider(0.8, 0.130, 0.2, 5e-4), 1e-7)
     return verdict(
         "wedged at 1.04 of the lock",
         "lowfi",
@@ -221,9 +221,9 @@ def _seen_from(scene: Scene, turn: tuple | None) -> Trajectory:
     """The run after a rotation of its bodies about the origin of the scene by a rotation vector."""
     from tipoff.lowfi import Numerics, state
     from tipoff.lowfi.dynamics import integrate
-    from tipoff.lowfi.single_run import Run
+    from tipoff.lowfi.single_run import SingleRun
 
-    made = Run(scene, Numerics(relative_tolerance=7e-13))
+    made = SingleRun(scene, Numerics(relative_tolerance=7e-13))
     if turn:
         start, q = state.initial(made.model), rotation.exponential(turn)
         frame = rotation.matrices(np.array([q]))[0]

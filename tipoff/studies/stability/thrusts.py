@@ -3,7 +3,7 @@
 
 from tipoff.scenes.effects import thrust_law
 from tipoff.studies.stability import weaker_methods as weaker
-from tipoff.studies.stability.contacts import DEFAULT_STEP, run, single_pad
+from tipoff.studies.stability.contacts import DEFAULT_STEP, run_on_springs, single_pad
 from tipoff.studies.stability.verdict import Control, Measure, Verdict, stability, verdict
 
 _MASS = 20.0
@@ -20,7 +20,7 @@ def _pushed(
         thrust=thrust | {"reaction": "exhaust"},
         output={"interval": step},
     )
-    found, record = run(scene), scene.thrust.record()
+    found, record = run_on_springs(scene), scene.thrust.record()
 
     def acceleration(t, _, __):
         return thrust_law.magnitude(record.pulses, record.curve, t) / _MASS

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.lowfi.ensemble.rows import Listed, numbers
-from tipoff.mechanics import model as scene_model
+from tipoff.mechanics import scene_model
 from tipoff.scenes import moments
 from tipoff.scenes.effects import thrust
 from tipoff.scenes.scene import Scene

@@ -20,8 +20,7 @@ from tests.lowfi.contact.compliant.test_statics import (
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant import cells
 from tipoff.lowfi.faces import WALL
-from tipoff.mechanics import drawn_walls
-from tipoff.mechanics import model as scene_model
+from tipoff.mechanics import drawn_walls, scene_model
 
 PLACES = drawn_walls.grid(REFERENCE.rail.start, REFERENCE.rail.end)
 

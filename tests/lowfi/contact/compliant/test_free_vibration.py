@@ -15,7 +15,7 @@ from tipoff.lowfi import Numerics
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant import free_vibration
 from tipoff.lowfi.dynamics import integrate
-from tipoff.lowfi.single_run import Run
+from tipoff.lowfi.single_run import SingleRun
 from tipoff.mechanics.rail_compliance import PATTERNS
 
 OMEGA, SWING = 2.0 * np.pi * 3000.0, 2e-6  # 1/s; m, amplitude of the wall
@@ -36,7 +36,7 @@ def test_a_free_mode_follows_the_exponential_of_its_matrix(ratio, turns):
     assert [q, rate / OMEGA] == pytest.approx(exact, rel=1e-5, abs=1e-11 * 1e-6)
 
 
-def vibrating(gap: float, speed: float) -> tuple[Run, np.ndarray]:
+def vibrating(gap: float, speed: float) -> tuple[SingleRun, np.ndarray]:
     """A payload that nothing pushes, with one flat pad ``gap`` (m) from a wall that it approaches at
     ``speed`` (m/s); the wall vibrates in one mode, its amplitude ``SWING``. Its first state too."""
     heavy = {"inertia": {"xx": 1e6, "yy": 1e6, "zz": 1e6}}
@@ -57,7 +57,7 @@ def vibrating(gap: float, speed: float) -> tuple[Run, np.ndarray]:
     compliance = replace(
         handmade(asked, {(0, 0, 0, 0): 2.0 / OMEGA**2}), frequency=np.array([[OMEGA]]), shape=shape
     )
-    run = Run(asked, Numerics(modes=1), compliance)
+    run = SingleRun(asked, Numerics(modes=1), compliance)
     begun = np.concatenate([run.loop.start[: slot.STATE_SIZE], [SWING, 0.0]])
     run.loop = integrate.ready(run.system, begun, run.plan.first)
     return run, begun

@@ -21,7 +21,7 @@ from tipoff import lowfi
 from tipoff.lowfi import Numerics
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.dynamics import integrate
-from tipoff.lowfi.single_run import Run
+from tipoff.lowfi.single_run import SingleRun
 from tipoff.mechanics import ledger
 from tipoff.mechanics.rail_compliance import PATTERNS
 
@@ -33,7 +33,7 @@ CRITICAL = np.pi / LENGTH * elasticity.bar_speed(MODULUS, DENSITY) * HEIGHT / np
 STIFFNESS, PUSHED = 1.0, 1e-3
 
 
-def sampled(run: Run) -> np.ndarray:
+def sampled(run: SingleRun) -> np.ndarray:
     """Runs ``run`` to its end; the whole state (n,k) at every sample."""
     run.begin()
     found = [run.loop.work.copy()]
@@ -94,7 +94,9 @@ def midspan(ratio: float, modes: int) -> tuple[np.ndarray, np.ndarray]:
     """Share of the span done, and deflection in the middle of it over the static one."""
     asked, compliance = crossing(ratio)
     states = sampled(
-        Run(asked, Numerics(relative_tolerance=1e-8, speed_floor=1e-9, modes=modes), compliance)
+        SingleRun(
+            asked, Numerics(relative_tolerance=1e-8, speed_floor=1e-9, modes=modes), compliance
+        )
     )
     middle = np.sqrt(2.0 / (DENSITY * WIDTH * HEIGHT * LENGTH)) * np.sin(
         0.5 * np.pi * np.arange(1, modes + 1)
@@ -127,7 +129,7 @@ def test_a_rail_rings_out():
         "friction.static": 0.0,
         "friction.dynamic": 0.0,
     }
-    run = Run(REFERENCE.replace(still | DAMPED), TIGHT_VIBRATING, reference_compliance())
+    run = SingleRun(REFERENCE.replace(still | DAMPED), TIGHT_VIBRATING, reference_compliance())
     modes = run.system.compliance.modes
     start = 1e-7 * np.random.default_rng(2).standard_normal(modes.square.size)
     begun = np.concatenate([run.loop.start[: slot.STATE_SIZE], start, 0.0 * start])
@@ -160,7 +162,7 @@ def test_a_rail_rings_out():
 def test_ledgers_and_momentum(condition, changes):
     """With default numerics; residuals fall with the tolerance."""
     asked, compliance = REFERENCE.condition(condition).replace(changes), reference_compliance()
-    run = Run(asked, VIBRATING, compliance)
+    run = SingleRun(asked, VIBRATING, compliance)
     states, fine = sampled(run), lowfi.run(asked, numerics=TIGHT_VIBRATING, compliance=compliance)
     coarse = run.trajectory()
     for found in (coarse, fine):

@@ -25,7 +25,7 @@ from tipoff.highfi.statics import assembly
 from tipoff.kernels import rotation
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant import cells, loads, record, solution, step_limit
-from tipoff.mechanics import model as scene_model
+from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import PATTERNS
 
 CLEARANCE = REFERENCE.contact.clearance

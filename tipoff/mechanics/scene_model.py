@@ -81,7 +81,7 @@ class Model(NamedTuple):
     thrust: thrust.Thrust
     reacts_on_platform: bool
     thrust_offset: thrust_offset.ThrustOffset | None
-    contact: contact.Laws | None
+    contact: contact.ContactLaw | None
     interface_stiffness: float | None  # N/m3, interface and pad layer in series
     friction: Friction | Sticking | None
     platform: Platform | None
@@ -136,9 +136,7 @@ def built(scene: Scene, earlier: Built | None = None) -> Built:
         thrust_offset=thrust_offset.record(
             scene.thrust_offset, scene.mass_offset, scene.thrust.arm
         ),
-        contact=kept(
-            "contact", lambda: contact.laws(scene.contact.record()) if scene.contact else None
-        ),
+        contact=kept("contact", lambda: scene.contact.record() if scene.contact else None),
         interface_stiffness=scene.contact.series_stiffness() if scene.contact else None,
         # Friction without contact has no normal force, so it is absent too.
         friction=kept(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.scenes.support import CONTACT, FRICTION, small
-from tipoff.mechanics import model
+from tipoff.mechanics import scene_model
 from tipoff.scenes import load, parse
 from tipoff.scenes.effects.body_force import BodyForce, acceleration
 from tipoff.scenes.effects.initial import Initial
@@ -32,7 +32,7 @@ RECORDS = {
 
 
 def test_every_effect_absent_is_none():
-    found = model.build(parse(small()))
+    found = scene_model.build(parse(small()))
     for name in (
         "thrust_offset",
         "contact",
@@ -47,7 +47,7 @@ def test_every_effect_absent_is_none():
 
 
 def test_every_effect_present_is_a_record():
-    found = model.build(parse(small(**WHOLE)))
+    found = scene_model.build(parse(small(**WHOLE)))
     assert None not in (
         found.thrust_offset,
         found.contact,
@@ -61,22 +61,22 @@ def test_every_effect_present_is_a_record():
 
 @pytest.mark.parametrize("effect", RECORDS)
 def test_an_effect_removed_is_none_again(effect):
-    found = model.build(parse(small(**WHOLE)).replace({effect: None}))
+    found = scene_model.build(parse(small(**WHOLE)).replace({effect: None}))
     assert all(getattr(found, name) is None for name in RECORDS[effect])
 
 
 def test_thrust_is_offset_by_either_table():
     scene = parse(small(**WHOLE))
-    assert model.build(scene.replace({"thrust_offset": None})).thrust_offset is not None
-    assert model.build(scene.replace({"mass_offset": None})).thrust_offset is not None
+    assert scene_model.build(scene.replace({"thrust_offset": None})).thrust_offset is not None
+    assert scene_model.build(scene.replace({"mass_offset": None})).thrust_offset is not None
     assert (
-        model.build(scene.replace({"mass_offset": None, "thrust_offset": None})).thrust_offset
+        scene_model.build(scene.replace({"mass_offset": None, "thrust_offset": None})).thrust_offset
         is None
     )
 
 
 def test_friction_needs_contact():
-    assert model.build(parse(small(friction=FRICTION))).friction is None
+    assert scene_model.build(parse(small(friction=FRICTION))).friction is None
 
 
 def test_no_body_force_accelerates_nothing():
@@ -91,7 +91,7 @@ def test_line_of_action():
         "misalignment": {"axial": "30 deg", "radial": "90 deg"},
         "eccentricity": {"axial": "3 mm", "radial": "90 deg"},
     }
-    found = model.build(
+    found = scene_model.build(
         parse(
             small(
                 thrust_offset=offset,
@@ -112,7 +112,7 @@ def test_faces_and_walls():
         mass_offset={"eccentricity": {"axial": "1 mm", "radial": "90 deg"}},
     )
     raw["pads"][0]["inset"] = "9 mm"
-    found = model.build(parse(raw))
+    found = scene_model.build(parse(raw))
     assert found.faces.centre == pytest.approx(np.array([[0.0, 0.099, 0.091], [0.0, 0.090, 0.1]]))
     assert found.faces.axis.tolist() == [1, 2]
     assert found.faces.sign.tolist() == [1.0, 1.0]
@@ -122,7 +122,7 @@ def test_faces_and_walls():
 
 
 def test_the_gap_is_the_clearance_on_every_face_of_the_reference():
-    found = model.build(load("reference"))
+    found = scene_model.build(load("reference"))
     faces = found.faces
     gap = faces.sign * (
         faces.wall + found.platform.mass_centre[1] - faces.centre[np.arange(16), faces.axis]
@@ -132,6 +132,6 @@ def test_the_gap_is_the_clearance_on_every_face_of_the_reference():
 
 
 def test_inverse_inertia():
-    payload = model.build(load("reference")).payload
+    payload = scene_model.build(load("reference")).payload
     assert np.allclose(payload.inertia @ payload.inverse_inertia, np.eye(3), atol=1e-15)
     assert payload.inertia[0, 1] == payload.inertia[1, 0] == 0.004

@@ -1,0 +1,60 @@
+"""Set-up of the time loop: of one run, and of the cases of an ensemble that share a call."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from tipoff.lowfi import system
+from tipoff.lowfi.contact import thermal_offset
+from tipoff.lowfi.contact.compliant import neglected, record
+from tipoff.lowfi.dynamics import cases, integrate, local_error, plan
+from tipoff.lowfi.dynamics.loop import Loop, Plan
+from tipoff.lowfi.numerics import Numerics
+from tipoff.mechanics.outcome import Milestones
+from tipoff.mechanics.promises import Promises
+from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.mechanics.scene_model import Model
+from tipoff.scenes.scene import Scene
+
+
+class Prepared(NamedTuple):
+    """Arguments of ``integrate.integrate``, without the samples."""
+
+    system: system.System
+    plan: Plan
+    tolerance: local_error.Tolerance
+    marks: Milestones
+    loop: Loop
+    cases: cases.Cases
+
+
+def prepare(
+    scene: Scene,
+    models: Sequence[Model],
+    marks: Milestones,
+    numerics: Numerics,
+    promised: Promises,
+    compliance: RailCompliance | None = None,
+    watches: bool = False,
+) -> Prepared:
+    """The time loop for one case of each of the ``models``, which differ from that of ``scene`` only
+    in the values of ``cases.Cases``. Steps are those of ``numerics``, errors of the ledgers those
+    ``promised``. A run that ``watches`` finds the effect of the modes that it neglects. Raises
+    SceneError if ``compliance`` is of another rail or lacks what the scene needs."""
+    model, modes = models[0], numerics.count
+    thermal_offset.require(scene, compliance)
+    found = compliance.of(scene) if compliance and scene.contact else None
+    common = system.build(
+        model,
+        compliance=record.under_pads(scene, model, found, modes),
+        thermal_offset=thermal_offset.under_pads(model, found),
+        neglected=neglected.watched(scene, found, modes, watches),
+    )
+    steps, every = plan.make(model, scene.time_limit, numerics), cases.of_models(common, models)
+    return Prepared(
+        system=common,
+        plan=steps,
+        tolerance=local_error.tolerance(numerics, promised),
+        marks=marks,
+        loop=integrate.ready(common, every.start[0], steps.first),
+        cases=every,
+    )
