@@ -12,6 +12,8 @@ import numpy as np
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi.system import Body, System
 from tipoff.mechanics.ending import BOOK_SIZE
+from tipoff.scenes.effects.friction import Friction
+from tipoff.scenes.effects.sticking import Sticking
 from tipoff.scenes.effects.thrust_offset import ThrustOffset
 
 # Columns of the results: whether the case is left to ``lowfi.run``, steps, the book.
@@ -26,6 +28,7 @@ class Cases(NamedTuple):
     inertia: np.ndarray  # (n, 3, 3) kg m2, of the payload
     inverse_inertia: np.ndarray  # (n, 3, 3) 1/(kg m2), of the payload
     faces: np.ndarray  # (n, f, FACE_SIZE)
+    friction: np.ndarray  # (n, 2) static and dynamic coefficient of either law; zero without
     direction: np.ndarray | None  # (n, 3) of the thrust; None without thrust offset
     arm: np.ndarray | None  # (n, 3) m, of the thrust; None without thrust offset
     start: np.ndarray  # (n, STATE_SIZE) state at ignition
@@ -41,12 +44,18 @@ def alone(system: System, start: np.ndarray, reach: float) -> Cases:
         inertia=system.payload.inertia[None],
         inverse_inertia=system.payload.inverse_inertia[None],
         faces=system.faces[None],
+        friction=np.array([coefficients(system.friction or system.sticking)]),
         direction=None if offset is None else np.array([offset.direction]),
         arm=None if offset is None else np.array([offset.arm]),
         start=start[None],
         reach=np.array([reach]),
         results=np.zeros((1, RESULT_SIZE)),
     )
+
+
+def coefficients(friction: Friction | Sticking | None) -> tuple[float, float]:
+    """Static and dynamic coefficient of either law; zero without friction."""
+    return (0.0, 0.0) if friction is None else (friction.static, friction.dynamic)
 
 
 @kernel
@@ -65,8 +74,8 @@ def system_of(common, cases, n):
         compliance=common.compliance,
         has_contact=common.has_contact,
         is_compliant=common.is_compliant,
-        friction=common.friction,
-        sticking=common.sticking,
+        friction=_friction(common.friction, cases.friction, n),
+        sticking=_sticking(common.sticking, cases.friction, n),
         body_force=common.body_force,
         ledger=common.ledger,
         neglected=common.neglected,
@@ -78,5 +87,21 @@ def _offset(direction, arm, n):
     if direction is not None:
         return ThrustOffset(
             (direction[n, 0], direction[n, 1], direction[n, 2]), (arm[n, 0], arm[n, 1], arm[n, 2])
+        )
+    return None
+
+
+@kernel
+def _friction(law, coefficient, n):
+    if law is not None:
+        return Friction(coefficient[n, 0], coefficient[n, 1], law.static_speed, law.dynamic_speed)
+    return None
+
+
+@kernel
+def _sticking(law, coefficient, n):
+    if law is not None:
+        return Sticking(
+            coefficient[n, 0], coefficient[n, 1], law.stiffness, law.damping, law.capture_speed
         )
     return None

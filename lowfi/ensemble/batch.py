@@ -14,18 +14,22 @@ from tipoff.lowfi.contact.compliant import record as compliance_record
 from tipoff.lowfi.dynamics import cases, integrate, local_error, plan
 from tipoff.lowfi.dynamics.loop import Plan, Sampling
 from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
-from tipoff.lowfi.faces import CENTRE
+from tipoff.lowfi.faces import CENTRE, WALL
 from tipoff.lowfi.numerics import AUTO, Numerics, promises_of
 from tipoff.lowfi.run import solved
 from tipoff.mechanics import comoving, ending, outcome
 from tipoff.mechanics import model as scene_model
-from tipoff.mechanics.model import Built
+from tipoff.mechanics.model import Built, Faces
 from tipoff.mechanics.rail_compliance import RailCompliance, may_vibrate
 from tipoff.scenes import changes
 from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.effects.friction import Friction
+from tipoff.scenes.effects.sticking import Sticking
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.variation import Variations
+
+_NONE = np.zeros(0)
 
 
 class Case(NamedTuple):
@@ -176,7 +180,7 @@ class Family:
             return *shared.values(), of.nominal
 
         return tuple(
-            None if part is own else (_content(part),)
+            None if part is own else (_content(_without_own(part)),)
             for part, own in zip(parts(built), parts(self.base))
         )
 
@@ -257,6 +261,15 @@ def _refused(error: SceneError) -> Case:
     return Case("refused", str(error), outcome.Outcome(), 0, 0.0)
 
 
+def _without_own(record: Any) -> Any:
+    """A record of a model without the numbers that each case has of its own."""
+    if isinstance(record, Faces):
+        return record._replace(wall=_NONE)
+    if isinstance(record, Friction | Sticking):
+        return record._replace(static=0.0, dynamic=0.0)
+    return record
+
+
 def _content(record: Any) -> Any:
     """Values of nested records, arrays and numbers, to the last bit, in a form for comparison and
     hashing."""
@@ -275,6 +288,7 @@ def _stacked(common: system.System, group: _Group) -> cases.Cases:
     centre = np.stack([model.faces.centre for model in of_cases])
     faces = np.repeat(common.faces[None], len(of_cases), axis=0)
     faces[:, :, CENTRE : CENTRE + 3] = centre
+    faces[:, :, WALL] = np.stack([model.faces.sign * model.faces.wall for model in of_cases])
     # all cases of a group have one, or none
     offsets = [model.thrust_offset for model in of_cases if model.thrust_offset is not None]
     return cases.Cases(
@@ -282,6 +296,7 @@ def _stacked(common: system.System, group: _Group) -> cases.Cases:
         inertia=np.stack([model.payload.inertia for model in of_cases]),
         inverse_inertia=np.stack([model.payload.inverse_inertia for model in of_cases]),
         faces=faces,
+        friction=np.array([cases.coefficients(model.friction) for model in of_cases]),
         direction=np.array([offset.direction for offset in offsets]) if offsets else None,
         arm=np.array([offset.arm for offset in offsets]) if offsets else None,
         start=np.stack([state.initial(model) for model in of_cases]),
