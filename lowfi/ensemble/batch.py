@@ -77,6 +77,7 @@ class Family:
         self.changes = calibration.changes if calibration else {}
         self.stated = Variations(scene) if self.changes else None
         self.base = scene_model.built(calibrated)
+        self.base_parts = _parts(self.base)
         self.marks = outcome.milestones(calibrated, self.base.model)
 
     def jobs(
@@ -156,7 +157,7 @@ class Family:
             same = scene.thrust is base.thrust and limit == base.time_limit
             marks = self.marks if same else outcome.milestones(scene, model)
             # The next row may overwrite the tables of this one.
-            kept = Built(scene.model_copy(deep=True), model, built.nominal)
+            kept = Built(self.variations.kept(scene), model, built.nominal)
             groups[key] = _Group(
                 kept,
                 marks._replace(jam_speed=outcome.jam_speed(model)),
@@ -169,19 +170,9 @@ class Family:
     def _shared(self, built: Built) -> tuple:
         """Content of all records of a model that ``_stacked`` does not take from each case; None
         for records of the scene."""
-
-        def parts(of: Built) -> tuple:
-            shared = of.model._asdict() | {
-                "payload": None,
-                "faces": None,
-                "initial": None,
-                "thrust_offset": of.model.thrust_offset is None,
-            }
-            return *shared.values(), of.nominal
-
         return tuple(
             None if part is own else (_content(_without_own(part)),)
-            for part, own in zip(parts(built), parts(self.base))
+            for part, own in zip(_parts(built), self.base_parts)
         )
 
     def _kernel(self, group: _Group) -> Callable[[], np.ndarray]:
@@ -259,6 +250,13 @@ class Family:
 
 def _refused(error: SceneError) -> Case:
     return Case("refused", str(error), outcome.Outcome(), 0, 0.0)
+
+
+def _parts(of: Built) -> tuple:
+    """The records of a model without those that each case has of its own."""
+    own = {"payload": None, "faces": None, "initial": None}
+    shared = of.model._asdict() | own | {"thrust_offset": of.model.thrust_offset is None}
+    return *shared.values(), of.nominal
 
 
 def _without_own(record: Any) -> Any:
