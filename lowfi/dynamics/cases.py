@@ -12,10 +12,12 @@ import numpy as np
 
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state
-from tipoff.lowfi.faces import CENTRE
+from tipoff.lowfi.faces import CENTRE, WALL
 from tipoff.lowfi.system import Body, System
 from tipoff.mechanics.ending import BOOK_SIZE
 from tipoff.mechanics.scene_model import Model
+from tipoff.scenes.effects.friction import Friction
+from tipoff.scenes.effects.sticking import Sticking
 from tipoff.scenes.effects.thrust_offset import ThrustOffset
 
 # Columns of the results: whether the case is left to ``lowfi.run``, steps, the book.
@@ -30,6 +32,7 @@ class Cases(NamedTuple):
     inertia: np.ndarray  # (n, 3, 3) kg m2, of the payload
     inverse_inertia: np.ndarray  # (n, 3, 3) 1/(kg m2), of the payload
     faces: np.ndarray  # (n, f, FACE_SIZE)
+    friction: np.ndarray  # (n, 2) static and dynamic coefficient of either law; zero without
     direction: np.ndarray | None  # (n, 3) of the thrust; None without thrust offset
     arm: np.ndarray | None  # (n, 3) m, of the thrust; None without thrust offset
     start: np.ndarray  # (n, STATE_SIZE) state at ignition
@@ -38,10 +41,11 @@ class Cases(NamedTuple):
 
 
 def of_models(system: System, models: Sequence[Model]) -> Cases:
-    """A case of each of ``models``, with the faces of ``system`` at their centres."""
+    """A case of each of ``models``, with the faces of ``system`` at their centres and walls."""
     count, centre = len(models), np.array([model.faces.centre for model in models])
     faces = np.repeat(system.faces[None], count, axis=0)
     faces[:, :, CENTRE : CENTRE + 3] = centre
+    faces[:, :, WALL] = np.array([model.faces.sign * model.faces.wall for model in models])
     # all have one, or none
     offsets = [model.thrust_offset for model in models if model.thrust_offset is not None]
     return Cases(
@@ -49,12 +53,18 @@ def of_models(system: System, models: Sequence[Model]) -> Cases:
         inertia=np.array([model.payload.inertia for model in models]),
         inverse_inertia=np.array([model.payload.inverse_inertia for model in models]),
         faces=faces,
+        friction=np.array([coefficients(model.friction) for model in models]),
         direction=np.array([offset.direction for offset in offsets]) if offsets else None,
         arm=np.array([offset.arm for offset in offsets]) if offsets else None,
         start=np.array([state.initial(model) for model in models]),
         reach=np.sqrt((centre**2).sum(axis=2).max(axis=1)),
         results=np.zeros((count, RESULT_SIZE)),
     )
+
+
+def coefficients(friction: Friction | Sticking | None) -> tuple[float, float]:
+    """Static and dynamic coefficient of either law; zero without friction."""
+    return (0.0, 0.0) if friction is None else (friction.static, friction.dynamic)
 
 
 @kernel
@@ -73,8 +83,8 @@ def system_of(common, cases, n):
         compliance=common.compliance,
         has_contact=common.has_contact,
         is_compliant=common.is_compliant,
-        friction=common.friction,
-        sticking=common.sticking,
+        friction=_friction(common.friction, cases.friction, n),
+        sticking=_sticking(common.sticking, cases.friction, n),
         body_force=common.body_force,
         ledger=common.ledger,
         neglected=common.neglected,
@@ -86,5 +96,21 @@ def _offset(direction, arm, n):
     if direction is not None:
         return ThrustOffset(
             (direction[n, 0], direction[n, 1], direction[n, 2]), (arm[n, 0], arm[n, 1], arm[n, 2])
+        )
+    return None
+
+
+@kernel
+def _friction(law, coefficient, n):
+    if law is not None:
+        return Friction(coefficient[n, 0], coefficient[n, 1], law.static_speed, law.dynamic_speed)
+    return None
+
+
+@kernel
+def _sticking(law, coefficient, n):
+    if law is not None:
+        return Sticking(
+            coefficient[n, 0], coefficient[n, 1], law.stiffness, law.damping, law.capture_speed
         )
     return None

@@ -16,12 +16,16 @@ from tipoff.lowfi.preparation import prepare
 from tipoff.lowfi.run import solved
 from tipoff.mechanics import comoving, ending, outcome, scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance, may_vibrate
-from tipoff.mechanics.scene_model import Built
+from tipoff.mechanics.scene_model import Built, Faces
 from tipoff.scenes import changes
 from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.effects.friction import Friction
+from tipoff.scenes.effects.sticking import Sticking
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.variation import Variations
+
+_NONE = np.zeros(0)
 
 
 class Case(NamedTuple):
@@ -68,6 +72,7 @@ class Family:
         self.changes = calibration.changes if calibration else {}
         self.stated = Variations(scene) if self.changes else None
         self.base = scene_model.built(calibrated)
+        self.base_parts = _parts(self.base)
         self.burnouts = outcome.burnouts(calibrated, self.base.model)
 
     def jobs(
@@ -146,7 +151,7 @@ class Family:
         )
         if key not in groups:
             # The next row may overwrite the tables of this one.
-            groups[key] = _Group(scene.model_copy(deep=True), marks, [], [])
+            groups[key] = _Group(self.variations.kept(scene), marks, [], [])
         return groups[key]
 
     def _marks(self, built: Built) -> outcome.Milestones:
@@ -157,19 +162,9 @@ class Family:
     def _shared(self, built: Built) -> tuple:
         """Content of all records of a model that ``cases.Cases`` does not take from each case; None
         for records of the scene."""
-
-        def parts(of: Built) -> tuple:
-            shared = of.model._asdict() | {
-                "payload": None,
-                "faces": None,
-                "initial": None,
-                "thrust_offset": of.model.thrust_offset is None,
-            }
-            return *shared.values(), of.nominal
-
         return tuple(
-            None if part is own else (_content(part),)
-            for part, own in zip(parts(built), parts(self.base))
+            None if part is own else (_content(_without_own(part)),)
+            for part, own in zip(_parts(built), self.base_parts)
         )
 
     def _kernel(self, group: _Group) -> Callable[[], np.ndarray]:
@@ -244,6 +239,22 @@ class Family:
 
 def _refused(error: SceneError) -> Case:
     return Case("refused", str(error), outcome.Outcome(), 0, 0.0)
+
+
+def _parts(of: Built) -> tuple:
+    """The records of a model without those that each case has of its own."""
+    own = {"payload": None, "faces": None, "initial": None}
+    shared = of.model._asdict() | own | {"thrust_offset": of.model.thrust_offset is None}
+    return *shared.values(), of.nominal
+
+
+def _without_own(record: Any) -> Any:
+    """A record of a model without the numbers that each case has of its own."""
+    if isinstance(record, Faces):
+        return record._replace(wall=_NONE)
+    if isinstance(record, Friction | Sticking):
+        return record._replace(static=0.0, dynamic=0.0)
+    return record
 
 
 def _content(record: Any) -> Any:

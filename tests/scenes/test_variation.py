@@ -28,3 +28,15 @@ def test_a_variation_has_nothing_of_its_base(rows):
         assert found.replace(further).hash == expected.replace(further).hash
         assert found.condition("h1").hash == expected.condition("h1").hash
     assert SCENE.hash == base
+
+
+def test_a_kept_variation_is_not_overwritten():
+    """It shares the tables that no row changes. Control: the variation itself, which the next call
+    overwrites."""
+    variations = Variations(SCENE)
+    rows = [{"payload.mass": mass} for mass in (10.0, 11.0, 12.0)]
+    own, kept = zip(*((found, variations.kept(found)) for found in map(variations.of, rows)))
+    assert own[1] is own[2] and own[1].payload.mass == 12.0
+    for row, found in zip(rows, kept):
+        assert found.hash == SCENE.replace(row).hash and found.payload.mass == row["payload.mass"]
+        assert found.rail is SCENE.rail

@@ -6,6 +6,7 @@ a table depends on several of them. A row with a fault goes through ``replace``,
 are the same too.
 """
 
+import copy
 from collections.abc import Mapping
 from typing import Annotated, Any, NamedTuple
 
@@ -53,8 +54,8 @@ class Variations:
         if (prepared := self._prepared.get(names)) is None:
             scene = self._by_tables(row)
             if names not in self._prepared:
-                copy = self._copy(row)
-                self._prepared[names] = self._leaves(names, copy) if copy else None
+                own = self._copy(row)
+                self._prepared[names] = self._leaves(names, own) if own else None
             return scene
         scene, leaves = prepared
         try:
@@ -67,6 +68,19 @@ class Variations:
         for leaf, value in zip(leaves, values):
             leaf.values[leaf.name] = leaf.raw[leaf.name] = value
         return scene if scene.agrees() else self.scene.replace(row)
+
+    def kept(self, scene: Scene) -> Scene:
+        """A copy of a result of ``of`` that later calls do not overwrite. It has the tables of the
+        base scene that are unchanged themselves: to copy them takes longer than a run."""
+        changed = {
+            name: copy.deepcopy(getattr(scene, name))
+            for name in Scene.model_fields
+            if getattr(scene, name) is not getattr(self.scene, name)
+        }
+        found = scene.model_copy(update=changed)
+        own = {name: keys.plain(raw) for name, raw in scene._raw.items() if name in changed}
+        found._raw = scene._raw | own
+        return found
 
     def _by_tables(self, row: Mapping[str, Any]) -> Scene:
         return self._copy(row) or self.scene.replace(row)

@@ -4,9 +4,13 @@ bit."""
 import numpy as np
 import pytest
 
-from tests.lowfi.support import PAPER_PAD, RAIL, scene
+from tests import loops
+from tests.lowfi.compliance import reference_compliance
+from tests.lowfi.support import PAPER_PAD, RAIL, G, scene
 from tipoff import lowfi
 from tipoff.lowfi.ensemble import columns
+from tipoff.lowfi.ensemble.batch import Family
+from tipoff.lowfi.numerics import Numerics
 from tipoff.scenes import load
 from tipoff.scenes.faults import SceneError
 from validation.bench.surrogate import varied
@@ -104,6 +108,43 @@ def test_every_case_is_jammed_by_its_own_limits(thrust, rows):
     found = lowfi.run_many(base, rows, "springs")
     alone = [lowfi.run(base.replace(row), "springs").status for row in rows]
     assert found.status.values.tolist() == alone and len(set(alone)) == 2 and "jammed" in alone
+
+
+OWN_CONTACT = [
+    {"contact.clearance": 1e-5 * (1 + number), "friction.static": mu, "friction.dynamic": 0.8 * mu}
+    for number, mu in enumerate((0.05, 0.2, 0.5))
+]
+# A payload under its weight that leaves a short rail.
+STICKING = scene(
+    0.06,
+    0.01,
+    rail=RAIL | {"start": -0.2, "end": 0.2},
+    thrust={"kind": "constant", "force": 2e4, "duration": 0.03},
+    gravity={"z": -G},
+    contact=loops.LINEAR,
+    friction=loops.STICKING,
+)
+
+
+@pytest.mark.parametrize(
+    "base, model",
+    [
+        (load("reference"), "springs"),
+        (load("reference"), "compliant"),
+        (STICKING, "springs"),
+    ],
+    ids=["springs", "compliant", "sticking"],
+)
+def test_cases_with_their_own_clearance_and_friction_are_one_call_of_the_kernel(base, model):
+    """One call takes a third of the time of many. Each case has the bits of a single run."""
+    none, rail = Numerics(modes=0), reference_compliance() if model == "compliant" else None
+    assert len(Family(base, None, none, rail).kernels(OWN_CONTACT)) == 1
+    found = lowfi.run_many(base, OWN_CONTACT, model, compliance=rail, numerics=none)
+    rates = found.rate.values
+    for row, rate in zip(OWN_CONTACT, rates):
+        alone = lowfi.run(base.replace(row), model, compliance=rail, numerics=none)
+        assert np.array_equal(rate, alone.outcome.rate)
+    assert len(np.unique(rates, axis=0)) == len(rates)
 
 
 def test_refused_rows_have_the_reason_of_replace():

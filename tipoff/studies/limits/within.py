@@ -15,7 +15,7 @@ import numpy as np
 
 from tipoff import sources
 from tipoff.cache import Cache, binary
-from tipoff.files import content_hash, netcdf
+from tipoff.files import content_hash, labelled_netcdf
 from tipoff.lowfi.ensemble import columns, pilot
 from tipoff.lowfi.ensemble.derived import Derived, Numbers, around_zero, friction, law
 from tipoff.lowfi.ensemble.threads import PIECE, completed
@@ -165,31 +165,27 @@ def kept(scale: float, tolerances: Mapping[str, float]) -> Cache[np.ndarray]:
     return binary(lambda values: _content(values, scale, tolerances), _load)
 
 
-def _content(
-    values: np.ndarray, scale: float, tolerances: Mapping[str, float]
-) -> bytes | memoryview:
-    import xarray
-
-    found = xarray.Dataset(
+def _content(values: np.ndarray, scale: float, tolerances: Mapping[str, float]) -> memoryview:
+    return labelled_netcdf(
         {
+            "case": (("case",), np.arange(len(values)), {}),
+            "quantity": (("quantity",), [item.name for item in answers.ALL], {}),
+            "units": (("quantity",), [item.unit for item in answers.ALL], {}),
             "value": (
                 ("case", "quantity"),
                 values,
-                {"long_name": "quantity of a case after the exit, NaN where it did not settle"},
-            )
-        },
-        {
-            "case": np.arange(len(values)),
-            "quantity": [item.name for item in answers.ALL],
-            "units": ("quantity", [item.unit for item in answers.ALL]),
+                {
+                    "long_name": "quantity of a case after the exit, NaN where it did not settle",
+                    "coordinates": "units",
+                },
+            ),
         },
         {"scale": scale, "tolerances_si": json.dumps(dict(tolerances))},
     )
-    return netcdf(found)
 
 
 def _load(path: Path) -> np.ndarray:
-    import xarray
+    import h5py  # slow to load
 
-    with xarray.open_dataset(path, engine="h5netcdf") as found:
-        return found["value"].transpose("case", "quantity").values
+    with h5py.File(path) as found:
+        return found["value"][:]
