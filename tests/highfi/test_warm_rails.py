@@ -80,8 +80,8 @@ def test_rails_do_not_ring():
 
 def test_contact_meets_the_bowed_walls(start, cold_start):
     """The nodes that contact uses, and no others, are displaced as in the static solution."""
-    system = start.system
-    moved = thermal.displacement(system.mesh, start.scene.rail.material, system.model.thermal)
+    system = start.setup.system
+    moved = thermal.displacement(system.mesh, start.setup.scene.rail.material, system.model.thermal)
     number, points = system.number, system.mesh.points - system.origin
     assert np.array_equal(system.surface.places[number], points + moved) and np.array_equal(
         system.rail.points[number], points
@@ -136,7 +136,7 @@ def test_a_bow_that_closes_the_clearance_is_warned_about():
 def test_warm_walls_of_the_surrogate_are_those_of_the_reference(start):
     """The six patterns of a pad face at ignition against the nodes under it, within a sixth of what
     the wall moves over its length."""
-    rails, system = compliance.condense(start.scene, COARSE.element_size), start.system
+    rails, system = compliance.condense(start.setup.scene, COARSE.element_size), start.setup.system
     found, faces, surface = (
         rails.moved(system.model.thermal.amounts),
         system.faces,
