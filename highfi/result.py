@@ -16,7 +16,7 @@ from tipoff.mechanics.trajectory import Trajectory
 def trajectory(stepper: Stepper, recorded: Recorded, cost: dict, numerics: Numerics) -> Trajectory:
     """The result of the samples so far."""
     setup, scene, system = stepper.setup, stepper.setup.scene, stepper.setup.system
-    rows, forces = np.array(recorded.rows), np.array(recorded.forces)
+    rows, forces, gauges = map(np.array, (recorded.rows, recorded.forces, recorded.gauges))
     interval, yields = scene.output.interval, scene.rail.material.yield_strength
     moved = samples.motion(rows, interval, system.body_offset)
     total, transverse = samples.ledgers(rows, np.array(recorded.work))
@@ -35,6 +35,9 @@ def trajectory(stepper: Stepper, recorded: Recorded, cost: dict, numerics: Numer
     exceeded = _broken(checks)
     if recorded.message or exceeded:
         status, result = "diverged", outcome.Outcome()
+    stress = None
+    if status != "diverged":
+        stress = monitor.record(setup.monitor, system, recorded.peak, yields)
     pressed = outcome.pressed_at_ignition(system.faces, forces[0]) if forces.size else ""
     message = "; ".join(filter(None, [recorded.message, exceeded, pressed]))
     seen_from = comoving.frame(system.model)
@@ -51,12 +54,8 @@ def trajectory(stepper: Stepper, recorded: Recorded, cost: dict, numerics: Numer
         cost=cost,
         scene=scene.resolved(),
         numerics=numerics.as_dict(),
-        stress=None
-        if status == "diverged"
-        else monitor.record(setup.monitor, system, recorded.peak, yields),
-        wall_stress=np.array(recorded.gauges).reshape(len(rows), -1, 6)
-        if recorded.gauges
-        else None,
+        stress=stress,
+        wall_stress=gauges.reshape(len(rows), -1, 6) if gauges.size else None,
     )
 
 

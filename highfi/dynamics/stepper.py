@@ -23,12 +23,13 @@ class Taken(NamedTuple):
 
 
 class Stepper:
-    """State of a run. All attributes but ``setup`` evolve; a checkpoint has them."""
+    """State of a run. All attributes but ``setup`` evolve, and a checkpoint has them. Nothing but
+    the methods, ``regroup`` and ``waking`` changes them."""
 
     def __init__(self, setup: Setup):
         self.setup = setup
         self.state, self.active = initial_state(setup.system)
-        self.book = ending.new_book()
+        self.book = ending.new_book()  # of exit, settled window and jam
         self.steps = 0  # done
         self.stride = 1  # steps in one long step
         self.substeps = 1  # parts of a step
@@ -36,7 +37,7 @@ class Stepper:
         self.fastest = 0.0
         # (rails,) whether a rail rests
         self.rests = np.zeros(len(setup.rails.blocks) if setup.rails else 0, dtype=np.bool_)
-        self.jolts = jolts.begin(setup.rails)
+        self.jolts = jolts.begin(setup.rails)  # vibration that rails at rest leave out
 
     @property
     def time(self) -> float:
