@@ -2,11 +2,13 @@
 
 from tipoff.highfi.contact import cells
 from tipoff.highfi.dynamics import damping, loads, mounts
+from tipoff.highfi.dynamics.setup import set_up
 from tipoff.highfi.dynamics.step import ADVANCE, Task, perform
 from tipoff.highfi.dynamics.step_size import choose
+from tipoff.highfi.dynamics.stepper import Stepper
 from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.numerics import Numerics
-from tipoff.highfi.run import Loop, prepare
+from tipoff.highfi.run import prepare
 from tipoff.highfi.state import nodes
 from tipoff.kernels.compiled import effects
 from tipoff.mechanics.ledger import BODY_FORCE
@@ -30,5 +32,5 @@ def compiled_effects(scene: Scene, numerics: Numerics | None = None) -> dict[str
     """For each effect of ``LAWS``, whether the kernel compiled for ``scene`` contains it."""
     numerics = numerics or Numerics()
     system = build(scene, numerics, prepare(scene, numerics))
-    loop = Loop(scene, system, choose(system, scene, numerics))
-    return effects(perform, (*loop.arguments(), 0, Task(ADVANCE, 0, 0, 0.0)), LAWS)
+    stepper = Stepper(set_up(scene, system, choose(system, scene, numerics)))
+    return effects(perform, (*stepper.arguments(), 0, Task(ADVANCE, 0, 0, 0.0)), LAWS)

@@ -4,24 +4,25 @@ ledgers."""
 import numpy as np
 
 from tipoff.highfi.dynamics import ending, samples
+from tipoff.highfi.dynamics.stepper import Stepper
 from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.recorded import Recorded
 from tipoff.highfi.stress import monitor
 from tipoff.mechanics import comoving, ledger, model_names, outcome
 from tipoff.mechanics.promises import FINITE_ELEMENTS, broken
 from tipoff.mechanics.trajectory import Trajectory
 
 
-def trajectory(loop, cost: dict, numerics: Numerics) -> Trajectory:
-    """The result of the samples of a ``run.Loop`` so far."""
-    rows, moved = np.array(loop.rows), _motion(loop)
-    total, transverse = samples.ledgers(rows, np.array(loop.work))
-    status, result = ending.found(loop.system, loop.book)
-    forces = np.array(loop.forces)
-    linear, angular = samples.momentum_errors(rows, moved, loop.system, forces, loop.steps)
-    friction = (
-        np.diff(total[:, ledger.ENTRIES.index("friction")], prepend=0.0)
-        / loop.scene.output.interval
-    )
+def trajectory(stepper: Stepper, recorded: Recorded, cost: dict, numerics: Numerics) -> Trajectory:
+    """The result of the samples so far."""
+    setup, scene, system = stepper.setup, stepper.setup.scene, stepper.setup.system
+    rows, forces, gauges = map(np.array, (recorded.rows, recorded.forces, recorded.gauges))
+    interval, yields = scene.output.interval, scene.rail.material.yield_strength
+    moved = samples.motion(rows, interval, system.body_offset)
+    total, transverse = samples.ledgers(rows, np.array(recorded.work))
+    status, result = ending.found(system, stepper.book)
+    linear, angular = samples.momentum_errors(rows, moved, system, forces, stepper.steps)
+    friction = np.diff(total[:, ledger.ENTRIES.index("friction")], prepend=0.0) / interval
     checks = {
         "energy_error": ledger.total_error(total, FINITE_ELEMENTS),
         "transverse_energy_error": ledger.transverse_error(transverse, total, FINITE_ELEMENTS),
@@ -29,14 +30,17 @@ def trajectory(loop, cost: dict, numerics: Numerics) -> Trajectory:
         "angular_momentum_error": angular,
         "quaternion_error": float(np.abs(np.linalg.norm(moved.quaternion, axis=1) - 1.0).max()),
         "friction_power_max": float(-friction.min()),
-        "friction_step_ratio": float(loop.damping),
+        "friction_step_ratio": recorded.damping,
     }
     exceeded = _broken(checks)
-    if loop.message or exceeded:
+    if recorded.message or exceeded:
         status, result = "diverged", outcome.Outcome()
-    pressed = outcome.pressed_at_ignition(loop.system.faces, loop.forces[0]) if loop.forces else ""
-    message = "; ".join(filter(None, [loop.message, exceeded, pressed]))
-    seen_from = comoving.frame(loop.system.model)
+    stress = None
+    if status != "diverged":
+        stress = monitor.record(setup.monitor, system, recorded.peak, yields)
+    pressed = outcome.pressed_at_ignition(system.faces, forces[0]) if forces.size else ""
+    message = "; ".join(filter(None, [recorded.message, exceeded, pressed]))
+    seen_from = comoving.frame(system.model)
     return Trajectory(
         model=model_names.FINITE_ELEMENTS,
         status=status,
@@ -48,20 +52,10 @@ def trajectory(loop, cost: dict, numerics: Numerics) -> Trajectory:
         outcome=comoving.outcome(seen_from, result),
         checks=checks,
         cost=cost,
-        scene=loop.scene.resolved(),
+        scene=scene.resolved(),
         numerics=numerics.as_dict(),
-        stress=None if status == "diverged" else _stress(loop),
-        wall_stress=np.array(loop.gauges).reshape(len(rows), -1, 6) if loop.gauges else None,
-    )
-
-
-def _motion(loop) -> outcome.Motion:
-    return samples.motion(np.array(loop.rows), loop.scene.output.interval, loop.system.body_offset)
-
-
-def _stress(loop) -> dict:
-    return monitor.record(
-        loop.monitor, loop.system, loop.peak, loop.scene.rail.material.yield_strength
+        stress=stress,
+        wall_stress=gauges.reshape(len(rows), -1, 6) if gauges.size else None,
     )
 
 

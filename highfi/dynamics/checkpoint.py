@@ -1,10 +1,9 @@
 """Checkpoints: the state of a run as a file, from which an interrupted run continues to the same
 bits.
 
-A checkpoint holds everything of a Loop that evolves: all attributes except ``CONSTANT``. The file
-is a NumPy archive (.npz) of plain arrays, without code, with a line for its digest
-(``tipoff.files``). It has ``header``, JSON that identifies the run, and one array per evolving
-value, by its dotted name.
+A checkpoint holds everything of a ``run.Loop`` that evolves or is recorded. The file is a NumPy
+archive (.npz) of plain arrays, without code, with a line for its digest (``tipoff.files``). It has
+``header``, JSON that identifies the run, and one array per value, by its dotted name.
 
 It is written between two steps, replaced atomically, and read only by a run of the same scene,
 numerics, program and constant arrays. The processor is not compared: on another kind the run
@@ -24,21 +23,6 @@ import numpy as np
 from tipoff import sources
 from tipoff.files import DamageError, require_whole, write_sealed
 
-# Arguments from which a Loop is built.
-CONSTANT = (
-    "scene",
-    "system",
-    "stepping",
-    "team",
-    "pool",
-    "milestones",
-    "exit",
-    "last",
-    "most",
-    "monitor",
-    "watch",
-    "reach",
-)
 _OTHER = {
     "scene": "belongs to another scene",
     "numerics": "belongs to a run with other numerics",
@@ -70,10 +54,10 @@ class Checkpoint:
             )
         self.path, self.every, self.due = Path(path), every, time.monotonic() + every
         self.header = {
-            "scene": loop.scene.hash,
+            "scene": loop.setup.scene.hash,
             "numerics": numerics.as_dict(),
             "program": sources.program("tipoff.highfi"),
-            "system": digest(arrays({"constants": loop.constants()})),
+            "system": digest(arrays({"constants": loop.stepper.constants()})),
         }
 
     def keep(self, loop) -> None:
@@ -130,21 +114,21 @@ class Checkpoint:
 def restore(loop, saved: dict[str, np.ndarray]) -> None:
     """Put ``saved`` into a loop that has begun; arrays are filled in place, because kernels need them
     aligned. Raises ValueError, before it changes anything, for values that do not fit the loop."""
-    parts = evolving(loop)
-    for name, value in parts.items():
+    for name, value in evolving(loop).items():
         if isinstance(value, list):
             _require(name, saved, (None,))
         else:
             for key, array in arrays({name: value}):
                 _require(key, saved, array.shape, array.dtype)
-    for name, value in parts.items():
-        if isinstance(value, list):
-            setattr(loop, name, list(saved[name]))
-        elif isinstance(value, (tuple, np.ndarray)):
-            for key, array in arrays({name: value}):
-                array[...] = saved[key]
-        else:
-            setattr(loop, name, type(value)(saved[name].item()))
+    for owner in (loop.stepper, loop.recorded):
+        for name, value in _values(owner).items():
+            if isinstance(value, list):
+                setattr(owner, name, list(saved[name]))
+            elif isinstance(value, (tuple, np.ndarray)):
+                for key, array in arrays({name: value}):
+                    array[...] = saved[key]
+            else:
+                setattr(owner, name, type(value)(saved[name].item()))
 
 
 def _require(
@@ -162,7 +146,11 @@ def _require(
 
 def evolving(loop) -> dict[str, Any]:
     """Values that change during a run: records, lists of samples, numbers and text, by name."""
-    return {name: value for name, value in vars(loop).items() if name not in CONSTANT}
+    return _values(loop.stepper) | _values(loop.recorded)
+
+
+def _values(owner) -> dict[str, Any]:
+    return {name: value for name, value in vars(owner).items() if name != "setup"}
 
 
 def arrays(parts: dict[Any, Any]) -> Iterator[tuple[str, np.ndarray]]:

@@ -33,14 +33,18 @@ from tipoff.mechanics.ending import (
 from tipoff.mechanics.outcome import Outcome
 
 
-def build(system: System) -> tuple[Exit, np.ndarray]:
-    """The place of the exit, and the book (``mechanics.ending``) at the beginning of a run."""
+def place(system: System) -> Exit:
+    """The place of the exit."""
     edges = system.faces.centre.copy()
     edges[:, 0] -= system.faces.half_length
+    return Exit(edges=edges, rail_end=float(system.model.rail_end + system.body_offset[0]))
+
+
+def new_book() -> np.ndarray:
+    """The book (``mechanics.ending``) at the beginning of a run."""
     book = np.zeros(books.BOOK_SIZE)
     books.reset(book)
-    rail_end = float(system.model.rail_end + system.body_offset[0])
-    return Exit(edges=edges, rail_end=rail_end), book
+    return book
 
 
 def found(system: System, book: np.ndarray) -> tuple[str, Outcome]:

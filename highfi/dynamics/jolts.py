@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tipoff.highfi.dynamics.observe import Moving
 from tipoff.highfi.dynamics.resting import Rails
 from tipoff.highfi.dynamics.system import System
 from tipoff.highfi.state.records import State
@@ -33,14 +34,14 @@ class Jolts(NamedTuple):
     most: np.ndarray  # (1,) m, largest value at which a rail was stepped again
 
 
-def rates(system: System, state: State) -> np.ndarray:
-    """Attitude, velocity of the frame's origin and rate (10,), of half a step ago."""
-    frame, body = system.frame, state.platform
+def rates(system: System, state: State, moving: Moving) -> np.ndarray:
+    """Attitude, and velocity of the frame's origin and rate when velocities are ``moving``: (10,)."""
+    frame, quaternion = system.frame, state.platform.quaternion
     assert frame is not None
-    base = rotation.single(body.quaternion)
-    rate = frame.inverse_inertia @ (base.T @ body.spin)
-    velocity = body.velocity - base @ (_matrix(rate) @ frame.centre)
-    return np.concatenate([body.quaternion, velocity, rate])
+    base = rotation.single(quaternion)
+    rate = frame.inverse_inertia @ (base.T @ moving.platform_spin)
+    velocity = moving.platform_velocity - base @ (_matrix(rate) @ frame.centre)
+    return np.concatenate([quaternion, velocity, rate])
 
 
 def terms(system: System, before: np.ndarray, after: np.ndarray, span: float) -> np.ndarray:

@@ -14,6 +14,7 @@ import numpy as np
 from tipoff.highfi.dynamics import observe
 from tipoff.highfi.dynamics.elastic import elastic_force
 from tipoff.highfi.dynamics.resting import Rails
+from tipoff.highfi.dynamics.stepper import Stepper
 from tipoff.highfi.dynamics.system import System
 from tipoff.highfi.state.records import TOTAL, State
 from tipoff.kernels import rotation
@@ -28,20 +29,20 @@ class _Motion(NamedTuple):
     energy: float  # J, kinetic and strain
 
 
-def regroup(rails: Rails, loop, rests: np.ndarray, terms: np.ndarray) -> None:
+def regroup(rails: Rails, stepper: Stepper, rests: np.ndarray, terms: np.ndarray) -> None:
     """Let the rails ``rests`` (rails,) rest and step all others.
 
-    ``loop`` is a ``run.Loop`` with velocities of half a step ago. Rails that are woken get the
-    static deflection under ``terms`` (``statics.inertial``). Contact must not act on rails that
-    change.
+    Velocities are those of half a step ago. Rails that are woken get the static deflection under
+    ``terms`` (``statics.inertial``). Contact must not act on rails that change.
     """
-    state, active, system, old = loop.state, loop.active, loop.system, loop.now
-    before, centre = _motion(old, state, loop.team), _unloaded(old, state)
-    changed = loop.rests != rests
+    state, active, old = stepper.state, stepper.active, stepper.now
+    system, team = stepper.setup.system, stepper.setup.team
+    before, centre = _motion(old, state, team), _unloaded(old, state)
+    changed = stepper.rests != rests
     blocks = np.concatenate([rails.blocks[k] for k in np.flatnonzero(changed)])
     state.reaction[:] -= _reactions(state, blocks)
-    loop.rests[:] = rests
-    now = loop.now
+    stepper.rests[:] = rests
+    now = stepper.now
     for rail in np.flatnonzero(changed).tolist():
         _still(system, state, rails.blocks[rail])
         if not rests[rail]:
@@ -50,13 +51,13 @@ def regroup(rails: Rails, loop, rests: np.ndarray, terms: np.ndarray) -> None:
         [np.zeros(0, np.int64), *(part for part, still in zip(rails.blocks, rests) if not still)]
     )
     state.stepped.block[: awake.size], state.stepped.in_use[0] = np.sort(awake), awake.size
-    _load(system, state, blocks, loop.team)
+    _load(system, state, blocks, team)
     state.reaction[:] += _reactions(state, blocks)
     state.rail_momentum[:] = now.moving_mass @ state.velocity
     state.rail_moment[:] = now.moving_mass @ (system.rail.points + state.displacement)
     active.rests[:] = rails.groups[rests].any(axis=0)
     active.near[:], active.wait[:] = False, 0
-    _balance(now, state, before, centre, loop.team)
+    _balance(now, state, before, centre, team)
 
 
 def _origin(system: System, state: State) -> np.ndarray:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.highfi.dynamics.step_size import STEPS_PER_CHECK, Stepping, raster_steps
+from tipoff.highfi.dynamics.step_size import Stepping, raster_steps
 from tipoff.highfi.dynamics.system import System, moving_walls
 from tipoff.highfi.mesh import pieces
 from tipoff.highfi.state import records
@@ -43,7 +43,6 @@ class Rails(NamedTuple):
     frequency: np.ndarray  # (s,1) rad/s, the lowest of each
     at_ignition: bool  # whether rails may rest before the first touch
     stride: int  # steps in one long step, which is taken while all rails rest
-    interval: int  # steps from one decision to the next
     jumps: np.ndarray  # s, where the thrust jumps
 
 
@@ -79,7 +78,6 @@ def build(scene: Scene, system: System, stepping: Stepping) -> Rails | None:
         frequency=np.where(np.isfinite(lowest), lowest, 0.0),
         # Samples may be at any multiple of the raster, so long steps must not pass it.
         stride=_stride(system.model.thrust, stepping.dt_s, raster),
-        interval=raster * max(1, STEPS_PER_CHECK // raster),
         jumps=_jumps(system.model.thrust, scene.time_limit),
     )
 

@@ -38,10 +38,10 @@ class Stepping:
         """Plain values, as written into results."""
         return asdict(self)
 
-    def used(self) -> float:
-        """Share of the stability condition in ``step_limit`` that the step uses; the critical step
-        uses 1."""
-        return used(self.dt_s, self.dt_limit_s, self.damping_ratio)
+    def used(self, parts: int = 1) -> float:
+        """Share of the stability condition in ``step_limit`` that a step in so many ``parts`` uses,
+        without friction; the critical step uses 1."""
+        return used(self.dt_s / parts, self.dt_limit_s, self.damping_ratio)
 
 
 def raster_steps(stepping: Stepping, interval: float) -> int:

@@ -14,137 +14,129 @@ Decisions must not depend on the sampling interval: they are taken at multiples 
 import numpy as np
 
 from tipoff.highfi.contact.pads import FASTEST_SLIDE
-from tipoff.highfi.dynamics import jolts, observe, resting
+from tipoff.highfi.dynamics import jolts, observe
 from tipoff.highfi.dynamics.regroup import regroup
 from tipoff.highfi.dynamics.resting import MOST_LEFT_OUT, Rails
-from tipoff.highfi.dynamics.system import System
-from tipoff.highfi.state.threads import team_of
+from tipoff.highfi.dynamics.stepper import Stepper
 from tipoff.highfi.statics.inertial import TERMS
 from tipoff.mechanics.ending import EXIT, PAST
 
 _FAR = 4  # long steps before any pad can come near; fewer, and no long step begins
 
 
-class Watch:
-    """Follows the rails of one ``run.Loop``; evolving values are in the loop."""
-
-    def __init__(self, system: System, rails: Rails):
-        self.system, self.rails, self.alone = system, rails, team_of(1)
-        self._views: dict[bytes, System] = {}
-
-    def view(self, rests: np.ndarray) -> System:
-        """The system while the rails ``rests`` (rails,) rest."""
-        key = rests.tobytes()
-        if key not in self._views:
-            self._views[key] = resting.view(self.system, self.rails, rests)
-        return self._views[key]
-
-    def begin(self, loop) -> None:
-        """Let rails rest at ignition, if no pad is near and no jolt of the platform excites
-        them."""
-        rails, active = self.rails, loop.active
-        if not rails.at_ignition or self._jumps(loop):
+def begin(rails: Rails, stepper: Stepper) -> None:
+    """Let rails rest at ignition, if no pad is near and no jolt of the platform excites them."""
+    active, found = stepper.active, stepper.jolts
+    if not rails.at_ignition or _jumps(rails, stepper):
+        return
+    if stepper.now.frame is not None:
+        _note_rates(stepper)
+        found.left_out[:] = jolts.largest(rails, np.abs(_terms(stepper)))
+        if found.left_out[0] > MOST_LEFT_OUT:
             return
-        if loop.now.frame is not None:
-            self._note_rates(loop)
-            loop.jolts.left_out[:] = jolts.largest(rails, np.abs(self._terms(loop)))
-            if loop.jolts.left_out[0] > MOST_LEFT_OUT:
-                return
-        active.rests[:] = True
-        self._look(loop)
-        near = active.near.copy()
-        active.rests[:] = False
-        self._look(loop)
-        self.regroup(loop, self._without(near, np.ones_like(loop.rests)))
-        loop.state.work["released"] = 0.0  # the ledger begins here
-        self._lengthen(loop)
+    active.rests[:] = True
+    _look(stepper)
+    near = active.near.copy()
+    active.rests[:] = False
+    _look(stepper)
+    let_rest(rails, stepper, _without(rails, near, np.ones_like(stepper.rests)))
+    stepper.state.work["released"] = 0.0  # the ledger begins here
+    _lengthen(rails, stepper)
 
-    def adapt(self, loop) -> int:
-        """Decide for the present step; returns the number of steps until the next decision."""
-        near = loop.active.near
-        if near.any():
-            if loop.stride > 1:
-                loop.set_stride(1)
-                near[:] = False
-            else:
-                self.regroup(loop, self._without(near, loop.rests))
-        elif loop.steps % self.rails.interval == 0:
-            self._adapt(loop)
-        return self.rails.interval - loop.steps % self.rails.interval
 
-    def _adapt(self, loop) -> None:
-        clear = 2.0 * FASTEST_SLIDE * loop.stepping.dt_s
-        if loop.book[EXIT] < np.inf and loop.book[PAST] > clear:
-            self.regroup(loop, np.ones_like(loop.rests))
-        elif loop.now.frame is not None and loop.rests.any():
-            if self._leaves_out(loop) > MOST_LEFT_OUT or self._jumps(loop):
-                self.regroup(loop, np.zeros_like(loop.rests))
-        if loop.stride > 1 and self._jumps(loop):
-            loop.set_stride(1)
-        self._lengthen(loop)
+def adapt(rails: Rails, stepper: Stepper) -> int:
+    """Decide for the present step; returns the number of steps until the next decision."""
+    near, interval = stepper.active.near, stepper.setup.interval
+    if near.any():
+        if stepper.stride > 1:
+            stepper.set_stride(1)
+            near[:] = False
+        else:
+            let_rest(rails, stepper, _without(rails, near, stepper.rests))
+    elif stepper.steps % interval == 0:
+        _adapt(rails, stepper)
+    return interval - stepper.steps % interval
 
-    def _without(self, near: np.ndarray, rests: np.ndarray) -> np.ndarray:
-        """``rests`` without the rails that a pad of the groups ``near`` (g,) can touch."""
-        return rests & ~np.asarray(self.rails.groups[:, near].any(axis=1))
 
-    def _leaves_out(self, loop) -> float:
-        """Vibration (m) that rails at rest leave out now."""
-        found = loop.jolts
-        before = found.rates.copy()
-        span = self._note_rates(loop) - before[-1]
-        if span > 0.0:
-            amounts = jolts.terms(loop.system, before, found.rates, span)
-            found.left_out[:] = jolts.follow(self.rails, found.modes, amounts, span)
-        return float(found.left_out[0])
+def _adapt(rails: Rails, stepper: Stepper) -> None:
+    clear = 2.0 * FASTEST_SLIDE * stepper.setup.stepping.dt_s
+    if stepper.book[EXIT] < np.inf and stepper.book[PAST] > clear:
+        let_rest(rails, stepper, np.ones_like(stepper.rests))
+    elif stepper.now.frame is not None and stepper.rests.any():
+        if _leaves_out(rails, stepper) > MOST_LEFT_OUT or _jumps(rails, stepper):
+            let_rest(rails, stepper, np.zeros_like(stepper.rests))
+    if stepper.stride > 1 and _jumps(rails, stepper):
+        stepper.set_stride(1)
+    _lengthen(rails, stepper)
 
-    def _note_rates(self, loop) -> float:
-        """Store the motion of the platform of half a step ago; returns its time (s)."""
-        rates = loop.jolts.rates
-        rates[:-1] = jolts.rates(loop.now, loop.state)
-        rates[-1] = loop.steps * loop.stepping.dt_s - 0.5 * loop.step
-        return float(rates[-1])
 
-    def _jumps(self, loop) -> bool:
-        """Whether the thrust jumps before the next decision."""
-        now, step = loop.steps, loop.stepping.dt_s
-        jumps = self.rails.jumps
-        return bool(((jumps >= now * step) & (jumps <= (now + self.rails.interval) * step)).any())
+def _without(rails: Rails, near: np.ndarray, rests: np.ndarray) -> np.ndarray:
+    """``rests`` without the rails that a pad of the groups ``near`` (g,) can touch."""
+    return rests & ~np.asarray(rails.groups[:, near].any(axis=1))
 
-    def _lengthen(self, loop) -> None:
-        """Take long steps if possible."""
-        if not loop.rests.all() or loop.stride == self.rails.stride or self._jumps(loop):
+
+def _leaves_out(rails: Rails, stepper: Stepper) -> float:
+    """Vibration (m) that rails at rest leave out now."""
+    found = stepper.jolts
+    before = found.rates.copy()
+    span = _note_rates(stepper) - before[-1]
+    if span > 0.0:
+        amounts = jolts.terms(stepper.setup.system, before, found.rates, span)
+        found.left_out[:] = jolts.follow(rails, found.modes, amounts, span)
+    return float(found.left_out[0])
+
+
+def _note_rates(stepper: Stepper) -> float:
+    """Store the motion of the platform of half a step ago; returns its time (s)."""
+    now, state, found = stepper.now, stepper.state, stepper.jolts.rates
+    found[:-1] = jolts.rates(now, state, observe.moving(now, state))
+    found[-1] = stepper.time - 0.5 * stepper.step
+    return float(found[-1])
+
+
+def _jumps(rails: Rails, stepper: Stepper) -> bool:
+    """Whether the thrust jumps before the next decision."""
+    now, setup, jumps = stepper.steps, stepper.setup, rails.jumps
+    step = setup.stepping.dt_s
+    return bool(((jumps >= now * step) & (jumps <= (now + setup.interval) * step)).any())
+
+
+def _lengthen(rails: Rails, stepper: Stepper) -> None:
+    """Take long steps if possible."""
+    if not stepper.rests.all() or stepper.stride == rails.stride or _jumps(rails, stepper):
+        return
+    if stepper.substeps > 1:
+        return
+    system, active = stepper.setup.system, stepper.active
+    if system.model.interface_stiffness is not None:
+        _look(stepper)
+        active.near[:] = False
+        has_wall = system.surface.search.wall >= 0
+        if active.wait[has_wall].min(initial=2**31) < _FAR * rails.stride:
             return
-        if loop.substeps > 1:
-            return
-        if loop.system.model.interface_stiffness is not None:
-            self._look(loop)
-            loop.active.near[:] = False
-            has_wall = loop.system.surface.search.wall >= 0
-            if loop.active.wait[has_wall].min(initial=2**31) < _FAR * self.rails.stride:
-                return
-        loop.set_stride(self.rails.stride)
+    stepper.set_stride(rails.stride)
 
-    def _look(self, loop) -> None:
-        """Check all pads again. All rails must be at rest."""
-        loop.active.near[:], loop.active.wait[:] = False, 0
-        loop.evaluate()
 
-    def _terms(self, loop) -> np.ndarray:
-        """Present acceleration (TERMS,) of the rails' mounts."""
-        if loop.now.frame is None:
-            return np.zeros(TERMS)
-        saved, step = observe.moving(loop.now, loop.state), loop.step
-        before = jolts.rates(loop.now, loop.state)
-        loop.kick(step)
-        found = jolts.terms(loop.system, before, jolts.rates(loop.now, loop.state), step)
-        observe.restore(loop.now, loop.state, saved)
-        return found
+def _look(stepper: Stepper) -> None:
+    """Check all pads again. All rails must be at rest."""
+    stepper.active.near[:], stepper.active.wait[:] = False, 0
+    stepper.evaluate()
 
-    def regroup(self, loop, rests: np.ndarray) -> None:
-        """Let the rails ``rests`` (rails,) rest and step all others, at the present platform motion."""
-        if (loop.rests == rests).all():
-            return
-        loop.set_stride(1)
-        if (loop.rests & ~rests).any():
-            loop.jolts.most[:] = np.maximum(loop.jolts.most, loop.jolts.left_out)
-        regroup(self.rails, loop, rests, self._terms(loop))
+
+def _terms(stepper: Stepper) -> np.ndarray:
+    """Present acceleration (TERMS,) of the rails' mounts."""
+    now, state = stepper.now, stepper.state
+    if now.frame is None:
+        return np.zeros(TERMS)
+    before, after = (jolts.rates(now, state, moving) for moving in stepper.moving())
+    return jolts.terms(stepper.setup.system, before, after, stepper.step)
+
+
+def let_rest(rails: Rails, stepper: Stepper, rests: np.ndarray) -> None:
+    """Let the rails ``rests`` (rails,) rest and step all others, at the present platform motion."""
+    if (stepper.rests == rests).all():
+        return
+    stepper.set_stride(1)
+    if (stepper.rests & ~rests).any():
+        stepper.jolts.most[:] = np.maximum(stepper.jolts.most, stepper.jolts.left_out)
+    regroup(rails, stepper, rests, _terms(stepper))

@@ -116,6 +116,7 @@ def _step(rng: random.Random, folder: Path) -> None:
 def take_steps(scene: scenes.Scene) -> None:
     """Some steps of the surrogate, and the first one of the reference. Compiles their kernels."""
     from tipoff import highfi, lowfi
+    from tipoff.highfi.dynamics.setup import set_up
     from tipoff.highfi.dynamics.step_size import choose
     from tipoff.highfi.dynamics.system import build
     from tipoff.highfi.run import Loop
@@ -124,7 +125,7 @@ def take_steps(scene: scenes.Scene) -> None:
     drawn, few = walls(scene, numerics.element_size), lowfi.Numerics(maximum_steps=200)
     lowfi.run(scene, "springs", compliance=drawn, numerics=few)
     system = build(scene, numerics, highfi.prepare(scene, numerics))
-    loop = Loop(scene, system, choose(system, scene, numerics))
+    loop = Loop(set_up(scene, system, choose(system, scene, numerics)))
     loop.begin()
     loop.advance_steps(1)
 

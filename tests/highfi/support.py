@@ -3,6 +3,7 @@
 import functools
 import math
 from contextlib import suppress
+from dataclasses import replace
 
 import meshio
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from tipoff import highfi
 from tipoff.highfi.dynamics import resting
 from tipoff.highfi.dynamics.resting import Rails
+from tipoff.highfi.dynamics.setup import set_up
 from tipoff.highfi.dynamics.step_size import Stepping, choose
 from tipoff.highfi.dynamics.system import System, build
 from tipoff.highfi.mesh.rail_mesh import RailMesh, read
@@ -122,7 +124,7 @@ def reachable(surface, face: int) -> np.ndarray:
 def loop_on(scene, mesh: RailMesh, numerics: Numerics = Numerics()) -> Loop:
     """A run in progress on a mesh of the test's own."""
     system = build(scene, numerics, mesh)
-    return Loop(scene, system, choose(system, scene, numerics))
+    return Loop(set_up(scene, system, choose(system, scene, numerics)))
 
 
 def assert_same_bits(one, other, *more: str) -> None:
@@ -141,6 +143,17 @@ def assert_same_bits(one, other, *more: str) -> None:
         np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
 
 
+def replace_constants(loop: Loop, **constants) -> None:
+    """Give a run in progress other constants."""
+    loop.stepper.setup = replace(loop.setup, **constants)
+
+
+def last_sample(loop: Loop) -> int:
+    """Number of the last sample at the time limit of a run; the first one has number zero."""
+    scene = loop.setup.scene
+    return scene.output.last(scene.time_limit)
+
+
 class Stopped(Exception):
     """Ends a run after the part that a test needs."""
 
@@ -153,29 +166,29 @@ class _StopAt:
 
     def keep(self, loop: Loop) -> None:
         """End the run there."""
-        if len(loop.rows) > self.samples:
+        if len(loop.recorded.rows) > self.samples:
             raise Stopped
 
 
-_SET_UP: dict = {}  # what ``set_up`` made, which no run changes
+_PARTS: dict = {}  # what ``parts`` made, which no run changes
 
 
-def set_up(scene, numerics: Numerics = COARSE) -> tuple[System, Stepping, Rails | None]:
+def parts(scene, numerics: Numerics = COARSE) -> tuple[System, Stepping, Rails | None]:
     """What loops of a scene are made of, as by ``highfi.run``, made once."""
     key = scene.hash, numerics
-    if key not in _SET_UP:
+    if key not in _PARTS:
         system = build(scene, numerics, highfi.prepare(scene, numerics))
         stepping = choose(system, scene, numerics)
         rails = None if numerics.step_everything else resting.build(scene, system, stepping)
-        _SET_UP[key] = system, stepping, rails
-    return _SET_UP[key]
+        _PARTS[key] = system, stepping, rails
+    return _PARTS[key]
 
 
 def begun(scene=None, numerics: Numerics = COARSE, threads: int = 1) -> Loop:
     """A loop at its first sample, as ``highfi.run`` makes it."""
     scene = scene or tiny()
-    system, stepping, rails = set_up(scene, numerics)
-    loop = Loop(scene, system, stepping, threads, rails)
+    system, stepping, rails = parts(scene, numerics)
+    loop = Loop(set_up(scene, system, stepping, threads, rails))
     loop.begin()
     return loop
 

@@ -40,7 +40,10 @@ def cold_start():
 
 def test_no_difference_of_temperature_leaves_contact_where_it_was(cold_start):
     """The time loop depends on temperature in no other way, so a run has the same bits."""
-    zero, plain = begun(tiny(thermal__mean=0.0)).system.surface, cold_start.system.surface
+    zero, plain = (
+        begun(tiny(thermal__mean=0.0)).setup.system.surface,
+        cold_start.setup.system.surface,
+    )
     assert all(
         np.array_equal(getattr(zero, name), getattr(plain, name))
         for name in ("places", "map", "border", "share")
@@ -71,19 +74,21 @@ def test_rails_do_not_ring():
     """Until the first touch they move like cold ones, bit for bit, by recoil alone, though their
     bow is thousands of times larger."""
     loop, plain = stopped(10, tiny(**WARM)), stopped(10)
-    assert np.array_equal(loop.state.displacement, plain.state.displacement)
-    assert np.abs(loop.deformed()).max() > 1e3 * np.abs(plain.deformed()).max()
+    assert np.array_equal(loop.stepper.state.displacement, plain.stepper.state.displacement)
+    assert np.abs(loop.stepper.deformed()).max() > 1e3 * np.abs(plain.stepper.deformed()).max()
 
 
 def test_contact_meets_the_bowed_walls(start, cold_start):
     """The nodes that contact uses, and no others, are displaced as in the static solution."""
-    system = start.system
-    moved = thermal.displacement(system.mesh, start.scene.rail.material, system.model.thermal)
+    system = start.setup.system
+    moved = thermal.displacement(system.mesh, start.setup.scene.rail.material, system.model.thermal)
     number, points = system.number, system.mesh.points - system.origin
     assert np.array_equal(system.surface.places[number], points + moved) and np.array_equal(
         system.rail.points[number], points
     )
-    assert cold_start.system.surface.places is not None and cold_start.system.warm is None
+    assert (
+        cold_start.setup.system.surface.places is not None and cold_start.setup.system.warm is None
+    )
 
 
 @pytest.mark.slow
@@ -107,14 +112,17 @@ def test_stress_is_that_of_the_held_rail():
     that grow with their platform."""
     strain = 1e-4
     free = begun(tiny(thermal__mean=strain / EXPANSION, thermal__platform_strain=strain))
-    modulus = free.scene.rail.material.youngs_modulus
-    assert np.sqrt(free.peak.square[0]) * free.monitor.shear_modulus < 1e-6 * modulus * strain
-    assert np.abs(free.gauges[0]).max() < 1e-6 * modulus * strain
+    modulus = free.setup.scene.rail.material.youngs_modulus
+    assert (
+        np.sqrt(free.recorded.peak.square[0]) * free.setup.monitor.shear_modulus
+        < 1e-6 * modulus * strain
+    )
+    assert np.abs(free.recorded.gauges[0]).max() < 1e-6 * modulus * strain
     held = begun(tiny(thermal__mean=strain / EXPANSION))
-    gauges = hexahedral_recovery.von_mises(held.gauges[0])
+    gauges = hexahedral_recovery.von_mises(held.recorded.gauges[0])
     assert 0.1 * modulus * strain < gauges.max() < 2.0 * modulus * strain
     # Control: with the free expansion left in, the gauges of rails free of stress would show it.
-    assert np.abs(free.monitor.free).max() > modulus * strain
+    assert np.abs(free.setup.monitor.free).max() > modulus * strain
 
 
 def test_a_bow_that_closes_the_clearance_is_warned_about():
@@ -128,7 +136,7 @@ def test_a_bow_that_closes_the_clearance_is_warned_about():
 def test_warm_walls_of_the_surrogate_are_those_of_the_reference(start):
     """The six patterns of a pad face at ignition against the nodes under it, within a sixth of what
     the wall moves over its length."""
-    rails, system = compliance.condense(start.scene, COARSE.element_size), start.system
+    rails, system = compliance.condense(start.setup.scene, COARSE.element_size), start.setup.system
     found, faces, surface = (
         rails.moved(system.model.thermal.amounts),
         system.faces,

@@ -80,6 +80,7 @@ def line(row: dict) -> str:
 
 def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dict:
     from tipoff.highfi import Numerics, prepare
+    from tipoff.highfi.dynamics.setup import set_up
     from tipoff.highfi.dynamics.step_size import choose
     from tipoff.highfi.dynamics.system import build
     from tipoff.highfi.run import Loop
@@ -91,11 +92,11 @@ def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dic
     system = build(touching, numerics, mesh)
     stepping = choose(system, touching, numerics)
     loops = {
-        "pressed": Loop(touching, system, stepping, processors()),
-        "alone": Loop(touching, system, stepping, 1),
-        "free": Loop(scene, build(scene, numerics, mesh), stepping, processors()),
+        "pressed": Loop(set_up(touching, system, stepping, processors())),
+        "alone": Loop(set_up(touching, system, stepping, 1)),
+        "free": Loop(set_up(scene, build(scene, numerics, mesh), stepping, processors())),
     }
-    set_up = time.perf_counter() - began
+    set_up_time = time.perf_counter() - began
     for loop in loops.values():
         loop.begin()
     baseline = CsrLoop(mesh, scene.rail.material, stepping.dt_s, _BASELINE_MOST)
@@ -110,7 +111,7 @@ def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dic
         for name, (advance, number, size_of_it) in pieces.items():
             times[name].append(1e9 * _timed(advance, number) / size_of_it)
     median = {name: statistics.median(values) for name, values in times.items()}
-    state, threads = loops["pressed"].state, loops["pressed"].team.size
+    state, threads = loops["pressed"].stepper.state, loops["pressed"].setup.team.size
     return {
         "elements": elements,
         "element_size_m": size,
@@ -126,7 +127,7 @@ def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dic
         "steps_timed": count,
         "repeats": repeats,
         "faces_in_contact": int((np.abs(state.face_force).max(axis=1) > 0.0).sum()),
-        "set_up_s": set_up,
+        "set_up_s": set_up_time,
         "peak_memory_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
         "dt_s": stepping.dt_s,
         "dt_element_s": stepping.dt_element_s,
@@ -140,7 +141,8 @@ class _Again:
 
     def __init__(self, loop):
         self.loop = loop
-        self.evolving = [array for _, array in arrays({"state": loop.state, "active": loop.active})]
+        evolving = {"state": loop.stepper.state, "active": loop.stepper.active}
+        self.evolving = [array for _, array in arrays(evolving)]
         self.start = [array.copy() for array in self.evolving]
 
     def __call__(self, count: int) -> None:
@@ -150,7 +152,7 @@ class _Again:
         """Back to the start."""
         for array, value in zip(self.evolving, self.start):
             array[...] = value
-        self.loop.steps = 0
+        self.loop.stepper.steps = 0
 
 
 def _timed(advance: Callable[[int], None], count: int) -> float:

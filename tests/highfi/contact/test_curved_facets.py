@@ -8,6 +8,7 @@ from tests.highfi import tets
 from tests.highfi.blocks import block
 from tests.highfi.contact.test_impact import GAP, WIDTH, scene
 from tipoff.highfi.contact.surface import magnification
+from tipoff.highfi.dynamics.setup import set_up
 from tipoff.highfi.dynamics.step_limit import contact_frequency_squared
 from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import build
@@ -77,9 +78,9 @@ def pressed(mesh, depth, numerics=Numerics()):
         {"initial.position.y": GAP + depth}
     )
     system = build(found, numerics, mesh)
-    loop = Loop(found, system, choose(system, found, numerics))
+    loop = Loop(set_up(found, system, choose(system, found, numerics)))
     loop.begin()
-    return np.array(loop.forces)[0, 0], loop
+    return np.array(loop.recorded.forces)[0, 0], loop
 
 
 def test_a_bulge_is_touched_before_the_corners_are():
@@ -104,7 +105,7 @@ def test_an_even_press_gives_pressure_times_area(cells, error):
     assert force[1] == pytest.approx(-push, rel=error)
     # k p^2 / 2 along each edge of the wall: all of it or none, where cells end at the edge.
     assert np.abs(force[[0, 2]]).max() <= 0.501 * INTERFACE_STIFFNESS * depth**2 * WIDTH
-    total = -loop.state.resistance.sum(axis=0)
+    total = -loop.stepper.state.resistance.sum(axis=0)
     assert total == pytest.approx([0.0, -force[1], 0.0], rel=1e-9, abs=1e-9)
 
 

@@ -79,26 +79,26 @@ class Pressed:
 
     def __init__(self, kind: str, relief: float = RELIEF, cells: int | None = None):
         self.loop = loop_on(scene(relief), wall(kind), Numerics(cells=cells))
-        rail = self.loop.system.rail
+        rail = self.loop.setup.system.rail
         free = rail.inverse_mass > 0.0
         x, z = rail.points[free, 0], rail.points[free, 2]
-        self.loop.state.displacement[free, 1] = 2e-6 * np.sin(90.0 * x) * np.cos(120.0 * z)
-        self.loop.state.displacement[free, 0] = 1e-6 * np.cos(50.0 * x)
-        self.touched = np.unique(self.loop.system.surface.facets)
+        self.loop.stepper.state.displacement[free, 1] = 2e-6 * np.sin(90.0 * x) * np.cos(120.0 * z)
+        self.loop.stepper.state.displacement[free, 0] = 1e-6 * np.cos(50.0 * x)
+        self.touched = np.unique(self.loop.setup.system.surface.facets)
 
     def energy(self, place, turn=(0.0, 0.0, 0.0)) -> float:
         """Energy (J) stored with the middle of the pad at ``place`` (m) and the payload turned by a
         rotation vector; the loop then holds the forces."""
-        state = self.loop.state
+        state = self.loop.stepper.state
         state.payload.position[:] = place
         state.payload.quaternion[:] = rotation.exponential(np.array(turn))
-        self.loop.active.wait[:] = 0
-        self.loop.evaluate()
+        self.loop.stepper.active.wait[:] = 0
+        self.loop.stepper.evaluate()
         return float(state.load["stored"][0])
 
     def resistance(self) -> np.ndarray:
         """Resistance (n,3) N of the nodes after the last ``energy``."""
-        return self.loop.state.resistance.copy()
+        return self.loop.stepper.state.resistance.copy()
 
 
 def slope(function, step: float) -> float:
@@ -119,10 +119,14 @@ def test_forces_are_slopes_of_the_stored_energy(kind, where):
     far = place - [0.0, 1.0, 0.0]
     assert pad.energy(far, turn) == 0.0
     # However far away, it waits no longer than a millimetre takes.
-    assert 0 <= pad.loop.active.wait[0] <= 1e-3 / (FASTEST_APPROACH * pad.loop.stepping.dt_s)
+    assert (
+        0
+        <= pad.loop.stepper.active.wait[0]
+        <= 1e-3 / (FASTEST_APPROACH * pad.loop.setup.stepping.dt_s)
+    )
     elastic = pad.resistance()
     stored = pad.energy(place, turn)
-    load, on_rail = pad.loop.state.load[0].copy(), elastic - pad.resistance()
+    load, on_rail = pad.loop.stepper.state.load[0].copy(), elastic - pad.resistance()
     assert stored > 0.0 and load["normal_force"][1] < -100.0
     expected = [
         -slope(lambda way, axis=axis: pad.energy(place + way * axis, turn), 1e-9)
@@ -137,7 +141,7 @@ def test_forces_are_slopes_of_the_stored_energy(kind, where):
         for axis in np.eye(3)
     ]
     assert load["moment"] == pytest.approx(turned, abs=2e-6 * scale * 0.1)
-    displacement = pad.loop.state.displacement
+    displacement = pad.loop.stepper.state.displacement
     for node in pad.touched[:: max(1, pad.touched.size // 20)]:
         before = displacement[node, 1]
 
@@ -157,14 +161,14 @@ def test_a_wall_that_tilts_is_met_where_it_is(kind):
     """On a wall of linear displacement each cell has the exact gap, whatever the facets: force and
     moment are sums over the cells by hand."""
     pad = Pressed(kind, relief=0.0)
-    points, touched = pad.loop.system.rail.points, pad.touched
+    points, touched = pad.loop.setup.system.rail.points, pad.touched
     tilt_x, tilt_z = 2e-5, -3e-5
     field = 1e-6 + tilt_x * points[touched, 0] + tilt_z * points[touched, 2]
-    pad.loop.state.displacement[:] = 0.0
-    pad.loop.state.displacement[touched, 1] = field
+    pad.loop.stepper.state.displacement[:] = 0.0
+    pad.loop.stepper.state.displacement[touched, 1] = field
     place = np.array([0.003 - 0.1, 6e-6, 0.0007])
     stored = pad.energy(place)
-    cells = pad.loop.system.surface.cells[0]
+    cells = pad.loop.setup.system.surface.cells[0]
     x, z = (
         middle + half * ((2.0 * np.arange(count) + 1.0) / count - 1.0)
         for middle, half, count in zip((0.003, 0.0207), (0.008, 0.005), cells)
@@ -172,7 +176,7 @@ def test_a_wall_that_tilts_is_met_where_it_is(kind):
     depth = 5e-6 - (1e-6 + tilt_x * x[:, None] + tilt_z * z)
     assert (depth > 0.0).all()
     push = STIFFNESS * 0.016 * 0.010 / depth.size * depth
-    load = pad.loop.state.load[0]
+    load = pad.loop.stepper.state.load[0]
     assert stored == pytest.approx(0.5 * (push * depth).sum(), rel=1e-9)
     expected = push.sum() * np.array([tilt_x, -1.0, tilt_z])
     assert load["normal_force"] == pytest.approx(expected, rel=1e-9)
@@ -199,16 +203,16 @@ def test_a_tilted_pad_dragged_along_the_wall_does_no_work():
         energy, force = [], []
         for x in places:
             energy.append(pad.energy([x, 155e-6, 0.0], turn))
-            force.append(float(pad.loop.state.load["normal_force"][0] @ way))
+            force.append(float(pad.loop.stepper.state.load["normal_force"][0] @ way))
         work = -np.trapezoid(force, places)
         return work - (energy[-1] - energy[0]), np.ptp(energy)
 
     errors = [dragged(steps) for steps in (800, 12800)]
     assert abs(errors[1][0]) < 1e-4 * errors[1][1] and abs(errors[1][0]) < 0.1 * abs(errors[0][0])
-    pad.loop.state.displacement[:] = 0.0
+    pad.loop.stepper.state.displacement[:] = 0.0
     for x in np.linspace(-0.115, -0.095, 21):
         assert pad.energy([x, 155e-6, 0.0], turn) > 0.0
-        load = pad.loop.state.load[0]
+        load = pad.loop.stepper.state.load[0]
         assert abs(load["normal_force"][0]) < 1e-12 * abs(load["normal_force"][1])
     # Control: a force along the normal of the tilted pad would do this much work over 20 mm.
     assert abs(load["normal_force"][1]) * 1.5e-3 * 0.02 > 100.0 * np.abs(errors[1][0])

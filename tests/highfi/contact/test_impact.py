@@ -10,7 +10,7 @@ import pytest
 
 from tests.exact import contact, elasticity
 from tests.highfi.blocks import block
-from tests.highfi.support import NEUTRAL, loop_on
+from tests.highfi.support import NEUTRAL, last_sample, loop_on
 from tipoff.highfi.dynamics import observe
 from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
 from tipoff.highfi.numerics import Numerics
@@ -73,10 +73,10 @@ def rail(elements, length, clamped):
 def integrate(loop):
     """Samples until the scene's duration: rows, and the force (N) on the payload along y."""
     loop.begin()
-    for _ in range(loop.last):
+    for _ in range(last_sample(loop)):
         loop.advance_one_sample()
-    assert not loop.message
-    return np.array(loop.rows), np.array(loop.forces)[:, 0, 1]
+    assert not loop.recorded.message
+    return np.array(loop.recorded.rows), np.array(loop.recorded.forces)[:, 0, 1]
 
 
 def strike(elements, stiffness, safety=0.9, speed=3.0):

@@ -16,7 +16,7 @@ from tests.highfi.support import COARSE, SOON, Stopped, begun, go_on, stopped, t
 from tests.written_names import ARRAYS_OF_REFERENCE
 from tipoff import highfi
 from tipoff.highfi import Numerics
-from tipoff.highfi.dynamics.checkpoint import CONSTANT, Checkpoint, arrays, digest, restore
+from tipoff.highfi.dynamics.checkpoint import Checkpoint, arrays, digest, restore
 from tipoff.highfi.state.records import Active, Body, Motion, State, Stepped
 from tipoff.mechanics.trajectory import Trajectory
 
@@ -60,9 +60,9 @@ def test_run_stopped_at_37_percent_goes_on_to_the_same_bits(tmp_path):
 def left_out(loop) -> tuple:
     """What a checkpoint leaves out, arrays by their digest."""
     # not records, and no kernel is given them
-    system = loop.system._replace(mesh=None, operator=None)
-    constant = digest(arrays({"system": system, "exit": loop.exit}))
-    return constant, loop.milestones, loop.stepping, loop.last, loop.most
+    system = loop.setup.system._replace(mesh=None, operator=None)
+    constant = digest(arrays({"system": system, "exit": loop.setup.exit}))
+    return constant, loop.setup.milestones, loop.setup.stepping, loop.setup.most
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +75,7 @@ def made(tmp_path_factory):
     for samples in STOPS:
         go_on(loop, samples)
         kept.write(loop)
-        saved[samples], wall[samples] = kept.read(), loop.wall
+        saved[samples], wall[samples] = kept.read(), loop.recorded.wall
     loop.integrate(None)
     return SimpleNamespace(saved=saved, wall=wall, before=before, after=left_out(loop))
 
@@ -85,9 +85,9 @@ def test_any_sample_is_a_place_to_stop(made, samples):
     """Resumed by another number of threads."""
     second = begun(threads=2)
     restore(second, made.saved[samples])
-    assert len(second.rows) == samples + 1 and second.wall == made.wall[samples]
+    assert len(second.recorded.rows) == samples + 1 and second.recorded.wall == made.wall[samples]
     second.integrate(None)
-    assert_same(second.trajectory({"steps": second.steps}, COARSE), whole())
+    assert_same(second.trajectory({"steps": second.stepper.steps}, COARSE), whole())
 
 
 @pytest.mark.parametrize(
@@ -114,8 +114,10 @@ def test_other_meshes_go_on_to_the_same_bits(tmp_path, numerics, change, samples
     results = []
     for loop in (first, second):
         loop.integrate(None)
-        results.append(loop.trajectory({"steps": loop.steps}, numerics))
-    assert (first.system.rail.columns is None) == (numerics.element_size > COARSE.element_size)
+        results.append(loop.trajectory({"steps": loop.stepper.steps}, numerics))
+    assert (first.setup.system.rail.columns is None) == (
+        numerics.element_size > COARSE.element_size
+    )
     assert np.abs(results[0].pad_force).max() > 1.0
     assert_same(*results)
 
@@ -129,45 +131,31 @@ def test_every_evolving_array_is_in_the_file(tmp_path):
     records = [
         name
         for name in State._fields
-        if isinstance(getattr(loop.state, name), Body | Motion | Stepped)
+        if isinstance(getattr(loop.stepper.state, name), Body | Motion | Stepped)
     ]
     expected = {
-        f"state.{record}.{name}": getattr(getattr(loop.state, record), name)
+        f"state.{record}.{name}": getattr(getattr(loop.stepper.state, record), name)
         for record in records
-        for name in getattr(loop.state, record)._fields
+        for name in getattr(loop.stepper.state, record)._fields
     }
-    assert loop.state.history is None  # no structural damping
+    assert loop.stepper.state.history is None  # no structural damping
     expected |= {
-        f"state.{name}": getattr(loop.state, name)
+        f"state.{name}": getattr(loop.stepper.state, name)
         for name in State._fields
-        if name not in records and getattr(loop.state, name) is not None
+        if name not in records and getattr(loop.stepper.state, name) is not None
     }
-    expected |= {f"active.{name}": getattr(loop.active, name) for name in Active._fields}
+    expected |= {f"active.{name}": getattr(loop.stepper.active, name) for name in Active._fields}
     assert len(records) == 4
-    assert {name.partition(".")[0] for name in saved} == set(vars(loop)) - set(CONSTANT)
+    evolving = set(vars(loop.stepper)) - {"setup"} | set(vars(loop.recorded))
+    assert {name.partition(".")[0] for name in saved} == evolving
     for name, array in expected.items():
         assert saved[name].dtype == array.dtype
         np.testing.assert_array_equal(saved[name], array, err_msg=name)
-    assert loop.active.node_count.max() > 0
+    assert loop.stepper.active.node_count.max() > 0
 
 
 def test_what_is_left_out_does_not_change(made):
     assert made.after == made.before
-    # A scene is frozen; a team and a pool of threads are not of the run.
-    assert set(CONSTANT) == {
-        "scene",
-        "system",
-        "stepping",
-        "team",
-        "pool",
-        "milestones",
-        "exit",
-        "last",
-        "most",
-        "reach",
-        "monitor",
-        "watch",
-    }
 
 
 CHILD = """

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.highfi.support import COARSE, SOON, begun, stopped, tiny
+from tests.highfi.support import COARSE, SOON, begun, replace_constants, stopped, tiny
 from tipoff import highfi
 from tipoff.files import discard, sealed, write_sealed
 from tipoff.highfi import CheckpointError, Numerics
@@ -122,8 +122,9 @@ def test_checkpoint_of_another_run_is_refused(kept, change, words):
 
 
 def test_checkpoint_of_another_program_or_mesh_is_refused(kept, loop, monkeypatch):
-    other = copy.copy(loop)
-    other.stepping = replace(loop.stepping, dt_s=np.nextafter(loop.stepping.dt_s, 0.0))
+    other, stepping = copy.copy(loop), loop.setup.stepping
+    other.stepper = copy.copy(loop.stepper)
+    replace_constants(other, stepping=replace(stepping, dt_s=np.nextafter(stepping.dt_s, 0.0)))
     with pytest.raises(CheckpointError, match="another mesh or with another step"):
         Checkpoint(kept.path, 0.0, other, COARSE).read()
     monkeypatch.setattr(checkpoint.sources, "digest", lambda *modules: "another program")
@@ -149,7 +150,7 @@ def test_bad_arguments_are_refused(tmp_path):
 def test_nothing_is_written_before_it_is_time(tmp_path, change):
     loop = begun(tiny(**change))
     loop.integrate(None, Checkpoint(tmp_path / "run", 3600.0, loop, COARSE))
-    assert len(loop.rows) > 10
+    assert len(loop.recorded.rows) > 10
     assert not list(tmp_path.iterdir())
 
 

@@ -18,6 +18,7 @@ from tests.highfi.support import (
     bar_mesh,
     begun,
     go_on,
+    last_sample,
     loop_on,
     spinning_bar_stretch,
     tiny,
@@ -68,7 +69,9 @@ def test_ledgers_close_and_momenta_are_kept(change):
     without[:, ENTRY] = 0.0
     assert ledger.transverse_error(without) > 10.0 * found.checks["transverse_energy_error"]
     assert np.abs(ledger.residual(without))[-1] == pytest.approx(lost[-1], rel=1e-3)
-    force, moment = np.linalg.norm(loop.state.history.drag.sum(axis=0).reshape(2, 3), axis=1) * 1e-4
+    force, moment = (
+        np.linalg.norm(loop.stepper.state.history.drag.sum(axis=0).reshape(2, 3), axis=1) * 1e-4
+    )
     payload = np.linalg.norm(found.velocity[-1]) * 9.9
     assert force > 1e-11 * payload and moment > 1e-9 * payload * np.linalg.norm(found.position[-1])
 
@@ -93,22 +96,22 @@ def test_a_rail_that_turns_with_its_frame_is_not_damped():
     )
     loop = loop_on(turning, bar_mesh(length, width, 30))
     assert (
-        loop.system.rail.damping.mass_rate > 600.0
-        and loop.system.rail.damping.stiffness_time < 1e-12
+        loop.setup.system.rail.damping.mass_rate > 600.0
+        and loop.setup.system.rail.damping.stiffness_time < 1e-12
     )
-    tip = loop.system.number[loop.system.mesh.points[:, 0] == length]
+    tip = loop.setup.system.number[loop.setup.system.mesh.points[:, 0] == length]
     loop.begin()
     stretch = []
-    for _ in range(loop.last):
+    for _ in range(last_sample(loop)):
         loop.advance_one_sample()
-        stretch.append(loop.state.displacement[tip, 0].mean())
+        stretch.append(loop.stepper.state.displacement[tip, 0].mean())
     found = loop.trajectory({}, Numerics())
     exact = spinning_bar_stretch(density, rate, length, modulus)
     assert max(stretch) > 1.5 * exact
     assert stretch[-1] == pytest.approx(exact, rel=0.02)
     swing = 0.5 * modulus * width**2 / length * exact**2
     in_space = (
-        loop.system.rail.damping.mass_rate
+        loop.setup.system.rail.damping.mass_rate
         * density
         * width**2
         * length**3
@@ -130,7 +133,7 @@ def whole(kernel: str, named: str):
 def halted(kernel: str, named: str) -> dict:
     """What is read from a checkpoint at three fifths of that run."""
     half = test_kernels.begun(kernel, named, **DAMPED)
-    go_on(half, 3 * half.last // 5)
+    go_on(half, 3 * last_sample(half) // 5)
     with tempfile.TemporaryDirectory() as folder:
         kept = Checkpoint(Path(folder) / "run", 0.0, half, test_kernels.NUMERICS)
         kept.write(half)
@@ -156,7 +159,7 @@ def test_threads_and_a_resume_do_not_change_a_bit(kernel, scene):
 def test_a_resume_that_forgets_the_step_before_is_seen(scene):
     """Control: with the history left as a run begins, the resumed run goes another way."""
     second = test_kernels.begun("columns", scene, **DAMPED)
-    blank = dict(arrays({"state.history": second.state.history}))
+    blank = dict(arrays({"state.history": second.stepper.state.history}))
     poor = {name: np.zeros_like(value) for name, value in blank.items()}
     restore(second, halted("columns", scene) | poor)
     assert (finished(second).rate[-1] != whole("columns", scene).rate[-1]).any()

@@ -9,7 +9,7 @@ import pytest
 
 from tests.exact import elasticity
 from tests.highfi.blocks import block, free_stiffness, highest_mode, modes
-from tests.highfi.support import NEUTRAL, loop_on
+from tests.highfi.support import NEUTRAL, loop_on, replace_constants
 from tipoff.highfi.dynamics import stable_step
 from tipoff.highfi.dynamics.step_limit import step_limit, used
 from tipoff.highfi.numerics import Numerics
@@ -56,9 +56,9 @@ class Ringing:
 
     def __init__(self, loop: Loop, frequency: float, shape: np.ndarray):
         self.loop, self.frequency = loop, frequency
-        number, state = loop.system.number, loop.state
+        number, state = loop.setup.system.number, loop.stepper.state
         self.weight = np.zeros(state.displacement.shape)
-        self.weight[number] = loop.system.operator.mass[:, None] * shape
+        self.weight[number] = loop.setup.system.operator.mass[:, None] * shape
         state.displacement[number] = 1e-6 * shape
         loop.begin()
 
@@ -69,14 +69,14 @@ class Ringing:
         Central differences turn a mode by 2 asin(w dt / 2) a step, so w stands for its sine over
         the step.
         """
-        loop, step, w = self.loop, self.loop.stepping.dt_s, 2.0 * math.pi * self.frequency
-        before = loop.state.velocity.copy()
-        loop.kick(step)
+        state, step = self.loop.stepper.state, self.loop.setup.stepping.dt_s
+        before, w = state.velocity.copy(), 2.0 * math.pi * self.frequency
+        self.loop.stepper.kick(step)
         q, v = (
             float((self.weight * part).sum())
-            for part in (loop.state.displacement, 0.5 * (before + loop.state.velocity))
+            for part in (state.displacement, 0.5 * (before + state.velocity))
         )
-        loop.state.velocity[:] = before
+        state.velocity[:] = before
         return math.hypot(
             q,
             (v + ratio * w * q)
@@ -87,9 +87,9 @@ class Ringing:
     def decay(self, ratio: float, cycles: float) -> float:
         """Amplitude after so many damped cycles over that at the start."""
         start, time = self.amplitude(ratio), cycles / (self.frequency * math.sqrt(1.0 - ratio**2))
-        count = round(time / self.loop.stepping.dt_s)
+        count = round(time / self.loop.setup.stepping.dt_s)
         self.loop.advance_steps(count)
-        late = count * self.loop.stepping.dt_s - time
+        late = count * self.loop.setup.stepping.dt_s - time
         return (
             self.amplitude(ratio) / start * math.exp(2.0 * math.pi * ratio * self.frequency * late)
         )
@@ -101,15 +101,16 @@ def damping(frequencies, ratios=(0.01, 0.01)):
 
 def changed(loop: Loop, **values) -> Loop:
     """``loop`` with other damping constants but the same step."""
-    rail = loop.system.rail
-    loop.system = loop.system._replace(rail=rail._replace(damping=rail.damping._replace(**values)))
+    rail = loop.setup.system.rail
+    rail = rail._replace(damping=rail.damping._replace(**values))
+    replace_constants(loop, system=loop.setup.system._replace(rail=rail))
     return loop
 
 
 @pytest.fixture(scope="module")
 def found():
     """First bending mode, and the first axial one well above it: frequencies (Hz) and shapes."""
-    operator = loop_on(scene(), bar(6)).system.operator
+    operator = loop_on(scene(), bar(6)).setup.system.operator
     frequencies, shapes = modes(operator, 8)
     axial = next(
         i for i in range(8) if np.abs(shapes[i, :, 0].mean()) > 0.5 * np.abs(shapes[i]).max()
@@ -149,7 +150,7 @@ def test_faint_damping_over_a_hundred_thousand_cycles(safety):
     """Ratio 1e-5 in the highest mode of two elements, three to seven steps a cycle: exp(-2 pi) =
     0.00186744 is left, and at no time more than before. Control: the classical Runge-Kutta method,
     at four times the cost, has lost everything."""
-    highest, shape = highest_mode(loop_on(scene(), bar(2)).system.operator)
+    highest, shape = highest_mode(loop_on(scene(), bar(2)).setup.system.operator)
     frequency, cycles = highest / (2.0 * math.pi), 100_000
     given = scene(damping([0.5 * frequency, frequency], (1e-5, 1e-5)))
     ringing = Ringing(loop_on(given, bar(2), Numerics(safety=safety)), frequency, shape)
@@ -157,8 +158,11 @@ def test_faint_damping_over_a_hundred_thousand_cycles(safety):
     left = np.cumprod([ringing.decay(1e-5, cycles / 50) for _ in range(50)])
     assert (np.diff(left) < 0.0).all()
     assert left[-1] == pytest.approx(exact, rel=0.05)
-    assert np.abs(ringing.loop.state.displacement).max() < 2.0 * exact * 1e-6 * np.abs(shape).max()
-    turn = highest * ringing.loop.stepping.dt_s
+    assert (
+        np.abs(ringing.loop.stepper.state.displacement).max()
+        < 2.0 * exact * 1e-6 * np.abs(shape).max()
+    )
+    turn = highest * ringing.loop.setup.stepping.dt_s
     per_step = np.polyval(
         [1 / 24, 1 / 6, 1 / 2, 1, 1], turn * complex(-1e-5, math.sqrt(1.0 - 1e-10))
     )
@@ -170,7 +174,7 @@ def test_faint_damping_over_a_hundred_thousand_cycles(safety):
 def test_step_of_a_damped_rail_keeps_below_the_damped_limit(ratio):
     """The highest mode has the damping ``ratio``. Control: at the undamped limit the motion grows
     without bound."""
-    highest, shape = highest_mode(loop_on(scene(), bar(2)).system.operator)
+    highest, shape = highest_mode(loop_on(scene(), bar(2)).setup.system.operator)
     frequency = highest / (2.0 * math.pi)
     # An interval that the raster of steps does not divide: the largest step that lands on every
     # sample is close to the limit.
@@ -181,25 +185,26 @@ def test_step_of_a_damped_rail_keeps_below_the_damped_limit(ratio):
     largest = {}
     for step in (None, 1.001 * limit, 0.999 * stable_step.critical_step(highest)):
         loop = loop_on(given, bar(2), Numerics(safety=1.0))
-        assert 0.99 * limit < loop.stepping.dt_s <= loop.stepping.dt_limit_s <= limit
-        assert loop.stepping.damping_ratio == pytest.approx(ratio, rel=2e-3)
-        loop.stepping = replace(loop.stepping, dt_s=step or loop.stepping.dt_s)
+        assert 0.99 * limit < loop.setup.stepping.dt_s <= loop.setup.stepping.dt_limit_s <= limit
+        assert loop.setup.stepping.damping_ratio == pytest.approx(ratio, rel=2e-3)
+        stepping = loop.setup.stepping
+        replace_constants(loop, stepping=replace(stepping, dt_s=step or stepping.dt_s))
         Ringing(loop, frequency, shape)  # sets the loop going
         loop.advance_steps(40_000 if step is None or step < 1.01 * limit else 400)
-        largest[step] = np.nan_to_num(np.abs(loop.state.displacement), nan=np.inf).max() / (
+        largest[step] = np.nan_to_num(np.abs(loop.stepper.state.displacement), nan=np.inf).max() / (
             1e-6 * np.abs(shape).max()
         )
     chosen, above, undamped = largest.values()
     assert chosen <= 1.0 and above > 1e3 and undamped > 1e3
     with pytest.raises(stable_step.StepError, match="is not stable"):
-        loop_on(given, bar(2), Numerics(step=1.001 * loop.stepping.dt_limit_s))
+        loop_on(given, bar(2), Numerics(step=1.001 * loop.setup.stepping.dt_limit_s))
 
 
 def test_limit_with_contact_encloses_the_coupled_system():
     """At the bound M - dt C / 2 - dt^2 (K + S) / 4 is still not negative, with springs S on every
     node across the bar; and the bound is exact where the highest mode of the rail has all of the
     springs."""
-    operator = loop_on(scene(), bar(2)).system.operator
+    operator = loop_on(scene(), bar(2)).setup.system.operator
     stiffness, mass, _ = free_stiffness(operator)
     matrix = stiffness.toarray() / np.sqrt(np.outer(mass, mass))
     springs = np.where(np.arange(mass.size) % 3 == 1, 3e9, 0.0) / mass

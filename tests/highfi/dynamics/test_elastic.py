@@ -6,8 +6,9 @@ import os
 import numpy as np
 import pytest
 
-from tests.highfi.support import SOON, assert_same_bits, set_up, tiny
+from tests.highfi.support import SOON, assert_same_bits, parts, replace_constants, tiny
 from tipoff.highfi import Numerics
+from tipoff.highfi.dynamics.setup import set_up
 from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import general_elements
 from tipoff.highfi.run import Loop
@@ -24,12 +25,12 @@ def begun(kernel: str, named: str, threads: int = 1, **overrides) -> Loop:
     """A run on the extruded rails of ``tiny`` at its first sample; "elements" makes the loop forget
     that they are extruded."""
     scene = tiny(**SCENES[named], **overrides)
-    system = set_up(scene, NUMERICS)[0]
+    system = parts(scene, NUMERICS)[0]
     assert system.rail.columns is not None
     if kernel == "elements":
         elements = general_elements(system.mesh.points, system.operator, system.number)
         system = system._replace(rail=system.rail._replace(columns=None, elements=elements))
-    loop = Loop(scene, system, choose(system, scene, NUMERICS), threads)
+    loop = Loop(set_up(scene, system, choose(system, scene, NUMERICS), threads))
     loop.begin()
     return loop
 
@@ -39,7 +40,7 @@ def run(kernel: str, named: str, threads: int = 1, spins: int | None = None):
     """The result of such a run; ``spins`` of a thread that waits, in place of the usual number."""
     loop = begun(kernel, named, threads)
     if spins is not None:
-        loop.team = loop.team._replace(spins=spins)
+        replace_constants(loop, team=loop.setup.team._replace(spins=spins))
     loop.integrate(None)
     return loop.trajectory({}, NUMERICS)
 

@@ -140,7 +140,7 @@ class _StopAt:
         self.steps = steps
 
     def keep(self, loop) -> None:
-        if loop.steps >= self.steps:
+        if loop.stepper.steps >= self.steps:
             raise Stopped
 
 
@@ -155,7 +155,11 @@ def written(tmp_path_factory):
     for steps in STOPS:
         with pytest.raises(Stopped):
             loop.integrate(None, _StopAt(steps))
-        assert len(loop.rows) == 1 and loop.steps >= steps and loop.book[DONE] == np.inf
+        assert (
+            len(loop.recorded.rows) == 1
+            and loop.stepper.steps >= steps
+            and loop.stepper.book[DONE] == np.inf
+        )
         kept.write(loop)
         found[steps] = kept.read()
     return found
@@ -166,12 +170,12 @@ def test_a_resume_between_samples_goes_on_to_the_same_bits(written, steps):
     """Before the exit, and twice in the settled window, whose sums are in the file. Control:
     without them the means are others."""
     second, poor = (begun(tiny(output__interval="25 ms")) for _ in range(2))
-    fresh = {"book": poor.book.copy()}
+    fresh = {"book": poor.stepper.book.copy()}
     restore(second, written[steps])
     restore(poor, written[steps] | fresh)
     results = []
     for loop in (second, poor) if steps >= 33_250 else (second,):
         loop.integrate(None)
-        results.append(loop.trajectory(loop.stepping.as_dict(), COARSE))
+        results.append(loop.trajectory(loop.setup.stepping.as_dict(), COARSE))
     assert_same(results[0], sampled_once())
     assert all(other.outcome != results[0].outcome for other in results[1:])

@@ -15,7 +15,6 @@ from tests.highfi.support import (
     tiny,
 )
 from tipoff import highfi
-from tipoff.highfi import result
 from tipoff.highfi.dynamics import observe
 from tipoff.scenes import parse
 
@@ -44,13 +43,13 @@ def test_bar_turning_about_its_root_stretches():
         bare_numbers_are_si=True,
     )
     loop = loop_on(scene, bar_mesh(length, 0.02, 30))
-    tip = loop.system.number[loop.system.mesh.points[:, 0] == length]
+    tip = loop.setup.system.number[loop.setup.system.mesh.points[:, 0] == length]
     loop.begin()
     stretch = [0.0]
     for _ in range(948):  # twenty periods 4 L / c of the first axial mode
         loop.advance_one_sample()
-        stretch.append(loop.state.displacement[tip, 0].mean())
-    assert not loop.message
+        stretch.append(loop.stepper.state.displacement[tip, 0].mean())
+    assert not loop.recorded.message
     assert np.mean(stretch) == pytest.approx(
         spinning_bar_stretch(density, rate, length, modulus), rel=0.01
     )
@@ -91,7 +90,7 @@ def test_a_payload_at_rest_on_a_turning_platform(rate):
         initial={"platform_rate": dict(zip("xyz", rate))},
     )
     loop = stopped(2, scene)
-    found = result.trajectory(loop, {}, COARSE)
+    found = loop.trajectory({}, COARSE)
     assert not found.message and found.checks["linear_momentum_error"] <= 1e-12
-    loop.rows[-1][observe.LINEAR] += 1e-9 * loop.rows[-1][observe.SIZES]
-    assert "linear momentum" in result.trajectory(loop, {}, COARSE).message
+    loop.recorded.rows[-1][observe.LINEAR] += 1e-9 * loop.recorded.rows[-1][observe.SIZES]
+    assert "linear momentum" in loop.trajectory({}, COARSE).message

@@ -23,7 +23,6 @@ def rails() -> Rails:
         frequency=np.full((1, 1), FREQUENCY),
         at_ignition=True,
         stride=1,
-        interval=100,
         jumps=np.zeros(0),
     )
 

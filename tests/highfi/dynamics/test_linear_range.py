@@ -38,12 +38,12 @@ def test_an_arm_that_swings_far_ends_its_run():
         mesh = bar_mesh(length, 0.1, 100)
         loop = loop_on(bar(0.0, length, duration=0.6).replace({"output.interval": 0.02}), mesh)
         x = mesh.points[:, 0] / length
-        loop.state.velocity[loop.system.number, 2] = speed * x**2
+        loop.stepper.state.velocity[loop.setup.system.number, 2] = speed * x**2
         loop.begin()
         for _ in range(25):
-            if not loop.message:
+            if not loop.recorded.message:
                 loop.advance_one_sample()
-        messages.append(loop.message)
+        messages.append(loop.recorded.message)
     assert "the rails turn or stretch by up to 0.1" in messages[0]
     assert "linear elasticity holds up to 0.1, at 0." in messages[0] and messages[1] == ""
 
@@ -52,22 +52,26 @@ def test_the_quick_look_misses_nothing():
     """A displacement of the harmless size, up in one layer of nodes and down in the next, has a
     gradient below the limit."""
     loop = loop_on(bar(0.0), bar_mesh(0.6, 0.02, 30))
-    moved = np.zeros(loop.state.displacement.shape)
-    number, x = loop.system.number, loop.system.mesh.points[:, 0]
-    moved[number] = (loop.small / np.sqrt(3.0)) * np.where(np.round(x / 0.02) % 2, 1.0, -1.0)[
+    moved = np.zeros(loop.stepper.state.displacement.shape)
+    number, x = loop.setup.system.number, loop.setup.system.mesh.points[:, 0]
+    moved[number] = (loop.setup.small / np.sqrt(3.0)) * np.where(np.round(x / 0.02) % 2, 1.0, -1.0)[
         :, None
     ]
-    found, place = linear_range.largest(loop.system, moved)
+    found, place = linear_range.largest(loop.setup.system, moved)
     assert 0.5 * linear_range.MOST < found <= linear_range.MOST
-    assert linear_range.fault(loop.system, moved, loop.small) == ""
-    assert "linear elasticity" in linear_range.fault(loop.system, 2.5 * moved, loop.small)
+    assert linear_range.fault(loop.setup.system, moved, loop.setup.small) == ""
+    assert "linear elasticity" in linear_range.fault(
+        loop.setup.system, 2.5 * moved, loop.setup.small
+    )
     assert 0.0 < place[0] < 0.6
 
 
 @pytest.mark.slow
 def test_the_tiny_scene_is_far_from_the_limit():
     loop, worst = begun(), 0.0
-    while len(loop.rows) < 300 and not loop.message:
+    while len(loop.recorded.rows) < 300 and not loop.recorded.message:
         loop.advance_one_sample()
-        worst = max(worst, linear_range.largest(loop.system, loop.state.displacement)[0])
+        worst = max(
+            worst, linear_range.largest(loop.setup.system, loop.stepper.state.displacement)[0]
+        )
     assert 0.0 < worst < 0.05 * linear_range.MOST

@@ -47,15 +47,15 @@ def on_springs(platform=None, joint=JOINT, **tables):
 def released(loop, axis, count=60, amplitude=1e-6):
     """Displacement (count,) m of the mass centre along ``axis``, let go from rest, at each sample,
     and the samples themselves."""
-    number, mass = loop.system.number, loop.system.operator.mass
-    loop.state.displacement[number, axis] = amplitude
+    number, mass = loop.setup.system.number, loop.setup.system.operator.mass
+    loop.stepper.state.displacement[number, axis] = amplitude
     loop.begin()
     found = [amplitude]
     while len(found) < count:
         loop.advance_one_sample()
-        found.append(float(mass @ loop.state.displacement[number, axis]) / mass.sum())
-        assert not loop.message
-    return np.array(found), np.array(loop.rows)
+        found.append(float(mass @ loop.stepper.state.displacement[number, axis]) / mass.sum())
+        assert not loop.recorded.message
+    return np.array(found), np.array(loop.recorded.rows)
 
 
 @pytest.mark.case("O54")
@@ -110,13 +110,13 @@ def test_the_platform_takes_the_opposite_of_what_the_springs_give(damping):
     loop = loop_on(given, cube())
     momentum = []
     for axis in (1, 2):
-        loop.state.displacement[loop.system.number, axis] = 1e-6
+        loop.stepper.state.displacement[loop.setup.system.number, axis] = 1e-6
     loop.begin()
     for _ in range(60):
         loop.advance_one_sample()
-        body = loop.state.platform
-        momentum.append([*loop.system.frame.mass * body.velocity, *body.spin])
-    rows, largest = np.array(loop.rows), np.abs(momentum).max(axis=0)
+        body = loop.stepper.state.platform
+        momentum.append([*loop.setup.system.frame.mass * body.velocity, *body.spin])
+    rows, largest = np.array(loop.recorded.rows), np.abs(momentum).max(axis=0)
     linear = np.abs(rows[:, observe.LINEAR : observe.LINEAR + 3]).max()
     angular = np.abs(rows[:, observe.ANGULAR : observe.ANGULAR + 3]).max()
     assert largest[1:3].min() > 1e-6 and linear <= 1e-8 * largest[1:3].max()
@@ -146,7 +146,7 @@ def test_step_encloses_the_springs(tetrahedra):
     is exceeded."""
     stiff = {"normal": 1e15, "shear": 1e15}
     rigid, soft = (
-        loop_on(on_springs(joint=joint), cube(tetrahedra)).system.operator
+        loop_on(on_springs(joint=joint), cube(tetrahedra)).setup.system.operator
         for joint in ({"normal": 1.0, "shear": 1.0}, stiff)
     )
     root = np.repeat(soft.mass, 3) ** -0.5
@@ -177,7 +177,9 @@ def test_ledgers_close_and_momenta_are_kept(change):
         found.checks["linear_momentum_error"] <= 1e-12
         and found.checks["angular_momentum_error"] <= 1e-10
     )
-    force, moment = np.linalg.norm(loop.state.mounting.sum(axis=0).reshape(2, 3), axis=1) * 1e-4
+    force, moment = (
+        np.linalg.norm(loop.stepper.state.mounting.sum(axis=0).reshape(2, 3), axis=1) * 1e-4
+    )
     payload = np.linalg.norm(found.velocity[-1]) * 9.9
     assert force > 1e-9 * payload and moment > 1e-8 * payload * np.linalg.norm(found.position[-1])
 

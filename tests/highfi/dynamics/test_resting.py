@@ -10,11 +10,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.highfi.support import COARSE, set_up, tiny
+from tests.highfi.support import COARSE, parts, tiny
 from tipoff import highfi
 from tipoff.highfi import Numerics
-from tipoff.highfi.dynamics import jolts, observe, resting
+from tipoff.highfi.dynamics import jolts, observe, resting, waking
 from tipoff.highfi.dynamics.resting import Rails
+from tipoff.highfi.dynamics.setup import set_up
 from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.run import Loop
@@ -43,9 +44,9 @@ def numerics(request) -> Numerics:
 
 def loop_of(scene, numerics=FINE, rests=True, **changes) -> Loop:
     """A loop that has begun, whose ``Rails`` have ``changes``."""
-    system, stepping, found = set_up(scene, numerics)
+    system, stepping, found = parts(scene, numerics)
     rails = found if rests else None
-    loop = Loop(scene, system, stepping, 1, rails and rails._replace(**changes))
+    loop = Loop(set_up(scene, system, stepping, 1, rails and rails._replace(**changes)))
     loop.begin()
     return loop
 
@@ -53,13 +54,13 @@ def loop_of(scene, numerics=FINE, rests=True, **changes) -> Loop:
 def run_out(loop: Loop) -> Loop:
     """The loop at its end."""
     loop.integrate(None)
-    assert not loop.message
+    assert not loop.recorded.message
     return loop
 
 
 def rows(loop: Loop) -> np.ndarray:
     """Motion of the bodies at the samples."""
-    return np.array(loop.rows)[:, : observe.KINETIC]
+    return np.array(loop.recorded.rows)[:, : observe.KINETIC]
 
 
 @functools.cache
@@ -79,12 +80,12 @@ def free(rests: bool) -> Trajectory:
 def test_on_a_fixed_platform_rest_changes_no_bit(numerics):
     """Some rails are touched and woken, others never."""
     one, other = fixed(numerics, True), fixed(numerics, False)
-    assert np.abs(one.forces).max() > 1.0 and 0 < one.rests.sum() < 4
+    assert np.abs(one.recorded.forces).max() > 1.0 and 0 < one.stepper.rests.sum() < 4
     np.testing.assert_array_equal(rows(one), rows(other))
-    np.testing.assert_array_equal(one.forces, other.forces)
-    np.testing.assert_array_equal(one.state.displacement, other.state.displacement)
-    assert one.jolts.most[0] == 0.0
-    assert 0.0 < one.resting()["stepped_share"] < 0.9
+    np.testing.assert_array_equal(one.recorded.forces, other.recorded.forces)
+    np.testing.assert_array_equal(one.stepper.state.displacement, other.stepper.state.displacement)
+    assert one.stepper.jolts.most[0] == 0.0
+    assert 0.0 < one.recorded.cost(one.stepper)["stepped_share"] < 0.9
 
 
 @pytest.mark.parametrize("ahead", [0.0, 0.7, 1.4, 2.1])
@@ -99,23 +100,23 @@ def test_a_rail_is_stepped_before_a_fast_pad_arrives(numerics, ahead):
         initial={"velocity": {"y": 8.0}, "position": {"y": 1e-6 * ahead}},
     )
     one, other = (loop_of(scene, numerics, rests) for rests in (True, False))
-    assert one.rests.all()
+    assert one.stepper.rests.all()
     for loop in (one, other):
         loop.integrate(None)
-    assert np.abs(one.forces).max() > 1.0 and not one.rests.all()
+    assert np.abs(one.recorded.forces).max() > 1.0 and not one.stepper.rests.all()
     np.testing.assert_array_equal(rows(one), rows(other))
-    np.testing.assert_array_equal(one.forces, other.forces)
+    np.testing.assert_array_equal(one.recorded.forces, other.recorded.forces)
 
 
 def test_waking_too_late_is_seen(numerics):
     """Control: a rail that no pad wakes gives another motion, or none, since contact does not act
     on it."""
-    system = fixed(numerics, True).system
+    system = fixed(numerics, True).setup.system
     none = np.zeros((4, system.surface.groups.first_face.size - 1), dtype=bool)
     late = loop_of(tiny(platform=None, **EARLY), numerics, stride=1, groups=none)
     late.integrate(None)
-    found, expected = rows(late), rows(fixed(numerics, False))[: len(late.rows)]
-    assert late.rests.all() and np.abs(found - expected)[:, observe.RATE].max() > 1e-4
+    found, expected = rows(late), rows(fixed(numerics, False))[: len(late.recorded.rows)]
+    assert late.stepper.rests.all() and np.abs(found - expected)[:, observe.RATE].max() > 1e-4
 
 
 @pytest.mark.parametrize("duration", ["3 ms", pytest.param("9 ms", marks=pytest.mark.slow)])
@@ -124,7 +125,7 @@ def test_long_steps_change_less_than_the_scheme_errs(duration):
     error of a millionth."""
     scene = tiny(platform=None, duration=duration)
     long, short = run_out(loop_of(scene)), run_out(loop_of(scene, rests=False))
-    assert long.taken < 0.8 * long.steps and long.rests.all()
+    assert long.recorded.parts < 0.8 * long.stepper.steps and long.stepper.rests.all()
     assert_near(long, short)
 
 
@@ -132,8 +133,8 @@ def test_long_steps_end_before_a_pad_is_near(numerics):
     """Single steps from then on, through the contact: the motion is as near as before it."""
     scene = tiny(platform=None, **EARLY | {"contact__clearance": "0.12 mm"})
     long, short = (run_out(loop_of(scene, numerics, rests)) for rests in (True, False))
-    assert 0.3 * long.steps < long.taken < 0.8 * long.steps
-    assert np.abs(long.forces).max() > 1.0 and not long.rests.all()
+    assert 0.3 * long.stepper.steps < long.recorded.parts < 0.8 * long.stepper.steps
+    assert np.abs(long.recorded.forces).max() > 1.0 and not long.stepper.rests.all()
     assert_near(long, short)
 
 
@@ -171,25 +172,21 @@ def test_ledgers_and_momenta_hold_where_rails_rest():
 def shaken(numerics: Numerics) -> Loop:
     """The early scene on a free platform, at a sample with vibrating rails and no contact."""
     loop = loop_of(tiny(**SLOW), numerics)
-    while loop.rests.all() or loop.active.node_count.any():
+    while loop.stepper.rests.all() or loop.stepper.active.node_count.any():
         loop.advance_one_sample()
-    loop.set_stride(1)
+    loop.stepper.set_stride(1)
     return loop
 
 
 def sampled(loop: Loop) -> np.ndarray:
     """The sample vector of the present state."""
-    before = observe.moving(loop.now, loop.state)
-    loop.kick(loop.step)
-    after = observe.moving(loop.now, loop.state)
-    row = observe.sample(loop.now, loop.team, loop.state, before, after)
-    observe.restore(loop.now, loop.state, before)
-    return row
+    stepper = loop.stepper
+    return observe.sample(stepper.now, loop.setup.team, stepper.state, *stepper.moving())
 
 
 def centre_of(loop: Loop) -> np.ndarray:
     """Mass centre of platform and rails (m)."""
-    now, state = loop.now, loop.state
+    now, state = loop.stepper.now, loop.stepper.state
     base = rotation.matrices(state.platform.quaternion[None])[0]
     origin = state.platform.position - base @ now.frame.centre
     rails = now.moving_mass @ (now.rail.points + state.displacement)
@@ -203,31 +200,29 @@ def test_momentum_and_energy_of_the_whole_when_rails_are_laid_to_rest(numerics):
     the balance is off."""
     loop = shaken(numerics)
     centre = centre_of(loop)
-    spent, before = loop.state.work["released"][0], sampled(loop)
-    loop.watch.regroup(loop, np.ones_like(loop.rests))
+    spent, before = loop.stepper.state.work["released"][0], sampled(loop)
+    waking.let_rest(loop.setup.rails, loop.stepper, np.ones_like(loop.stepper.rests))
     after = sampled(loop)
     # The momentum of the whole is near zero; that of the payload is not.
-    scale = loop.system.model.payload.mass * np.abs(before[observe.VELOCITY])
+    scale = loop.setup.system.model.payload.mass * np.abs(before[observe.VELOCITY])
     momenta = slice(observe.LINEAR, observe.ANGULAR + 3)
     np.testing.assert_allclose(after[momenta], before[momenta], rtol=0.0, atol=1e-13 * scale)
     np.testing.assert_allclose(centre_of(loop), centre, rtol=0.0, atol=1e-16)
     lost = before[[observe.KINETIC, observe.STRAIN]].sum() - after[observe.KINETIC]
-    released = loop.state.work["released"][0] - spent
+    released = loop.stepper.state.work["released"][0] - spent
     assert after[observe.STRAIN] == 0.0 < before[observe.STRAIN]
     assert released == pytest.approx(lost, rel=1e-2) and released > 0.5 * before[observe.STRAIN]
 
 
 def deflected(loop: Loop) -> np.ndarray:
     """Static deflection (n,3) m of all rails under the present acceleration of their mounts."""
-    saved, before = observe.moving(loop.now, loop.state), jolts.rates(loop.now, loop.state)
-    loop.kick(loop.step)
-    after = jolts.rates(loop.now, loop.state)
-    terms = jolts.terms(loop.system, before, after, loop.step)
-    observe.restore(loop.now, loop.state, saved)
-    found = np.zeros_like(loop.state.displacement)
-    for solids in loop.watch.rails.deflections:
+    now, state = loop.stepper.now, loop.stepper.state
+    before, after = (jolts.rates(now, state, moving) for moving in loop.stepper.moving())
+    terms = jolts.terms(loop.setup.system, before, after, loop.stepper.step)
+    found = np.zeros_like(state.displacement)
+    for solids in loop.setup.rails.deflections:
         for solid in solids:
-            found[loop.system.number[solid.own]] = solid.under(terms)
+            found[loop.setup.system.number[solid.own]] = solid.under(terms)
     return found
 
 
@@ -236,30 +231,33 @@ def test_a_rail_that_is_woken_has_its_static_deflection(numerics):
     less than what is said to be left out. Control: a straight rail would be off by more than that."""
     scene = tiny(duration="9 ms", **SLOW)
     one, other = (loop_of(scene, numerics, rests) for rests in (True, False))
-    while len(one.rows) <= 80:
+    while len(one.recorded.rows) <= 80:
         one.advance_one_sample()
         other.advance_one_sample()
-        moved, static = other.state.displacement, deflected(one)
-        assert one.rests.all() and np.abs(static - moved).max() < one.jolts.left_out[0] < 1e-9
-    assert np.abs(moved).max() > 2.0 * one.jolts.left_out[0]
-    one.watch.regroup(one, np.zeros_like(one.rests))
-    np.testing.assert_allclose(one.state.displacement, static, rtol=0.0, atol=1e-18)
+        moved, static = other.stepper.state.displacement, deflected(one)
+        assert (
+            one.stepper.rests.all()
+            and np.abs(static - moved).max() < one.stepper.jolts.left_out[0] < 1e-9
+        )
+    assert np.abs(moved).max() > 2.0 * one.stepper.jolts.left_out[0]
+    waking.let_rest(one.setup.rails, one.stepper, np.zeros_like(one.stepper.rests))
+    np.testing.assert_allclose(one.stepper.state.displacement, static, rtol=0.0, atol=1e-18)
 
 
 def test_a_jump_of_the_thrust_wakes_rails_of_a_free_platform_before_it(numerics):
     """The rails would swing by the whole static deflection. Until then they rest."""
     loop = loop_of(tiny(**EARLY, thrust__cutoff=1.5), numerics)
-    jump = loop.watch.rails.jumps[0]
-    while loop.rests.any():
-        assert loop.steps * loop.stepping.dt_s < jump
+    jump = loop.setup.rails.jumps[0]
+    while loop.stepper.rests.any():
+        assert loop.stepper.time < jump
         loop.advance_one_sample()
-    assert jump - loop.steps * loop.stepping.dt_s < 2.0 * loop.scene.output.interval
+    assert jump - loop.stepper.time < 2.0 * loop.setup.scene.output.interval
 
 
 def test_a_strong_start_is_stepped_from_ignition(numerics):
     """Control: under the smooth thrust of the scene rails rest at ignition."""
-    assert loop_of(tiny(**SLOW), numerics).rests.all()
-    assert not loop_of(tiny(**SLOW | {"thrust__centre": "0 ms"}), numerics).rests.any()
+    assert loop_of(tiny(**SLOW), numerics).stepper.rests.all()
+    assert not loop_of(tiny(**SLOW | {"thrust__centre": "0 ms"}), numerics).stepper.rests.any()
 
 
 def test_warm_rails_rest_as_they_were_heated(numerics):
@@ -268,7 +266,7 @@ def test_warm_rails_rest_as_they_were_heated(numerics):
     warm = {"thermal__mean": "20 K", "thermal__gradient__y": "500 K/m", "platform": None} | EARLY
     one = run_out(loop_of(tiny(**warm), numerics, stride=1))
     other = run_out(loop_of(tiny(**warm), numerics, rests=False))
-    assert one.system.warm is not None and np.abs(one.system.warm).max() > 1e-6
+    assert one.setup.system.warm is not None and np.abs(one.setup.system.warm).max() > 1e-6
     np.testing.assert_array_equal(rows(one), rows(other))
 
 
@@ -277,8 +275,8 @@ def test_the_weight_of_rails():
     """On a fixed platform the sudden weight swings the rails, so they are stepped from ignition. A
     free platform falls with them, and they rest."""
     weight = {"gravity__z": "-9.81 m/s**2"} | SLOW
-    assert not loop_of(tiny(platform=None, **weight)).rests.any()
-    assert loop_of(tiny(**weight)).rests.all()
+    assert not loop_of(tiny(platform=None, **weight)).stepper.rests.any()
+    assert loop_of(tiny(**weight)).stepper.rests.all()
 
 
 def test_step_everything_is_the_loop_without_rest(numerics):

@@ -17,6 +17,7 @@ from tests.highfi.support import COARSE, NEUTRAL, begun, loop_on, stopped, tiny
 from tipoff import highfi
 from tipoff.highfi.dynamics import substeps
 from tipoff.highfi.dynamics.checkpoint import Checkpoint, restore
+from tipoff.highfi.dynamics.stepper import Stepper
 from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
 from tipoff.highfi.numerics import Numerics
 from tipoff.mechanics.ledger import ENTRIES
@@ -106,22 +107,19 @@ def test_a_body_creeps_down_a_slope_as_fast_as_the_law_says(slope):
     assert ratio == pytest.approx(SLOPES[slope], abs=5e-5)
     assert found.status == "time_limit"
     assert found.velocity[-5:, 0] == pytest.approx(ratio * TRANSITION, rel=0.01)
-    assert loop.friction.most[0] > 5
-    assert substeps.cost(loop) == {
-        "friction_substeps": int(loop.friction.most[0]),
-        "friction_divided_steps": loop.steps,
-    }
-    assert loop.taken > 5 * loop.steps
+    assert loop.recorded.most_substeps > 5
+    assert loop.recorded.divided_steps == loop.stepper.steps
+    assert loop.recorded.parts > 5 * loop.stepper.steps
 
 
 @pytest.mark.case("O25")
 def test_undivided_steps_do_not_creep(monkeypatch):
     """Control: in whole steps the nodes under the face shake, friction has no hold, and the body
     slides as if the plane were smooth."""
-    monkeypatch.setattr(substeps, "most_damping", lambda loop: np.inf)
+    monkeypatch.setattr(Stepper, "most_damping", np.inf)
     loop, found = run()
-    assert loop.taken == loop.steps and loop.damping > 5.0
-    smooth = G * math.sin(math.radians(5.0)) * loop.scene.duration
+    assert loop.recorded.parts == loop.stepper.steps and loop.recorded.damping > 5.0
+    smooth = G * math.sin(math.radians(5.0)) * loop.setup.scene.duration
     assert found.velocity[-1, 0] == pytest.approx(smooth, rel=0.05)
     assert smooth > 5.0 * SLOPES[5.0] * TRANSITION
 
@@ -130,7 +128,7 @@ def test_friction_that_no_step_can_follow_ends_the_run(monkeypatch):
     """One more than the most substeps is a fault that names what to change."""
     monkeypatch.setattr(substeps, "MOST", 3)
     loop, found = run(duration=2e-4)
-    assert found.status == "diverged" and loop.steps == 0
+    assert found.status == "diverged" and loop.stepper.steps == 0
     assert "friction damps nodes faster than 3 parts of the step" in found.message
     assert "raise friction.static_speed" in found.message
 
@@ -156,9 +154,9 @@ def lying(**overrides):
 
 def test_how_coarsely_a_run_is_sampled_changes_no_bit_of_its_substeps():
     fine, coarse = lying(output__interval="0.05 ms"), lying(output__interval="0.3 ms")
-    assert 0 < fine.friction.divided[0] < fine.steps and fine.substeps == 1
-    assert substeps.cost(fine) == substeps.cost(coarse) and fine.taken == coarse.taken
-    np.testing.assert_array_equal(np.array(fine.rows)[::6], np.array(coarse.rows))
+    assert 0 < fine.recorded.divided_steps < fine.stepper.steps and fine.stepper.substeps == 1
+    assert fine.recorded.cost(fine.stepper) == coarse.recorded.cost(coarse.stepper)
+    np.testing.assert_array_equal(np.array(fine.recorded.rows)[::6], np.array(coarse.recorded.rows))
 
 
 @pytest.mark.parametrize("samples", [2, 5])
@@ -168,13 +166,16 @@ def test_divided_steps_go_on_with_other_threads_to_the_same_bits(tmp_path, sampl
     first, second = stopped(samples, scene), begun(scene, threads=2)
     kept = Checkpoint(tmp_path / "run", 0.0, first, COARSE)
     kept.write(first)
-    assert first.substeps > 1
+    assert first.stepper.substeps > 1
     restore(second, kept.read())
-    assert second.substeps == first.substeps and len(second.rows) == samples + 1
+    assert (
+        second.stepper.substeps == first.stepper.substeps
+        and len(second.recorded.rows) == samples + 1
+    )
     for loop in (first, second):
         loop.integrate(None)
-    np.testing.assert_array_equal(np.array(second.rows), np.array(first.rows))
-    assert substeps.cost(second) == substeps.cost(first) and second.taken == first.taken
+    np.testing.assert_array_equal(np.array(second.recorded.rows), np.array(first.recorded.rows))
+    assert second.recorded.cost(second.stepper) == first.recorded.cost(first.stepper)
 
 
 def test_balances_hold_where_the_number_of_substeps_changes():
@@ -195,4 +196,4 @@ def test_a_step_that_friction_can_follow_is_not_divided():
     """A payload that flies at ignition, as in the catalogue."""
     loop = begun()
     loop.advance_one_sample()
-    assert substeps.cost(loop) == {"friction_substeps": 1, "friction_divided_steps": 0}
+    assert (loop.recorded.most_substeps, loop.recorded.divided_steps) == (1, 0)

@@ -14,9 +14,10 @@ import numpy as np
 import pytest
 
 from tests import turning
-from tests.highfi.support import tiny
+from tests.highfi.support import replace_constants, tiny
 from tipoff import highfi
 from tipoff.highfi import Numerics
+from tipoff.highfi.dynamics.setup import set_up
 from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.run import Loop
@@ -64,16 +65,16 @@ def ejected(safety: float, turn=None, bodies=BODIES, duration: float = WHOLE):
     numerics = Numerics(element_size=0.016, safety=safety)
     scene = TURNING.replace({"duration": duration})
     system = build(scene, numerics, highfi.prepare(scene, numerics))
-    loop = Loop(scene, system, choose(system, scene, numerics))
+    loop = Loop(set_up(scene, system, choose(system, scene, numerics)))
     # what is left of the thrust does not keep the payload from settling
-    loop.milestones = loop.milestones._replace(settled_thrust=0.0)
-    for body in (getattr(loop.state, name) for name in bodies if turn):
+    replace_constants(loop, milestones=loop.setup.milestones._replace(settled_thrust=0.0))
+    for body in (getattr(loop.stepper.state, name) for name in bodies if turn):
         body.quaternion[:] = rotation.product(turn, tuple(body.quaternion))
         for vector in (body.position, body.velocity, body.spin):
             vector[:] = turning.turned(vector, turn)
     loop.begin()
     loop.integrate(None)
-    return loop.trajectory({"steps": loop.steps}, numerics)
+    return loop.trajectory({"steps": loop.stepper.steps}, numerics)
 
 
 def about_x(angle: float) -> tuple:

@@ -88,16 +88,18 @@ def test_a_turning_bar_lacks_the_stiffening_of_its_tension(axis, kept, left_out)
     mode[clamped.free] = shapes @ _along(shapes, clamped.free, 2 if axis == "z" else 1)
     mode = mode.reshape(-1, 3)
     mode *= 1e-5 / np.abs(mode).max()
-    loop.state.displacement[loop.system.number] = mode
+    loop.stepper.state.displacement[loop.setup.system.number] = mode
     if axis == "y":  # moves with the frame
-        loop.state.velocity[loop.system.number] += np.cross((0.0, 0.0, 0.999 * rate), mode)
-    tip = loop.system.number[mesh.points[:, 0] == LENGTH]
+        loop.stepper.state.velocity[loop.setup.system.number] += np.cross(
+            (0.0, 0.0, 0.999 * rate), mode
+        )
+    tip = loop.setup.system.number[mesh.points[:, 0] == LENGTH]
     loop.begin()
     column, samples = (2 if axis == "z" else 1), []
     for _ in range(330):  # three periods
         loop.advance_one_sample()
-        samples.append(loop.state.displacement[tip, column].mean())
-    assert not loop.message
+        samples.append(loop.stepper.state.displacement[tip, column].mean())
+    assert not loop.recorded.message
     found = frequency_of(np.array(samples), 2e-4, lowest)
     assert found**2 == pytest.approx(lowest**2 + kept * rate**2, rel=5e-4)
     true = lowest**2 + (kept + left_out) * rate**2
@@ -170,7 +172,11 @@ def test_a_run_whose_platform_is_too_fast_ends(rate, words):
     """Its rate is looked at with every sample. The bar swings at 285 rad/s."""
     loop = loop_on(bar(rate), bar_mesh(LENGTH, WIDTH, 30))
     loop.begin()
-    assert loop.message.startswith("a platform that " + words) if words else loop.message == ""
+    assert (
+        loop.recorded.message.startswith("a platform that " + words)
+        if words
+        else loop.recorded.message == ""
+    )
 
 
 @pytest.mark.parametrize("name", catalog())

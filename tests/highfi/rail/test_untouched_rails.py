@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.highfi.support import COARSE, loop_on, tiny
+from tests.highfi.support import COARSE, last_sample, loop_on, tiny
 from tipoff import highfi
 from tipoff.highfi import Numerics
+from tipoff.highfi.dynamics.setup import set_up
 from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.mesh.rail_mesh import RailMesh
@@ -26,8 +27,8 @@ def rail_of(points: np.ndarray) -> np.ndarray:
 
 def touched(loop: Loop, first: int = 0) -> set[int]:
     """Rails that a pad pressed in the samples from number ``first`` on."""
-    faces = np.flatnonzero(np.abs(np.array(loop.forces[first:])).max(axis=(0, 2)))
-    return set(rail_of(loop.system.faces.centre[faces]).tolist())
+    faces = np.flatnonzero(np.abs(np.array(loop.recorded.forces[first:])).max(axis=(0, 2)))
+    return set(rail_of(loop.setup.system.faces.centre[faces]).tolist())
 
 
 def stiffened(mesh: RailMesh, rails: set[int]) -> RailMesh:
@@ -45,12 +46,12 @@ def deflections(loop: Loop, mesh: RailMesh) -> Iterator[tuple[int, float]]:
     their normals a sample earlier."""
     walls = [(mesh.surfaces[name], axis) for name, axis in (("contact_y", 1), ("contact_z", 2))]
     owner, known, before = rail_of(mesh.points), set(), {}
-    while len(loop.rows) <= loop.last:
+    while len(loop.recorded.rows) <= last_sample(loop):
         loop.advance_one_sample()
-        new = touched(loop, len(loop.forces) - 1) - known
+        new = touched(loop, len(loop.recorded.forces) - 1) - known
         yield from ((rail, before[rail]) for rail in sorted(new))
         known |= new
-        moved = loop.state.displacement[loop.system.number]
+        moved = loop.stepper.state.displacement[loop.setup.system.number]
         before = {
             rail: max(
                 float(np.abs(moved[facets, axis][owner[facets] == rail]).max())
@@ -74,11 +75,11 @@ def test_on_a_fixed_platform_an_untouched_rail_stays_at_rest():
         mesh = highfi.prepare(scene, COARSE)
         loop = loop_on(scene, mesh, COARSE)
         loop.begin()
-        while len(loop.rows) <= loop.last:
+        while len(loop.recorded.rows) <= last_sample(loop):
             loop.advance_one_sample()
         used = touched(loop)
         assert 0 < len(used) < 4
-        moved = loop.state.displacement[loop.system.number]
+        moved = loop.stepper.state.displacement[loop.setup.system.number]
         still = ~np.isin(rail_of(mesh.points), list(used))
         assert np.abs(moved[~still]).max() > 1e-8
         assert bool(moved[still].any()) == moves
@@ -95,12 +96,12 @@ def test_on_a_free_platform_it_cannot_be_left_out(condition):
     mesh = highfi.prepare(scene, numerics)
     system = build(scene, numerics, mesh)
     stepping = choose(system, scene, numerics)
-    loops = [Loop(scene, system, stepping)]
+    loops = [Loop(set_up(scene, system, stepping))]
     loops[0].begin()
     off = dict(deflections(loops[0], mesh))
     unused = set(range(4)) - set(off)
     assert len(unused) == 2
-    loops.append(Loop(scene, build(scene, numerics, stiffened(mesh, unused)), stepping))
+    loops.append(Loop(set_up(scene, build(scene, numerics, stiffened(mesh, unused)), stepping)))
     loops[1].begin()
     loops[1].integrate(None)
     rates = [np.array(loop.trajectory({}, numerics).outcome.rate) for loop in loops]

@@ -25,8 +25,10 @@ def seen():
     matrix = corner_matrix(mesh.points[mesh.cells], LAW)
 
     def look(loop):
-        np.testing.assert_array_equal(loop.system.mesh.cells, mesh.cells)
-        moved = loop.state.displacement[loop.system.number[mesh.cells]].reshape(-1, 1, 24, 1)
+        np.testing.assert_array_equal(loop.setup.system.mesh.cells, mesh.cells)
+        moved = loop.stepper.state.displacement[loop.setup.system.number[mesh.cells]].reshape(
+            -1, 1, 24, 1
+        )
         stresses.append(hexahedral_recovery.von_mises((matrix @ moved)[..., 0]))
 
     return highfi.run(tiny(), COARSE, observer=look), np.array(stresses)
@@ -88,12 +90,18 @@ def test_yield_and_large_motion_are_warned_of(bare):
 def scanned(threads):
     """Peaks that a loop with some threads finds in two random states."""
     loop = begun(threads=threads)
-    moved = 1e-6 * np.random.default_rng(7).standard_normal((2, *loop.state.displacement.shape))
+    moved = 1e-6 * np.random.default_rng(7).standard_normal(
+        (2, *loop.stepper.state.displacement.shape)
+    )
     for time, displacement in enumerate(moved):
         monitor.scan(
-            loop.monitor, np.asfortranarray(displacement), float(time), loop.peak, loop.pool
+            loop.setup.monitor,
+            np.asfortranarray(displacement),
+            float(time),
+            loop.recorded.peak,
+            loop.setup.pool,
         )
-    return loop.peak
+    return loop.recorded.peak
 
 
 @pytest.fixture(scope="module")

@@ -54,8 +54,8 @@ def seen(rails):
     stresses = []
 
     def look(loop):
-        moved = loop.state.displacement[loop.system.number]
-        stresses.append(hexahedral_recovery.von_mises(at_nodes(loop.system.mesh, LAW, moved)))
+        moved = loop.stepper.state.displacement[loop.setup.system.number]
+        stresses.append(hexahedral_recovery.von_mises(at_nodes(loop.setup.system.mesh, LAW, moved)))
 
     return highfi.run(rails, COARSE, observer=look), np.array(stresses)
 

@@ -92,22 +92,26 @@ def test_one_frame_is_the_moment_of_the_peak_and_shows_it(viewed):
 
 def test_files_hold_what_the_loop_had(touching, tmp_path):
     loop, frame = touching
-    boxes, pads = frames.bodies(loop.scene, loop.system.model)
-    paths = vtk_files.write_frame(tmp_path, 3, frame, loop.system.mesh, boxes, pads)
+    boxes, pads = frames.bodies(loop.setup.scene, loop.setup.system.model)
+    paths = vtk_files.write_frame(tmp_path, 3, frame, loop.setup.system.mesh, boxes, pads)
     rails, bodies = (meshio.read(path) for path in paths)
     assert [path.name for path in paths] == ["rails-0003.vtu", "bodies-0003.vtu"]
     np.testing.assert_allclose(
         rails.point_data[vtk_files.DISPLACEMENT],
-        loop.state.displacement[loop.system.number],
+        loop.stepper.state.displacement[loop.setup.system.number],
         rtol=1e-6,
         atol=1e-15,
     )
-    np.testing.assert_array_equal(rails.points, loop.system.mesh.points)
+    np.testing.assert_array_equal(rails.points, loop.setup.system.mesh.points)
     assert len(bodies.cells_dict["hexahedron"]) == 1 + 16
     assert np.bincount(bodies.cell_data[vtk_files.PAD][0]).tolist() == [1] + [2] * 8
     # Payload and pads moved out of the rails, as far as the payload did.
     middle = bodies.points[:8].mean(axis=0)
-    way = loop.state.payload.position - loop.state.platform.position + loop.system.origin
+    way = (
+        loop.stepper.state.payload.position
+        - loop.stepper.state.platform.position
+        + loop.setup.system.origin
+    )
     assert middle == pytest.approx(way, abs=1e-4)
 
 
@@ -118,10 +122,10 @@ def test_contact_pressure_comes_to_the_force_on_the_pads(size, off):
     loop = begun(tiny(), numerics)
     # Pressed 30 um into one wall, long before the payload would get there: faces that wait must
     # look.
-    loop.active.wait[:] = 0
-    loop.state.payload.position[1] += loop.scene.contact.clearance + 30e-6
-    loop.evaluate()
-    mesh, frame = loop.system.mesh, frames.Camera(loop).take(loop)
+    loop.stepper.active.wait[:] = 0
+    loop.stepper.state.payload.position[1] += loop.setup.scene.contact.clearance + 30e-6
+    loop.stepper.evaluate()
+    mesh, frame = loop.setup.system.mesh, frames.Camera(loop).take(loop)
     share = np.zeros(len(mesh.points))
     for name, facets in mesh.surfaces.items():
         if name.startswith("contact"):
@@ -130,7 +134,9 @@ def test_contact_pressure_comes_to_the_force_on_the_pads(size, off):
                 np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]), axis=1
             )
             np.add.at(share, facets, 0.25 * areas[:, None])
-    normal = np.abs(loop.state.face_force[np.arange(16), loop.system.faces.axis]).sum()
+    normal = np.abs(
+        loop.stepper.state.face_force[np.arange(16), loop.setup.system.faces.axis]
+    ).sum()
     assert normal > 1000.0
     assert (frame.pressure * share).sum() == pytest.approx(normal, rel=off)
     assert not frame.pressure[share == 0.0].any()
@@ -139,9 +145,9 @@ def test_contact_pressure_comes_to_the_force_on_the_pads(size, off):
 def test_camera_sees_the_stress_that_the_run_is_watched_for(touching):
     loop, frame = touching
     worst = no_peak()
-    monitor.scan(loop.monitor, loop.state.displacement, 0.0, worst, loop.pool)
+    monitor.scan(loop.setup.monitor, loop.stepper.state.displacement, 0.0, worst, loop.setup.pool)
     assert frame.worst.max() == pytest.approx(
-        loop.monitor.shear_modulus * np.sqrt(worst.square[STRESS]), rel=1e-12
+        loop.setup.monitor.shear_modulus * np.sqrt(worst.square[STRESS]), rel=1e-12
     )
     assert frame.worst.argmax() == worst.place[STRESS, 0]
     still = frames.Camera(first := begun()).take(first)

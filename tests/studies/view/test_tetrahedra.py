@@ -23,7 +23,11 @@ def touching(tmp_path_factory):
     loop = stopped(6, cut(tiny(**THROWN), 0.008, folder / "rails.msh"))
     frame = frames.Camera(loop).take(loop)
     vtk_files.write_frame(
-        folder, 0, frame, loop.system.mesh, *frames.bodies(loop.scene, loop.system.model)
+        folder,
+        0,
+        frame,
+        loop.setup.system.mesh,
+        *frames.bodies(loop.setup.scene, loop.setup.system.model),
     )
     return loop, frame, folder
 
@@ -32,10 +36,10 @@ def test_files_hold_quadratic_tetrahedra_and_their_stress(touching):
     """Mean stress at a node over the elements that meet there, of its corners and of the middles of
     its edges alike."""
     loop, _, folder = touching
-    mesh, rails = loop.system.mesh, meshio.read(folder / "rails-0000.vtu")
+    mesh, rails = loop.setup.system.mesh, meshio.read(folder / "rails-0000.vtu")
     np.testing.assert_array_equal(rails.cells_dict["tetra10"], mesh.cells)
     np.testing.assert_array_equal(rails.points, mesh.points)
-    moved = loop.state.displacement[loop.system.number]
+    moved = loop.stepper.state.displacement[loop.setup.system.number]
     np.testing.assert_allclose(
         rails.point_data[vtk_files.DISPLACEMENT], moved, rtol=1e-6, atol=1e-15
     )
@@ -55,7 +59,7 @@ def test_files_hold_quadratic_tetrahedra_and_their_stress(touching):
 
 def test_contact_pressure_is_on_walls_that_are_pressed(touching):
     loop, frame, _ = touching
-    surfaces = loop.system.mesh.surfaces
+    surfaces = loop.setup.system.mesh.surfaces
     walls = np.unique(
         np.concatenate(
             [facets.ravel() for name, facets in surfaces.items() if name.startswith("contact")]
@@ -63,16 +67,16 @@ def test_contact_pressure_is_on_walls_that_are_pressed(touching):
     )
     pressed = np.flatnonzero(frame.pressure)
     assert pressed.size and np.isin(pressed, walls).all()
-    assert np.isin(pressed, loop.system.mesh.cells[:, 4:]).any()  # middles of edges too
+    assert np.isin(pressed, loop.setup.system.mesh.cells[:, 4:]).any()  # middles of edges too
 
 
 @pytest.fixture
 def order(touching):
     """What the pictures of that one frame are asked with, twice over."""
     loop, frame, folder = touching
-    low, high = loop.system.mesh.points.min(axis=0), loop.system.mesh.points.max(axis=0)
+    low, high = loop.setup.system.mesh.points.min(axis=0), loop.setup.system.mesh.points.max(axis=0)
     shown = {"rails": "rails-0000.vtu", "bodies": "bodies-0000.vtu", "time_s": frame.time}
-    place = loop.system.mesh.points[frame.von_mises.argmax()]
+    place = loop.setup.system.mesh.points[frame.von_mises.argmax()]
     return {
         "folder": str(folder),
         "frames": [shown, shown],

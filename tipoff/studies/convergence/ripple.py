@@ -18,6 +18,7 @@ from typing import Annotated
 import numpy as np
 
 from tipoff.highfi import Numerics, prepare
+from tipoff.highfi.dynamics.setup import set_up
 from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.run import Loop
@@ -67,7 +68,7 @@ def measure(scene: Scene, numerics: Numerics) -> Ripple | None:
     facets = int((pressed.rail.end - leading_edge(system.faces)) / length)
     if facets < LEAST_FACETS:
         return None
-    loop = Loop(pressed, system, choose(system, pressed, numerics), processors())
+    loop = Loop(set_up(pressed, system, choose(system, pressed, numerics), processors()))
     force = slide(loop, round(facets * length / _SPEED / _INTERVAL))
     cells = int(system.surface.cells[:, 0].max())
     return replace(judge(force, _SPEED / length, facets), cells_per_edge=cells)
@@ -107,7 +108,7 @@ def leading_edge(faces) -> float:
 def slide(loop: Loop, samples: int) -> np.ndarray:
     """Forces (n,f,3) N on the faces while the payload slides, after it came to rest under its
     load."""
-    state = loop.state
+    state = loop.stepper.state
     loop.begin()
     for _ in range(_SETTLING):
         _advance(loop)
@@ -119,20 +120,20 @@ def slide(loop: Loop, samples: int) -> np.ndarray:
         ):
             moving *= _KEPT
     state.payload.velocity[0] += _SPEED
-    first = len(loop.forces)
+    first = len(loop.recorded.forces)
     for _ in range(samples):
         _advance(loop)
-    return np.array(loop.forces[first:])
+    return np.array(loop.recorded.forces[first:])
 
 
 def _advance(loop: Loop) -> None:
     """Advance by one sample. The settling loses energy on purpose, so messages are cleared. Raises
     FloatingPointError if a value becomes infinite."""
-    taken = len(loop.rows)
-    while len(loop.rows) == taken:
-        loop.message = ""
+    taken = len(loop.recorded.rows)
+    while len(loop.recorded.rows) == taken:
+        loop.recorded.message = ""
         loop.advance_one_sample()
-        if not np.isfinite(loop.state.payload.velocity).all():
+        if not np.isfinite(loop.stepper.state.payload.velocity).all():
             raise FloatingPointError("the sliding payload has no finite velocity any more")
 
 

@@ -43,9 +43,9 @@ class Camera:
     """Takes frames of a ``highfi.run.Loop`` at its present sample; common data is computed once."""
 
     def __init__(self, loop):
-        self.system, mesh = loop.system, loop.system.mesh
-        self._shear, self._lame = loop.monitor.shear_modulus, loop.monitor.lame
-        self._recovery, self._room = loop.monitor.recovery, np.zeros(peaks.SIZE)
+        self.system, mesh = loop.setup.system, loop.setup.system.mesh
+        self._shear, self._lame = loop.setup.monitor.shear_modulus, loop.setup.monitor.lame
+        self._recovery, self._room = loop.setup.monitor.recovery, np.zeros(peaks.SIZE)
         self._meeting = np.bincount(mesh.cells.ravel(), minlength=len(mesh.points))
         self._walls = np.unique(
             np.concatenate(
@@ -55,15 +55,15 @@ class Camera:
 
     def take(self, loop) -> Frame:
         """The frame of ``loop`` now."""
-        state, system = loop.state, self.system
-        displacement = loop.deformed()[system.number]
-        mean, worst = self._stresses(loop.deformed())
+        state, system = loop.stepper.state, self.system
+        displacement = loop.stepper.deformed()[system.number]
+        mean, worst = self._stresses(loop.stepper.deformed())
         base, body = (
             rotation.matrices(part.quaternion[None])[0] for part in (state.platform, state.payload)
         )
         turn, centre = base.T @ body, base.T @ (state.payload.position - state.platform.position)
         return Frame(
-            loop.steps * loop.stepping.dt_s,
+            loop.stepper.time,
             displacement,
             von_mises=hexahedral_recovery.von_mises(mean),
             worst=worst,

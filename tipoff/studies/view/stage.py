@@ -157,12 +157,15 @@ class _Observer:
         from tipoff.studies.view import frames as views
         from tipoff.studies.view import vtk_files
 
-        if len(loop.rows) - 1 not in self.samples:
+        if len(loop.recorded.rows) - 1 not in self.samples:
             return
         if self.shared is None:
-            self.shared = views.Camera(loop), *views.bodies(loop.scene, loop.system.model)
+            self.shared = (
+                views.Camera(loop),
+                *views.bodies(loop.setup.scene, loop.setup.system.model),
+            )
         camera, boxes, pads = self.shared
-        frame, mesh = camera.take(loop), loop.system.mesh
+        frame, mesh = camera.take(loop), loop.setup.system.mesh
         paths = vtk_files.write_frame(self.folder, len(self.frames), frame, mesh, boxes, pads)
         self._widen(mesh.points)
         self._widen((boxes @ frame.turn.T + frame.centre).reshape(-1, 3))

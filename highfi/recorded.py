@@ -1,0 +1,69 @@
+"""What is recorded of a run of the reference: its samples, why it stopped, and its costs."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tipoff.highfi.dynamics.stepper import Stepper, Taken
+from tipoff.highfi.stress import monitor
+from tipoff.highfi.stress.peak import Peak, no_peak
+from tipoff.kernels import rotation
+
+
+@dataclass
+class Recorded:
+    """Records of a run. No step depends on them; a checkpoint has them."""
+
+    # At every sample:
+    rows: list[np.ndarray] = field(default_factory=list)  # see ``observe``
+    work: list[np.ndarray] = field(default_factory=list)  # J
+    forces: list[np.ndarray] = field(default_factory=list)  # N, of the faces
+    gauges: list[np.ndarray] = field(default_factory=list)  # Pa
+    peak: Peak = field(default_factory=no_peak)
+    # At every check:
+    scale: float = 0.0  # J, largest transverse energy
+    message: str = ""  # why the run stopped
+    # At every call of the kernel:
+    damping: float = 0.0  # largest step * friction damping / mass of a node
+    parts: int = 0  # long steps or substeps
+    block_steps: int = 0  # blocks that were stepped
+    most_substeps: int = 1  # of a step
+    divided_steps: int = 0
+    wall: float = 0.0  # s
+    cpu: float = 0.0  # s, of the first thread
+    other_cpu: float = 0.0  # s, of the others
+
+    def add_sample(self, stepper: Stepper, row: np.ndarray) -> None:
+        """Store the sample ``row`` (``observe``), with forces and stresses."""
+        state = stepper.state
+        self.rows.append(row)
+        self.work.append(state.work.copy())
+        self.forces.append(state.face_force @ rotation.single(state.platform.quaternion).T)
+        setup, rests = stepper.setup, stepper.rests
+        if setup.monitor.patch is not None:
+            self.gauges.append(monitor.gauge(setup.monitor, stepper.deformed()))
+        # Rails at rest have the stress of the first sample.
+        at_rest = len(self.rows) > 1 and rests.size and rests.all()
+        if (len(self.rows) - 1) % setup.monitor.every == 0 and not at_rest:
+            monitor.scan(setup.monitor, stepper.deformed(), stepper.time, self.peak, setup.pool)
+
+    def add_steps(self, stepper: Stepper, taken: Taken) -> None:
+        """Add the cost of the steps that were ``taken`` just now."""
+        self.damping = max(self.damping, stepper.step * taken.damping)
+        self.parts += taken.parts
+        self.block_steps += taken.whole * int(stepper.state.stepped.in_use[0])
+        self.most_substeps = max(self.most_substeps, stepper.substeps)
+        self.divided_steps += taken.whole if stepper.substeps > 1 else 0
+        self.other_cpu += taken.other_cpu
+
+    def cost(self, stepper: Stepper) -> dict[str, float]:
+        """Steps, savings and neglected vibration of rails at rest, and the cost of friction."""
+        whole = max(stepper.steps, 1) * stepper.state.stepped.block.size
+        return {
+            "steps": stepper.steps,
+            "steps_taken": self.parts,
+            "friction_substeps": self.most_substeps,
+            "friction_divided_steps": self.divided_steps,
+            "stepped_share": self.block_steps / whole,
+            "left_out_m": float(stepper.jolts.most[0]),
+        }
