@@ -165,6 +165,24 @@ def test_loads_have_the_force_and_moment_of_their_pressure():
     )
 
 
+def test_a_place_needs_only_the_facets_near_it():
+    """The load is that of a short piece of the wall. Control: a piece that ends under the face has
+    less load."""
+    mesh = beam((40, 5, 1))
+    facets = mesh.surfaces["contact"]
+    x = mesh.points[facets][:, :, 0]
+    middle, half = np.array([0.3071, 0.0143]), np.array([0.0307, 0.0121])
+    whole = pressure.Wall(mesh.points, facets, 1).pressed(middle, half, 6)
+
+    def on(first, last):
+        piece = facets[(x.min(axis=1) > first) & (x.max(axis=1) < last)]
+        return pressure.Wall(mesh.points, piece, 1).pressed(middle, half, 6)
+
+    near = on(0.25, 0.36)
+    assert np.array_equal(near.node, whole.node) and np.array_equal(near.load, whole.load)
+    assert on(0.29, 0.36).gram[0, 0] < 0.9 < whole.gram[0, 0]
+
+
 @pytest.fixture(scope="module")
 def reference():
     return compliance.along(scenes.load("reference"), 0.004, TRAVEL, patterns=3)

@@ -7,7 +7,9 @@ import pytest
 from tests.highfi import sections, tets
 from tipoff.highfi import compliance, discretisation
 from tipoff.highfi.mesh import split
+from tipoff.highfi.statics import held
 from tipoff.highfi.statics.held import distinct
+from tipoff.highfi.statics.solve import Clamped
 from tipoff.scenes import load
 
 REACH = (0.0, sections.LENGTH)
@@ -108,3 +110,19 @@ def test_a_compliance_states_its_elements(monkeypatch):
         assert f"at {1e3 * own:g} mm elements: uncertainty " in facts["words"]
         assert found.is_coarse and "what finer elements change" in facts["words"]
         assert "rigid" in repr(found.rigid()) and found.rigid().stated() is None
+
+
+def test_the_factor_and_the_modes_of_the_compliance_serve_its_uncertainty(monkeypatch):
+    """Control: without its rails they are made again, with the same result."""
+    made = []
+    monkeypatch.setattr(held, "Clamped", lambda *given: made.append(given) or Clamped(*given))
+    scene, size = load("tiny"), 16e-3
+    rails = compliance.rails(scene, size)
+    plain = compliance.condense(scene, size, spacing=0.15, modes=6, held=rails)
+    assert len(rails) == len(made) == 1
+    shared = discretisation.stated(scene, size, plain, rails)
+    assert len(made) == 1
+    alone = discretisation.stated(scene, size, plain)
+    assert len(made) == 2
+    assert shared.uncertainty == pytest.approx(alone.uncertainty, rel=1e-9)
+    assert shared.frequency_uncertainty == pytest.approx(alone.frequency_uncertainty, rel=1e-4)

@@ -24,16 +24,22 @@ from tipoff.workspace.run import Run
 _AGAIN = "its kernels are announced again"
 _WITH_MODES = ", and the same time again if modes of the rails are needed"
 _SAID: set[Path] = set()  # marks of kernels that this process has announced
+_USED: set[Path] = set()  # marks of kernels that this process has compiled or loaded
 _MARKS: cache.Cache[dict] = cache.documents(dict, dict, cache.Held)
 
 
 @contextmanager
 def first_use(run: Run, many: bool = False) -> Iterator[None]:
     """Announce the kernels of ``run``, or of ``many`` cases like it, and mark them after the block
-    has used them."""
+    has used them. A process that has marked them asks no file again."""
+    path, _ = mark(run, many=many)
+    if path in _USED:
+        yield
+        return
     announce(run, many=many)
     yield
     remember(run, many=many)
+    _USED.add(path)
 
 
 @contextmanager

@@ -68,14 +68,16 @@ def waits(
     ] = 15,
     length: Annotated[
         list[float] | None,
-        typer.Option(
-            metavar="M", help="Length of a rail (m), repeatable; default: 0.25, 0.5 and 1."
-        ),
+        typer.Option(metavar="M", help="Length of a rail (m), repeatable; default: 0.25 to 4."),
     ] = None,
     against: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="waits.json of an earlier state, shown beside."),
     ] = None,
+    cold: Annotated[
+        bool,
+        typer.Option(help="Also the first run, the first report and limits: half an hour."),
+    ] = False,
     json_: Json = False,
 ) -> None:
     """Measure how long a person waits for calls, files, statics and commands; writes
@@ -86,7 +88,7 @@ def waits(
         from validation.bench import waits
 
         earlier = read_json(against) if against else None
-        found = waits.run(out, repeats, tuple(length) if length else waits.LENGTHS)
+        found = waits.run(out, repeats, tuple(length) if length else waits.LENGTHS, cold)
         return Output(found, lambda found: [waits.table(found, earlier)])
 
     guarded(work, json_)

@@ -2,7 +2,8 @@
 
 Each row is a call. It is made once without timing, which compiles its kernels and warms its caches, and
 then ``repeats`` times by turns with the calls of its group. The result is the median: wall time,
-and processor time of this process with its threads, which other programs on the machine disturb less.
+and processor time of all threads and of finished processes, which other programs on the machine
+disturb less. Commands on empty caches, and the longest ones, are made once.
 """
 
 import itertools
@@ -19,6 +20,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from tipoff.files import write_json
+from tipoff.mechanics.rail_compliance import MODES
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene, load
 from tipoff.studies.render.table import Column, Table
@@ -26,8 +28,9 @@ from tipoff.workspace import machine
 from tipoff.workspace.progress import say
 from validation.bench.methods import varied
 
-LENGTHS = (0.25, 0.5, 1.0)  # m, of rails whose compliance is timed
+LENGTHS = (0.25, 0.5, 1.0, 2.0, 4.0)  # m, of rails whose compliance is timed
 _ELEMENT = 2e-3  # m, of these rails
+_LONG = 1.2  # m, of the rails of a run with all modes
 _LOG_ROWS = 100_000
 _CASES = 2000
 
@@ -38,18 +41,24 @@ class Wait:
 
     call: str
     wall_ms: float
-    cpu_ms: float | None  # None for another process
+    cpu_ms: float
     repeats: int
 
 
-def run(out: Path, repeats: int = 15, lengths: tuple[float, ...] = LENGTHS) -> dict:
-    """``rows``, one for each call; writes ``out``/bench/waits.json."""
+def run(
+    out: Path, repeats: int = 15, lengths: tuple[float, ...] = LENGTHS, cold: bool = False
+) -> dict:
+    """``rows``, one for each call; writes ``out``/bench/waits.json. With ``cold``, also the first
+    run, the first report and ``limits``, which take half an hour."""
     rows: list[Wait] = []
     for group in (_calls, _files, _shell):
         with TemporaryDirectory() as folder:
             rows += _by_turns(group(Path(folder)), repeats)
     for length in lengths:
         rows.append(_rail(length))
+    if cold:
+        with TemporaryDirectory() as folder:
+            rows += [_once(name, call) for name, call in _cold(Path(folder)).items()]
     found = {"rows": [asdict(row) for row in rows], "hardware": machine.describe()}
     write_json(Path(out) / "bench" / "waits.json", found)
     return found
@@ -61,15 +70,30 @@ def _by_turns(calls: dict[str, Callable[[], object]], repeats: int) -> list[Wait
         call()
     for _ in range(repeats):
         for name, call in calls.items():
-            wall, processor = time.perf_counter(), time.process_time()
-            call()
-            times[name].append((time.perf_counter() - wall, time.process_time() - processor))
+            times[name].append(_timed(call))
     found = []
     for name, pairs in times.items():
         wall, processor = (1e3 * statistics.median(each) for each in zip(*pairs))
-        found.append(Wait(name, wall, None if name.startswith("shell") else processor, repeats))
+        found.append(Wait(name, wall, processor, repeats))
         say(f"  {name}: {wall:.3g} ms")
     return found
+
+
+def _once(name: str, call: Callable[[], object]) -> Wait:
+    wall, processor = _timed(call)
+    say(f"  {name}: {wall:.3g} s")
+    return Wait(name, 1e3 * wall, 1e3 * processor, 1)
+
+
+def _timed(call: Callable[[], object]) -> tuple[float, float]:
+    """Wall time and processor time (s)."""
+    wall, processor = time.perf_counter(), _processor()
+    call()
+    return time.perf_counter() - wall, _processor() - processor
+
+
+def _processor() -> float:
+    return sum(os.times()[:4])
 
 
 def _calls(folder: Path) -> dict[str, Callable[[], object]]:
@@ -80,12 +104,17 @@ def _calls(folder: Path) -> dict[str, Callable[[], object]]:
     rail = tipoff.compliance(scene)
     scenes = [load("reference").replace(row) for row in varied(20)]
     another, cases = itertools.cycle(scenes), varied(_CASES, seed=7)
+    long = long_rail(_LONG)
+    long_walls = tipoff.compliance(long, 4.0 * _ELEMENT)
     return {
         "run": lambda: tipoff.run(scene),
         "run of another of 20 scenes": lambda: tipoff.run(next(another)),
         "run, compliance given": lambda: tipoff.run(scene, compliance=rail),
         "run, compliance given, no modes": lambda: tipoff.run(scene, compliance=rail, modes=0),
         "run on springs": lambda: tipoff.run(scene, "springs"),
+        f"run on {_LONG:g} m with {MODES} modes": lambda: tipoff.run(
+            long, compliance=long_walls, modes=MODES
+        ),
         f"ensemble of {_CASES:,}": lambda: tipoff.ensemble(load("reference"), cases, "compliant"),
     }
 
@@ -115,12 +144,26 @@ def _files(folder: Path) -> dict[str, Callable[[], object]]:
 
 def _shell(folder: Path) -> dict[str, Callable[[], object]]:
     """Commands in processes of their own. Their results exist and nothing changed."""
-    words = [sys.executable, "-m", "tipoff", "run", "--scene", "tiny", "--out", str(folder)]
+    return {"shell: tipoff run, nothing changed": _command(folder, "run", "--scene", "tiny")}
 
-    def again() -> None:
-        subprocess.run(words, check=True, capture_output=True, env=os.environ)
 
-    return {"shell: tipoff run, nothing changed": again}
+def _cold(folder: Path) -> dict[str, Callable[[], object]]:
+    """Commands in processes of their own, the first two on empty caches."""
+    return {
+        "shell: first tipoff run": _command(folder / "run", "run", caches=folder / "first"),
+        "shell: first tipoff report": _command(
+            folder / "report", "report", caches=folder / "second"
+        ),
+        "shell: tipoff limits": _command(folder / "report", "limits"),
+    }
+
+
+def _command(out: Path, *words: str, caches: Path | None = None) -> Callable[[], object]:
+    """A call of ``tipoff`` with results in ``out`` and kernels in ``caches``, by default those of
+    this process."""
+    environment = os.environ | ({"NUMBA_CACHE_DIR": str(caches)} if caches else {})
+    line = [sys.executable, "-m", "tipoff", *words, "--out", str(out)]
+    return lambda: subprocess.run(line, check=True, capture_output=True, env=environment)
 
 
 def _rail(length: float) -> Wait:
@@ -128,11 +171,8 @@ def _rail(length: float) -> Wait:
     from tipoff.calibration import rail_compliance
 
     scene = long_rail(length)
-    wall, processor = time.perf_counter(), time.process_time()
-    rail_compliance.compliance(scene, _ELEMENT)
-    wall, processor = 1e3 * (time.perf_counter() - wall), 1e3 * (time.process_time() - processor)
-    say(f"  compliance of a rail of {length:g} m: {1e-3 * wall:.3g} s")
-    return Wait(f"compliance, {length:g} m in {1e3 * _ELEMENT:g} mm elements", wall, processor, 1)
+    name = f"compliance, {length:g} m in {1e3 * _ELEMENT:g} mm elements"
+    return _once(name, lambda: rail_compliance.compliance(scene, _ELEMENT))
 
 
 def long_rail(length: float) -> Scene:

@@ -12,7 +12,7 @@ from tipoff.highfi.mesh.cells import corner_jacobians, jacobians
 from tipoff.highfi.mesh.facets import gauss
 from tipoff.highfi.mesh.halve import halved
 from tipoff.highfi.mesh.rail_mesh import boundary_facets, read
-from tipoff.highfi.mesh.split import split, to_size
+from tipoff.highfi.mesh.split import refined, split, to_size
 from tipoff.meshes import channel, l_rail
 
 
@@ -109,3 +109,13 @@ def test_halves_become_no_flatter():
     once, twice = halved(mesh), halved(halved(mesh))
     quality = [jacobians(each.points, each.cells)[1].min() for each in (mesh, once, twice)]
     assert quality[2] == pytest.approx(quality[1], rel=1e-9) and quality[1] > 0.5 * quality[0]
+
+
+def test_finer_nodes_are_numbered_in_the_order_of_the_elements(rails):
+    """Neighbours are near each other in memory. Control: names in any order give any numbers."""
+    finer, _ = refined(rails)
+    _, first = np.unique(finer.cells, return_index=True)
+    coarse_element = first // (8 * finer.cells.shape[1])
+    assert (np.diff(coarse_element) >= 0).all()
+    shuffled = np.random.default_rng(0).permutation(len(finer.points))[finer.cells]
+    assert (np.diff(np.unique(shuffled, return_index=True)[1] // 64) < 0).any()
