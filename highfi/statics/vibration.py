@@ -11,10 +11,12 @@ import numpy as np
 from scipy.linalg import eigh
 from scipy.sparse import csc_array
 
+from tipoff.highfi.mesh.rail_mesh import MeshError
 from tipoff.highfi.statics.solve import one_thread
 
 _BLOCK = 8  # vectors solved for at once
-_SMALL = 20  # as many degrees of freedom for each mode, or fewer: all modes are solved for
+FEW = 600, 20  # degrees of freedom, and those for each mode: below, all modes are solved for
+MOST = 400, 40  # vectors, and those for each mode: most modes converge with a quarter of them
 _ACCURACY = 1e-12  # of a mode: its residual relative to its eigenvalue
 
 
@@ -26,7 +28,7 @@ def modes(
     returns the displacement (m) under a load (N). The sign of a shape does not depend on the method:
     its product with a fixed random vector is positive.
 
-    Raises ValueError if there are fewer modes.
+    Raises ValueError if there are fewer modes, MeshError if they do not converge.
     """
     freedoms = mass.size
     if not 0 <= count <= freedoms:
@@ -37,7 +39,7 @@ def modes(
     # modes.
     start = np.random.default_rng(1).standard_normal((_BLOCK, freedoms))
     root = np.sqrt(mass)
-    if _SMALL * count > freedoms:  # the iteration would fill the space
+    if freedoms < max(FEW[0], FEW[1] * count):  # the iteration would fill the space
         squares, shapes = eigh(
             stiffness.toarray() / root / root[:, None], subset_by_index=(0, count - 1)
         )
@@ -57,8 +59,7 @@ def _lowest(
     basis = np.empty((4 * count + 2 * size, freedoms))
     projected = np.zeros((0, 0))  # the inverse, its upper triangle
     block, _ = np.linalg.qr(start.T)
-    while True:
-        known = len(projected) + size
+    for known in range(size, min(freedoms, MOST[0] + MOST[1] * count), size):
         if known > len(basis):
             basis = np.concatenate([basis, np.empty_like(basis)])
         basis[known - size : known] = block.T
@@ -77,6 +78,9 @@ def _lowest(
         missing = np.linalg.norm(below @ shapes[-size:], axis=0)
         if (missing < _ACCURACY * values).all():
             return 1.0 / values[::-1], basis[:known].T @ shapes[:, ::-1]
+    raise MeshError(
+        f"the {count} lowest modes of a rail do not converge: its elements differ too much"
+    )
 
 
 def _signed(shapes: np.ndarray, start: np.ndarray) -> np.ndarray:
