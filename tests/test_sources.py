@@ -40,6 +40,7 @@ def forget():
     sources.digest.cache_clear()
     sources.source.cache_clear()
     sources.used_by.cache_clear()
+    sources.path.cache_clear()
 
 
 def edit(file: Path, old: str, new: str) -> None:

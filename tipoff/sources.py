@@ -91,6 +91,7 @@ def used_by(module: str) -> frozenset[str]:
     return frozenset(used for used in map(_module, source(module).imports) if used)
 
 
+@functools.cache  # digests of commands ask for each file many times
 def path(module: str) -> Path | None:
     """File of a ``module`` of the project, or None."""
     if module.split(".")[0] not in WITH_CODE:

@@ -165,6 +165,7 @@ def _command(out: Path, *words: str, caches: Path | None = None) -> Callable[[],
     """A call of ``tipoff`` with results in ``out`` and kernels in ``caches``, by default those of
     this process."""
     environment = os.environ | ({"NUMBA_CACHE_DIR": str(caches)} if caches else {})
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)  # an installed package has its bytecode
     line = [sys.executable, "-m", "tipoff", *words, "--out", str(out)]
     return lambda: subprocess.run(line, check=True, capture_output=True, env=environment)
 
