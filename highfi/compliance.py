@@ -146,9 +146,12 @@ def nominal(scene: Scene) -> Scene:
 def rails(scene: Scene, element_size: float) -> list[HeldRail]:
     """The distinct rails of ``scene`` in elements of about ``element_size`` (m) on their mounts, with
     a factor of 1 on the stiffness of these. Raises SceneError or MeshError."""
-    scene = nominal(scene)
-    mesh = prepare(scene, Numerics(element_size=element_size))
+    return _held(nominal(scene), element_size)
+
+
+def _held(scene: Scene, element_size: float) -> list[HeldRail]:
     own = inputs.of(scene)
+    mesh = prepare(scene, Numerics(element_size=element_size))
     return distinct(mesh, own.material, own.joint)
 
 
@@ -165,9 +168,7 @@ def along(
     Faces are those of ``mechanics.scene_model.Faces``. Raises SceneError, MeshError, and ValueError for
     an unavailable number of patterns or modes.
     """
-    own = inputs.of(scene)
-    mesh = prepare(scene, Numerics(element_size=element_size))
-    held = distinct(mesh, own.material, own.joint)
+    own, held = inputs.of(scene), _held(scene, element_size)
     return of_rails(held, own.faces, own.reach, travel, patterns, modes)
 
 

@@ -29,7 +29,6 @@ from scipy.linalg import eigh
 from scipy.sparse import csc_array, csr_array
 
 from tipoff.highfi import compliance
-from tipoff.highfi.compliance import nominal
 from tipoff.highfi.mesh import split
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
@@ -73,7 +72,7 @@ def stated(
     """``found`` with the size (m) of its elements and their uncertainty. ``compliance.condense``
     made it for ``scene`` and ``element_size`` (m); ``rails`` are those that it used. Raises
     SceneError or MeshError."""
-    mesh = prepare(nominal(scene), Numerics(element_size=element_size))
+    mesh = prepare(compliance.nominal(scene), Numerics(element_size=element_size))
     size = split.shortest(mesh) if isinstance(scene.rail, MeshTable) else element_size
     known = of(scene, element_size, rails)
     return replace(
@@ -88,7 +87,7 @@ def stated(
 def of(scene: Scene, element_size: float, rails: Sequence[HeldRail] | None = None) -> Uncertainty:
     """Uncertainty of ``compliance.condense`` in elements of ``element_size`` (m), with the same
     ``rails``. Raises SceneError or MeshError."""
-    scene = nominal(scene)
+    scene = compliance.nominal(scene)
     own = inputs.of(scene)
     way = own.reach[1] - own.faces.half_length - own.faces.centre[:, 0]
     travel = np.linspace(0.0, way.max(), _PLACES)

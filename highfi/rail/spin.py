@@ -13,12 +13,10 @@ refused if this ratio exceeds ``MOST``.
 
 import numpy as np
 
-from tipoff.highfi.mesh import pieces
 from tipoff.highfi.mesh.rail_mesh import RailMesh, read
 from tipoff.highfi.rail.scene_mesh import geometry, make_mesh
 from tipoff.highfi.rail.step_cost import spacing
-from tipoff.highfi.statics import assembly, vibration
-from tipoff.highfi.statics.solve import Clamped
+from tipoff.highfi.statics import held
 from tipoff.mechanics import scene_model
 from tipoff.scenes.effects import thrust
 from tipoff.scenes.effects.mount_stiffness import MountStiffness
@@ -87,15 +85,9 @@ def lowest_of(
     """Lowest frequency (rad/s) of all mounted solids of ``mesh``, on rigid mounts or on a
     ``joint``; infinite without one."""
     found = [np.inf]
-    for solid, _ in pieces.distinct(mesh):
-        if not solid.surfaces["mount"].size:
-            continue
-        operator = assembly.of_material(solid, material, joint=joint)
-        if not operator.free.any():
-            continue
-        clamped = Clamped(operator)
-        mass = np.repeat(operator.mass, 3)[clamped.free]
-        found.append(vibration.modes(clamped.stiffness, mass, clamped.solve, 1)[0][0])
+    for solid in held.distinct(mesh, material, joint):
+        if solid.rail.surfaces["mount"].size and solid.operator.free.any():
+            found.append(solid.modes(1)[0][0])
     return float(min(found))
 
 

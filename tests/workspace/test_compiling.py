@@ -99,6 +99,24 @@ def test_kernels_with_modes_of_the_rails_are_others(monkeypatch, tmp_path, capfd
     assert [announced(modes) for modes in ("auto", 0, 4, 20)] == [""] * 4
 
 
+def test_a_process_marks_the_kernels_that_it_uses_once(monkeypatch, tmp_path, capfd):
+    """Control: a block that fails leaves no mark, and kernels in another folder are asked for."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "one"))
+    with pytest.raises(ZeroDivisionError), kernel_marks.first_use(pressed(0)):
+        raise ZeroDivisionError
+    assert not kernel_marks.are_there(pressed(0)) and "once\n" in capfd.readouterr().err
+    asked = []
+    are_there = kernel_marks.are_there
+    monkeypatch.setattr(
+        kernel_marks, "are_there", lambda *given: asked.append(given) or are_there(*given)
+    )
+    for folder, count in (("two", 1), ("two", 1), ("three", 2)):
+        monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / folder))
+        with kernel_marks.first_use(pressed(0)):
+            pass
+        assert len(asked) == count and are_there(pressed(0))
+
+
 def test_runs_of_given_modes_leave_kernels_for_those_that_choose(monkeypatch, tmp_path, capfd):
     """And so for many cases alone, which may need those with modes and those without."""
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
