@@ -105,16 +105,17 @@ def test_a_process_marks_the_kernels_that_it_uses_once(monkeypatch, tmp_path, ca
     with pytest.raises(ZeroDivisionError), kernel_marks.first_use(pressed(0)):
         raise ZeroDivisionError
     assert not kernel_marks.are_there(pressed(0)) and "once\n" in capfd.readouterr().err
-    asked = []
-    are_there = kernel_marks.are_there
+    marked, remember = [], kernel_marks.remember
     monkeypatch.setattr(
-        kernel_marks, "are_there", lambda *given: asked.append(given) or are_there(*given)
+        kernel_marks,
+        "remember",
+        lambda run, many: (marked.append(run), remember(run, many=many)),
     )
     for folder, count in (("two", 1), ("two", 1), ("three", 2)):
         monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / folder))
         with kernel_marks.first_use(pressed(0)):
             pass
-        assert len(asked) == count and are_there(pressed(0))
+        assert len(marked) == count and kernel_marks.are_there(pressed(0))
 
 
 def test_runs_of_given_modes_leave_kernels_for_those_that_choose(monkeypatch, tmp_path, capfd):
