@@ -5,10 +5,11 @@ corner (sign_y, sign_z) = (+-1, +-1). Its outer corner edge is at |y| = inner_co
 |z| = inner_corner_z + thickness. Its inner walls |y| = inner_corner_y and |z| = inner_corner_z face
 the payload.
 
-A grid gives the rail of the (+,+) corner. The other three are mirror images with the same bits, so
-that a symmetric scene has a symmetric result; their elements are numbered along the axes again,
-since a reflection reverses their orientation. A section of rectangles needs no mesh generator; the
-tests compare with one.
+A grid gives the rail of the (+,+) corner. A fillet between the inner walls moves its nodes
+(``fillet``). The other three rails are mirror images with the same bits, so that a symmetric scene
+has a symmetric result; their elements are numbered along the axes again, since a reflection
+reverses their orientation. A section of rectangles needs no mesh generator; the tests compare with
+one.
 """
 
 import itertools
@@ -18,14 +19,13 @@ from typing import NamedTuple
 import meshio
 import numpy as np
 
-from tipoff.meshes import bricks, msh
+from tipoff.meshes import bricks, fillet, msh
 
 SURFACES = ("contact_y", "contact_z", "mount")
 
 _CORNERS = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
-# Position in the VTK corner order of the corner with axis bits x + 2 y + 4 z (bit set: on the
-# larger side).
-_VTK_POSITION = np.array([0, 1, 3, 2, 4, 5, 7, 6])
+# Corners of a brick in VTK order after a reflection of y, and of z.
+_REFLECTED_Y, _REFLECTED_Z = [3, 2, 1, 0, 7, 6, 5, 4], [4, 5, 6, 7, 0, 1, 2, 3]
 # Corners of a brick of the grid, inwards from the outer corner: its faces towards the payload and
 # towards the platform.
 _INWARD_Y, _INWARD_Z, _OUTWARD_Y, _OUTWARD_Z = (
@@ -51,6 +51,7 @@ class LRailGeometry(NamedTuple):
     # from the rear end of the rail
     mount_spans: tuple[tuple[float, float], ...] = ((0.008, 0.028), (0.100, 0.120), (0.192, 0.212))
     mount_width: float = 0.004  # from the outer corner
+    fillet: float = 0.0  # radius between the inner walls, 0 for a sharp corner
 
 
 def build(geometry: LRailGeometry, element_size: float) -> meshio.Mesh:
@@ -60,7 +61,7 @@ def build(geometry: LRailGeometry, element_size: float) -> meshio.Mesh:
     Each interval between borders gets round(length / element_size) divisions, at least one. Along X
     all layers have the same length if a length near the element size divides every interval,
     because an even extrusion is solved several times faster. With the default geometry all elements
-    are cubes for sizes of 4, 2 and 1 mm.
+    are cubes for sizes of 4, 2 and 1 mm. Contact walls end where a fillet begins.
 
     Returns a mesh with one `hexahedron` block (volume `rail`) and one `quad` block per surface in
     `SURFACES`, numbered from 0 and tagged with the field `gmsh:physical`. Raises ValueError for
@@ -88,7 +89,8 @@ def elements(geometry: LRailGeometry, element_size: float) -> int:
 
 def grid_depths(geometry: LRailGeometry) -> list[float]:
     """Grid lines (m) of the section, measured inwards from the outer corner along y and along z."""
-    return _grid_lines(0.0, geometry.thickness, geometry.mount_width, geometry.leg)
+    end = geometry.thickness + geometry.fillet
+    return _grid_lines(0.0, geometry.thickness, end, geometry.mount_width, geometry.leg)
 
 
 def grid_stations(geometry: LRailGeometry) -> list[float]:
@@ -119,6 +121,9 @@ def _check(geometry: LRailGeometry, element_size: float) -> None:
         or not 0.0 < geometry.thickness < geometry.leg
     ):
         raise ValueError(f"need 0 < thickness < leg and 0 < mount_width <= leg, got {geometry}")
+    most = min(fillet.LARGEST * geometry.thickness, geometry.leg - geometry.thickness - _TOUCH)
+    if not 0.0 <= geometry.fillet <= most + _TOUCH:
+        raise ValueError(f"need a fillet of 0 to {most:g} m, got {geometry.fillet!r}")
     if any(right < left - _TOUCH for left, right in itertools.pairwise(borders)) or length <= 0.0:
         raise ValueError(
             f"mount_spans must be in order and inside the length {length:g} m, got "
@@ -171,7 +176,9 @@ def _corner_rail(
         [any(start < place < end for start, end in geometry.mount_spans) for place in station]
     )[layer]
     strip, wall = middle < geometry.mount_width, np.count_nonzero(in_wall)
-    contact_y, contact_z = (in_y == wall - 1) & (in_z >= wall), (in_z == wall - 1) & (in_y >= wall)
+    begun = np.count_nonzero(middle < geometry.thickness + geometry.fillet)
+    contact_y = (in_y == wall - 1) & (in_z >= begun)
+    contact_z = (in_z == wall - 1) & (in_y >= begun)
     back_y, back_z = held & (in_y == 0) & strip[in_z], held & (in_z == 0) & strip[in_y]
     surfaces = {
         "contact_y": hexes[contact_y][:, _INWARD_Y],
@@ -185,6 +192,8 @@ def _corner_rail(
             geometry.inner_corner_z + geometry.thickness,
         ]
     )
+    if geometry.fillet > 0.0:
+        points[:, 1:] = fillet.rounded(points[:, 1:], geometry.thickness, geometry.fillet)
     return outer + points * (1, -1, -1), hexes, surfaces
 
 
@@ -197,19 +206,19 @@ def _mirrored(points, hexes, surfaces):
     docstring)."""
     count = len(points)
     all_points = np.concatenate([points * (1, sign_y, sign_z) for sign_y, sign_z in _CORNERS])
-    all_hexes = np.concatenate([hexes + rail * count for rail in range(len(_CORNERS))])
+    all_hexes = [
+        _along_axes(hexes, *signs) + rail * count for rail, signs in enumerate(_CORNERS)
+    ]
     all_surfaces = {
         name: np.concatenate([facets + rail * count for rail in range(len(_CORNERS))])
         for name, facets in surfaces.items()
     }
-    return all_points, _along_axes(all_points, all_hexes), all_surfaces
+    return all_points, np.concatenate(all_hexes), all_surfaces
 
 
-def _along_axes(points, hexes):
-    """Number the corners of axis-parallel bricks in VTK order along +x, +y, +z: translated bricks
-    are then equal."""
-    corners = points[hexes]
-    upper = corners > corners.mean(axis=1, keepdims=True)
-    ordered = np.empty_like(hexes)
-    np.put_along_axis(ordered, _VTK_POSITION[upper @ (1, 2, 4)], hexes, axis=1)
-    return ordered
+def _along_axes(hexes, sign_y, sign_z):
+    """Number the corners of the bricks of a rail in VTK order along +x, +y, +z: translated bricks
+    are then equal. They are numbered inwards, so along -y and -z in the (+,+) corner."""
+    if sign_y > 0:
+        hexes = hexes[:, _REFLECTED_Y]
+    return hexes[:, _REFLECTED_Z] if sign_z > 0 else hexes

@@ -11,6 +11,7 @@ from tipoff.highfi.rail.fit import check_areas, check_frame, check_held
 from tipoff.meshes import l_rail
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import GeometryTable, SectionTable
+from tipoff.scenes.rounding import at_most
 from tipoff.scenes.scene import Scene
 
 
@@ -77,6 +78,7 @@ def _l_section(scene: Scene, rail: SectionTable) -> l_rail.LRailGeometry:
                 "at least one, since nothing else holds a rail that gives way",
             )
         )
+    faults += _on_fillet(scene, rail)
     if faults:
         raise SceneError(faults)
     y, z = places.pop()
@@ -90,4 +92,21 @@ def _l_section(scene: Scene, rail: SectionTable) -> l_rail.LRailGeometry:
         inner_corner_z=z + clearance,
         mount_spans=tuple(sorted((span.start, span.end) for span in rail.mounts)),
         mount_width=rail.mount_width,
+        fillet=rail.fillet or 0.0,
     )
+
+
+def _on_fillet(scene: Scene, rail: SectionTable) -> list[Fault]:
+    """The fault of pads that reach the fillet. A pad whose corner touches both walls begins at
+    ``inset - width / 2`` from the sharp corner, in the middle of the clearance farther from it."""
+    begin = min(pad.inset - 0.5 * pad.width for pad in scene.pads)
+    if rail.fillet is None or at_most(rail.fillet, begin, max(pad.inset for pad in scene.pads)):
+        return []
+    return [
+        Fault(
+            scene.name,
+            "rail.fillet",
+            f"{rail.fillet:g} m, with pads from {begin:g} m on (inset less half of the width)",
+            "pads beside the fillet: a smaller fillet, or a larger inset of the pads",
+        )
+    ]

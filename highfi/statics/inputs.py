@@ -53,6 +53,9 @@ def of(scene: Scene) -> Inputs:
 
 def _shape(scene: Scene) -> dict:
     if isinstance(section := geometry(scene), LRailGeometry):
-        return section._asdict()
+        shape = section._asdict()
+        if section.fillet == 0.0:  # results of sharp sections are stored without this key
+            del shape["fillet"]
+        return shape
     # the content of the file identifies it, not its path
     return scene.rail.model_dump(mode="json", exclude=_NOT_SHAPE) | scene.rail.contents()

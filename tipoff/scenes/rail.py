@@ -29,7 +29,7 @@ from pydantic import (
 from tipoff.files import open_input
 from tipoff.scenes.effects.mount_stiffness import MountStiffness, MountStiffnessTable
 from tipoff.scenes.effects.structural_damping import DampingTable
-from tipoff.scenes.rounding import below
+from tipoff.scenes.rounding import at_most, below
 from tipoff.scenes.table import Table, at_least_one, is_absent, limited
 from tipoff.scenes.units import (
     SMALLEST_DIMENSION,
@@ -43,6 +43,7 @@ from tipoff.scenes.units import (
     Pressure,
 )
 
+LARGEST_FILLET = 1.25  # of the thickness: the mesh has no good elements around a larger one
 FILES = ("mesh", "geometry")  # keys that give the rail as a file
 SOLIDS = (".step", ".stp", ".iges", ".igs", ".brep")
 
@@ -128,6 +129,9 @@ class SectionTable(_RailTable):
     thickness: Dimension = 0.004
     #: Width of the clamped strip on the back of a leg, from the outer corner.
     mount_width: Dimension = 0.004
+    #: Radius of the fillet between the inner walls, at most 1.25 times the thickness; a sharp
+    #: corner where absent. The walls end where the fillet begins.
+    fillet: Dimension | None = Field(None, exclude_if=is_absent)
     #: Stretches along the rail that the platform holds.
     mounts: Annotated[tuple[Span, ...], limited] = ()
 
@@ -138,6 +142,18 @@ class SectionTable(_RailTable):
         free = SMALLEST_DIMENSION if info.field_name == "thickness" else 0.0
         if below(leg - free, value, leg if math.isfinite(leg) else 0.0):
             raise ValueError(f"less than the leg, {leg:g} m")
+        return value
+
+    @field_validator("fillet")
+    @classmethod
+    def _beside_walls(cls, value: float | None, info: ValidationInfo):
+        if value is None or not {"leg", "thickness"} <= info.data.keys():
+            return value
+        leg, thickness = info.data["leg"], info.data["thickness"]
+        if not at_most(value, largest := LARGEST_FILLET * thickness):
+            raise ValueError(f"at most {LARGEST_FILLET:g} times the thickness, {largest:g} m")
+        if below(leg - SMALLEST_DIMENSION, thickness + value, leg):
+            raise ValueError(f"less than the inside of the leg, {leg - thickness:g} m")
         return value
 
     @field_validator("mounts")
