@@ -27,12 +27,24 @@ def rounded(depths: np.ndarray, thickness: float, radius: float) -> np.ndarray:
     long, short = depths.max(axis=1), depths.min(axis=1)
     along = np.clip((long - thickness) / radius, 0.0, 1.0)
     angle = 0.25 * np.pi * (1.0 - along)
-    move = radius * np.stack([1.0 - along - np.sin(angle), 1.0 - np.cos(angle)], axis=1)
+    size = np.where(angle > 0.0, _of_equal_area(np.unique(angle)), 1.0)
+    move = radius * np.stack(
+        [1.0 - along - size * np.sin(angle), 1.0 - size * np.cos(angle)], axis=1
+    )
     share = np.minimum(long, thickness) * short / thickness**2
     moved = share[:, None] ** _power(thickness, radius) * move
     swapped = depths[:, 0] < depths[:, 1]
     moved[swapped] = moved[swapped, ::-1]
     return depths + moved
+
+
+def _of_equal_area(angles: np.ndarray) -> float:
+    """q, from the sum of the triangles between the centre and half of the polygon: its first corner,
+    at ``angles`` (k,) of zero, is on the arc, and the others are q times as far from the centre."""
+    heights = 0.5 * np.sin(np.diff(angles))
+    first, others = heights[0], heights[1:].sum()
+    # others q^2 + first q = pi / 8, the root without a division by zero
+    return 0.25 * np.pi / (first + math.sqrt(first**2 + 0.5 * np.pi * others))
 
 
 def _power(thickness: float, radius: float) -> float:
