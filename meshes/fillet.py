@@ -4,13 +4,15 @@ into an arc.
 Depths (a, b), measured inwards from the outer corner, become (a, b) + w m for a >= b, with the
 thickness t, the radius r and u = (a - t) / r, held between 0 and 1::
 
-    m = r (1 - u - sin f,  1 - cos f),  f = (1 - u) pi / 4        from the sharp wall to the arc
+    m = r (1 - u - q sin f,  1 - q cos f),  f = (1 - u) pi / 4    from the sharp wall to the fillet
     w = (min(a, t) b / t^2)^p                                     1 on the wall, 0 on the back
 
 and likewise with the axes exchanged. Points on the back and beyond the fillet stay, so mounts and
-walls keep their borders. At the middle of the arc three elements share the half circle of metal.
-With p, the lines that meet there are 15 degrees off the grid, so in the limit of small elements
-each has 60 degrees.
+walls keep their borders. The wall becomes a polygon around the centre of the fillet. q is 1 at its
+ends; between them it is a little more, so that the area of metal is that of the arc,
+(1 - pi / 4) r^2. At the middle of the fillet three elements share the half circle of metal. With p,
+the lines that meet there are 15 degrees off the grid, so in the limit of small elements each has
+60 degrees.
 """
 
 import math
@@ -25,7 +27,8 @@ def rounded(depths: np.ndarray, thickness: float, radius: float) -> np.ndarray:
     """Points (n,2) m of a section with a fillet of ``radius`` (m), from those ``depths`` (n,2) m of
     the sharp one; ``thickness`` (m) of the legs."""
     long, short = depths.max(axis=1), depths.min(axis=1)
-    along = np.clip((long - thickness) / radius, 0.0, 1.0)
+    # rounded, because the end of the fillet must stay on the wall
+    along = np.clip(np.round((long - thickness) / radius, 9), 0.0, 1.0)
     angle = 0.25 * np.pi * (1.0 - along)
     size = np.where(angle > 0.0, _of_equal_area(np.unique(angle)), 1.0)
     move = radius * np.stack(

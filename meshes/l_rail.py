@@ -121,9 +121,11 @@ def _check(geometry: LRailGeometry, element_size: float) -> None:
         or not 0.0 < geometry.thickness < geometry.leg
     ):
         raise ValueError(f"need 0 < thickness < leg and 0 < mount_width <= leg, got {geometry}")
-    most = min(fillet.LARGEST * geometry.thickness, geometry.leg - geometry.thickness - _TOUCH)
-    if not 0.0 <= geometry.fillet <= most + _TOUCH:
-        raise ValueError(f"need a fillet of 0 to {most:g} m, got {geometry.fillet!r}")
+    largest, inside = fillet.LARGEST * geometry.thickness, geometry.leg - geometry.thickness
+    if not 0.0 <= geometry.fillet <= largest + _TOUCH or geometry.fillet > inside - _TOUCH:
+        raise ValueError(
+            f"need a fillet of 0 to {largest:g} m, less than {inside:g} m, got {geometry.fillet!r}"
+        )
     if any(right < left - _TOUCH for left, right in itertools.pairwise(borders)) or length <= 0.0:
         raise ValueError(
             f"mount_spans must be in order and inside the length {length:g} m, got "
@@ -206,9 +208,7 @@ def _mirrored(points, hexes, surfaces):
     docstring)."""
     count = len(points)
     all_points = np.concatenate([points * (1, sign_y, sign_z) for sign_y, sign_z in _CORNERS])
-    all_hexes = [
-        _along_axes(hexes, *signs) + rail * count for rail, signs in enumerate(_CORNERS)
-    ]
+    all_hexes = [_along_axes(hexes, *signs) + rail * count for rail, signs in enumerate(_CORNERS)]
     all_surfaces = {
         name: np.concatenate([facets + rail * count for rail in range(len(_CORNERS))])
         for name, facets in surfaces.items()

@@ -137,6 +137,16 @@ def test_sensitive_is_the_reference_but_for_two_values():
     assert load("sensitive").hash == expected.hash
 
 
+def test_filleted_is_the_reference_but_for_corner_mounts_and_inset():
+    changes = {f"pads.{pad}.inset": "10 mm" for pad in range(8)}
+    changes |= {"rail.fillet": "2 mm", "rail.mount_stiffness.normal": "1e13 N/m**3"}
+    changes["rail.mount_stiffness.shear"] = "5e12 N/m**3"
+    assert load("filleted").hash == load("reference").replace(changes).hash
+    assert all(
+        key in load("filleted").provenance for key in ("rail.fillet", "rail.mount_stiffness")
+    )
+
+
 def test_tiny_is_short_and_its_rail_is_even():
     tiny, reference = load("tiny"), load("reference")
     assert (tiny.pads, tiny.payload, tiny.rail.material) == (

@@ -39,6 +39,34 @@ material = { density = "2810 kg/m**3", youngs_modulus = "72 GPa", poisson_ratio 
 """
 
 
+@pytest.mark.parametrize(
+    "fillet, expected",
+    [
+        ("0 mm", "greater than or equal to"),
+        ("5.1 mm", "at most 1.25 times the thickness, 0.005 m"),
+        ("3 mm", "less than the inside of the leg, 0.003 m"),
+    ],
+)
+def test_fillets_that_do_not_fit_the_section_are_refused(fillet, expected):
+    leg = "7 mm" if fillet == "3 mm" else "24 mm"
+    with pytest.raises(SceneError) as error:
+        parse(small(rail__fillet=fillet, rail__leg=leg))
+    (fault,) = error.value.faults
+    assert fault.key == "rail.fillet" and expected in fault.expected
+
+
+def test_a_sharp_section_has_the_hash_of_scenes_without_the_key():
+    """The largest fillets are taken in any unit. A fillet of a wrong leg is not a second fault."""
+    sharp = parse(small())
+    assert "fillet" not in sharp.physics()["rail"] and sharp.rail.fillet is None
+    found = {parse(small(rail__fillet=radius)).hash for radius in ("5 mm", "0.5 cm", "5000 um")}
+    assert len(found) == 1 and sharp.hash not in found
+    assert sharp.replace({"rail.fillet": "1 mm"}).replace({"rail.fillet": None}).hash == sharp.hash
+    with pytest.raises(SceneError) as error:
+        parse(small(rail__fillet="2 mm", rail__leg="0 mm"))
+    assert "rail.fillet" not in [fault.key for fault in error.value.faults]
+
+
 def test_presence_of_a_file_is_the_switch(file):
     assert isinstance(parse(small()).rail, SectionTable)
     assert isinstance(parse(meshed(file)).rail, MeshTable)

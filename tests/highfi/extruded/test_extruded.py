@@ -66,6 +66,7 @@ def both_forces(mesh):
     "mesh",
     [
         pytest.param(read(l_rail.build(l_rail.LRailGeometry(), 0.004)), id="L rails"),
+        pytest.param(read(l_rail.build(l_rail.LRailGeometry(fillet=0.002), 0.004)), id="fillets"),
         pytest.param(graded((6, 5, 4), (0.03, 0.02, 0.02)), id="no symmetry in the section"),
         pytest.param(block((3, 2, 2), (0.03, 0.02, 0.03)), id="three layers"),
         pytest.param(block((40, 3, 4), (0.6, 0.03, 0.04)), id="cantilever"),
