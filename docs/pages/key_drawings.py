@@ -12,6 +12,7 @@ from tipoff.studies.render.sketch import HEIGHT, WIDTH, View, svg
 from tipoff.studies.report.drawing import end_view, halves, rail_corner, side_view, thickness
 
 _SCENE = tipoff.load("reference")
+_FILLET = 0.004  # m, as drawn
 _LEFT = 20.0  # px, of titles
 
 
@@ -117,17 +118,18 @@ def _rail() -> View:
     return _titled(view, "[rail] from the side")
 
 
-def _zoomed(gap: float) -> View:
+def _zoomed(gap: float, fillet: float = 0.0) -> View:
     """The section of one rail around its corner of the payload, ``gap`` (m) off it."""
     _, b, c = halves(_SCENE)
     view = View((0.56 * WIDTH, 0.36 * HEIGHT), 5200.0, (b, c))
     view.box("payload", (b - 0.036, c - 0.036), (b, c))
-    rail_corner(view, (1.0, 1.0), (b + gap, c + gap), _SCENE.rail.leg, _SCENE.rail.thickness)
+    rail = _SCENE.rail
+    rail_corner(view, (1.0, 1.0), (b + gap, c + gap), rail.leg, rail.thickness, fillet)
     return view
 
 
 def _section() -> View:
-    view, (_, b, c), rail = _zoomed(0.0), halves(_SCENE), _SCENE.rail
+    view, (_, b, c), rail = _zoomed(0.0, _FILLET), halves(_SCENE), _SCENE.rail
     outer = (b + rail.thickness, c + rail.thickness)
     level = view.point(*outer)[1] - 16.0
     _across(view, {"leg": (outer[0] - rail.leg, outer[0])}, level, outer[1])
@@ -140,6 +142,10 @@ def _section() -> View:
     foot = view.point(b, outer[1] - rail.leg)[1] + 20.0
     _across(view, {"": (b, outer[0])}, foot, outer[1] - rail.leg)
     view.text((view.point(outer[0], 0.0)[0] + 6.0, foot + 4.0), "thickness", "start")
+    centre = view.point(b - _FILLET, c - _FILLET)
+    tip = view.point(*(place - _FILLET * (1.0 - math.sqrt(0.5)) for place in (b, c)))
+    view.arrow(centre, tip)
+    view.text((centre[0] - 6.0, centre[1] + 12.0), "fillet", "end")
     return _titled(view, "[rail], section of one rail from the open end")
 
 

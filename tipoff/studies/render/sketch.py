@@ -33,6 +33,21 @@ class View:
             f'height="{bottom - top:.1f}"/>'
         )
 
+    def corner(
+        self,
+        kind: str,
+        sharp: tuple[float, float],
+        ends: tuple[tuple[float, float], tuple[float, float]],
+        radius: float,
+    ) -> None:
+        """The area between a ``sharp`` corner and its fillet of ``radius`` between ``ends`` (m)."""
+        (a, b), (c, d), (e, f) = (self.point(*place) for place in (ends[0], sharp, ends[1]))
+        size, sweep = self.scale * radius, int((c - a) * (f - d) < (d - b) * (e - c))
+        self.shapes.append(
+            f'<path class="{kind}" d="M {a:.1f} {b:.1f} L {c:.1f} {d:.1f} L {e:.1f} {f:.1f} '
+            f'A {size:.1f} {size:.1f} 0 0 {sweep} {a:.1f} {b:.1f} z"/>'
+        )
+
     def arrow(
         self, begin: tuple[float, float], end: tuple[float, float], kind: str = "axis"
     ) -> None:

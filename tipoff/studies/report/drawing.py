@@ -102,7 +102,7 @@ def end_view(scene: Scene) -> View:
     for y in (-1.0, 1.0):
         for z in (-1.0, 1.0):
             if isinstance(scene.rail, SectionTable):
-                rail_corner(view, (y, z), (b, c), leg, wall)
+                rail_corner(view, (y, z), (b, c), leg, wall, scene.rail.fillet or 0.0)
     for pad in dict.fromkeys(
         (pad.position[1:], pad.normals, pad.width, pad.inset) for pad in scene.pads
     ):
@@ -146,9 +146,14 @@ _LEGEND = {
 
 
 def rail_corner(
-    view: View, signs: tuple[float, float], half: tuple[float, float], leg: float, wall: float
+    view: View,
+    signs: tuple[float, float],
+    half: tuple[float, float],
+    leg: float,
+    wall: float,
+    fillet: float = 0.0,
 ) -> None:
-    """The two legs of an L around one edge of the payload."""
+    """The two legs of an L around one edge of the payload, and the fillet between them (m)."""
     (y, z), (b, c) = signs, half
     spans = {
         "across": (sorted((y * b, y * (b + wall))), sorted((z * (c + wall), z * (c + wall - leg)))),
@@ -156,6 +161,9 @@ def rail_corner(
     }
     for (left, right), (bottom, top) in spans.values():
         view.box("rail", (left, bottom), (right, top))
+    if fillet:
+        ends = (y * (b - fillet), z * c), (y * b, z * (c - fillet))
+        view.corner("rail", (y * b, z * c), ends, fillet)
 
 
 def _pad(
