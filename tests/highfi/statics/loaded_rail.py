@@ -67,13 +67,15 @@ def solved(own: Rail, joint: MountStiffness | None) -> other.Solution:
 
 def _stress(own: Rail, moved: np.ndarray) -> float:
     """Largest von Mises stress (Pa) in the inner corner beside the middle of the patch, of the mean
-    over the elements at each node."""
+    over the elements at each node; NaN for a mesh without nodes there."""
     points, cells = own.mesh.points, own.mesh.cells
     outer = GEOMETRY.inner_corner_z + GEOMETRY.thickness
     inwards = outer - np.abs(points[:, 1:])
     near = abs(points[:, 0] - GEOMETRY.x_start - np.mean(other.PATCH_X)) < 1e-9
     near &= inwards.min(axis=1) > GEOMETRY.thickness - 1e-9
     near &= inwards.max(axis=1) < GEOMETRY.thickness + own.fillet + 1e-9
+    if not near.any():
+        return np.nan
     law = hexahedron.elasticity(*MATERIAL[1:])
     element, corner = np.nonzero(near[cells])
     strain = recovery.strain_matrix(points[cells[element]], law, recovery.NODES[corner])
