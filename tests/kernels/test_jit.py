@@ -11,9 +11,11 @@ import sys
 import tempfile
 from pathlib import Path
 
+import numpy as np
 import pytest
+from numba.core import event
 
-from tipoff.kernels import rotation
+from tipoff.kernels import jit, rotation
 from tipoff.kernels.jit import contains, entry, kernel
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -189,6 +191,32 @@ def test_python_calls_a_kernel_and_meets_its_exceptions():
     for call in (lambda: root(-1.0), lambda: sum_of_roots(1.0, -1.0)):
         with pytest.raises(ValueError, match="a negative number"):
             call()
+
+
+def test_functions_of_numba_are_compiled_once_for_all_kernels(monkeypatch):
+    """Numba finds them by the options of the kernel, whose comparison is our own. Control: no options
+    are equal."""
+
+    def compiled(number) -> int:
+        def lower(one, other):
+            return min(one, other)
+
+        def higher(one, other):
+            return -min(-one, -other)
+
+        low, high = kernel(lower), kernel(higher)
+
+        def both(one, other):
+            return low(one, other) + high(one, other)
+
+        with event.install_recorder("numba:compile") as seen:
+            assert entry(both)(number(2), number(3)) == 5
+        names = [one.data["dispatcher"].py_func.__qualname__ for _, one in seen.buffer]
+        return sum("ol_min" in name for name in names) // 2  # each begins and ends
+
+    assert compiled(float) == 1
+    monkeypatch.setattr(jit.Options, "__eq__", lambda one, other: one is other)
+    assert compiled(np.float32) == 2
 
 
 def test_comments_compile_nothing(project):

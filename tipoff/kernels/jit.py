@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, overload
 import numba
 from llvmlite.binding import Linkage
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler
+from numba.core.compiler import Compiler, Flags
 from numba.core.registry import CPUDispatcher
 
 from tipoff import sources
@@ -98,10 +98,24 @@ class _EntryLibrary(JITCodeLibrary):
         passes.run(self._final_module, options)
 
 
+class Options(Flags):
+    """Numba's options of a compilation, with a quick comparison: each call in a kernel makes
+    several. Those of Numba compare all defaults too, a seventh of the time to compile."""
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Options) and self._values == other._values
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self._values))
+
+
 class _PartCompiler(Compiler):
     """Numba's compiler with the library that is set here."""
 
     library: type[JITCodeLibrary] = _PartLibrary
+
+    def __init__(self, typing, target, library, arguments, returned, flags, local):
+        super().__init__(typing, target, library, arguments, returned, Options(flags), local)
 
     def define_pipelines(self) -> list:
         """Numba's passes."""

@@ -25,6 +25,7 @@ from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import NOMINAL, Scene
 from tipoff.workspace import words
 from tipoff.workspace.errors import StudyError as StudyError
+from tipoff.workspace.kernel_process import compiled_beside
 from tipoff.workspace.progress import say
 from tipoff.workspace.run import Run
 from tipoff.workspace.settings import Settings
@@ -145,13 +146,17 @@ class Study:
     ) -> RailCompliance | None:
         """Rail compliance under the pads of ``scene``, on elements of ``element_size`` (m; None:
         those of the reference). It is computed once for a rail with its pads and clearance, and
-        stored in this folder. None without contact."""
+        stored in this folder. The kernels of runs on it are compiled at the same time
+        (``workspace.kernel_process``). None without contact."""
         if scene.contact is None:
             return None
         from tipoff.calibration import rail_compliance  # slow to load
 
         size = element_size or self.settings.element_size
-        return rail_compliance.kept(scene, self.folder, size, say)
+        if rail_compliance.kept_file(scene, self.folder, size).exists():
+            return rail_compliance.kept(scene, self.folder, size, say)
+        with compiled_beside(scene, self.settings.workers):
+            return rail_compliance.kept(scene, self.folder, size, say)
 
     def rail_compliances(
         self, names: Iterable[str], element_size: float | None = None
@@ -175,14 +180,15 @@ class Study:
     def rigid_rails(self, scene: Scene) -> RailCompliance | None:
         """The rails of springs in ``scene``: rigid, with their offset if they are warm or from a file,
         else None."""
-        if scene.thermal is not None:
-            found = self.rail_compliance(scene)
-            return found and found.rigid()
-        if isinstance(scene.rail, SectionTable):
+        straight = isinstance(scene.rail, SectionTable) and scene.thermal is None
+        if scene.contact is None or straight:
             return None
         from tipoff.calibration import rail_compliance  # slow to load
 
-        return rail_compliance.walls(scene, self.settings.element_size)
+        size = self.settings.element_size
+        if scene.thermal is None:
+            return rail_compliance.walls(scene, size)
+        return rail_compliance.kept(scene, self.folder, size, say).rigid()
 
     def path(self, name: str) -> Path:
         """A file in the folder of this scene."""

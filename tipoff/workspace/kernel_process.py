@@ -1,0 +1,89 @@
+"""Kernels of compliant contact, compiled in a separate process while this one solves the statics of
+the rails. Both take many seconds, and one needs no result of the other: the kernels depend on the
+effects of a scene, but not on the values of its compliance.
+
+The process gets the scene as JSON on its standard input and leaves its kernels in the cache. If it
+fails, the run compiles them.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+
+import numpy as np
+
+from tipoff.mechanics import scene_model
+from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest
+from tipoff.scenes import parse
+from tipoff.scenes.effects.thermal import FIELDS
+from tipoff.scenes.rail import SectionTable
+from tipoff.scenes.scene import Scene
+from tipoff.workspace import kernel_marks, machine
+from tipoff.workspace.compiling import warm_up
+from tipoff.workspace.run import Run
+
+
+@contextmanager
+def compiled_beside(scene: Scene, workers: int) -> Iterator[None]:
+    """Compile the kernels of compliant contact for ``scene`` in a process during the block, and wait
+    for it at the end. An exception in the block, such as Ctrl-C, ends the process.
+
+    Does nothing if the kernels are there, with one of ``workers``, on one core, and for a rail from
+    a file: whether its walls are straight is not known before it is meshed.
+    """
+    if min(workers, machine.cores()) < 2 or not isinstance(scene.rail, SectionTable):
+        yield
+        return
+    run = request(scene)
+    if kernel_marks.are_there(run):
+        yield
+        return
+    kernel_marks.announce(run)
+    process = subprocess.Popen(
+        [sys.executable, "-c", f"from {__name__} import main; main()"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+    )
+    assert process.stdin is not None
+    try:
+        with suppress(BrokenPipeError), process.stdin as order:  # it may have ended
+            json.dump(run.scene.resolved(), order)
+        yield
+        if process.wait() == 0:
+            kernel_marks.remember(run)
+    finally:
+        process.kill()
+        process.wait()
+
+
+def main() -> None:
+    """Compile the kernels of the scene on standard input."""
+    warm_up(request(parse(json.load(sys.stdin), bare_numbers_are_si=True)))
+
+
+def request(scene: Scene) -> Run:
+    """A run of ``scene`` with the kernels of any of its runs on compliant contact that begin without
+    modes of the rails. Its walls do not yield."""
+    from tipoff import lowfi
+
+    if scene.rail.mount_stiffness is not None:
+        scene = scene.replace({"rail.mount_stiffness.factor": 1.0})
+    faces = scene_model.built(scene).nominal
+    count = faces.axis.size
+    still = RailCompliance(
+        travel=np.array([0.0, 1.0]),
+        flexibility=np.zeros((2, count, PATTERNS, count, PATTERNS)),
+        rail=np.zeros(count, dtype=np.int64),
+        half=scene_model.half_sizes(faces),
+        frequency=np.zeros((1, 0)),
+        shape=np.zeros((2, count, PATTERNS, 0)),
+        made_for=digest(scene),
+        warm=None if scene.thermal is None else np.zeros((FIELDS, 2, count, PATTERNS)),
+    )
+    return Run("lowfi", scene.name, scene, lowfi.Numerics(), compliance=still)
