@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tipoff.cards import Carded
+from tipoff.scenes import ends
 from tipoff.scenes.effects import thrust_law
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ class Shown(Carded):
         from tipoff import plots  # slow to load
 
         time = np.linspace(0.0, self.expected_end, _PLOTTED)
-        force = thrust_law.sample(self.thrust.record(), time)
+        force = thrust_law.sample(ends.over_time(self), time)
         across = ("time after ignition (ms)", 1e3 * time)
         return plots.lines(across, "thrust (N)", [("thrust", force)], self.name, axes)
 
@@ -79,7 +80,7 @@ def facts(scene: "Scene") -> dict[str, str]:
 
 
 def _thrust(scene: "Scene") -> str:
-    record = scene.thrust.record()
+    record = ends.over_time(scene)
     peak, whole = (law(record, scene.time_limit) for law in (thrust_law.peak, thrust_law.impulse))
     return f"{scene.thrust.kind}, peak {peak:.4g} N, impulse {whole:.4g} N*s within the duration"
 

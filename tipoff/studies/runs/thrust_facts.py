@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from tipoff.scenes import ends
 from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.effects.measured import GaussianFit
 from tipoff.scenes.effects.thrust import GaussiansTable, GaussianTable
@@ -13,7 +14,7 @@ from tipoff.studies.render.table import Table
 
 def thrust_facts(scene: Scene) -> Table:
     """Impulse, its share outside the duration or the cutoff, and the fit of a measured curve."""
-    record = scene.thrust.record()
+    record = ends.over_time(scene)
     delivered = thrust_law.impulse(record, scene.time_limit)
     rows = [
         ("impulse delivered within the scene", f"{delivered:.6g} N s"),
