@@ -74,7 +74,8 @@ def limit(scene: Any) -> float:
         slowest = max(slowest, getattr(scene.friction, "static_speed", 0.0))
     coasting = max(way(scene), 0.0) / slowest
     if (pull := -_pull(scene)) > 0.0:
-        fastest = max(_begun(scene), 0.0) + _pushed(record) / scene.payload.mass
+        pushed_on = _pushed(_law(scene, _fixed_gain(scene), 0.0))
+        fastest = max(_begun(scene), 0.0) + pushed_on / scene.payload.mass
         coasting = min(coasting, 2.0 * fastest / pull)
     # A payload that springs push is faster than this soon, or jammed.
     start = slides(scene, slowest) if isinstance(scene.thrust, PushedTable) else 0.0
@@ -211,11 +212,11 @@ def nominal_way(scene: Any) -> float:
     return scene.rail.end - min(pad.position[0] - 0.5 * pad.length for pad in scene.pads)
 
 
-def require_strokes(thrust: Any, tables: dict[str, Any]) -> None:
-    """Refuse springs with a stroke that ends beyond the exit. ``tables`` are the tables of a scene
-    that are valid so far."""
+def with_strokes_on_the_rail(thrust: Any, tables: dict[str, Any]) -> Any:
+    """The table ``thrust``; refuses springs with a stroke that ends beyond the exit. ``tables`` are
+    the tables of a scene that are valid so far."""
     if not {"pads", "rail"} <= tables.keys():  # these have other faults
-        return
+        return thrust
     if wrong := strokes_too_long(SimpleNamespace(**tables, thrust=thrust)):
         strokes = {key: spring.push().travel[-1] for key, spring in thrust.named()}
         raise within(
@@ -223,6 +224,7 @@ def require_strokes(thrust: Any, tables: dict[str, Any]) -> None:
             ", ".join(f"{strokes[key]:g} m" for key, _ in wrong),
             f"at most {wrong[0][1]:.6g} m, the way to the exit: a pusher reaches its stop on the rail",
         )
+    return thrust
 
 
 def strokes_too_long(scene: Any) -> list[tuple[str, float]]:

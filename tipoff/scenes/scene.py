@@ -115,8 +115,7 @@ class Scene(shown.Shown, ends.Timed, Table):
     @field_validator("thrust")
     @classmethod
     def _within_the_rail(cls, thrust: ThrustTable, info: ValidationInfo):
-        ends.require_strokes(thrust, info.data)
-        return thrust
+        return ends.with_strokes_on_the_rail(thrust, info.data)
 
     @field_validator("thermal")
     @classmethod
@@ -255,9 +254,8 @@ class Scene(shown.Shown, ends.Timed, Table):
     def agrees(self) -> bool:
         """Whether valid tables fit each other: rails have an expansion if there is a temperature,
         the sampling interval fits the duration, and strokes end on the rail."""
-        return ends.fits(self) and (
-            self.thermal is None or self.rail.material.expansion is not None
-        )
+        expands = self.thermal is None or self.rail.material.expansion is not None
+        return expands and ends.fits(self)
 
     def absent_effects(self) -> list[str]:
         """Dotted keys of the effect tables that this scene does not have.
