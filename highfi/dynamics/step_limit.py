@@ -91,7 +91,7 @@ def damping_ratio(damping: Damping | None, rail: float, contact: float, more: fl
     rates = more
     if damping is not None:
         rates += damping.mass_rate + damping.stiffness_time * rail**2
-    return 0.5 * rates / np.sqrt(rail**2 + contact) if rates else 0.0
+    return float(0.5 * rates / np.sqrt(rail**2 + contact)) if rates else 0.0
 
 
 def step_limit(damping: Damping | None, rail: float, contact: float, more: float = 0.0) -> float:
