@@ -222,20 +222,27 @@ class PushedTable(Table):
     def describe(self, duration: float) -> dict[str, float | str]:
         """The thrust for results and report: numbers in SI by name, and a sentence, ``text``. They
         do not depend on ``duration``."""
-        pushes = self.pushes()
-        longest = max(float(push.travel[-1]) for push, _ in pushes)
-        text = (
-            f"{self.kind}, {len(pushes)} of them; energy {self.energy():.7g} J over strokes of up to "
-            f"{longest:.6g} m, of which friction takes {self.friction_loss():.7g} J"
-        )
         return {
             "kind": self.kind,
             "peak_N": self.peak(),
             "energy_J": self.energy(),
             "friction_J": self.friction_loss(),
-            "stroke_m": longest,
-            "text": text,
+            "stroke_m": self.longest(),
+            "text": self.words(),
         }
+
+    def longest(self) -> float:
+        """The longest stroke (m)."""
+        return max(float(push.travel[-1]) for push, _ in self.pushes())
+
+    def words(self) -> str:
+        """The springs in words."""
+        count = len(self.pushes())
+        return (
+            f"{self.kind}{f', {count} of them' if count > 1 else ''}, {self.peak():.4g} N at most, "
+            f"energy {self.energy():.7g} J over a stroke of {1e3 * self.longest():.6g} mm, of which "
+            f"friction of the pusher takes {self.friction_loss():.7g} J"
+        )
 
     def contents(self) -> tuple[dict, list[list[float]]]:
         """The table without paths, and the points of its files, for the hash of a scene."""
