@@ -27,6 +27,7 @@ from tipoff.scenes.rounding import at_most, below
 from tipoff.scenes.tables import MOST_SAMPLES, OutputTable
 from tipoff.scenes.units import LONGEST
 
+EXIT_WINDOW = 2e-4  # s, from the exit on
 SETTLE_DELAY = 1e-3  # s, from the exit to the settled window
 SETTLE_WINDOW = 2e-3  # s
 JAM_DURATION = 5e-3  # s
