@@ -14,6 +14,7 @@ from tipoff.calibration.discrepancy import VELOCITY, Curve, deviations, likelies
 from tipoff.calibration.objective import Target, sampled
 from tipoff.calibration.refine import STEP, UNIT
 from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes import ends
 from tipoff.scenes.effects import thrust
 
 _GRID = 201
@@ -41,7 +42,7 @@ class Offset(NamedTuple):
 def estimate(wanted: Target, run: Trajectory) -> Offset:
     """The offset of the curves ``wanted`` from a run, at most the duration of the thrust in both
     directions."""
-    (limit,) = thrust.burnouts(wanted.scene.thrust.record(), (1e-3,), wanted.scene.time_limit)
+    (limit,) = thrust.burnouts(ends.over_time(wanted.scene), (1e-3,), wanted.scene.time_limit)
     limit = float(min(limit, 0.5 * wanted.time[-1]))
 
     def squares(offset: float) -> float:

@@ -1,7 +1,7 @@
 """Effects in the compiled time loop of a scene, read from its machine code."""
 
 from tipoff.highfi.contact import cells
-from tipoff.highfi.dynamics import damping, loads, mounts
+from tipoff.highfi.dynamics import damping, loads, mounts, pushers
 from tipoff.highfi.dynamics.setup import set_up
 from tipoff.highfi.dynamics.step import ADVANCE, Task, perform
 from tipoff.highfi.dynamics.step_size import choose
@@ -25,6 +25,7 @@ LAWS = {
     "rail.damping": damping._damp_component,
     "rail.mount_stiffness": mounts._force,
     "thrust_offset": loads._offset_line,
+    "pushers": pushers._load,
 }
 
 

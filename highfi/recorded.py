@@ -4,10 +4,21 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from tipoff.highfi.dynamics import pushers
 from tipoff.highfi.dynamics.stepper import Stepper, Taken
+from tipoff.highfi.state.records import TOTAL
 from tipoff.highfi.stress import monitor
 from tipoff.highfi.stress.peak import Peak, no_peak
 from tipoff.kernels import rotation
+
+
+def _work(stepper: Stepper) -> np.ndarray:
+    """Work (2,) J since ignition. That of pushers comes from their potential; its difference from
+    the integrated one counts as axial, because it is an error of the axial motion."""
+    found, law = stepper.state.work.copy(), stepper.setup.system.pushers
+    if law is not None and stepper.state.pushing is not None:
+        found["thrust"] += pushers.work(law, stepper.state.pushing) - found["thrust"][TOTAL]
+    return found
 
 
 @dataclass
@@ -37,7 +48,7 @@ class Recorded:
         """Store the sample ``row`` (``observe``), with forces and stresses."""
         state = stepper.state
         self.rows.append(row)
-        self.work.append(state.work.copy())
+        self.work.append(_work(stepper))
         self.forces.append(state.face_force @ rotation.single(state.platform.quaternion).T)
         setup, rests = stepper.setup, stepper.rests
         if setup.monitor.patch is not None:

@@ -2,6 +2,7 @@
 
 from tipoff.kernels.compiled import effects
 from tipoff.kernels.jit import machine_code
+from tipoff.lowfi import pushers
 from tipoff.lowfi.contact import springs, stick_slip, thermal_offset
 from tipoff.lowfi.contact.compliant import modes, solution
 from tipoff.lowfi.dynamics import equations
@@ -24,6 +25,7 @@ LAWS = {
     BODY_FORCE: equations._add_body_force,
     "platform": springs._relative_turn,
     "thrust_offset": equations._offset_line,
+    "pushers": pushers.push_of,
     "thermal": thermal_offset.offset_and_slope,
 }
 

@@ -130,7 +130,10 @@ class SingleRun:
 
     def judged(self) -> tuple[str, outcome.Outcome]:
         """Status and outcome of the run so far, in the frame of the solution."""
-        return ("diverged", outcome.Outcome()) if self.message else ending.found(self.loop.book)
+        if self.message:
+            return "diverged", outcome.Outcome()
+        status, found = ending.found(self.loop.book)
+        return status, outcome.with_impulse(found, self.model)
 
     def motion(self) -> outcome.Motion:
         """Motion of the samples so far, in the frame of the solution (``mechanics.comoving``)."""

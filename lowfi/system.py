@@ -9,6 +9,7 @@ from tipoff.lowfi import faces
 from tipoff.lowfi.contact.compliant.neglected import Neglected
 from tipoff.lowfi.contact.compliant.record import Compliance
 from tipoff.lowfi.contact.thermal_offset import ThermalOffset
+from tipoff.lowfi.pushers import Pushing, pushing
 from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.effects.body_force import BodyForce
 from tipoff.scenes.effects.contact import ContactLaw
@@ -44,7 +45,8 @@ class System(NamedTuple):
     faces: np.ndarray  # (f, faces.FACE_SIZE)
     rail_start: float  # m, X of the rear end
     rail_end: float  # m, X of the open end
-    thrust: Thrust
+    thrust: Thrust  # over time
+    pushing: Pushing | None  # thrust over travel
     reacts_on_platform: bool  # whether the platform takes the reaction of the thrust
     thrust_offset: ThrustOffset | None
     contact: Contact | None  # contact springs
@@ -79,6 +81,7 @@ def build(
         rail_start=float(model.rail_start),
         rail_end=float(model.rail_end),
         thrust=model.thrust,
+        pushing=pushing(model.pushers),
         reacts_on_platform=model.reacts_on_platform,
         thrust_offset=model.thrust_offset,
         contact=contact,

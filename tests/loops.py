@@ -7,7 +7,8 @@ from tests.highfi.contact.test_deformed_wall import Pressed
 from tests.highfi.dynamics.test_mounts import DAMPED, SOFT
 from tests.highfi.support import COARSE, begun, tiny
 from tests.lowfi.compliance import REFERENCE, reference_compliance
-from tests.lowfi.support import PAPER_PAD, scene
+from tests.lowfi.support import IMMOVABLE, PAPER_PAD, scene
+from tests.pushed import SPRING
 from tipoff import highfi, lowfi
 
 LINEAR = {"law": "linear", "clearance": 1e-5, "stiffness": 7e7, "damping": 0.0}
@@ -135,6 +136,16 @@ def free_payload() -> None:
     lowfi.run(REFERENCE.replace(FIXED | {"contact": None, "friction": None}), "springs")
 
 
+def pushed_payload() -> None:
+    """A payload without contact that springs push from a platform."""
+    lowfi.run(scene(1e-3, 1e-3, thrust=SPRING, platform=IMMOVABLE), "springs")
+
+
+def pushed_from_rails() -> None:
+    """The same in the reference."""
+    begun(tiny(contact=None, friction=None, thrust=SPRING))
+
+
 # Runs that watch modes, or choose them, have the same kernels.
 COMPLIANT = (four_modes, without_modes, weight_without_modes)
 FINITE_ELEMENTS = (
@@ -145,6 +156,7 @@ FINITE_ELEMENTS = (
     rails_on_joints,
     hexahedra,
     tetrahedra,
+    pushed_from_rails,
 )
 BODIES = (
     body_on_impact,
@@ -154,5 +166,5 @@ BODIES = (
     body_that_sticks_to_a_platform,
     free_body,
 )
-PAYLOADS = (springs, springs_on_a_fixed_platform, free_payload, two_free_bodies)
+PAYLOADS = (springs, springs_on_a_fixed_platform, free_payload, two_free_bodies, pushed_payload)
 FAMILIES = (FINITE_ELEMENTS, COMPLIANT, BODIES, PAYLOADS)  # the longest first

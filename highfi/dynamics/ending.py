@@ -23,14 +23,16 @@ from tipoff.mechanics.ending import (
     DONE,
     EXCESS,
     EXIT,
+    LEAVING,
     NOW,
     PAST,
     PLACE,
     ROW_SIZE,
+    SETTLED,
     SPEED,
     SPIN,
 )
-from tipoff.mechanics.outcome import Outcome
+from tipoff.mechanics.outcome import Outcome, with_impulse
 
 
 def place(system: System) -> Exit:
@@ -58,7 +60,8 @@ def found(system: System, book: np.ndarray) -> tuple[str, Outcome]:
     if book[DONE] < np.inf:
         whole[base + PLACE : base + SPEED] = moved.platform_position[0]
         whole[base + SPEED : base + ATTITUDE] = moved.platform_velocity[0]
-    return books.found(whole)
+    status, result = books.found(whole)
+    return status, with_impulse(result, system.model)
 
 
 @inlined
@@ -86,9 +89,10 @@ def follow(constants, state, book, began):
         else:
             _check_speed(book, marks, began, dt)
     if book[EXIT] < np.inf:
-        low, high = books.part_in_window(book, began, began + dt)
-        if high > low:
-            books.count(book, book[NOW:], high - low)
+        for window in (LEAVING, SETTLED):
+            low, high = books.part_in(book, window, began, began + dt)
+            if high > low:
+                books.count(book, window, book[NOW:], high - low)
         books.close(book, began + dt)
     book[PAST] = past
     _keep(book)

@@ -7,6 +7,7 @@ smooth.
 """
 
 from tipoff.highfi.contact.pads import friction_power
+from tipoff.highfi.dynamics.pushers import work_of_pushers
 from tipoff.highfi.state.pose import body_matrix, body_rate, origin_of_frame, triple
 from tipoff.highfi.state.records import AXIAL, TOTAL
 from tipoff.kernels import rotation
@@ -84,8 +85,26 @@ def add_work(constants, state, active, pose, thrust, ahead):
     total.friction -= half * friction_power(
         constants.friction, constants, state, active, pose, acceleration, ahead
     )
+    _pusher_work(constants.pushers, constants, state, pose)
     _platform_work(constants.frame, constants, state, pose.frame, thrust, (normal, drag))
     _body_force_work(constants.body_force, constants, state, pose.frame)
+
+
+@inlined
+def _pusher_work(pushers, constants, state, pose):
+    if pushers is not None:
+        speed = _axial_speed(constants.frame, state, pose.frame)
+        half = 0.5 * constants.dt
+        work_of_pushers(pushers, constants.frame, state, pose, speed, half)
+
+
+@kernel
+def _axial_speed(frame, state, base):
+    """X velocity (m/s) of the payload's mass centre relative to that of platform and rails."""
+    speed = state.payload.velocity[0]
+    if frame is not None:
+        speed -= axial_velocity_of_platform(state, frame, base)
+    return speed
 
 
 @inlined

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tipoff.highfi.dynamics.step_limit import of_pushers
 from tipoff.highfi.dynamics.step_size import Stepping, raster_steps
 from tipoff.highfi.dynamics.system import System, moving_walls
 from tipoff.highfi.mesh import pieces
@@ -77,7 +78,7 @@ def build(scene: Scene, system: System, stepping: Stepping) -> Rails | None:
         size=size,
         frequency=np.where(np.isfinite(lowest), lowest, 0.0),
         # Samples may be at any multiple of the raster, so long steps must not pass it.
-        stride=_stride(system.model.thrust, stepping.dt_s, raster),
+        stride=_stride(system, stepping.dt_s, raster),
         jumps=_jumps(system.model.thrust, scene.time_limit),
     )
 
@@ -100,11 +101,15 @@ def _groups(system: System, parts: list[np.ndarray]) -> np.ndarray:
     return reached
 
 
-def _stride(law: thrust.Thrust, step: float, raster: int) -> int:
+def _stride(system: System, step: float, raster: int) -> int:
     """Largest number of steps (s) in a long step that divides the ``raster`` and resolves the
     thrust."""
+    law, pushers = system.model.thrust, of_pushers(system)
     share = 1.0 if law.pulses is None else _SHARE_OF_PULSE
-    most = min(_MOST_STRIDE, int(share * thrust.shortest_feature(law) / step))
+    resolved = share * thrust.shortest_feature(law)
+    if (fastest := pushers.damping + np.sqrt(pushers.stiffness)) > 0.0:
+        resolved = min(resolved, _SHARE_OF_PULSE / fastest)
+    most = int(min(_MOST_STRIDE, resolved / step))
     return max((k for k in range(1, most + 1) if raster % k == 0), default=1)
 
 

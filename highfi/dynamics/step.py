@@ -40,6 +40,7 @@ from tipoff.highfi.dynamics.loads import (
     thrust_load,
 )
 from tipoff.highfi.dynamics.mounts import collect_mounts
+from tipoff.highfi.dynamics.pushers import begin_pushers, kick_pushers, load_pushers
 from tipoff.highfi.state.nodes import kick_nodes
 from tipoff.highfi.state.pose import drift_body, less, pose_in_frame, small_turn, triple
 from tipoff.highfi.state.threads import barrier, reset_queue
@@ -92,6 +93,7 @@ def _evaluate(constants, state, active, team):
     reset_queue(team)
     contact_forces(constants.interface_stiffness, constants, state, active, pose, team)
     collect(constants.interface_stiffness, constants, state, active)
+    begin_pushers(constants.pushers, constants.frame, state, pose)
 
 
 @inlined
@@ -140,6 +142,7 @@ def _kick_bodies(constants, state, pose, thrust, dt):
         state.rail_momentum[i] += dt * (total[i] + constants.drive.moving_mass * acceleration[i])
     _kick_payload(constants, state, pose, thrust, dt)
     _kick_platform(constants.frame, constants, state, pose, (force, couple), thrust, dt)
+    kick_pushers(constants.pushers, constants, state, pose, dt)
 
 
 @inlined
@@ -235,6 +238,7 @@ def _advance(constants, state, active, book, team, thread, task):
         barrier(team)
         if thread == 0:
             collect(constants.interface_stiffness, constants, state, active)
+            load_pushers(constants.pushers, frame, state, pose)
             thrust = thrust_load(constants, state, (n + task.stride) * unit)
             add_work(constants, state, active, pose, thrust, 0.0)
         taken += 1

@@ -33,10 +33,14 @@ during the run (``dynamics.substeps``). Rail frequencies are for mounts that do 
 platform may raise them by the share m_rail / m_platform, which the safety factor covers.
 """
 
+import itertools
+from typing import NamedTuple
+
 import numpy as np
 
 from tipoff.highfi.dynamics.stable_step import critical_step
 from tipoff.highfi.dynamics.system import System
+from tipoff.scenes.effects.pusher_law import SLOW
 from tipoff.scenes.effects.structural_damping import Damping
 
 
@@ -53,18 +57,47 @@ def contact_frequency_squared(system: System) -> float:
     )
 
 
-def damping_ratio(damping: Damping | None, rail: float, contact: float) -> float:
+class Bound(NamedTuple):
+    """Upper bounds of contributions to M^-1 K and M^-1 C."""
+
+    stiffness: float  # 1/s2
+    damping: float  # 1/s
+
+
+def of_pushers(system: System) -> Bound:
+    """Bounds of the contribution of spring pushers: the sums of their slopes of force over travel,
+    and of friction over speed, times the inverse mass of payload and platform at their points."""
+    pushers, payload, frame = system.pushers, system.model.payload, system.frame
+    if pushers is None:
+        return Bound(0.0, 0.0)
+    reach = (pushers.point**2).sum(axis=1)
+    inverse = 1.0 / payload.mass + reach * np.linalg.eigvalsh(payload.inverse_inertia)[-1]
+    if frame is not None:
+        # A payload on its rails is nowhere farther from the platform than at either end.
+        place = pushers.point + payload.mass_centre + system.body_offset
+        far = np.linalg.norm(place, axis=1) + float(np.ptp(system.rail.points[:, 0]))
+        inverse += 1.0 / frame.mass + far**2 * np.linalg.eigvalsh(frame.inverse_inertia)[-1]
+    steepest = [
+        np.abs(np.diff(pushers.force[begin:end]) / np.diff(pushers.travel[begin:end])).max()
+        for begin, end in itertools.pairwise(pushers.first)
+    ]
+    return Bound(float(steepest @ inverse), float(pushers.friction @ inverse) / SLOW)
+
+
+def damping_ratio(damping: Damping | None, rail: float, contact: float, more: float = 0.0) -> float:
     """Ratio z for the limit ``critical_step(w, z)`` of rails with the highest frequency ``rail``
-    (rad/s) and a ``contact`` contribution (1/s2) to its square, w^2 = rail^2 + contact; zero
-    without damping."""
-    if damping is None:
-        return 0.0
-    return 0.5 * (damping.mass_rate + damping.stiffness_time * rail**2) / np.sqrt(rail**2 + contact)
+    (rad/s), a ``contact`` contribution (1/s2) to its square, w^2 = rail^2 + contact, and ``more``
+    damping (1/s)."""
+    rates = more
+    if damping is not None:
+        rates += damping.mass_rate + damping.stiffness_time * rail**2
+    return float(0.5 * rates / np.sqrt(rail**2 + contact)) if rates else 0.0
 
 
-def step_limit(damping: Damping | None, rail: float, contact: float) -> float:
-    """Largest stable step (s) without friction; see ``damping_ratio``."""
-    return critical_step(float(np.sqrt(rail**2 + contact)), damping_ratio(damping, rail, contact))
+def step_limit(damping: Damping | None, rail: float, contact: float, more: float = 0.0) -> float:
+    """Largest stable step (s) without friction at the rails; see ``damping_ratio``."""
+    ratio = damping_ratio(damping, rail, contact, more)
+    return critical_step(float(np.sqrt(rail**2 + contact)), ratio)
 
 
 def used(step: float, limit: float, ratio: float) -> float:

@@ -11,6 +11,7 @@ from tipoff.highfi.dynamics import stable_step
 from tipoff.highfi.dynamics.step_limit import (
     contact_frequency_squared,
     damping_ratio,
+    of_pushers,
     step_limit,
     used,
 )
@@ -53,7 +54,8 @@ def raster_steps(stepping: Stepping, interval: float) -> int:
 
 def choose(system: System, scene: Scene, numerics: Numerics) -> Stepping:
     """Step of a run. Raises StepError when ``numerics.step`` is above the limit."""
-    contact = contact_frequency_squared(system)
+    pushers = of_pushers(system)
+    contact = contact_frequency_squared(system) + pushers.stiffness
     by_elements = stable_step.element_bound(system.operator)
     # A rail whose nodes are all clamped has no frequency.
     assembled = (
@@ -62,7 +64,9 @@ def choose(system: System, scene: Scene, numerics: Numerics) -> Stepping:
         else by_elements
     )
     damping = system.rail.damping
-    limit, by_elements = (step_limit(damping, rail, contact) for rail in (assembled, by_elements))
+    limit, by_elements = (
+        step_limit(damping, rail, contact, pushers.damping) for rail in (assembled, by_elements)
+    )
     interval = scene.output.interval
     divided = interval if numerics.step else _divided(interval, numerics.safety * limit)
     step = stable_step.choose_step(limit, numerics.safety, divided, numerics.step)
@@ -72,7 +76,7 @@ def choose(system: System, scene: Scene, numerics: Numerics) -> Stepping:
         dt_element_s=by_elements,
         safety=numerics.safety,
         steps_per_sample=round(interval / step),
-        damping_ratio=damping_ratio(damping, assembled, contact),
+        damping_ratio=damping_ratio(damping, assembled, contact, pushers.damping),
     )
 
 

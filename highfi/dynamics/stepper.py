@@ -94,6 +94,7 @@ class Stepper:
             frame=s.frame,
             drive=s.drive,
             thrust=m.thrust,
+            pushers=s.pushers,
             thrust_offset=m.thrust_offset,
             interface_stiffness=m.interface_stiffness,
             friction=m.friction,  # type: ignore[arg-type]  # sticking is refused by prepare

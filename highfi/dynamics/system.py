@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.highfi.contact import surface
-from tipoff.highfi.dynamics import mounts
+from tipoff.highfi.dynamics import mounts, pushers
 from tipoff.highfi.extruded import mesh as extruded
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
@@ -15,6 +15,7 @@ from tipoff.kernels import rotation
 from tipoff.kernels.memory import zeros
 from tipoff.mechanics import comoving, scene_model
 from tipoff.scenes.body import inverse, tensor
+from tipoff.scenes.effects.pusher_law import Pushers
 from tipoff.scenes.effects.structural_damping import Damping
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
@@ -38,6 +39,7 @@ class System(NamedTuple):
     faces: scene_model.Faces
     frame: records.Frame | None  # None: fixed platform
     drive: records.Drive
+    pushers: Pushers | None  # in frame axes from the frame's origin
     origin: np.ndarray  # (3,) m, the frame's origin at ignition in scene axes
     body_offset: np.ndarray  # (3,) m, from the frame's origin to the platform's mass centre
     warm: np.ndarray | None  # (n,3) m, thermal displacement of the nodal arrays, or None
@@ -84,10 +86,19 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
         faces=faces,
         frame=frame,
         drive=drive,
+        pushers=_from_origin(model.pushers, offset),
         origin=origin,
         body_offset=offset,
         warm=warm,
     )
+
+
+def _from_origin(found: Pushers | None, offset: np.ndarray) -> Pushers | None:
+    """Pushers with places from the frame's origin, ``offset`` (3,) m from which the platform's mass
+    centre is."""
+    if found is None:
+        return None
+    return found._replace(origin=found.origin + offset @ np.array(found.direction))
 
 
 def moving_walls(surfaces: records.Surface, moving_mass: np.ndarray) -> np.ndarray:
@@ -261,6 +272,7 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
         impulse=np.zeros(6),
         face_force=np.zeros((system.faces.axis.size, 3)),
         history=_history(system.rail, nodes, blocks),
+        pushing=pushers.new_state(system.pushers),
     )
     return state, _active(system, groups)
 

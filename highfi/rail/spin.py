@@ -18,6 +18,7 @@ from tipoff.highfi.rail.scene_mesh import geometry, make_mesh
 from tipoff.highfi.rail.step_cost import spacing
 from tipoff.highfi.statics import held
 from tipoff.mechanics import scene_model
+from tipoff.scenes import ends
 from tipoff.scenes.effects import thrust
 from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from tipoff.scenes.faults import Fault, SceneError
@@ -40,6 +41,12 @@ def expected_rate(scene: Scene) -> float:
     rate = float(np.linalg.norm(model.initial.platform_rate))
     if not model.reacts_on_platform:
         return rate
+    centre = np.subtract(model.payload.mass_centre, model.platform.mass_centre)
+    if model.pushers is not None:
+        pushes = model.pushers
+        turning = np.cross(pushes.point + centre, pushes.direction)
+        kick = model.platform.inverse_inertia @ (ends.spring_impulses(scene) @ turning)
+        return rate + float(np.linalg.norm(kick))
     offset = model.thrust_offset
     place = np.array([-model.thrust_arm, 0.0, 0.0]) if offset is None else np.array(offset.arm)
     direction = np.array([1.0, 0.0, 0.0]) if offset is None else np.array(offset.direction)

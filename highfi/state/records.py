@@ -20,6 +20,7 @@ from tipoff.mechanics.outcome import Milestones
 from tipoff.mechanics.scene_model import Faces, Payload
 from tipoff.scenes.effects.body_force import BodyForce
 from tipoff.scenes.effects.friction import Friction
+from tipoff.scenes.effects.pusher_law import Pushers
 from tipoff.scenes.effects.structural_damping import Damping
 from tipoff.scenes.effects.thrust_law import Thrust
 from tipoff.scenes.effects.thrust_offset import ThrustOffset
@@ -147,7 +148,8 @@ class Constants(NamedTuple):
     payload: Payload
     frame: Frame | None  # None: fixed platform
     drive: Drive
-    thrust: Thrust
+    thrust: Thrust  # over time
+    pushers: Pushers | None  # thrust over travel, in frame axes from the frame's origin
     thrust_offset: ThrustOffset | None
     interface_stiffness: float | None  # N/m3, contact pressure over penetration
     friction: Friction | None
@@ -193,6 +195,17 @@ class History(NamedTuple):
 
 
 @by_reference
+class Pushing(NamedTuple):
+    """Values of n spring pushers at the present places."""
+
+    segment: np.ndarray  # (n,) number of the segment of each, -1 before the first evaluation
+    travel: np.ndarray  # (n,) m
+    force: np.ndarray  # (n,) N, of the springs
+    friction: np.ndarray  # (n,) N, of the pushers, against the motion
+    begun: np.ndarray  # (1,) J, given up from zero travel to ignition
+
+
+@by_reference
 class Stepped(NamedTuple):
     """Blocks of the rails that do not rest."""
 
@@ -224,6 +237,7 @@ class State(NamedTuple):
     impulse: np.ndarray  # (6,) N s and N m s, external, about the scene origin
     face_force: np.ndarray  # (f,3) N on the payload in frame axes
     history: History | None  # None without structural damping
+    pushing: Pushing | None  # None without spring pushers
 
 
 @by_reference

@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.kernels.jit import entry, kernel
+from tipoff.lowfi import pushers
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip
 from tipoff.lowfi.contact.compliant.modes import energies
@@ -62,12 +63,13 @@ def _balances(system, loop, surveyed, in_compliance, state):
     )
     kinetic += more + vibrating
     axial += more_axial
-    work = state[slot.THRUST] + state[slot.BODY_FORCE]
+    thrust = pushers.work(system.pushing, state[slot.THRUST], system.platform, body, base)
+    work = thrust + state[slot.BODY_FORCE]
     lost = (
         state[slot.FRICTION] + state[slot.DAMPING] + state[slot.RELEASED] + state[slot.STRUCTURAL]
     )
     along = (
-        state[slot.THRUST_AXIAL]
+        _axial_work(system.pushing, thrust, state)
         + state[slot.BODY_FORCE_AXIAL]
         - axial
         - state[slot.FRICTION_AXIAL]
@@ -75,7 +77,7 @@ def _balances(system, loop, surveyed, in_compliance, state):
     )
     total = work - kinetic - kept - lost
     terms = (
-        abs(state[slot.THRUST])
+        abs(thrust)
         + abs(state[slot.BODY_FORCE])
         + kinetic
         + kept
@@ -87,11 +89,21 @@ def _balances(system, loop, surveyed, in_compliance, state):
     return Balances(
         total=total,
         transverse=total - along,
-        work=abs(state[slot.THRUST]) + abs(state[slot.BODY_FORCE]),
+        work=abs(thrust) + abs(state[slot.BODY_FORCE]),
         kinetic=kinetic,
         energy_transverse=abs(kinetic - axial + kept),
         terms=terms,
     )
+
+
+@kernel
+def _axial_work(pushing, thrust, state):
+    """Axial work (J) of the thrust. The work of pushers comes from their potential; its difference
+    from the integrated one counts as axial, because it is rounding of the axial motion."""
+    axial = state[slot.THRUST_AXIAL]
+    if pushing is not None:
+        axial += thrust - state[slot.THRUST]
+    return axial
 
 
 @kernel

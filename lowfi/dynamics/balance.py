@@ -39,7 +39,9 @@ def ledgers(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Total and transverse ledger (n, len(ENTRIES)) J of ``rows`` (n, SAMPLE_SIZE)."""
 
     def work(slot):
-        return rows[:, WORKS + slot - state.WORK]
+        values = rows[:, WORKS + slot - state.WORK]
+        # Pushers count from zero travel, which need not be the travel at ignition.
+        return values - values[0] if slot in (state.THRUST, state.THRUST_AXIAL) else values
 
     total = np.zeros((len(rows), len(ledger.ENTRIES)))
     for name, values in (

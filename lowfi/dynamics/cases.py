@@ -77,6 +77,7 @@ def system_of(common, cases, n):
         rail_start=common.rail_start,
         rail_end=common.rail_end,
         thrust=common.thrust,
+        pushing=common.pushing,
         reacts_on_platform=common.reacts_on_platform,
         thrust_offset=_offset(cases.direction, cases.arm, n),
         contact=common.contact,

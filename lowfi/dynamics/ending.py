@@ -21,7 +21,17 @@ from tipoff.lowfi import state as slot
 from tipoff.lowfi.dynamics.dormand_prince import interpolate
 from tipoff.lowfi.dynamics.sample import posture, rearmost_edge
 from tipoff.mechanics import ending as books
-from tipoff.mechanics.ending import AT_EXIT, DONE, EXCESS, EXIT, NOW, PAST, ROW_SIZE
+from tipoff.mechanics.ending import (
+    AT_EXIT,
+    DONE,
+    EXCESS,
+    EXIT,
+    LEAVING,
+    NOW,
+    PAST,
+    ROW_SIZE,
+    SETTLED,
+)
 
 # s, longest piece of a step: a body that leaves the rail, or starts to move, and returns sooner may
 # be missed
@@ -119,13 +129,14 @@ def _look_at_speed(system, marks, loop, step, begin, end):
 
 @kernel
 def _count(system, loop, step):
-    """Add the part of the step that is in the settled window."""
+    """Add the parts of the step that are in the window at exit and in the settled window."""
     book = loop.book
-    begin, end = books.part_in_window(book, step.began, step.ended)
-    if end > begin:
-        for k in range(_POINTS.size):
-            _fill(system, loop, step, 0.5 * (begin + end) + 0.5 * (end - begin) * _POINTS[k])
-            books.count(book, book[NOW:], 0.5 * (end - begin) * _WEIGHTS[k])
+    for window in (LEAVING, SETTLED):
+        begin, end = books.part_in(book, window, step.began, step.ended)
+        if end > begin:
+            for k in range(_POINTS.size):
+                _fill(system, loop, step, 0.5 * (begin + end) + 0.5 * (end - begin) * _POINTS[k])
+                books.count(book, window, book[NOW:], 0.5 * (end - begin) * _WEIGHTS[k])
     books.close(book, step.ended)
 
 

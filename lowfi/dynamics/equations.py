@@ -22,6 +22,7 @@ from tipoff.lowfi.contact.compliant.loads import load as compliant_load
 from tipoff.lowfi.contact.compliant.modes import vibrate
 from tipoff.lowfi.contact.compliant.solution import solve
 from tipoff.lowfi.contact.springs import load, penetration, relative_pose
+from tipoff.lowfi.pushers import push_of
 from tipoff.lowfi.state import IMPULSE, PAYLOAD, PLACE, PLATFORM, QUATERNION, SPIN, TURN, VELOCITY
 from tipoff.lowfi.system import Body
 from tipoff.scenes.effects.friction import Friction
@@ -52,6 +53,7 @@ def derivative(system, touching, stick, time, state, out):
     )
     out[:] = 0.0
     add_thrust(system.thrust, system.thrust_offset, system.reacts_on_platform, time, bodies, out)
+    add_pushers(system.pushing, bodies, out)
     add_body_force(system.body_force, payload.mass, bodies, out)
     add_springs(system.contact, system.sticking, system.faces, touching, stick, bodies, out)
     add_compliant_contact(system.compliance, system.faces, touching, bodies, state, out)
@@ -169,6 +171,22 @@ def _react_on_free_platform(reacts, bodies, force, point, out):
         add_power(bodies.ledger, slot.THRUST, slot.THRUST_AXIAL, force, velocity, speed, -1.0, out)
     else:
         add_outside_impulse(bodies.ledger, force, point, out)
+
+
+@kernel
+def add_pushers(pushing, bodies, out):
+    """Add the forces of spring pushers, each a pair at one point."""
+    if pushing is not None:
+        for i in range(pushing.segment.size):
+            push = push_of(pushing, i, bodies.platform, bodies.payload, bodies.base)
+            speed = _axial_speed(bodies.platform, bodies)
+            _pair(bodies.platform, bodies.ledger, push.force, push.point, out)
+            _pair(bodies.platform, bodies.ledger, push.drag, push.point, out)
+            for force, entry, axial, sign in (
+                (push.force, slot.THRUST, slot.THRUST_AXIAL, 1.0),
+                (push.drag, slot.FRICTION, slot.FRICTION_AXIAL, -1.0),
+            ):
+                add_power(bodies.ledger, entry, axial, force, push.slip, speed, sign, out)
 
 
 @kernel

@@ -13,6 +13,7 @@ than a step.
 import numpy as np
 
 from tipoff.kernels.jit import kernel
+from tipoff.lowfi import pushers
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip
 from tipoff.lowfi.contact.compliant.free_vibration import cannot_touch
@@ -53,6 +54,9 @@ def first_event(system, loop, dt, span):
     theta, face = _entry(system, loop, dt, span)
     if theta < first:
         first, blamed = theta, face
+    theta = _knot(system.pushing, system, loop, dt, span)
+    if theta < first:
+        first, blamed = theta, -1
     return first, blamed
 
 
@@ -141,6 +145,45 @@ def _entry(system, loop, dt, span):
                 if theta < first:
                     first, blamed = theta, i
     return first, blamed
+
+
+@kernel
+def _knot(pushing, system, loop, dt, span):
+    """Fraction at which a pusher passes an end of its segment. It is never so small that the step
+    would end at its start."""
+    first = 1.0
+    if pushing is not None:
+        for i in range(pushing.segment.size):
+            level = pushers.passed(pushing, i)
+            if not np.isnan(level):
+                theta = max(_time_of_travel(system, loop, dt, span, i, level), 2.0 * SOONEST / span)
+                first = min(first, theta)
+    return first
+
+
+@kernel
+def _time_of_travel(system, loop, dt, span, i, level):
+    """Fraction at which pusher ``i`` has the travel ``level`` (m)."""
+    pushing = system.pushing
+    low, high, side = 0.0, 1.0, 0
+    f_low, f_high = pushing.before[i] - level, pushing.after[i] - level
+    if f_low * f_high >= 0.0:
+        return 0.0
+    for _ in range(60):
+        theta = (low * f_high - high * f_low) / (f_high - f_low)
+        interpolate(system, loop, dt, span * theta, slot.MOVING_SIZE, loop.work)
+        f = pushers.travel_at(pushing, i, system.platform, system.payload, loop.work) - level
+        if abs(f) < 1e-13 or high - low < 1e-14:
+            return theta
+        if f * f_high > 0.0:
+            high, f_high = theta, f
+            f_low = 0.5 * f_low if side == 1 else f_low
+            side = 1
+        else:
+            low, f_low = theta, f
+            f_high = 0.5 * f_high if side == -1 else f_high
+            side = -1
+    return high
 
 
 @kernel

@@ -3,6 +3,7 @@
 import numpy as np
 
 from tipoff.kernels.jit import entry, kernel
+from tipoff.lowfi import pushers
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.stick_slip import clear
 from tipoff.lowfi.contact.wall_ends import DEPTH
@@ -58,6 +59,7 @@ def _begin(system, first_step, loop):
     books.reset(loop.book)
     _reset_stick(loop.stick)
     survey(system, loop, solved=False)
+    pushers.reset(system.pushing)
     update_engaged(system, loop)  # pads may press from the start
     stick_slip.update(system.sticking, system, loop)
 

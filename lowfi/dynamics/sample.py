@@ -5,6 +5,7 @@ import numpy as np
 
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
+from tipoff.lowfi import pushers
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip
 from tipoff.lowfi.contact.compliant.loads import energy as energy_in_compliance
@@ -48,11 +49,22 @@ def observe(system, loop, row, forces):
     row[STORED] += _observe_compliance(system.compliance, system, loop, body, base, forces)
     _rails(system.compliance, state, row)
     slot.copy(state[WORK:], row[WORKS:], WORK_SIZE)
+    _pushers(system.pushing, system.platform, body, base, row)
     slot.copy(state[IMPULSE:], row[GIVEN:], 6)
     finite = _is_finite(row)
     for i in range(forces.shape[0]):
         finite &= _is_finite(forces[i])
     return finite
+
+
+@kernel
+def _pushers(pushing, platform, body, base, row):
+    """Replace the integrated work of pushers by that of their potential (``dynamics.audit``)."""
+    if pushing is not None:
+        thrust, axial = WORKS + slot.THRUST - WORK, WORKS + slot.THRUST_AXIAL - WORK
+        found = pushers.work(pushing, row[thrust], platform, body, base)
+        row[axial] += found - row[thrust]
+        row[thrust] = found
 
 
 @kernel

@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from tipoff.kernels.jit import kernel
+from tipoff.lowfi import pushers
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant.step_limit import stiffness_and_damping
 from tipoff.lowfi.contact.compliant.survey import energy as energy_in_compliance
@@ -143,12 +144,19 @@ def _begin(system, plan, loop):
     slot.copy_all(loop.stages[STAGES - 1], loop.stages[0], slot.modal_size(system.compliance))
     _release(system.is_compliant, system, loop, left, 1.0)
     changed = update_touching(loop) or changed
+    changed = pushers.begin_step(system.pushing) or changed
+    changed = (_has_pushers(system.pushing) and counts.steps == 0) or changed
     if changed:
         clock.rate = rate_bound(system, loop, loop.start, solved=False)
     _release(system.is_compliant, system, loop, left, -1.0)
     if counts.steps == 0:
         audit.open_books(system.ledger, system.is_compliant, system, loop)
     return changed or left or fresh or clock.kept < 1.0
+
+
+@kernel
+def _has_pushers(pushing):
+    return pushing is not None
 
 
 @kernel
@@ -214,10 +222,12 @@ def _within_predicted_limit(system, loop, dt):
 
 @kernel
 def rate_bound(system, loop, state, solved):
-    """Bound (1/s) of the eigenvalues of the contact at ``state``; ``solved``: compliant contact is
+    """Bound (1/s) of the eigenvalues of contact and pushers at ``state``; ``solved``: compliant contact is
     already solved there."""
     rate = fastest_rate(system.contact, system, loop.touching, loop.stick, state, 0.0)
-    return max(rate, _rate_on_compliance(system.is_compliant, system, loop, state, solved))
+    rate = max(rate, _rate_on_compliance(system.is_compliant, system, loop, state, solved))
+    # The bound of a sum of stiffnesses and dampings is at most the sum of the bounds.
+    return rate + pushers.fastest_rate(system.pushing, system.platform, system.payload, state)
 
 
 @kernel

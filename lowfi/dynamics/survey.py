@@ -2,6 +2,7 @@
 penetration, and the faces that touch."""
 
 from tipoff.kernels.jit import kernel
+from tipoff.lowfi import pushers
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip
 from tipoff.lowfi.contact.compliant.survey import survey as survey_compliance
@@ -39,10 +40,12 @@ from tipoff.scenes.effects.contact import stored_energy
 
 @kernel
 def survey(system, loop, solved):
-    """Fill ``loop.after`` at ``loop.end``, and the energy (J) stored in compliant contact;
+    """Fill ``loop.after`` and the travel of pushers at ``loop.end``, and the energy (J) stored in
+    compliant contact;
     ``solved``: that is already solved there. A face off its wall gets the mode that it would have
     there."""
     faces, platform, payload = system.faces, system.platform, system.payload
+    pushers.survey(system.pushing, platform, payload, loop.end)
     _survey_springs(system.contact, system.sticking, faces, platform, payload, loop)
     loop.audit.in_compliance = _survey_compliance(
         system.compliance, faces, platform, payload, loop, solved

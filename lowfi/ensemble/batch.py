@@ -212,7 +212,7 @@ class Family:
         return Case(
             status,
             "",
-            comoving.outcome(comoving.frame(model), found),
+            comoving.outcome(comoving.frame(model), outcome.with_impulse(found, model)),
             int(result[cases.STEPS]),
             share,
         )

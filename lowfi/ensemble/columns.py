@@ -21,6 +21,9 @@ UNITS = {
     "exit_platform_velocity": "m/s",
     "exit_platform_attitude": "rad",
     "exit_platform_rate": "rad/s",
+    "exit_velocity": "m/s",
+    "exit_rate": "rad/s",
+    "impulse_after_exit": "dimensionless",
 }
 VECTORS = (
     "velocity",
@@ -30,7 +33,9 @@ VECTORS = (
 
 
 class Columns(NamedTuple):
-    """Results of n cases; NaN in cases that did not settle. Attitudes are rotation vectors."""
+    """Results of n cases. ``exit_time``, the values at exit and the share of the impulse are NaN in
+    cases that did not leave, all others in cases that did not settle. Attitudes are rotation
+    vectors."""
 
     status: np.ndarray  # (n,) place in STATUSES
     exit_time: np.ndarray  # (n,) s
@@ -44,6 +49,9 @@ class Columns(NamedTuple):
     exit_platform_velocity: np.ndarray  # (n, 3) m/s
     exit_platform_attitude: np.ndarray  # (n, 3) rad
     exit_platform_rate: np.ndarray  # (n, 3) rad/s
+    exit_velocity: np.ndarray  # (n, 3) m/s, at exit
+    exit_rate: np.ndarray  # (n, 3) rad/s, at exit
+    impulse_after_exit: np.ndarray  # (n,) share; NaN also without thrust
     steps: np.ndarray  # (n,)
 
 

@@ -11,6 +11,7 @@ from tipoff.highfi.compiled import LAWS
 
 DAMPED = {"rail__damping__ratios": [0.01, 0.01], "rail__damping__frequencies": ["500 Hz", "5 kHz"]}
 SOFT = {"rail__mount_stiffness__normal": 1e13, "rail__mount_stiffness__shear": 5e12}
+SPRING = {"kind": "spring", "preload": 5e3, "rate": 1e4, "stroke": 0.1}
 FOUND = ("rail.damping",)  # the kernel with it is compiled by other tests too
 
 
@@ -20,6 +21,7 @@ def check(effect: str) -> None:
     platform only: with a free one everything falls together."""
     added = {
         "gravity": {"gravity__z": -9.80665},
+        "pushers": {"thrust": SPRING},
         "rail.damping": DAMPED,
         "rail.mount_stiffness": SOFT,
     }

@@ -34,6 +34,9 @@ def assert_same(flown, rest, velocity: tuple) -> None:
         np.abs(np.subtract(flown.outcome.velocity, velocity) - rest.outcome.velocity).max()
         <= 1e-9 * speed
     )
+    at_exit = np.subtract(flown.outcome.exit_velocity, velocity)
+    assert np.abs(at_exit - rest.outcome.exit_velocity).max() <= 1e-9 * speed
+    assert flown.outcome.exit_rate == pytest.approx(rest.outcome.exit_rate, rel=1e-9)
     way = np.multiply.outer(rest.time, velocity)
     for name, moved in (
         ("position", way),

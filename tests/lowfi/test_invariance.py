@@ -105,6 +105,9 @@ def require_fall(still, falling, fall: np.ndarray) -> None:
     gained = np.subtract(falling.outcome.velocity, still.outcome.velocity)
     middle = still.outcome.window_start + 1e-3  # of a window of 2 ms
     assert gained == pytest.approx(middle * fall, rel=1e-12, abs=1e-13 * (1.0 + abs(fall).max()))
+    gained = np.subtract(falling.outcome.exit_velocity, still.outcome.exit_velocity)
+    middle = still.outcome.exit_time + 1e-4  # of a window of 0.2 ms
+    assert gained == pytest.approx(middle * fall, rel=1e-12, abs=1e-13 * (1.0 + abs(fall).max()))
     moved = np.subtract(falling.outcome.exit_position, still.outcome.exit_position)
     at_exit = 0.5 * still.outcome.exit_time**2 * fall
     assert moved == pytest.approx(at_exit, abs=1e-13 * (1.0 + abs(fall).max()))

@@ -41,15 +41,14 @@ def test_status_and_its_values(name):
 
 
 def test_exit_without_a_settled_window_has_no_settled_values():
-    """The scene ends after the exit and before the window does: time_limit, an exit time, nothing
-    else."""
+    """The scene ends after the exit and before the window does: time_limit, an exit time and the
+    values at exit, nothing else."""
     exit_time = ended("exited").outcome.exit_time
     run = lowfi.run(BASE.replace({"duration": exit_time + 1e-3}), "springs")
     assert run.status == "time_limit"
     assert run.outcome.exit_time == pytest.approx(exit_time, rel=1e-9)
-    assert [value for value in run.outcome._asdict().values() if value is not None] == [
-        run.outcome.exit_time
-    ]
+    known = {name for name, value in run.outcome._asdict().items() if value is not None}
+    assert known == {"exit_time", "exit_velocity", "exit_rate", "impulse_after_exit"}
 
 
 def test_saved_results_hold_no_number_either(tmp_path):

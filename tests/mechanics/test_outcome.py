@@ -33,19 +33,20 @@ def test_an_empty_book_is_a_time_limit():
 
 @pytest.mark.parametrize("settled, start", [(0.0, 0.041), (0.0409, 0.041), (0.0437, 0.0437)])
 @pytest.mark.parametrize("rows", [1, 7])
-def test_means_over_the_window(settled, start, rows):
-    """Steps that begin before the window and end after it count with the part inside. Each part's
+def test_means_over_the_windows(settled, start, rows):
+    """Steps that begin before a window and end after it count with the part inside. Each part's
     length is off by the rounding of the instants, 7e-18 s, of 2 ms."""
     made, time = book(), np.linspace(0.039, 0.047, 8 * rows + 1)
     ending.leave(made, 0.04, marks(settled))
     for began, ended in itertools.pairwise(time):
-        low, high = ending.part_in_window(made, began, ended)
-        if high > low:
-            middle = 0.5 * (low + high)  # of linear motion the mean is the value there
-            row = np.zeros(ending.ROW_SIZE)
-            row[ending.SPEED : ending.SPEED + 3] = [5.0, 0.3 * middle, -0.4 * middle]
-            row[ending.SPIN : ending.SPIN + 3] = [1.0, 2.0, middle]
-            ending.count(made, row, high - low)
+        for window in (ending.LEAVING, ending.SETTLED):
+            low, high = ending.part_in(made, window, began, ended)
+            if high > low:
+                middle = 0.5 * (low + high)  # of linear motion the mean is the value there
+                row = np.zeros(ending.ROW_SIZE)
+                row[ending.SPEED : ending.SPEED + 3] = [5.0, 0.3 * middle, -0.4 * middle]
+                row[ending.SPIN : ending.SPIN + 3] = [1.0, 2.0, middle]
+                ending.count(made, window, row, high - low)
         assert ending.found(made)[0] == "time_limit" and ending.found(made)[1].exit_time == 0.04
         ending.close(made, ended)
         if made[ending.DONE] < np.inf:
@@ -57,6 +58,8 @@ def test_means_over_the_window(settled, start, rows):
         [5.0, 0.3 * (start + 1e-3), -0.4 * (start + 1e-3)], abs=3e-13
     )
     assert found.rate == pytest.approx([1.0, 2.0, start + 1e-3], abs=3e-13)
+    assert found.exit_velocity == pytest.approx([5.0, 0.3 * 0.0401, -0.4 * 0.0401], abs=3e-13)
+    assert found.exit_rate == pytest.approx([1.0, 2.0, 0.0401], abs=3e-12)
     assert found.lateral_velocity == pytest.approx(0.5 * (start + 1e-3), abs=3e-13)
     assert found.direction_error == pytest.approx(math.atan2(0.5 * (start + 1e-3), 5.0), abs=3e-13)
 
@@ -72,6 +75,37 @@ def test_a_window_that_ends_with_the_scene_is_whole():
             1.0
         )
         assert ending.found(made)[0] == status
+
+
+def test_the_values_at_exit_need_their_window_only():
+    """A run that ends before it says so, and one that never leaves."""
+    for until, known in ((0.0401, False), (0.0402, True)):
+        made = book()
+        ending.leave(made, 0.04, marks())
+        ending.close(made, until)
+        status, found = ending.found(made)
+        assert status == "time_limit" and (found.exit_rate is not None) == known
+        words = outcome.no_exit_values(status, found)
+        assert words == ("" if known else "the run ended less than 0.2 ms after the exit")
+    words = outcome.no_exit_values("jammed", outcome.Outcome())
+    assert words == "the payload did not leave the rail: jammed"
+
+
+def test_the_share_of_the_impulse_after_the_exit():
+    """Half of a push whose middle is the exit; none of springs; none stated without a thrust."""
+    left = outcome.Outcome(exit_time=0.01)
+
+    def share(**thrust) -> float | None:
+        scene = load("tiny").replace({"thrust": thrust})
+        return outcome.with_impulse(left, scene_model.build(scene)).impulse_after_exit
+
+    assert share(kind="constant", force=10.0, duration=0.04) == pytest.approx(0.75, rel=1e-14)
+    assert share(kind="gaussian", peak=10.0, width=1e-3, centre=0.01) == pytest.approx(
+        0.5, rel=1e-12
+    )
+    assert share(kind="constant", force=10.0, duration=0.01) == 0.0
+    assert share(kind="spring", preload=1e3, rate=1e3, stroke=0.1) == 0.0
+    assert share(kind="constant", force=0.0, duration=0.04) is None
 
 
 @pytest.mark.parametrize(

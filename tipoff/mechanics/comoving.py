@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.mechanics.outcome import SETTLE_WINDOW, Motion, Outcome
+from tipoff.mechanics.outcome import EXIT_WINDOW, SETTLE_WINDOW, Motion, Outcome
 
 
 class Frame(NamedTuple):
@@ -102,11 +102,16 @@ def motion(seen_from: Frame, moved: Motion) -> Motion:
 
 def outcome(seen_from: Frame, found: Outcome) -> Outcome:
     """``found`` in the scene's axes."""
-    if found.velocity is None or seen_from.is_that_of_the_scene:
+    if found.exit_time is None or seen_from.is_that_of_the_scene:
+        return found
+    if found.exit_velocity is not None:
+        middle = found.exit_time + 0.5 * EXIT_WINDOW
+        mean = np.add(found.exit_velocity, seen_from.speed(middle))
+        found = found._replace(exit_velocity=mean.tolist())
+    if found.velocity is None:
         return found
     assert (
-        found.exit_time is not None
-        and found.window_start is not None
+        found.window_start is not None
         and found.exit_position is not None
         and found.exit_platform_position is not None
         and found.exit_platform_velocity is not None

@@ -8,7 +8,13 @@ import numpy as np
 
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import entry, inlined, kernel
-from tipoff.mechanics.outcome import JAM_DURATION, SETTLE_WINDOW, Outcome, window_start
+from tipoff.mechanics.outcome import (
+    EXIT_WINDOW,
+    JAM_DURATION,
+    SETTLE_WINDOW,
+    Outcome,
+    window_start,
+)
 
 # A row: payload and platform, each with place (m), velocity (m/s), quaternion and rate in body axes
 # (rad/s) from this offset.
@@ -18,15 +24,18 @@ ROW_SIZE = 2 * BODY
 #   EXIT        the exit
 #   WINDOW      start of the settled window
 #   DONE        end of the settled window or of a jam, when the outcome is complete
+#   LEFT        end of the window at exit, when its integrals are complete
 #   SLOW_SINCE  time since which the payload is slow
 # At the last step, NaN before the first one:
 #   PAST        distance of the rearmost trailing edge beyond the rail end (m)
 #   EXCESS      axial speed minus jam speed (m/s)
-# Integrals over the completed part of the window:
-#   WAY, ANGLE  of velocity (m) and of rate (rad)
+# Integrals of velocity (m) and of rate (rad), one after the other, over the completed part of:
+#   SETTLED     the settled window
+#   LEAVING     the window at exit
 # Rows:
 #   AT_EXIT, NOW, BEFORE   at the exit, at the last step, at the step before it
-EXIT, WINDOW, DONE, SLOW_SINCE, PAST, EXCESS, WAY, ANGLE, AT_EXIT = 0, 1, 2, 3, 4, 5, 6, 9, 12
+EXIT, WINDOW, DONE, LEFT, SLOW_SINCE, PAST, EXCESS = 0, 1, 2, 3, 4, 5, 6
+SETTLED, LEAVING, AT_EXIT = 7, 13, 19
 NOW, BEFORE = AT_EXIT + ROW_SIZE, AT_EXIT + 2 * ROW_SIZE
 BOOK_SIZE = AT_EXIT + 3 * ROW_SIZE
 # s from DONE to the end of a run, so that closely spaced samples include one after the settled
@@ -39,7 +48,7 @@ _ROUNDING = 1e-12  # relative; a scene that ends with the window contains it com
 def reset(book):
     """Set a book (BOOK_SIZE,) to the start of a run."""
     book[:] = 0.0
-    book[EXIT] = book[WINDOW] = book[DONE] = book[SLOW_SINCE] = np.inf
+    book[EXIT] = book[WINDOW] = book[DONE] = book[LEFT] = book[SLOW_SINCE] = np.inf
     book[PAST] = book[EXCESS] = np.nan
 
 
@@ -85,23 +94,28 @@ def look_at_speed(book, excess, at, crossing):
 
 
 @inlined
-def part_in_window(book, began, ended):
-    """Start and end (s) of the part of a step inside the settled window; for a step outside, the
-    end is the smaller value."""
+def part_in(book, window, began, ended):
+    """Start and end (s) of the part of a step inside a ``window``, SETTLED or LEAVING; for a step
+    outside, the end is the smaller value."""
+    if window == LEAVING:
+        return max(began, book[EXIT]), min(ended, book[EXIT] + EXIT_WINDOW)
     return max(began, book[WINDOW]), min(ended, book[WINDOW] + SETTLE_WINDOW)
 
 
 @inlined
-def count(book, row, duration):
-    """Add velocity and rate of ``row``, times ``duration`` (s), to the integrals."""
+def count(book, window, row, duration):
+    """Add velocity and rate of ``row``, times ``duration`` (s), to the integrals of a ``window``."""
     for i in range(3):
-        book[WAY + i] += duration * row[SPEED + i]
-        book[ANGLE + i] += duration * row[SPIN + i]
+        book[window + i] += duration * row[SPEED + i]
+        book[window + 3 + i] += duration * row[SPIN + i]
 
 
 @inlined
 def close(book, now):
-    """Enter the end of the settled window if it is over ``now`` (s)."""
+    """Enter the end of each window that is over ``now`` (s)."""
+    left = book[EXIT] + EXIT_WINDOW
+    if now >= left * (1.0 - _ROUNDING):
+        book[LEFT] = left
     end = book[WINDOW] + SETTLE_WINDOW
     if now >= end * (1.0 - _ROUNDING):
         book[DONE] = end
@@ -125,16 +139,20 @@ def found(book: np.ndarray) -> tuple[str, Outcome]:
     (BOOK_SIZE,)."""
     if book[EXIT] == np.inf:
         return ("jammed" if book[DONE] < np.inf else "time_limit"), Outcome()
+    at_exit = Outcome(exit_time=float(book[EXIT]))
+    if book[LEFT] < np.inf:
+        means = book[LEAVING : LEAVING + 6] / EXIT_WINDOW
+        at_exit = at_exit._replace(exit_velocity=means[:3].tolist(), exit_rate=means[3:].tolist())
     if book[DONE] == np.inf:
-        return "time_limit", Outcome(exit_time=float(book[EXIT]))
-    velocity, rate = book[WAY : WAY + 3] / SETTLE_WINDOW, book[ANGLE : ANGLE + 3] / SETTLE_WINDOW
+        return "time_limit", at_exit
+    means = book[SETTLED : SETTLED + 6] / SETTLE_WINDOW
+    velocity, rate = means[:3], means[3:]
     lateral = float(np.hypot(velocity[1], velocity[2]))
     payload, platform = (
         book[AT_EXIT : AT_EXIT + BODY].tolist(),
         book[AT_EXIT + BODY : AT_EXIT + ROW_SIZE].tolist(),
     )
-    return "exited", Outcome(
-        exit_time=float(book[EXIT]),
+    return "exited", at_exit._replace(
         window_start=float(book[WINDOW]),
         velocity=velocity.tolist(),
         rate=rate.tolist(),

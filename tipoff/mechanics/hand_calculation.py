@@ -13,6 +13,7 @@ import numpy as np
 
 from tipoff.kernels import rotation
 from tipoff.mechanics import scene_model
+from tipoff.scenes import ends
 from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.scene import Scene
 
@@ -44,7 +45,10 @@ def rates(scene: Scene, run: "Trajectory") -> ByHand | None:
     if len(pads) > 1:
         return None
     moment = np.zeros(3)
-    if model.thrust_offset is not None:
+    if model.pushers is not None:
+        pushes = model.pushers
+        moment += ends.spring_impulses(scene) @ np.cross(pushes.point, pushes.direction)
+    elif model.thrust_offset is not None:
         offset, impulse = model.thrust_offset, thrust_law.impulse(model.thrust, scene.time_limit)
         moment += impulse * np.cross(offset.arm, offset.direction)
     for face in touching:

@@ -2,8 +2,11 @@
 definitions.
 
 * **Exit**: first instant at which the trailing edge of the last pad face is past the rail end.
+* **At exit**: mean over 0.2 ms from the exit on, under the thrust that there is then.
 * **Settled window**: 2 ms from the later of two times, exit + 1 ms and thrust below 0.1 % of its
   peak; settled values are means over it.
+* **Impulse after the exit**: its share of the impulse of the whole thrust, or of the part before
+  the exit if that is larger.
 * **Jammed**: relative axial speed below the friction transition speed (10 mm/s if friction has
   none) for 5 ms, after the thrust fell below 1 % of its peak or under a strong constant thrust.
 
@@ -11,6 +14,7 @@ All values come from the steps of a run (``mechanics.ending``), independent of t
 interval.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -20,10 +24,13 @@ from tipoff.kernels.jit import kernel
 from tipoff.scenes import ends
 from tipoff.scenes.effects import thrust
 from tipoff.scenes.effects.friction import Friction
+from tipoff.scenes.ends import EXIT_WINDOW as EXIT_WINDOW
 from tipoff.scenes.ends import JAM_DURATION as JAM_DURATION
 from tipoff.scenes.ends import JAM_SPEED, SETTLE_DELAY
 from tipoff.scenes.ends import SETTLE_WINDOW as SETTLE_WINDOW
 from tipoff.scenes.scene import Scene
+
+_ROUNDING = 1e-12  # relative error of a difference of two equal impulses
 
 
 class Motion(NamedTuple):
@@ -41,7 +48,8 @@ class Motion(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """Outcome of a run. All values are None unless the payload exited and settled."""
+    """Outcome of a run. ``exit_time`` and the values at exit are None unless the payload exited, all
+    others unless it settled too."""
 
     exit_time: float | None = None  # s
     window_start: float | None = None  # s, of the settled window
@@ -55,6 +63,9 @@ class Outcome(NamedTuple):
     exit_platform_velocity: list[float] | None = None  # m/s
     exit_platform_attitude: list[float] | None = None  # rad, rotation vector
     exit_platform_rate: list[float] | None = None  # rad/s
+    exit_velocity: list[float] | None = None  # m/s, at exit
+    exit_rate: list[float] | None = None  # rad/s, at exit
+    impulse_after_exit: float | None = None  # share; None also without thrust
 
 
 _VECTORS = {name for name, kind in Outcome.__annotations__.items() if kind == list[float] | None}
@@ -76,6 +87,31 @@ def require(found: Outcome) -> None:
         )
         if not is_right:
             raise ValueError(f"outcome.{name}: given {value!r}, expected a number, or None")
+
+
+def with_impulse(found: Outcome, model) -> Outcome:
+    """``found`` with the share of the impulse after the exit. That of springs is zero, because their
+    strokes end on the rail."""
+    if found.exit_time is None:
+        return found
+    if model.pushers is not None:
+        return found._replace(impulse_after_exit=0.0)
+    whole = thrust.impulse(model.thrust, math.inf)
+    before = thrust.impulse(model.thrust, found.exit_time)
+    scale = max(abs(whole), abs(before))
+    if scale == 0.0:
+        return found
+    share = abs(whole - before) / scale
+    return found._replace(impulse_after_exit=share if share > _ROUNDING else 0.0)
+
+
+def no_exit_values(status: str, found: Outcome) -> str:
+    """Reason why a run has no values at exit, or empty."""
+    if found.exit_rate is not None:
+        return ""
+    if found.exit_time is None:
+        return f"the payload did not leave the rail: {status}"
+    return f"the run ended less than {1e3 * EXIT_WINDOW:g} ms after the exit"
 
 
 class Milestones(NamedTuple):

@@ -12,11 +12,12 @@ import numpy as np
 
 from tipoff.kernels.reference import by_reference
 from tipoff.scenes.body import inverse, tensor
-from tipoff.scenes.effects import contact, registry, thrust, thrust_offset
+from tipoff.scenes.effects import contact, registry, spring, thrust, thrust_offset
 from tipoff.scenes.effects.body_force import BodyForce
 from tipoff.scenes.effects.friction import Friction
 from tipoff.scenes.effects.initial import Initial
 from tipoff.scenes.effects.platform import Platform
+from tipoff.scenes.effects.pusher_law import Pushers
 from tipoff.scenes.effects.sticking import Sticking
 from tipoff.scenes.effects.thermal import Thermal
 from tipoff.scenes.rail import SectionTable
@@ -78,7 +79,8 @@ class Model(NamedTuple):
     plate: Plate
     rail_start: float  # m, X in platform axes
     rail_end: float  # m, X in platform axes
-    thrust: thrust.Thrust
+    thrust: thrust.Thrust  # over time
+    pushers: Pushers | None  # thrust over travel
     reacts_on_platform: bool
     thrust_offset: thrust_offset.ThrustOffset | None
     contact: contact.ContactLaw | None
@@ -132,6 +134,7 @@ def built(scene: Scene, earlier: Built | None = None) -> Built:
         rail_start=scene.rail.start - origin,
         rail_end=scene.rail.end - origin,
         thrust=kept("thrust", scene.thrust.record),
+        pushers=spring.record(scene.thrust, scene.thrust_offset, scene.mass_offset, platform),
         reacts_on_platform=scene.thrust.reaction == "platform",
         thrust_offset=thrust_offset.record(
             scene.thrust_offset, scene.mass_offset, scene.thrust.arm

@@ -34,6 +34,11 @@ def facts(run: "Trajectory") -> dict[str, str]:
         text["message"] = run.message
     if found.exit_time is not None:
         text["exit"] = f"{1e3 * found.exit_time:.4g} ms after ignition"
+        if found.impulse_after_exit is not None:
+            text["exit"] += f", {100.0 * found.impulse_after_exit:.3g} % of the impulse after it"
+    if found.exit_rate is not None and found.exit_velocity is not None:
+        speed = f"v_x {found.exit_velocity[0]:.4f} m/s"
+        text["at exit"] = f"{_rates(found.exit_rate)} deg/s (x, y, z), {speed}"
     if found.rate is not None and found.velocity is not None:
         across, error = found.lateral_velocity, found.direction_error
         text |= {

@@ -18,13 +18,16 @@ from typing import Any
 
 import numpy as np
 
+from tipoff.scenes import pushed
 from tipoff.scenes.body import tensor
 from tipoff.scenes.effects import registry, thrust_law
+from tipoff.scenes.effects.spring import PushedTable
 from tipoff.scenes.faults import within
 from tipoff.scenes.rounding import at_most, below
 from tipoff.scenes.tables import MOST_SAMPLES, OutputTable
 from tipoff.scenes.units import LONGEST
 
+EXIT_WINDOW = 2e-4  # s, from the exit on
 SETTLE_DELAY = 1e-3  # s, from the exit to the settled window
 SETTLE_WINDOW = 2e-3  # s
 JAM_DURATION = 5e-3  # s
@@ -72,9 +75,14 @@ def limit(scene: Any) -> float:
         slowest = max(slowest, getattr(scene.friction, "static_speed", 0.0))
     coasting = max(way(scene), 0.0) / slowest
     if (pull := -_pull(scene)) > 0.0:
-        fastest = max(_begun(scene), 0.0) + _pushed(record) / scene.payload.mass
+        pushed_on = _pushed(_law(scene, _fixed_gain(scene), 0.0))
+        fastest = max(_begun(scene), 0.0) + pushed_on / scene.payload.mass
         coasting = min(coasting, 2.0 * fastest / pull)
-    end = thrust_end(record) + coasting + JAM_DURATION + SETTLE_DELAY + SETTLE_WINDOW + _AFTER
+    # A payload that springs push is faster than this soon, or jammed.
+    start = slides(scene, slowest) if isinstance(scene.thrust, PushedTable) else 0.0
+    end = (
+        thrust_end(record) + start + coasting + JAM_DURATION + SETTLE_DELAY + SETTLE_WINDOW + _AFTER
+    )
     rounded = _UNIT * 2.0 ** math.ceil(math.log2(end / _UNIT))
     return min(max(rounded, scene.output.interval), longest(scene))
 
@@ -112,10 +120,31 @@ def require(tables: dict[str, Any], output: OutputTable) -> None:
 
 
 def fits(scene: Any) -> bool:
-    """Whether the sampling interval fits the duration, or the thrust without one."""
+    """Whether the sampling interval fits the duration, or the thrust without one, and strokes end on
+    the rail."""
+    if strokes_too_long(scene):
+        return False
     if scene.duration is None:
         return burns_too_long(scene) is None
     return scene.output.fits(scene.duration)
+
+
+def over_time(scene: Any) -> thrust_law.Thrust:
+    """The thrust over time. That of springs is an estimate, for a payload without friction on a
+    platform that does not turn."""
+    return _law(scene, _fixed_gain(scene), _pull(scene))
+
+
+def _law(scene: Any, gain: float, pull: float) -> thrust_law.Thrust:
+    if isinstance(scene.thrust, PushedTable):
+        curve = pushed.over_time(scene.thrust, gain, pull, _begun(scene))
+        return thrust_law.Thrust(pulses=None, curve=curve)
+    return scene.thrust.record()
+
+
+def spring_impulses(scene: Any) -> np.ndarray:
+    """Estimate (n,) N s of the impulse of each of n springs, as ``over_time``."""
+    return pushed.impulses(scene.thrust, _fixed_gain(scene), _pull(scene), _begun(scene))
 
 
 def expected(scene: Any) -> float:
@@ -123,7 +152,7 @@ def expected(scene: Any) -> float:
     payload without friction until it has settled, with a margin of a quarter."""
     if scene.duration is not None:
         return scene.duration
-    record = scene.thrust.record()
+    record = over_time(scene)
     exits = _exit(scene, record, _fixed_gain(scene), _pull(scene), forwards=False)
     if not math.isfinite(exits):  # it falls back, or nothing moves it
         exits = thrust_end(record) + JAM_DURATION
@@ -135,23 +164,21 @@ def earliest(scene: Any) -> float:
     """Lower bound (s) of the end of the settled window, infinite if the payload cannot leave in an
     hour: no friction, no thrust and no body force backwards, and a platform that recoils along the
     rail with all of its freedom. Zero if bodies turn at ignition, which moves the rail too."""
-    record = scene.thrust.record()
     initial = scene.initial
     turns = initial is not None and any(
         any((rate.x, rate.y, rate.z)) for rate in (initial.rate, initial.platform_rate)
     )
     force = registry.body_force(scene)
-    pull = force.x if force is not None else 0.0
-    exits = (
-        0.0 if turns else _exit(scene, record, _freest_gain(scene), max(pull, 0.0), forwards=True)
-    )
+    gain, pull = _freest_gain(scene), max(force.x if force is not None else 0.0, 0.0)
+    record = _law(scene, gain, pull)
+    exits = 0.0 if turns else _exit(scene, record, gain, pull, forwards=True)
     return max(exits + SETTLE_DELAY, _burnt(record)) + SETTLE_WINDOW
 
 
 def exit_speed(scene: Any) -> float | None:
     """Estimate (m/s) of the speed along the rail at the exit, of a payload without friction on a
     platform that does not turn; None if it never leaves."""
-    record, gain, pull = scene.thrust.record(), _fixed_gain(scene), _pull(scene)
+    record, gain, pull = over_time(scene), _fixed_gain(scene), _pull(scene)
     left = _exit(scene, record, gain, pull, forwards=False)
     if not math.isfinite(left):
         return None
@@ -165,7 +192,7 @@ def is_driven_otherwise(scene: Any) -> bool:
 
 def speed_change(scene: Any) -> float:
     """Change (m/s) of the speed along the rail by the whole thrust, on a platform that does not turn."""
-    record = scene.thrust.record()
+    record = over_time(scene)
     return _fixed_gain(scene) * thrust_law.impulse(record, thrust_end(record))
 
 
@@ -177,10 +204,40 @@ def is_too_short(scene: Any) -> bool:
 def way(scene: Any) -> float:
     """Travel (m) along the rail from ignition to the exit: the trailing edge of the rearmost pad
     reaches the end of the rail. A payload that turns has a little more or less."""
-    rearmost = min(pad.position[0] - 0.5 * pad.length for pad in scene.pads)
-    initial = scene.initial
-    begun = initial.position.x if initial is not None else 0.0
-    return scene.rail.end - rearmost - begun
+    begun = scene.initial.position.x if scene.initial is not None else 0.0
+    return nominal_way(scene) - begun
+
+
+def nominal_way(scene: Any) -> float:
+    """``way`` (m) of a payload that begins at its nominal place. ``scene`` needs pads and rail."""
+    return scene.rail.end - min(pad.position[0] - 0.5 * pad.length for pad in scene.pads)
+
+
+def with_strokes_on_the_rail(thrust: Any, tables: dict[str, Any]) -> Any:
+    """The table ``thrust``; refuses springs with a stroke that ends beyond the exit. ``tables`` are
+    the tables of a scene that are valid so far."""
+    if not {"pads", "rail"} <= tables.keys():  # these have other faults
+        return thrust
+    if wrong := strokes_too_long(SimpleNamespace(**tables, thrust=thrust)):
+        strokes = {key: spring.push().travel[-1] for key, spring in thrust.named()}
+        raise within(
+            ".".join(filter(None, [wrong[0][0].rstrip("."), "stroke"])),
+            ", ".join(f"{strokes[key]:g} m" for key, _ in wrong),
+            f"at most {wrong[0][1]:.6g} m, the way to the exit: a pusher reaches its stop on the rail",
+        )
+    return thrust
+
+
+def strokes_too_long(scene: Any) -> list[tuple[str, float]]:
+    """Keys of the springs whose stroke (m) is longer than the way to the exit, and that way."""
+    if not isinstance(scene.thrust, PushedTable):
+        return []
+    whole = nominal_way(scene)
+    return [
+        (key, whole)
+        for key, spring in scene.thrust.named()
+        if below(whole, float(spring.push().travel[-1]))
+    ]
 
 
 def starts_briskly(scene: Any, speed: float) -> bool:
@@ -194,9 +251,11 @@ def starts_briskly(scene: Any, speed: float) -> bool:
 
 
 def slides(scene: Any, speed: float) -> float:
-    """Time (s) in which a body force along fixed rails brings a payload without friction from rest to
-    twice this ``speed`` (m/s); zero without such a force."""
+    """Time (s) in which a body force along fixed rails, and springs, bring a payload without
+    friction from rest to twice this ``speed`` (m/s); zero without such a force."""
     pull = _pull(scene)
+    if isinstance(scene.thrust, PushedTable):
+        pull += _fixed_gain(scene) * float(scene.thrust.net_force(np.zeros(1))[0])
     return 2.0 * speed / pull if pull > 0.0 and abs(_begun(scene)) < speed else 0.0
 
 

@@ -44,7 +44,10 @@ def moment_impulses(scene, inputs: Inputs, impulse: np.ndarray | float) -> np.nd
         column(scene, inputs, f"thrust_offset.misalignment.{name}") for name in ("axial", "radial")
     )
     arm = column(scene, inputs, "thrust.arm")
-    place = np.broadcast_arrays(-arm, thrust_y - centre_y, thrust_z - centre_z)
+    middle_y, middle_z = scene.thrust.middle()
+    place = np.broadcast_arrays(
+        -arm, thrust_y + middle_y - centre_y, thrust_z + middle_z - centre_z
+    )
     direction = np.broadcast_arrays(*polar.direction(tilt, turn, np))
     return np.asarray(impulse)[..., None] * np.cross(
         np.stack(place, axis=-1), np.stack(direction, axis=-1)

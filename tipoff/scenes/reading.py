@@ -10,6 +10,7 @@ differs.
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from tipoff.files import read_input
 from tipoff.scenes import overrides, provenance, rail
@@ -62,14 +63,14 @@ def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
         )
     raw = toml(path, user_file, key)
     for name, entry, *suffix in _FILES:
-        table = raw.get(name)
-        if (
-            isinstance(table, dict)
-            and isinstance(table.get(entry), str)
-            and table[entry] != "absent"
-            and table[entry].endswith(tuple(suffix) or "")
-        ):
-            table[entry] = str(absolute(path.parent / table[entry]))
+        for table in _with_springs(raw.get(name)):
+            if (
+                isinstance(table, dict)
+                and isinstance(table.get(entry), str)
+                and table[entry] != "absent"
+                and table[entry].endswith(tuple(suffix) or "")
+            ):
+                table[entry] = str(absolute(path.parent / table[entry]))
     base = raw.pop("extends", None)
     if base is None:
         return raw
@@ -163,6 +164,12 @@ def _without_dropped(base: dict, extra: dict, merged: dict) -> dict:
     kept = {name: table for name, table in merged["conditions"].items() if name not in dropped}
     found = merged | {"conditions": kept}
     return found | {"agreement": merged["agreement"] | roles} if roles else found
+
+
+def _with_springs(table: Any) -> list:
+    """A table, and the tables of its springs, which may have files too."""
+    springs = _table(table).get("springs")
+    return [table, *(springs if isinstance(springs, list) else [])]
 
 
 def _table(value: object) -> dict:

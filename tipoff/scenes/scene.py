@@ -42,7 +42,7 @@ from tipoff.scenes.effects.mass_offset import MassOffsetTable
 from tipoff.scenes.effects.platform import PlatformTable
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.scenes.effects.thermal import ThermalTable
-from tipoff.scenes.effects.thrust import MeasuredTable, ThrustTable
+from tipoff.scenes.effects.thrust import ThrustTable
 from tipoff.scenes.effects.thrust_offset import ThrustOffsetTable
 from tipoff.scenes.faults import Fault, SceneError, close, faults_of, within
 from tipoff.scenes.rail import RailTable
@@ -79,7 +79,7 @@ class Scene(shown.Shown, ends.Timed, Table):
     pads: Annotated[tuple[PadTable, ...], limited, AfterValidator(at_least_one)]
     #: The elastic guide: the built-in L section, a mesh file or a CAD solid.
     rail: RailTable
-    #: The force of the thruster over time.
+    #: The force of the thruster over time, or of springs over travel.
     thrust: ThrustTable
     #: Errors of the direction and of the line of the thrust.
     thrust_offset: ThrustOffsetTable | None = None
@@ -105,13 +105,17 @@ class Scene(shown.Shown, ends.Timed, Table):
     studies: StudiesTable | None = Field(None, exclude_if=is_absent)
     #: Roles of the conditions, and limits of agreement.
     agreement: AgreementTable = AgreementTable()
-    #: Named conditions: under each name dotted keys with the values that differ from the
-    #: scene; "absent" removes a table.
+    #: Named conditions: dotted keys with other values; "absent" removes a table.
     conditions: Annotated[dict[str, dict[str, Any]], limited] = Field(default_factory=dict)
     #: Source of values, under the dotted key of the value or of its table.
     provenance: Annotated[dict[str, str], limited] = Field(default_factory=dict)
     _raw: dict = PrivateAttr(default_factory=dict)
     _source: str = PrivateAttr(default="scene")
+
+    @field_validator("thrust")
+    @classmethod
+    def _within_the_rail(cls, thrust: ThrustTable, info: ValidationInfo):
+        return ends.with_strokes_on_the_rail(thrust, info.data)
 
     @field_validator("thermal")
     @classmethod
@@ -239,10 +243,7 @@ class Scene(shown.Shown, ends.Timed, Table):
         its points, not by their paths."""
         physics = self.physics()
         physics["rail"] |= self.rail.contents()
-        points: list[list[float]] = []
-        if isinstance(self.thrust, MeasuredTable):
-            physics["thrust"].pop("file")
-            points = self.thrust.points()
+        physics["thrust"], points = self.thrust.contents()
         return content_hash(physics, points)
 
     @property
@@ -252,7 +253,7 @@ class Scene(shown.Shown, ends.Timed, Table):
 
     def agrees(self) -> bool:
         """Whether valid tables fit each other: rails have an expansion if there is a temperature,
-        and the sampling interval fits the duration."""
+        the sampling interval fits the duration, and strokes end on the rail."""
         expands = self.thermal is None or self.rail.material.expansion is not None
         return expands and ends.fits(self)
 

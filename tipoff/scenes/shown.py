@@ -5,7 +5,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tipoff.cards import Carded
+from tipoff.scenes import ends
 from tipoff.scenes.effects import thrust_law
+from tipoff.scenes.effects.spring import PushedTable
 
 if TYPE_CHECKING:
     from tipoff.plots import Figure
@@ -30,7 +32,8 @@ class Shown(Carded):
         return facts(self)
 
     def plot(self: Any, axes: Any = None) -> "Figure":
-        """Draw the thrust (N) over the time after ignition (ms).
+        """Draw the thrust (N) over the time after ignition (ms); that of springs for a payload
+        without friction on its rails.
 
         Args:
             axes: matplotlib axes to draw in; a new figure by default.
@@ -46,7 +49,7 @@ class Shown(Carded):
         from tipoff import plots  # slow to load
 
         time = np.linspace(0.0, self.expected_end, _PLOTTED)
-        force = thrust_law.sample(self.thrust.record(), time)
+        force = thrust_law.sample(ends.over_time(self), time)
         across = ("time after ignition (ms)", 1e3 * time)
         return plots.lines(across, "thrust (N)", [("thrust", force)], self.name, axes)
 
@@ -79,6 +82,8 @@ def facts(scene: "Scene") -> dict[str, str]:
 
 
 def _thrust(scene: "Scene") -> str:
+    if isinstance(scene.thrust, PushedTable):
+        return scene.thrust.words()
     record = scene.thrust.record()
     peak, whole = (law(record, scene.time_limit) for law in (thrust_law.peak, thrust_law.impulse))
     return f"{scene.thrust.kind}, peak {peak:.4g} N, impulse {whole:.4g} N*s within the duration"

@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.scenes import moments
+from tipoff.scenes import ends, moments
 from tipoff.scenes.effects import registry, thrust
 
 _STRAIN = 0.01  # of a pad's shortest side
@@ -45,7 +45,7 @@ class _Spring(NamedTuple):
 
 def load(scene) -> float:
     """Largest static load (N) of one pad face across the axis, see the module docstring."""
-    peak = float(thrust.peak(scene.thrust.record(), scene.time_limit))
+    peak = float(thrust.peak(ends.over_time(scene), scene.time_limit))
     tilt = scene.thrust_offset.misalignment.axial if scene.thrust_offset is not None else 0.0
     force = registry.body_force(scene)
     weight = scene.payload.mass * float(np.hypot(force.y, force.z)) if force is not None else 0.0

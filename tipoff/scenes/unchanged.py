@@ -3,6 +3,7 @@ another curve or rail than its scene."""
 
 import numpy as np
 
+from tipoff.scenes.effects.spring import PushedTable
 from tipoff.scenes.effects.thrust import MeasuredTable, ThrustTable
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import RailTable
@@ -19,6 +20,13 @@ def require(before: Tables, after: Tables, source: str) -> None:
         pairs = zip(old.curve(), new.curve())
         if not all(np.array_equal(first, second) for first, second in pairs):
             changed.append(("thrust.file", new.file))
+    if isinstance(old, PushedTable) and isinstance(new, PushedTable):
+        known = {path: push for _, path, push in old.files()}
+        changed += [
+            (f"thrust.{key}", path)
+            for key, path, push in new.files()
+            if path in known and not all(map(np.array_equal, known[path], push))
+        ]
     key = later.GIVEN_BY
     file = getattr(later, key, None)
     if (

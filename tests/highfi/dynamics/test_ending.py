@@ -88,6 +88,11 @@ def straight(safety: float, step_everything: bool = True, **thrust) -> tuple[flo
     exact = scipy.optimize.brentq(
         lambda t: way(0.0, t, together) - past, 1e-3, scene.duration, xtol=1e-15, rtol=1e-14
     )
+    # at exit: the mean speed over 0.2 ms, and the part of the push that comes after it
+    mean = way(exact, exact + 2e-4, 1.0 / scene.payload.mass) / 2e-4
+    assert found.outcome.exit_velocity[0] == pytest.approx(mean, rel=1e-8)
+    share = 1.0 - speed(exact, 1.0) / speed(scene.duration, 1.0)
+    assert found.outcome.impulse_after_exit == pytest.approx(share, abs=1e-9)
     start = found.outcome.window_start
     assert start == pytest.approx(exact + 1e-3, abs=1e-7)  # the push is over
     mean = way(start, start + 2e-3, 1.0 / scene.payload.mass) / 2e-3

@@ -114,6 +114,30 @@ def test_exit_under_a_constant_push(force):
         assert run.outcome.exit_time == pytest.approx(exact, rel=1e-14)
 
 
+def test_rates_at_exit_under_thrust():
+    """A push off the centre turns a body at M t / I about z. So the mean over 0.2 ms is the rate 0.1
+    ms after the exit. Control: the settled rate, after the push, is three times as large."""
+    force, off, lasts = 4000.0, 1e-4, 0.1
+    run = lowfi.run(
+        free(
+            0.2,
+            0.05,
+            thrust={"kind": "constant", "force": force, "duration": lasts},
+            thrust_offset={"eccentricity": {"axial": off, "radial": np.pi / 2.0}},
+        ),
+        "springs",
+        numerics=FINE,
+    )
+    turning = -force * off / run.scene["payload"]["inertia"]["zz"]
+    at_exit = turning * (run.outcome.exit_time + 1e-4)
+    assert run.outcome.exit_rate == pytest.approx([0.0, 0.0, at_exit], rel=1e-5, abs=1e-12)
+    share = 1.0 - run.outcome.exit_time / lasts
+    assert run.outcome.impulse_after_exit == pytest.approx(share, rel=1e-12)
+    # Control:
+    assert run.outcome.rate[2] == pytest.approx(turning * lasts, rel=1e-9)
+    assert abs(run.outcome.rate[2] / at_exit) > 3.0
+
+
 def pushed(tolerance: float, interval: float):
     """A Gaussian push that is near its peak at the exit and has fallen to 0.1 % when the window
     begins: relative errors of exit time and mean velocity."""

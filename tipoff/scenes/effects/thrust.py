@@ -1,4 +1,5 @@
-"""Thrust of the solid thruster: Gaussian, a sum of Gaussians, a constant push, or a measured curve.
+"""Thrust over time: Gaussian, a sum of Gaussians, a constant push, or a measured curve. A force over
+travel is in ``spring``.
 
     F(t) = sum_i P_i exp(-(t - t_i)^2 / (2 s_i^2))   begin <= t <= end,        impulse of one pulse J = P s sqrt(2 pi)
 
@@ -29,6 +30,7 @@ from tipoff.scenes.effects.measured import (
     read_curve,
     without_baseline,
 )
+from tipoff.scenes.effects.spring import SpringsTable, SpringTable
 from tipoff.scenes.effects.thrust_law import (
     ROOT_TWO_PI,
     Curve,
@@ -116,6 +118,14 @@ class _ThrustTable(Table):
     def record(self) -> Thrust:
         """Kernel record."""
         raise NotImplementedError
+
+    def contents(self) -> tuple[dict, list[list[float]]]:
+        """The table without paths, and the points of its file, for the hash of a scene."""
+        return self.model_dump(mode="json"), []
+
+    def middle(self) -> tuple[float, float]:
+        """Place (m) of the line of action along Y and Z, without errors."""
+        return (0.0, 0.0)
 
     def requested(self) -> float:
         """Impulse (N s) of the table."""
@@ -307,9 +317,10 @@ class MeasuredTable(_ThrustTable):
         """Measured times (s) and forces (N), without the baseline."""
         return self._curve
 
-    def points(self) -> list[list[float]]:
-        """Times (s) and forces (N) of the curve."""
-        return [self._curve.time.tolist(), self._curve.force.tolist()]
+    def contents(self) -> tuple[dict, list[list[float]]]:
+        """The table without its path, with times (s) and forces (N) of the curve."""
+        points = [self._curve.time.tolist(), self._curve.force.tolist()]
+        return self.model_dump(mode="json", exclude={"file"}), points
 
     def record(self) -> Thrust:
         """Kernel record: the curve, or one pulse."""
@@ -359,5 +370,6 @@ class MeasuredTable(_ThrustTable):
 
 
 ThrustTable = Annotated[
-    GaussianTable | GaussiansTable | ConstantTable | MeasuredTable, Field(discriminator="kind")
+    GaussianTable | GaussiansTable | ConstantTable | MeasuredTable | SpringTable | SpringsTable,
+    Field(discriminator="kind"),
 ]

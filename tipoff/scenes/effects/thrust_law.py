@@ -37,16 +37,16 @@ class Curve(NamedTuple):
 
 @by_reference
 class Thrust(NamedTuple):
-    """Kernel record: exactly one of the two is not None."""
+    """Kernel record: one of the two is not None, or none of them for a force over travel
+    (``pusher_law``)."""
 
     pulses: Pulses | None
     curve: Curve | None
 
 
 def _curve(thrust: Thrust) -> Curve:
-    """The curve of a thrust without pulses."""
-    assert thrust.curve is not None
-    return thrust.curve
+    """The curve of a thrust without pulses, empty for a force over travel."""
+    return thrust.curve if thrust.curve is not None else Curve(np.zeros(0), np.zeros(0))
 
 
 @njit
@@ -107,10 +107,10 @@ def corners(thrust: Thrust, duration: float) -> np.ndarray:
 
 def shortest_feature(thrust: Thrust) -> float:
     """Time scale (s) that steps must resolve: the narrowest pulse width, or the shortest segment of a
-    curve."""
+    curve; infinite without both."""
     if thrust.pulses is not None:
         return float(thrust.pulses.widths.min())
-    return float(np.diff(np.unique(_curve(thrust).times)).min())
+    return float(np.diff(np.unique(_curve(thrust).times)).min(initial=math.inf))
 
 
 @njit

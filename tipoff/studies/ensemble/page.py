@@ -9,8 +9,10 @@ from tipoff.workspace.words import counted
 
 _LABELS = {
     "rate_deg_s": "total rate (deg/s)",
+    "exit_rate_deg_s": "total rate at exit (deg/s)",
     "lateral_velocity_mm_s": "lateral velocity (mm/s)",
     "direction_error_deg": "direction error (deg)",
+    "impulse_after_exit_percent": "impulse after the exit (%)",
 }
 _STORED = {
     None: "no stored result to compare with",
@@ -104,8 +106,15 @@ def case(one: One) -> list[Part]:
         Table(["input", "value"], list(one.inputs.items())),
     ]
     if outcome.rate is not None and outcome.velocity is not None:
-        vectors = (("velocity (m/s)", outcome.velocity), ("rate (rad/s)", outcome.rate))
-        rows = [(name, *(f"{value:.17g}" for value in vector)) for name, vector in vectors]
+        vectors = (
+            ("velocity (m/s)", outcome.velocity),
+            ("rate (rad/s)", outcome.rate),
+            ("velocity at exit (m/s)", outcome.exit_velocity),
+            ("rate at exit (rad/s)", outcome.exit_rate),
+        )
+        rows = [
+            (name, *(f"{value:.17g}" for value in vector)) for name, vector in vectors if vector
+        ]
         parts.append(Table(["", "x", "y", "z"], rows))
     parts += [
         f"{CAUSES[cause]}: "

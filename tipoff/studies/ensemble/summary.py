@@ -19,14 +19,16 @@ CONFIDENCE = 0.95
 _SHOWN = 5  # failed cases in the result; the store lists all
 _VALUES: dict[str, tuple[str, Callable[[np.ndarray], np.ndarray]]] = {
     "rate_deg_s": ("rate", lambda rate: np.degrees(np.linalg.norm(rate, axis=1))),
+    "exit_rate_deg_s": ("exit_rate", lambda rate: np.degrees(np.linalg.norm(rate, axis=1))),
     "lateral_velocity_mm_s": ("lateral_velocity", lambda speed: 1e3 * speed),
     "direction_error_deg": ("direction_error", np.degrees),
+    "impulse_after_exit_percent": ("impulse_after_exit", lambda share: 100.0 * share),
 }
 
 
 @dataclass(frozen=True, kw_only=True)
 class Statistics:
-    """Counts, and quantiles of the settled values with the method of their bounds. ``cases``: the
+    """Counts, and quantiles of the cases that settled, with the method of their bounds. ``cases``: the
     source of the cases; ``provenance`` of the distributions by key; ``failures``: the first ones,
     with number, status, reason and inputs; ``failed``: their reasons if no case is ok."""
 
@@ -48,10 +50,15 @@ class Statistics:
 
 def of(ensemble: Ensemble, store: Store, calibrated: bool) -> Statistics:
     """Statistics of a whole store; ``calibrated``: the constants of the model are not the scene's."""
-    status, settled = store.column("status"), np.isfinite(store.column("exit_time"))
+    status, settled = store.column("status"), np.isfinite(store.column("lateral_velocity"))
     failures = store.failures()[:_SHOWN]
     counts, unbounded = columns.counts(status), _no_bounds(ensemble.source)
-    shown = _VALUES if settled.any() else {}
+    shown = {
+        name: what
+        for name, what in _VALUES.items()
+        # without thrust there is no share of its impulse
+        if settled.any() and np.isfinite(store.column(what[0])[settled]).all()
+    }
     lines = [f"case {item['case']}: {item['status']}: {item['reason']}" for item in failures]
     return Statistics(
         model=words.model(ensemble.scene, calibrated, ensemble.compliance),

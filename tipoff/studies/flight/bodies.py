@@ -76,7 +76,10 @@ def start(found: Columns) -> Start:
 def of_outcomes(outcomes: Sequence[Outcome]) -> Columns:
     """Settled outcomes as columns."""
     none = np.zeros(len(outcomes), dtype=int)  # no status, no steps
-    values = {name: np.array([getattr(each, name) for each in outcomes]) for name in UNITS}
+    # no share of the impulse, without thrust, is NaN
+    values = {
+        name: np.array([getattr(each, name) for each in outcomes], dtype=float) for name in UNITS
+    }
     return Columns(status=none, **values, steps=none)
 
 

@@ -40,7 +40,7 @@ _QUANTILES = (0.5, 0.9, 0.95, 0.99)
 def both_settled(drawn: Draws, whole: Population) -> np.ndarray:
     """Whether a draw settled in the reference and in the population (n,)."""
     count = len(drawn.reference.exit_time)
-    return np.isfinite(drawn.reference.exit_time) & whole.settled[:count]
+    return np.isfinite(drawn.reference.rate[:, 0]) & whole.settled[:count]
 
 
 def _part(found: Columns, which: slice | np.ndarray) -> Columns:

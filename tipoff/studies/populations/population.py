@@ -107,7 +107,7 @@ class Population(NamedTuple):
     @property
     def settled(self) -> np.ndarray:
         """Whether a case left the rail and settled (n,)."""
-        return np.isfinite(self.results.exit_time)
+        return np.isfinite(self.results.rate[:, 0])
 
 
 def surrogate(study: Study, model: str | None = None, condition: str | None = None) -> Surrogate:

@@ -47,6 +47,15 @@ _RANGE_NOTE = (
     "A range in place of a value: from the smallest to the largest settled rate of the same launch with "
     "payload and walls moved by less than 1 µm, by finite elements on the coarse mesh."
 )
+_EXIT_NOTE = (
+    "At exit: means over 0.2 ms from the exit on, under the thrust that there is then. The impulse "
+    "after the exit changes the rates of a free payload until burnout."
+)
+_AT_EXIT = (
+    "at exit: roll, transverse (deg/s)",
+    Column("impulse after exit", "%", ".2g", 100.0),
+)
+_BURNT = 1e-3  # of the impulse: a smaller share after the exit is not shown
 _HAND_NOTE = (
     "By hand: the same two rates of a rigid payload, from the moment impulse of the thrust over "
     "the inertia. If one pad touches, the impulse of its force is added. Both must be near the "
@@ -196,6 +205,7 @@ def _conditions(
         Column(Markup("v<sub>x</sub> (m/s)"), form=".4f"),
         "roll rate (deg/s)",
         "transverse rate (deg/s)",
+        *(_AT_EXIT if _burns_on(rows) else []),
         *(["by hand: roll, transverse (deg/s)"] if _by_hand(rows) else []),
         Column("off axis", "deg", ".2g"),
         Column("surrogate error", "deg/s"),
@@ -214,6 +224,7 @@ def _conditions(
                     if settled
                     else [None] * 3
                 ),
+                *(_at_exit(row) if _burns_on(rows) else []),
                 *([_hand(row)] if _by_hand(rows) else []),
                 settled and settled.direction_error_deg,
                 other and Measured(other.settled_rate_error_deg_s, other.floor_deg_s, apart=True),
@@ -224,6 +235,7 @@ def _conditions(
         kinds.append(_kind(other))
     notes = (
         _NOTE,
+        *([_EXIT_NOTE] if _burns_on(rows) else []),
         *([_RANGE_NOTE] if spreads else []),
         *([_HAND_NOTE] if _by_hand(rows) else []),
     )
@@ -239,6 +251,18 @@ def _rates(settled: Settled, uncertainty: float | None, spread: Distribution | N
         uncertain(settled.rate_deg_s[0], uncertainty),
         uncertain(transverse(settled.rate_deg_s), uncertainty),
     ]
+
+
+def _burns_on(rows: Sequence[Row]) -> bool:
+    """Whether any payload leaves its rail under thrust."""
+    return any((row.impulse_after_exit or 0.0) > _BURNT for row in rows)
+
+
+def _at_exit(row: Row) -> list:
+    """Roll and transverse rate at exit, and the share of the impulse after it."""
+    rate = row.at_exit and row.at_exit.rate_deg_s
+    shown = f"{uncertain(roll(rate))}, {uncertain(transverse(rate))}" if rate else None
+    return [shown or row.no_exit_values or None, row.impulse_after_exit]
 
 
 def _by_hand(rows: Sequence[Row]) -> bool:

@@ -1,12 +1,12 @@
 """Runs of both models on the page: thrust, curves, contact forces, energy."""
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tipoff.studies.render.document import Figure, Part
 from tipoff.studies.render.table import Column, Table
 from tipoff.studies.runs import figures
-from tipoff.studies.runs.results import Row, Settled
+from tipoff.studies.runs.results import AtExit, Row, Settled
 from tipoff.studies.runs.thrust_facts import thrust_facts
 
 if TYPE_CHECKING:
@@ -31,6 +31,10 @@ def _of_settled(head: Column, cell: Callable[[Settled], float]) -> tuple[Column,
     return head, lambda row: row.settled and cell(row.settled)
 
 
+def _of_exit(head: Column, cell: Callable[[AtExit], Any]) -> tuple[Column, Callable]:
+    return head, lambda row: row.at_exit and cell(row.at_exit)
+
+
 _SETTLED = (
     *("condition", "model", "status"),
     _of_settled(Column("v_x", "m/s", ".4f"), lambda own: own.velocity_m_s[0]),
@@ -38,6 +42,8 @@ _SETTLED = (
     _of_settled(Column("rate y", "deg/s", "+.3f"), lambda own: own.rate_deg_s[1]),
     _of_settled(Column("rate z", "deg/s", "+.3f"), lambda own: own.rate_deg_s[2]),
     _of_settled(Column("off axis", "deg", ".3g"), lambda own: own.direction_error_deg),
+    _of_exit(Column("rate at exit x, y, z", "deg/s", "+.3f"), lambda own: own.rate_deg_s),
+    (Column("impulse after exit", "%", ".2g", 100.0), lambda row: row.impulse_after_exit),
     "wall_s",
 )
 

@@ -20,6 +20,14 @@ class Settled:
     direction_error_deg: float
 
 
+@dataclass(frozen=True, kw_only=True)
+class AtExit:
+    """Means over the window at exit, under the thrust that there is then."""
+
+    velocity_m_s: Vector
+    rate_deg_s: Vector
+
+
 @dataclass(frozen=True)
 class ByHand:
     """Rates of a rigid payload from moment impulses, and the impulses that are included."""
@@ -40,10 +48,12 @@ def transverse(rate: Sequence[float]) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Row:
-    """One run. ``settled`` is None if it did not settle; ``advice`` is empty unless the run ended
-    too early; ``by_hand`` is None if more than one pad touches; ``rail_compliance``: its statement
-    about its elements; ``trajectory``: the file in the folder of the scene. Only the reference has
-    the fields from ``elements`` on; stresses are None for a run without stresses."""
+    """One run. ``settled`` is None if it did not settle; ``at_exit`` is None for the reason
+    ``no_exit_values``; ``impulse_after_exit`` is a share, None without exit or thrust; ``advice``
+    is empty unless the run ended too early; ``by_hand`` is None if more than one pad touches;
+    ``rail_compliance``: its statement about its elements; ``trajectory``: the file in the folder of
+    the scene. Only the reference has the fields from ``elements`` on; stresses are None for a run
+    without stresses."""
 
     condition: Annotated[str, Column("condition")]
     model: Annotated[str, Column("model")]
@@ -63,6 +73,9 @@ class Row:
     checks: dict[str, Any]
     cost: dict[str, Any]
     numerics: dict[str, Any]
+    at_exit: AtExit | None = None
+    no_exit_values: str = ""
+    impulse_after_exit: float | None = None
     advice: str = ""
     thrust: dict[str, Any] | None = None  # acting forces
     rail_compliance: dict[str, Any] | None = None

@@ -8,10 +8,10 @@ from typing import Any
 
 from tipoff.mechanics import hand_calculation, unfinished
 from tipoff.mechanics.model_names import FINITE_ELEMENTS
-from tipoff.mechanics.outcome import Outcome
+from tipoff.mechanics.outcome import Outcome, no_exit_values
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.convergence import stresses
-from tipoff.studies.runs.results import ByHand, Row, Runs, Settled, Vector
+from tipoff.studies.runs.results import AtExit, ByHand, Row, Runs, Settled, Vector
 from tipoff.workspace.run import Run
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import FAILED, Study
@@ -94,6 +94,9 @@ def row(name: str, run: Trajectory, path: str, request: Run | None = None) -> Ro
         linear_momentum_error=checks.get("linear_momentum_error"),
         angular_momentum_error=checks.get("angular_momentum_error"),
         settled=_settled(run.outcome),
+        at_exit=_at_exit(run.outcome),
+        no_exit_values=no_exit_values(run.status, run.outcome),
+        impulse_after_exit=run.outcome.impulse_after_exit,
         trajectory=path,
         checks=checks,
         cost=cost,
@@ -113,6 +116,15 @@ def _settled(found: Outcome) -> Settled | None:
         rate_deg_s=_vector(map(math.degrees, found.rate)),
         lateral_velocity_m_s=found.lateral_velocity,
         direction_error_deg=math.degrees(found.direction_error),
+    )
+
+
+def _at_exit(found: Outcome) -> AtExit | None:
+    if found.exit_rate is None or found.exit_velocity is None:
+        return None
+    return AtExit(
+        velocity_m_s=_vector(found.exit_velocity),
+        rate_deg_s=_vector(map(math.degrees, found.exit_rate)),
     )
 
 

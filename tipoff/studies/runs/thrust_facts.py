@@ -6,6 +6,7 @@ import numpy as np
 
 from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.effects.measured import GaussianFit
+from tipoff.scenes.effects.spring import PushedTable
 from tipoff.scenes.effects.thrust import GaussiansTable, GaussianTable
 from tipoff.scenes.scene import Scene
 from tipoff.studies.render.table import Table
@@ -13,6 +14,8 @@ from tipoff.studies.render.table import Table
 
 def thrust_facts(scene: Scene) -> Table:
     """Impulse, its share outside the duration or the cutoff, and the fit of a measured curve."""
+    if isinstance(scene.thrust, PushedTable):
+        return Table(("thrust", ""), [("springs", scene.thrust.words())])
     record = scene.thrust.record()
     delivered = thrust_law.impulse(record, scene.time_limit)
     rows = [

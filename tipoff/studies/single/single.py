@@ -164,7 +164,8 @@ def lines(row: Single, made_with: str, study: Study) -> list[str]:
     if row.thrust:
         text.append(f"  thrust        {row.thrust['text']}")
     if row.exit_time_s is not None:
-        text.append(f"  exit          {1e3 * row.exit_time_s:.4g} ms after ignition")
+        text.append(f"  exit          {1e3 * row.exit_time_s:.4g} ms after ignition{_after(row)}")
+        text.append(f"  at exit       {_at_exit(row)}")
     text += _settled(row)
     text += _stress(row)
     if row.disturbed:
@@ -178,6 +179,19 @@ def lines(row: Single, made_with: str, study: Study) -> list[str]:
     text.append(f"  took          {row.wall_s:.3g} s, {row.steps} steps")
     text.append(f"  trajectory    {study.path(row.trajectory)}")
     return text
+
+
+def _after(row: Row) -> str:
+    share = row.impulse_after_exit
+    return "" if share is None else f", {100.0 * share:.3g} % of the impulse after it"
+
+
+def _at_exit(row: Row) -> str:
+    """Speed and rates at exit, or why they are not known."""
+    if row.at_exit is None:
+        return f"not known: {row.no_exit_values}"
+    rates = ", ".join(map(uncertain, row.at_exit.rate_deg_s))
+    return f"{rates} deg/s (x, y, z), v_x {uncertain(row.at_exit.velocity_m_s[0], least=1e-4)} m/s"
 
 
 def _settled(row: Row) -> list[str]:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from tipoff import lowfi
 from tipoff.lowfi.numerics import Numerics
+from tipoff.scenes import ends
 from tipoff.scenes.effects import thrust
 from tipoff.scenes.scene import Scene
 from tipoff.studies.populations.population import TOLERANCE, Surrogate
@@ -36,7 +37,7 @@ def exit_of(model: Surrogate) -> Exit | None:
     ).outcome.exit_time
     if time is None:
         return None
-    record, duration = model.scene.thrust.record(), model.scene.time_limit
+    record, duration = ends.over_time(model.scene), model.scene.time_limit
     before, whole = thrust.impulse(record, time), thrust.impulse(record, duration)
     # the larger one, because a thrust that pushes and then pulls may have no total impulse
     scale = max(abs(before), abs(whole))

@@ -12,7 +12,7 @@ import numpy as np
 
 from tipoff.lowfi.ensemble.rows import Listed, numbers
 from tipoff.mechanics import scene_model
-from tipoff.scenes import moments
+from tipoff.scenes import ends, moments
 from tipoff.scenes.effects import thrust
 from tipoff.scenes.scene import Scene
 
@@ -65,7 +65,7 @@ def free_rates(scene: Scene, rows: list[dict[str, float]]) -> np.ndarray:
     """Rates (n,3), rad/s, of a free payload of ``scene`` with ``rows`` of overrides of a factor."""
     table = Listed(rows)
     inputs = dict(zip(table.keys, numbers(table.keys, rows).T))
-    impulse = float(thrust.impulse(scene.thrust.record(), scene.time_limit))
+    impulse = float(thrust.impulse(ends.over_time(scene), scene.time_limit))
     return (
         moments.moment_impulses(scene, inputs, impulse)
         @ scene_model.build(scene).payload.inverse_inertia.T

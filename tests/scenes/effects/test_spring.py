@@ -1,0 +1,205 @@
+"""Spring pushers of a scene: their numbers, their tables, and refused ones."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.scenes.support import refused, small, write
+from tipoff.mechanics import scene_model
+from tipoff.scenes import ends, parse
+from tipoff.scenes.effects import thrust_law
+from tipoff.scenes.effects.pusher_law import energy_given_up
+from tipoff.scenes.faults import SceneError
+from tipoff.scenes.variation import Variations
+
+SPRING = {"kind": "spring", "preload": "100 N", "rate": "2 N/mm", "stroke": "40 mm"}
+TABLE = "travel [mm],force [N]\n0,100\n10,90\n40,20\n"
+PAIR = {
+    "kind": "springs",
+    "springs": [
+        {"preload": "100 N", "rate": "2 N/mm", "stroke": "40 mm", "y": "30 mm"},
+        {"preload": "110 N", "rate": "2 N/mm", "stroke": "50 mm", "y": "-30 mm"},
+    ],
+}
+
+
+def spring(**changes) -> dict:
+    """A scene with one spring; a change to None leaves the key out."""
+    table = {key: value for key, value in (SPRING | changes).items() if value is not None}
+    return small(thrust=table)
+
+
+def from_file(path, **changes) -> dict:
+    """A scene with one spring whose force is in a file."""
+    return spring(preload=None, rate=None, stroke=None, file=str(path), **changes)
+
+
+def test_a_spring_is_a_line_of_force_over_travel():
+    """Energy P s - k s2 / 2, less f s of friction."""
+    described = parse(spring(friction="5 N")).thrust.describe(1.0)
+    assert described["peak_N"] == pytest.approx(100.0, rel=1e-14)
+    assert described["energy_J"] == pytest.approx(100.0 * 0.04 - 1e3 * 0.04**2, rel=1e-14)
+    assert described["friction_J"] == pytest.approx(5.0 * 0.04, rel=1e-14)
+
+
+def test_a_table_has_the_units_of_its_columns(tmp_path):
+    scene = parse(from_file(write(tmp_path, "push.csv", TABLE)))
+    push = scene.thrust.push()
+    np.testing.assert_allclose(push.travel, [0.0, 0.01, 0.04], rtol=1e-14)
+    assert push.energy()[-1] == pytest.approx(0.95 + 1.65, rel=1e-14)
+
+
+def test_a_scene_counts_a_table_by_its_content(tmp_path):
+    """Two files with the same points give the same hash; a file that changed is a fault."""
+    first, other = (write(tmp_path, name, TABLE) for name in ("a.csv", "b.csv"))
+    scene = parse(from_file(first))
+    assert scene.hash == parse(from_file(other)).hash
+    changed = write(tmp_path, "c.csv", TABLE.replace("20", "21"))
+    assert scene.hash != parse(from_file(changed)).hash
+    write(tmp_path, "a.csv", TABLE.replace("20", "21"))
+    with pytest.raises(SceneError, match="thrust.file"):
+        scene.replace({"payload.mass": 5.0})
+
+
+REFUSED = {
+    "no stroke": ({"stroke": None}, "thrust.stroke", "preload, rate and stroke, or a file"),
+    "pulls at its end": ({"stroke": "60 mm"}, "thrust.stroke", "at most 0.05 m"),
+    "held by friction": ({"friction": "100 N"}, "thrust.friction", "nothing starts"),
+    "stops on its way": ({"friction": "30 N"}, "thrust.friction", "at most 20 N"),
+    "longer than the rail": (
+        {"rate": "0 N/m", "stroke": "400 mm"},
+        "thrust.stroke",
+        "the way to the exit",
+    ),
+    "no force": ({"preload": "0 N"}, "thrust.preload", "greater than 0"),
+    "wrong unit": ({"rate": "2 N"}, "thrust.rate", "N/m"),
+    "exhaust": ({"reaction": "exhaust"}, "thrust.reaction", "platform"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_springs_that_cannot_work_are_refused(name):
+    changes, key, expected = REFUSED[name]
+    (fault,) = refused(spring(**changes))
+    assert fault.key == key
+    assert expected in fault.expected
+
+
+TABLES = {
+    "falls": ("travel [mm],force [N]\n0,9\n2,8\n1,7\n", "rises from point to point (point 3"),
+    "one travel twice": ("travel [mm],force [N]\n0,9\n2,8\n2,7\n", "rises"),
+    "begins later": ("travel [mm],force [N]\n1,9\n2,8\n", "begins at 0"),
+    "one point": ("travel [mm],force [N]\n0,9\n", "at least two points"),
+    "pulls": ("travel [mm],force [N]\n0,9\n2,-8\n", "not negative"),
+    "does not start": ("travel [mm],force [N]\n0,0\n2,8\n", "nothing starts"),
+    "no unit": ("travel,force\n0,9\n2,8\n", "the unit of the column"),
+    "other columns": ("time [s],force [N]\n0,9\n2,8\n", "once in the header"),
+    "text": ("travel [mm],force [N]\n0,a\n2,8\n", "finite number"),
+    "empty": ("", "once in the header"),
+}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_tables_that_cannot_work_are_refused(tmp_path, name):
+    text, expected = TABLES[name]
+    (fault,) = refused(from_file(write(tmp_path, "push.csv", text)))
+    assert fault.key == "thrust.file"
+    assert expected in fault.expected
+
+
+def test_all_faults_are_named_at_once(tmp_path):
+    """Of one spring, of several, and of a table."""
+    keys = {fault.key for fault in refused(spring(stroke="60 mm", friction="100 N"))}
+    assert keys == {"thrust.stroke", "thrust.friction"}
+    pair = [
+        {"preload": "0 N", "rate": "2 N/mm", "stroke": "40 mm"},
+        {"preload": "9 N", "rate": "2 N/mm"},
+    ]
+    keys = {fault.key for fault in refused(small(thrust={"kind": "springs", "springs": pair}))}
+    assert keys == {"thrust.springs.0.preload", "thrust.springs.1.stroke"}
+    path = write(tmp_path, "push.csv", "travel [mm],force [N]\n1,-9\n0,8\n")
+    (fault,) = refused(from_file(path))
+    assert all(word in fault.expected for word in ("begins at 0", "rises", "not negative"))
+
+
+def test_a_table_and_numbers_are_refused(tmp_path):
+    path = write(tmp_path, "push.csv", TABLE)
+    (fault,) = refused(spring(file=str(path)))
+    assert fault.key == "thrust.file" and "one or the other" in fault.expected
+
+
+def test_a_variation_may_not_leave_the_rail():
+    """Neither by ``replace`` nor row by row in an ensemble."""
+    scene = parse(spring(rate="0 N/m"))
+    for vary in (scene.replace, Variations(scene).of):
+        assert vary({"thrust.stroke": 0.05}).thrust.stroke == 0.05
+        with pytest.raises(SceneError, match="the way to the exit"):
+            vary({"thrust.stroke": 0.5})
+
+
+def test_each_number_of_each_spring_can_be_varied():
+    scene = parse(small(thrust=PAIR))
+    changes = {"preload": 90.0, "rate": 1e3, "stroke": 0.03, "friction": 1.0, "y": 0.01, "z": 0.02}
+    row = {f"thrust.springs.1.{key}": value for key, value in changes.items()}
+    for varied in (scene.replace(row), Variations(scene).of(row)):
+        assert varied.thrust.springs[1].model_dump(exclude={"file"}) == changes
+        assert varied.thrust.springs[0] == scene.thrust.springs[0]
+
+
+def test_files_of_springs_are_relative_to_the_scene_file(tmp_path):
+    write(tmp_path, "push.csv", TABLE)
+    text = """extends = "tiny"
+[thrust]
+kind = "springs"
+[[thrust.springs]]
+file = "push.csv"
+y = "10 mm"
+"""
+    from tipoff.scenes import load
+
+    scene = load(write(tmp_path, "pushed.toml", text))
+    assert scene.thrust.springs[0].push().travel[-1] == pytest.approx(0.04, rel=1e-14)
+
+
+def test_the_record_is_about_the_actual_mass_centre():
+    """Points move with the offsets, directions with the misalignment, and travel counts from the
+    nominal place."""
+    scene = parse(small(thrust=PAIR)).replace(
+        {
+            "thrust_offset.misalignment.axial": 0.01,
+            "thrust_offset.eccentricity.axial": 0.002,
+            "mass_offset.eccentricity.axial": 0.001,
+        }
+    )
+    found = scene_model.build(scene).pushers
+    np.testing.assert_allclose(found.point, [[-0.1, 0.03, 0.001], [-0.1, -0.03, 0.001]], atol=1e-15)
+    assert found.direction == pytest.approx((math.cos(0.01), math.sin(0.01), 0.0), rel=1e-14)
+    place = np.array([[-0.1, 0.03, 0.002], [-0.1, -0.03, 0.002]])
+    np.testing.assert_allclose(found.origin, place @ np.array(found.direction), rtol=1e-13)
+
+
+def test_the_energy_of_a_record_is_the_integral_of_its_force():
+    """Beyond the stroke it is constant; before zero travel the first line goes on."""
+    found = scene_model.build(parse(small(thrust=PAIR))).pushers
+
+    def energy(s, segment=0):
+        return energy_given_up(found, np.array([segment] * 2), np.array([s] * 2))
+
+    first, second = 100.0 * 0.02 - 1e3 * 0.02**2, 110.0 * 0.02 - 1e3 * 0.02**2
+    assert energy(0.02) == pytest.approx(first + second, rel=1e-13)
+    assert energy(-0.001) == pytest.approx(-0.212, rel=1e-12)
+    whole = 100.0 * 0.04 - 1e3 * 0.04**2 + 110.0 * 0.05 - 1e3 * 0.05**2
+    assert energy(0.07, segment=1) == pytest.approx(whole, rel=1e-13)
+
+
+def test_the_estimate_over_time_is_a_quarter_of_an_oscillation():
+    """Without friction: time arccos(1 - s/a) / w and speed a w sin(w t), with a = P/k, w2 = k/m."""
+    scene = parse(spring())
+    mass, w, a = scene.payload.mass, math.sqrt(2e3 / scene.payload.mass), 0.05
+    law, end = ends.over_time(scene), math.acos(1.0 - 0.04 / a) / w
+    assert ends.thrust_end(law) == pytest.approx(end, rel=1e-5)
+    speed = a * w * math.sin(w * end)
+    assert thrust_law.impulse(law, 1.0) / mass == pytest.approx(speed, rel=1e-5)
+    assert ends.exit_speed(scene) == pytest.approx(speed, rel=1e-4)
+    assert ends.spring_impulses(scene)[0] == pytest.approx(mass * speed, rel=1e-5)

@@ -1,0 +1,320 @@
+"""``[thrust] kind = "spring"`` and ``"springs"``: spring pushers, whose force depends on travel.
+
+Each pusher has a preload, a rate and a stroke, or a table of force over travel from a CSV file, and
+a constant friction. Its law is in ``pusher_law``. It ends when its stroke is used up, and it reacts
+on the platform.
+"""
+
+from collections.abc import Iterator
+from functools import lru_cache
+from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
+
+import numpy as np
+from pydantic import (
+    AfterValidator,
+    PrivateAttr,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
+
+from tipoff.files import read_input
+from tipoff.scenes import csv_file
+from tipoff.scenes.effects.pusher_law import Pushers
+from tipoff.scenes.effects.thrust_law import Thrust
+from tipoff.scenes.faults import within
+from tipoff.scenes.rounding import below
+from tipoff.scenes.table import Table, at_least_one, limited
+from tipoff.scenes.units import Length, PositiveForce, PositiveLength, PushFriction, SpringRate
+
+_COLUMNS = {"travel": "m", "force": "N"}
+
+
+class Push(NamedTuple):
+    """Force of one pusher over its travel, at k knots."""
+
+    travel: np.ndarray  # (k,) m, rising from zero
+    force: np.ndarray  # (k,) N
+
+    def energy(self) -> np.ndarray:
+        """Energy (k,) J that is given up from zero travel to each knot."""
+        steps = 0.5 * (self.force[1:] + self.force[:-1]) * np.diff(self.travel)
+        return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def read_push(path: str) -> Push:
+    """Read a CSV with the columns ``travel`` and ``force`` and their units. Raises ValueError with
+    every fault of the table."""
+    try:
+        data = read_input(path)
+    except OSError as error:
+        raise ValueError(f"a readable CSV file ({error.strerror or error})") from error
+    return Push(*(values.copy() for values in _parsed(path, data)))
+
+
+# Each condition and each variation of a scene reads its table. Equal bytes give an equal table.
+@lru_cache(maxsize=4)
+def _parsed(path: str, data: bytes) -> Push:
+    columns, faults = csv_file.quantities(path, _COLUMNS, data)
+    wrong = [f"{fault.expected} ({fault.key}: {fault.given})" for fault in faults]
+    travel, force = columns.get("travel"), columns.get("force")
+    if travel is not None:
+        if travel.size < 2:
+            wrong.append("at least two points")
+        elif travel[0] != 0.0:
+            wrong.append(f"a travel that begins at 0 (it begins at {travel[0]:g} m)")
+        if falls := np.flatnonzero(np.diff(travel) <= 0.0).tolist():
+            wrong.append(f"a travel that rises from point to point (point {falls[0] + 2} does not)")
+    if force is not None and (force < 0.0).any():
+        wrong.append("forces that are not negative, because a pusher does not pull")
+    if force is not None and force.size and not force[0] > 0.0:
+        wrong.append("a force above 0 at zero travel, without which nothing starts")
+    if wrong:
+        raise ValueError("a table with " + ", ".join(wrong))
+    assert travel is not None and force is not None
+    return Push(travel, force)
+
+
+class Spring(Table):
+    """One spring pusher: ``preload`` (N), ``rate`` (N/m) and ``stroke`` (m), or a table."""
+
+    #: Force at zero travel; with rate and stroke, or a file instead of all three.
+    preload: PositiveForce | None = None
+    #: Loss of force per travel.
+    rate: SpringRate | None = None
+    #: Travel at which the pusher reaches its stop.
+    stroke: PositiveLength | None = None
+    #: CSV file with the columns travel and force and their units, as in "travel [mm],force [N]";
+    #: relative to the scene file.
+    file: str | None = None
+    #: Constant friction of the pusher, against its motion.
+    friction: PushFriction = 0.0
+    # of the knots, as numbers, so that tables can be compared
+    _points: tuple[tuple[float, ...], tuple[float, ...]] = PrivateAttr()
+
+    @field_validator("stroke")
+    @classmethod
+    def _pushes_to_its_end(cls, stroke: float | None, info: ValidationInfo):
+        preload, rate = info.data.get("preload"), info.data.get("rate")
+        if preload is None or rate is None or stroke is None:
+            return stroke
+        last = preload - rate * stroke
+        if below(last, 0.0, preload):
+            raise ValueError(
+                f"at most {preload / rate:.6g} m: there the force is {last:.4g} N, and a pusher does "
+                "not pull"
+            )
+        return stroke
+
+    @field_validator("file")
+    @classmethod
+    def _readable(cls, file: str | None):
+        if file is not None:
+            read_push(file)
+        return file
+
+    @field_validator("friction")
+    @classmethod
+    def _starts(cls, friction: float, info: ValidationInfo):
+        preload, file = info.data.get("preload"), info.data.get("file")
+        first = preload if file is None else float(read_push(file).force[0])
+        if first is not None and friction > 0.0 and friction >= first:
+            raise ValueError(
+                f"less than the force of {first:g} N at zero travel, or nothing starts"
+            )
+        return friction
+
+    @model_validator(mode="after")
+    def _complete(self):
+        numbers = {"preload": self.preload, "rate": self.rate, "stroke": self.stroke}
+        given = [name for name, value in numbers.items() if value is not None]
+        if self.file is None and len(given) < len(numbers):
+            missing = next(name for name in numbers if name not in given)
+            raise within(missing, "nothing", "preload, rate and stroke, or a file instead")
+        if self.file is not None and given:
+            raise within("file", f"a file and {', '.join(given)}", "one or the other")
+        made = self._made()
+        self._points = tuple(made.travel.tolist()), tuple(made.force.tolist())
+        least = float(made.force.min())
+        if below(least, self.friction):
+            raise within(
+                "friction",
+                f"{self.friction:g} N",
+                f"at most {least:.6g} N, the least force within the stroke, where the pusher would "
+                "stop; or a shorter stroke",
+            )
+        return self
+
+    def _made(self) -> Push:
+        if self.file is not None:
+            return read_push(self.file)
+        assert self.preload is not None and self.rate is not None and self.stroke is not None
+        last = max(self.preload - self.rate * self.stroke, 0.0)
+        return Push(np.array([0.0, self.stroke]), np.array([self.preload, last]))
+
+    def push(self) -> Push:
+        """Force over travel."""
+        return Push(*map(np.array, self._points))
+
+
+class PlacedSpring(Spring):
+    """One of several spring pushers."""
+
+    #: Place of its line of action along Y.
+    y: Length = 0.0
+    #: Place of its line of action along Z.
+    z: Length = 0.0
+
+
+class PushedTable(Table):
+    """Keys of both kinds."""
+
+    #: Distance of the points of application behind the nominal mass centre.
+    arm: PositiveLength = 0.1
+    #: The reaction acts on the platform.
+    reaction: Literal["platform"] = "platform"
+    if TYPE_CHECKING:
+        kind: str  # a literal in each kind, at the place of its key
+
+    def places(self) -> list[tuple[Spring, float, float]]:
+        """The springs with the places (m) of their lines along Y and Z."""
+        raise NotImplementedError
+
+    def pushes(self) -> list[tuple[Push, float]]:
+        """Force over travel and friction (N) of each spring."""
+        return [(spring.push(), spring.friction) for spring, _, _ in self.places()]
+
+    def record(self) -> Thrust:
+        """Kernel record of the thrust over time, which is absent."""
+        return Thrust(pulses=None, curve=None)
+
+    def net_force(self, s: np.ndarray) -> np.ndarray:
+        """Sum of all forces less their friction (N) at the same travel ``s`` (n,) m of all springs,
+        up to their strokes."""
+        total = np.zeros(np.shape(s))
+        for push, held in self.pushes():
+            own = np.interp(s, push.travel, push.force) - held
+            total += np.where(s <= push.travel[-1], own, 0.0)
+        return total
+
+    def peak(self) -> float:
+        """Largest sum of all forces (N) at equal travel."""
+        knots = np.unique(np.concatenate([push.travel for push, _ in self.pushes()]))
+        total = np.zeros(knots.size)
+        for push, _ in self.pushes():
+            total += np.interp(knots, push.travel, push.force, right=0.0)
+        return float(total.max())
+
+    def middle(self) -> tuple[float, float]:
+        """Mean place (m) of the lines of action along Y and Z, weighted with their energy."""
+        weights = [float(push.energy()[-1]) for push, _ in self.pushes()]
+        _, y, z = zip(*self.places())
+        return float(np.dot(weights, y) / sum(weights)), float(np.dot(weights, z) / sum(weights))
+
+    def energy(self) -> float:
+        """Energy (J) of all springs over their strokes."""
+        return float(sum(push.energy()[-1] for push, _ in self.pushes()))
+
+    def friction_loss(self) -> float:
+        """Loss (J) by the friction of all pushers over their strokes."""
+        return float(sum(held * push.travel[-1] for push, held in self.pushes()))
+
+    def describe(self, duration: float) -> dict[str, float | str]:
+        """The thrust for results and report: numbers in SI by name, and a sentence, ``text``. They
+        do not depend on ``duration``."""
+        return {
+            "kind": self.kind,
+            "peak_N": self.peak(),
+            "energy_J": self.energy(),
+            "friction_J": self.friction_loss(),
+            "stroke_m": self.longest(),
+            "text": self.words(),
+        }
+
+    def longest(self) -> float:
+        """The longest stroke (m)."""
+        return max(float(push.travel[-1]) for push, _ in self.pushes())
+
+    def words(self) -> str:
+        """The springs in words."""
+        count = len(self.pushes())
+        return (
+            f"{self.kind}{f', {count} of them' if count > 1 else ''}, {self.peak():.4g} N at most, "
+            f"energy {self.energy():.7g} J over a stroke of {1e3 * self.longest():.6g} mm, of which "
+            f"friction of the pusher takes {self.friction_loss():.7g} J"
+        )
+
+    def contents(self) -> tuple[dict, list[list[float]]]:
+        """The table without paths, and the points of its files, for the hash of a scene."""
+        found = self.model_dump(mode="json", exclude_none=True)
+        for table in found.get("springs", [found]):
+            table.pop("file", None)
+        return found, [part.tolist() for _, _, push in self.files() for part in push]
+
+    def files(self) -> Iterator[tuple[str, str, Push]]:
+        """Key, path and content of each file."""
+        for key, spring in self.named():
+            if spring.file is not None:
+                yield f"{key}file", spring.file, spring.push()
+
+    def named(self) -> Iterator[tuple[str, Spring]]:
+        """The springs, with the beginning of their keys in ``[thrust]``."""
+        raise NotImplementedError
+
+
+class SpringTable(Spring, PushedTable):
+    """``[thrust] kind = "spring"``: the keys of one spring, whose line is that of the thrust."""
+
+    #: One spring pusher.
+    kind: Literal["spring"]
+
+    def places(self) -> list[tuple[Spring, float, float]]:
+        """The only spring, which is the table itself."""
+        return [(self, 0.0, 0.0)]
+
+    def named(self) -> Iterator[tuple[str, Spring]]:
+        """The only spring."""
+        yield "", self
+
+
+class SpringsTable(PushedTable):
+    """``[thrust] kind = "springs"`` with ``[[thrust.springs]]``, one pusher each."""
+
+    #: Several spring pushers beside each other.
+    kind: Literal["springs"]
+    #: The pushers.
+    springs: Annotated[tuple[PlacedSpring, ...], limited, AfterValidator(at_least_one)]
+
+    def places(self) -> list[tuple[Spring, float, float]]:
+        """The springs."""
+        return [(spring, spring.y, spring.z) for spring in self.springs]
+
+    def named(self) -> Iterator[tuple[str, Spring]]:
+        """The springs."""
+        for number, spring in enumerate(self.springs):
+            yield f"springs.{number}.", spring
+
+
+def record(thrust, thrust_offset, mass_offset, platform) -> Pushers | None:
+    """Kernel record of the pushers of ``[thrust]``, None for a thrust over time. ``thrust_offset``
+    and ``mass_offset`` are tables or None, ``platform`` is a kernel record or None."""
+    if not isinstance(thrust, PushedTable):
+        return None
+    direction, line = (1.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    if thrust_offset is not None:
+        direction = thrust_offset.misalignment.direction()
+        line = thrust_offset.eccentricity.offset()
+    centre = np.array(mass_offset.eccentricity.offset() if mass_offset else (0.0, 0.0, 0.0))
+    place = np.array([(-thrust.arm, line[1] + y, line[2] + z) for _, y, z in thrust.places()])
+    base = np.array(platform.mass_centre if platform else (0.0, 0.0, 0.0))
+    pushes = [push for push, _ in thrust.pushes()]
+    return Pushers(
+        direction=direction,
+        point=place - centre,
+        origin=(place - base) @ np.array(direction),
+        first=np.cumsum([0, *(push.travel.size for push in pushes)]),
+        travel=np.concatenate([push.travel for push in pushes]),
+        force=np.concatenate([push.force for push in pushes]),
+        energy=np.concatenate([push.energy() for push in pushes]),
+        friction=np.array([held for _, held in thrust.pushes()]),
+    )

@@ -1,0 +1,71 @@
+"""Estimate of the motion of a payload that springs push along rails without friction.
+
+The speed at the travel s follows from energy, and the time from the speed::
+
+    v^2 / 2 = v_0^2 / 2 + integral of (g F + p) ds,     t = integral of ds / v
+
+with the acceleration g per force and p of a body force, and the sum F of all springs less the friction
+of their pushers. Both are exact in a cell of s with constant force.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.scenes.effects.spring import PushedTable
+from tipoff.scenes.effects.thrust_law import Curve
+
+_CELLS = 1000
+
+
+class Pushed(NamedTuple):
+    """The motion up to the end of the longest stroke, or up to standstill; k points."""
+
+    time: np.ndarray  # (k,) s
+    travel: np.ndarray  # (k,) m
+    speed: np.ndarray  # (k,) m/s
+
+
+def motion(table: PushedTable, gain: float, pull: float, begun: float) -> Pushed:
+    """Motion from zero travel at the speed ``begun`` (m/s), with ``gain`` (1/kg) and ``pull``
+    (m/s2). A payload that does not start stays where it is."""
+    knots = np.concatenate([push.travel for push, _ in table.pushes()])
+    # Closely spaced at the start, where the speed grows with the root of the travel.
+    travel = np.unique(np.append(knots.max() * np.linspace(0.0, 1.0, _CELLS + 1) ** 2, knots))
+    middle, steps = 0.5 * (travel[1:] + travel[:-1]), np.diff(travel)
+    gained = np.cumsum((gain * table.net_force(middle) + pull) * steps)
+    squares = max(begun, 0.0) ** 2 + 2.0 * np.concatenate([[0.0], gained])
+    stands = np.flatnonzero(squares[1:] <= 0.0)
+    count = stands[0] + 1 if stands.size else travel.size
+    speed = np.sqrt(squares[:count])
+    time = np.concatenate([[0.0], np.cumsum(2.0 * steps[: count - 1] / (speed[1:] + speed[:-1]))])
+    return Pushed(time, travel[:count], speed)
+
+
+def over_time(table: PushedTable, gain: float, pull: float, begun: float) -> Curve:
+    """Sum of all forces (N) over time (s) in this motion; of n >= 2 points."""
+    found = motion(table, gain, pull, begun)
+    before = table.net_force(found.travel)
+    after = table.net_force(np.nextafter(found.travel, np.inf))
+    jumps = before != after
+    times = np.repeat(found.time, 1 + jumps)
+    forces = np.repeat(before, 1 + jumps)
+    forces[np.cumsum(1 + jumps)[jumps] - 1] = after[jumps]
+    if times.size < 2:
+        return Curve(np.array([0.0, 1.0]), np.zeros(2))
+    return Curve(times, forces)
+
+
+def impulses(table: PushedTable, gain: float, pull: float, begun: float) -> np.ndarray:
+    """Impulse (n,) N s of each spring in this motion."""
+    found = motion(table, gain, pull, begun)
+    middle = 0.5 * (found.travel[1:] + found.travel[:-1])
+    return np.array(
+        [
+            np.where(
+                middle <= push.travel[-1], np.interp(middle, push.travel, push.force) - held, 0.0
+            )
+            @ np.diff(found.time)
+            for push, held in table.pushes()
+        ]
+    )
