@@ -1,7 +1,7 @@
 """Rail compliances for tests: made by hand or for the reference scene, poses that press them,
 and the plain equations again."""
 
-from functools import cache, partial
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +17,8 @@ from tipoff.lowfi.contact import springs
 from tipoff.lowfi.contact.compliant import record
 from tipoff.lowfi.dynamics import equations
 from tipoff.mechanics import scene_model
-from tipoff.mechanics.rail_compliance import PATTERNS, POWERS, RailCompliance, digest
+from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest
+from tipoff.mechanics.rail_compliance.patterns import powers
 from tipoff.scenes.scene import Scene
 
 REFERENCE = scenes.load("reference")
@@ -54,7 +55,10 @@ def handmade(scene: Scene, entries: dict, rail=None) -> RailCompliance:
 
 def in_one_cell(monkeypatch) -> None:
     """From now on runs use compliant contact with one cell on each pad face."""
-    monkeypatch.setattr(record, "build", partial(record.build, cells=1))
+    build = record.build
+    monkeypatch.setattr(
+        record, "build", lambda *given, **named: build(*given, **named | {"cells": 1})
+    )
 
 
 class Pose(NamedTuple):
@@ -174,7 +178,10 @@ def forces_of(
     aside = (
         place + turn @ faces.centre[face] - faces.centre[face] - model.payload.mass_centre + origin
     )[across]
-    phi = xi[:, None] ** POWERS[:, 0] * (eta + aside / half[1])[:, None] ** POWERS[:, 1]
+    phi = (
+        xi[:, None] ** powers(compliance.degree)[:, 0]
+        * (eta + aside / half[1])[:, None] ** powers(compliance.degree)[:, 1]
+    )
     area = 4.0 * np.abs(half).prod() / cells**2
     return model.interface_stiffness * area * phi.T @ np.maximum(0.0, depth - phi @ displacement)
 

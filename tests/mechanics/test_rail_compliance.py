@@ -137,6 +137,7 @@ def test_terms_of_joints_that_do_not_belong_together_are_refused(compliance, tmp
     whole = JointTerms(
         share=np.full((rails, 3), 0.5),
         moved=np.zeros((stations, faces, PATTERNS, 3)),
+        moved_by_friction=np.zeros((stations, faces, PATTERNS, 3)),
         heated=np.zeros((rails, 3, FIELDS)),
         shape=np.zeros((stations, faces, PATTERNS, modes)),
         stiffness=np.tile(np.eye(modes), (rails, 1, 1)),
