@@ -179,6 +179,7 @@ def along(
     travel: Sequence[float] | np.ndarray,
     patterns: int = PATTERNS,
     modes: int = 0,
+    dragged: int = 0,
 ) -> Compliance:
     """Compliance of the rails of ``scene`` in elements of about ``element_size`` (m), the payload
     aligned and moved by each ``travel`` (m) from its place at ignition.
@@ -187,7 +188,7 @@ def along(
     an unavailable number of patterns or modes.
     """
     own, held = inputs.of(scene), _held(scene, element_size)
-    return of_rails(held, own.faces, own.reach, travel, patterns, modes)
+    return of_rails(held, own.faces, own.reach, travel, patterns, modes, dragged)
 
 
 def of_rails(
