@@ -90,9 +90,10 @@ def condense(
     held = held or rails(scene, element_size)
     found = of_rails(held, own.faces, own.reach, stations, of_degree.count(degree), modes, DRAGGED)
     inverse = np.linalg.pinv(found.gram, rcond=_SINGULAR, hermitian=True)
-    traction = np.linalg.pinv(found.gram[..., :DRAGGED, :DRAGGED], rcond=_SINGULAR, hermitian=True)
-    traction = np.pad(traction, [(0, 0), (0, 0), (0, 0), (0, inverse.shape[-1] - DRAGGED)])
-    dragged = np.einsum("siab,sibjc,sjcd->siajd", inverse, found.dragged, traction, optimize=True)
+    first = np.linalg.pinv(found.gram[..., :DRAGGED, :DRAGGED], rcond=_SINGULAR, hermitian=True)
+    dragged = np.einsum(
+        "siab,sibjc,sjcd->siajd", first, found.dragged[:, :, :DRAGGED], first, optimize=True
+    )
     flexibility = np.einsum("siab,sibjc,sjcd->siajd", inverse, found.matrix, inverse, optimize=True)
     warm = np.einsum("siab,sibt->tsia", inverse, found.warm)
     return RailCompliance(
@@ -107,7 +108,8 @@ def condense(
         joints=found.joints
         and found.joints._replace(
             moved=inverse @ found.joints.moved,
-            moved_by_friction=traction.swapaxes(-1, -2) @ found.joints.moved_by_friction,
+            moved_first=first @ found.joints.moved_first,
+            moved_by_friction=first @ found.joints.moved_by_friction,
             shape=inverse @ found.joints.shape,
         ),
         drawn=_drawn(scene, element_size),

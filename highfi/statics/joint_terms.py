@@ -122,6 +122,9 @@ def together(parts: list[Part], patterns: int, dragged: int) -> JointTerms:
     return JointTerms(
         share=np.array([padded(part.terms.share, 0) for part in parts]),
         moved=_sum(under(part, padded(part.terms.moved, 1)) for part in parts),
+        moved_first=_sum(
+            under(part, padded(part.terms.moved, 1))[:, :, :dragged] for part in parts
+        ),
         moved_by_friction=_sum(
             under(part, padded(part.terms.moved_by_friction, 1), dragged) for part in parts
         ),

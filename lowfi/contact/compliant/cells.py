@@ -16,7 +16,7 @@ of the rows.
 
 import numpy as np
 
-from tipoff.kernels.jit import kernel
+from tipoff.kernels.jit import inlined, kernel
 from tipoff.lowfi.contact.compliant import drawn_walls, patterns
 from tipoff.lowfi.contact.compliant.record import (
     ASIDE,
@@ -90,32 +90,42 @@ def _behind(compliance, row, xi):
     return 0.5 + part if away > 0.0 else 0.5 - part, 0.5 * compliance.node.size * slope
 
 
-@kernel
+@inlined
 def fill_row(compliance, face, xi, displacement):
     """Fill ``Workspace.row`` with the coefficients of the powers of eta' in p (m) along the row of
     cells at ``xi``, without the crown across it. A row beyond the wall continues its last one."""
     workspace, lever = compliance.workspace, compliance.workspace.lever[face]
     row, degree = workspace.row, patterns.degree(workspace.levels)
-    edge = 1.0 + 2.0 / compliance.node.size  # rows over the wall are within it
-    x = min(max(xi + lever[SHIFT], -edge), edge)
-    row[:] = 0.0
+    x = xi + lever[SHIFT]
+    if lever[SHIFT] != 0.0:  # rows over the wall are within this distance
+        edge = 1.0 + 2.0 / compliance.node.size
+        x = min(max(x, -edge), edge)
     for j in range(degree + 1):
         total = 0.0
         for i in range(degree - j, -1, -1):
             total = total * x + displacement[patterns.number(i, j)]
         row[j] = -total
+    if degree < 2:
+        row[2] = 0.0
     w = drawn_walls.height(compliance.drawn, face, _place(compliance, face, xi))
     row[0] += lever[DEPTH] + lever[BY_XI] * xi - lever[BY_ETA] * lever[ASIDE] - w[0]
     row[1] += lever[BY_ETA] - w[1]
     row[2] -= w[2]
 
 
-@kernel
+@inlined
 def along_row(workspace, eta):
     """p (m) at eta' of the filled row."""
+    row = workspace.row
+    return row[0] + eta * (row[1] + eta * (row[2] + _beyond(workspace, eta)))
+
+
+@inlined
+def _beyond(workspace, eta):
+    """Terms of the third and higher powers of eta', over eta'^2."""
     total = 0.0
-    for j in range(max(patterns.degree(workspace.levels), 2), -1, -1):
-        total = total * eta + workspace.row[j]
+    for j in range(patterns.degree(workspace.levels), 2, -1):
+        total = (total + workspace.row[j]) * eta
     return total
 
 
@@ -133,8 +143,7 @@ def press(compliance, face):
     lever, count = workspace.lever[face], compliance.node.size
     stiffness = compliance.interface_stiffness * 4.0 * half[0] * abs(half[1]) / (count * count)
     slack = np.inf
-    workspace.force[face, :] = 0.0
-    workspace.moments[:] = 0.0
+    _clear(workspace, face)
     for number in range(count):
         xi, weight = compliance.node[number], stiffness
         if lever[DRIFT] != 0.0:  # else all of the face is over the wall
@@ -149,18 +158,34 @@ def press(compliance, face):
     return slack
 
 
-@kernel
+@inlined
+def _clear(workspace, face):
+    """Set force and moments to zero."""
+    for a in range(patterns.count(workspace.levels)):
+        workspace.force[face, a] = 0.0
+    size = 2 * patterns.degree(workspace.levels) + 1
+    for i in range(size):
+        for j in range(size - i):
+            workspace.moments[i, j] = 0.0
+
+
+@inlined
 def _sum_row(compliance, relief, aside):
     """Fill sums over the pressed cells of the filled row: of eta'^j and of p eta'^j. Returns the
     smallest |p| (m)."""
     workspace, slack = compliance.workspace, np.inf
     degree = patterns.degree(workspace.levels)
     counted, pressed = workspace.counted, workspace.pressed
-    counted[:] = 0.0
-    pressed[:] = 0.0
+    for j in range(2 * degree + 1):
+        counted[j] = 0.0
+    for j in range(degree + 1):
+        pressed[j] = 0.0
+    # read before the loop, in which sums are written
+    level, tilt, bend = workspace.row[0], workspace.row[1], workspace.row[2]
     for column in range(compliance.node.size):
         eta = compliance.node[column] + aside
-        p = along_row(workspace, eta) - relief * compliance.crown[column]
+        p = level + eta * (tilt + eta * (bend + _beyond(workspace, eta)))
+        p -= relief * compliance.crown[column]
         slack = min(slack, abs(p))
         if p > 0.0:
             power = 1.0
@@ -172,7 +197,7 @@ def _sum_row(compliance, relief, aside):
     return slack
 
 
-@kernel
+@inlined
 def _add_row(workspace, face, x, weight):
     """Add the sums of a row at xi' = ``x``, times its ``weight`` (N/m), to the force and to the
     moments: sums over pressed cells of k dA xi'^i eta'^j with i + j up to twice the degree."""
@@ -186,7 +211,7 @@ def _add_row(workspace, face, x, weight):
         factor *= x
 
 
-@kernel
+@inlined
 def _fill_stiffness(workspace, face):
     """K_ab from the moments."""
     levels = workspace.levels
@@ -204,10 +229,13 @@ def largest_change(compliance, face, change):
     of its wall."""
     lever, levels = compliance.workspace.lever[face], compliance.workspace.levels
     xi, eta = 1.0 + abs(lever[SHIFT]), 1.0 + abs(lever[ASIDE])
-    total = 0.0
-    for n in range(len(levels)):
-        for j in range(n + 1):
-            total += abs(change[patterns.number(n - j, j)]) * xi ** (n - j) * eta**j
+    total, across = 0.0, 1.0
+    for j in range(len(levels)):
+        along = 0.0
+        for i in range(patterns.degree(levels) - j, -1, -1):
+            along = along * xi + abs(change[patterns.number(i, j)])
+        total += along * across
+        across *= eta
     return total
 
 

@@ -92,7 +92,9 @@ class Compliance(NamedTuple):
     """Compliant contact of f faces on r rails, with its statics at s stations."""
 
     cubic: np.ndarray  # (s-1, f, f, 4, p p) m/N, as powers of the distance (m) from a station
-    dragged: np.ndarray | None  # as ``cubic``, for a coefficient of 1; None without friction
+    # (s-1, f, f, 4, d d) m/N, as ``cubic``, in the first d patterns for a coefficient of 1; None
+    # without friction
+    dragged: np.ndarray | None
     origin: float  # m, X of the first face at ignition: the first station
     spacing: float  # m, between stations
     members: np.ndarray  # (r, m) numbers of the faces on each rail; -1 fills up

@@ -20,6 +20,7 @@ from tipoff.lowfi.contact.compliant import patterns, thermal_offset
 from tipoff.lowfi.contact.compliant.cells import eased, largest_change, press, take_lever
 from tipoff.lowfi.contact.compliant.modes import evaluate, offset
 from tipoff.lowfi.contact.compliant.record import BY_ETA, BY_XI, DEPTH
+from tipoff.mechanics.rail_compliance.patterns import DRAGGED
 
 _ARRIVED = 1e-14  # m; a smaller correction is rounding
 _MOST = 60  # corrections
@@ -129,24 +130,28 @@ def _add_drag(dragged, workspace, i, j, station, s, changes):
     """Add what friction adds to flexibility and slope between two faces in order."""
     if dragged is not None:
         c = dragged[station, workspace.order[i], workspace.order[j]]
-        block, slope, share = (
-            workspace.flexibility[i, j],
-            workspace.slope[i, j],
-            workspace.friction[0],
-        )
-        for k in range(block.size):
-            block[k] += share * (c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k])))
-            slope[k] += share * changes * (c[1, k] + s * (2.0 * c[2, k] + s * 3.0 * c[3, k]))
+        share, size = workspace.friction[0], patterns.count(workspace.levels)
+        for a in range(DRAGGED):
+            for b in range(DRAGGED):
+                k, n = a * DRAGGED + b, a * size + b
+                workspace.flexibility[i, j, n] += share * (
+                    c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k]))
+                )
+                workspace.slope[i, j, n] += (
+                    share * changes * (c[1, k] + s * (2.0 * c[2, k] + s * 3.0 * c[3, k]))
+                )
 
 
 @kernel
-def _drag(dragged, workspace, face, other, station, s, k):
-    """What friction adds to entry k of the flexibility (m/N) between two faces."""
-    value = 0.0
+def _follow_drag(dragged, workspace, face, other, station, s, out):
+    """Add to ``out`` the displacement of the wall under a face by the friction of another one."""
     if dragged is not None:
-        c = dragged[station, face, other]
-        value = workspace.friction[0] * (c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k])))
-    return value
+        c, share = dragged[station, face, other], workspace.friction[0]
+        for a in range(DRAGGED):
+            for b in range(DRAGGED):
+                k = a * DRAGGED + b
+                value = c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k]))
+                out[a] += share * value * workspace.force[other, b]
 
 
 @kernel
@@ -246,5 +251,6 @@ def follow(compliance, face, place, count, state, out):
             for b in range(size):
                 k = a * size + b
                 value = c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k]))
-                value += _drag(compliance.dragged, workspace, face, other, station, s, k)
                 out[a] += value * workspace.force[other, b]
+    for j in range(count):
+        _follow_drag(compliance.dragged, workspace, face, workspace.order[j], station, s, out)

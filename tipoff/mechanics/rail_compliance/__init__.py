@@ -16,7 +16,8 @@ surface, half a wall away from the middle of the leg, so its moment bends the le
 
     U = F P + mu (D P),   D = (T + T') / 2,   T_iajb: pattern a of face i under traction along X in pattern b on face j
 
-Only traction in the first three patterns counts, with the resultant and the moments of the others.
+Only the first three patterns count: traction with the resultant and the moments of the pressure, and
+the mean and the tilt of the wall.
 The symmetric part D has a potential. The other part, T - D, is left out: it moves a wall by about a
 tenth as much.
 

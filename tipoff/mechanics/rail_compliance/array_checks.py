@@ -7,7 +7,7 @@ import numpy as np
 
 from tipoff.mechanics import drawn_walls
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST
-from tipoff.mechanics.rail_compliance.patterns import degree_of
+from tipoff.mechanics.rail_compliance.patterns import DRAGGED, degree_of
 from tipoff.scenes.effects.thermal import FIELDS
 
 _ROUNDING = 1e-6
@@ -40,7 +40,7 @@ def require(found: Any) -> None:
     if found.warm is not None:
         expected["warm"] = (FIELDS, stations, faces, patterns)
     if found.dragged is not None:
-        expected["dragged"] = expected["flexibility"]
+        expected["dragged"] = (stations, faces, DRAGGED, faces, DRAGGED)
     if found.drawn is not None:
         _require_dimensions("drawn", found.drawn, 3)
         expected["drawn"] = (max(len(found.drawn), 2), faces, drawn_walls.ACROSS)
@@ -56,7 +56,8 @@ def require(found: Any) -> None:
     for name, shape in {
         "share": (rails, count),
         "moved": (stations, faces, patterns, count),
-        "moved_by_friction": (stations, faces, patterns, count),
+        "moved_first": (stations, faces, DRAGGED, count),
+        "moved_by_friction": (stations, faces, DRAGGED, count),
         "heated": (rails, count, FIELDS),
         "shape": (stations, faces, patterns, shapes),
         "stiffness": (rails, shapes, shapes),

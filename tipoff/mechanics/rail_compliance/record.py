@@ -59,8 +59,9 @@ class RailCompliance(Shown):
     #: (n,f,3) m, offset of walls that are not straight, from end to end
     #: (``mechanics.drawn_walls``).
     drawn: np.ndarray | None = None
-    #: (s,f,p,f,p) m/N, symmetric part of the displacement under friction along X: for a unit of
-    #: pressure in each pattern and a coefficient of 1. None for walls that friction does not move.
+    #: (s,f,d,f,d) m/N, symmetric part of the displacement by friction along X, in the first d
+    #: patterns, for a unit of pressure in each and a coefficient of 1. None for walls that friction
+    #: does not move.
     dragged: np.ndarray | None = None
 
     def __post_init__(self):
@@ -239,7 +240,6 @@ class RailCompliance(Shown):
         found = replace(
             kept,
             flexibility=padded(kept._flexibility(), 2, 4),
-            dragged=None if kept.dragged is None else padded(kept.dragged, 2, 4),
             shape=padded(kept.shape, 2),
             warm=self.warm,
         )
@@ -269,11 +269,18 @@ class RailCompliance(Shown):
         return replace(
             self,
             flexibility=between(self.flexibility),
-            dragged=between(self.dragged),
+            dragged=self._dragged_in(kept),
             shape=inverse @ (gram @ self.shape)[:, :, kept],
             warm=None if warm is None else (warm @ gram)[..., kept] @ inverse,
             joints=None,
         )
+
+    def _dragged_in(self, kept: np.ndarray) -> np.ndarray | None:
+        """``dragged`` without the patterns that are not ``kept``; those it has are orthogonal."""
+        if self.dragged is None:
+            return None
+        inside = np.isin(np.arange(patterns.DRAGGED), kept)
+        return self.dragged * inside[:, None] * inside[:, None, None, None]
 
     def require(self, scene: Scene) -> None:
         """Raise SceneError if ``scene`` has another rail or other pads than this compliance, a
