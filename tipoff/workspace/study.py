@@ -144,8 +144,8 @@ class Study:
         self, scene: Scene, element_size: float | None = None, degree: int = DEGREE
     ) -> RailCompliance | None:
         """Rail compliance under the pads of ``scene``, on elements of ``element_size`` (m; None:
-        those of the reference), for patterns of this ``degree``. It is computed once for a rail with its pads and clearance, and
-        stored in this folder. None without contact."""
+        those of the reference), for patterns of this ``degree``. It is computed once for a rail
+        with its pads and clearance, and stored in this folder. None without contact."""
         if scene.contact is None:
             return None
         from tipoff.calibration import rail_compliance  # slow to load

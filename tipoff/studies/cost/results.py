@@ -14,9 +14,9 @@ _WALL = Column("wall time", "s")
 @dataclass(frozen=True, kw_only=True)
 class Point:
     """A run of one model. ``setting``: element size (m) or relative tolerance; ``modes``: None if
-    neither they nor the patterns are varied; errors: None if a run did not settle, and for the reference; ``reference``:
-    whether it is the finest mesh and settled; ``pareto``: whether no faster point has an error
-    bound as small."""
+    neither they nor the patterns are varied; errors: None if a run did not settle, and for the
+    reference; ``reference``: whether it is the finest mesh and settled; ``pareto``: whether no
+    faster point has an error bound as small."""
 
     model: Annotated[str, Column("model")]
     rung: str
