@@ -18,7 +18,7 @@ from tipoff.highfi import compliance as statics
 from tipoff.highfi import discretisation
 from tipoff.highfi.statics import inputs, places
 from tipoff.mechanics import scene_model
-from tipoff.mechanics.rail_compliance import RailCompliance, content, digest
+from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance, content, digest
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.studies import element_size as own_size
 
@@ -29,16 +29,20 @@ _PLACES = 4  # stations along the rail at which meshes are compared
 KEPT: cache.Cache[RailCompliance] = cache.binary(content, RailCompliance.load, cache.Held)
 
 
-def compliance(scene: Scene, element_size: float | None = None) -> RailCompliance:
+def compliance(
+    scene: Scene, element_size: float | None = None, degree: int = DEGREE
+) -> RailCompliance:
     """Compliance of the rails of ``scene`` under its pads, with the modes of the rails and the
     uncertainty by the elements, in elements of ``element_size`` (m), by default those of the
-    reference (``scenes.studies``).
+    reference (``scenes.studies``), for patterns of this ``degree``.
 
     Takes seconds to minutes, once for a rail and its pads. Raises SceneError or MeshError.
     """
     size = element_size or own_size(scene.studies)
     rails = statics.rails(scene, size)
-    return discretisation.stated(scene, size, statics.condense(scene, size, held=rails), rails)
+    return discretisation.stated(
+        scene, size, statics.condense(scene, size, held=rails, degree=degree), rails
+    )
 
 
 def walls(scene: Scene, element_size: float | None = None) -> RailCompliance | None:
@@ -53,16 +57,20 @@ def walls(scene: Scene, element_size: float | None = None) -> RailCompliance | N
 
 
 def kept(
-    scene: Scene, folder: Path, element_size: float, say: Callable[[str], None] | None = None
+    scene: Scene,
+    folder: Path,
+    element_size: float,
+    say: Callable[[str], None] | None = None,
+    degree: int = DEGREE,
 ) -> RailCompliance:
     """As ``compliance``, in elements of ``element_size`` (m), read from ``folder`` if it is stored
     there for this rail, these pads and this code, else computed and stored. ``say`` gets messages
     on long computations and, once per process and file, the uncertainty by the elements."""
-    key = _key(scene, element_size)
+    key = _key(scene, element_size, degree)
     path = cache.file(folder, "compliance", key, ".npz")
     say = say or (lambda _: None)
     found = KEPT.get_or_make(
-        path, key, "it is computed again", lambda: _made(scene, element_size, path, say)
+        path, key, "it is computed again", lambda: _made(scene, element_size, degree, path, say)
     )
     if path not in _SAID:
         _SAID.add(path)
@@ -71,7 +79,7 @@ def kept(
 
 
 def _made(
-    scene: Scene, element_size: float, path: Path, say: Callable[[str], None]
+    scene: Scene, element_size: float, degree: int, path: Path, say: Callable[[str], None]
 ) -> RailCompliance:
     say(
         f"rail compliance, once per rail and pads: {1e3 * element_size:g} mm elements, then "
@@ -79,7 +87,7 @@ def _made(
     )
     began = time.perf_counter()
     with places.progress_to(_Waiting(say, time.perf_counter)):
-        found = compliance(scene, element_size)
+        found = compliance(scene, element_size, degree)
     say(f"  computed in {time.perf_counter() - began:.3g} s, stored in {path}")
     return found
 
@@ -111,14 +119,14 @@ class _Waiting:
         self._say(f"  {100.0 * fraction:.0f} %, about {shown} left{advice}")
 
 
-def kept_file(scene: Scene, folder: Path, element_size: float) -> Path:
+def kept_file(scene: Scene, folder: Path, element_size: float, degree: int = DEGREE) -> Path:
     """The file of ``kept``, named after all inputs of the compliance."""
-    return cache.file(folder, "compliance", _key(scene, element_size), ".npz")
+    return cache.file(folder, "compliance", _key(scene, element_size, degree), ".npz")
 
 
-def _key(scene: Scene, element_size: float) -> str:
+def _key(scene: Scene, element_size: float, degree: int) -> str:
     program = sources.program(__name__, libraries=scene.rail.libraries())
-    return content_hash(made_from(scene), element_size, program)
+    return content_hash(made_from(scene), element_size, degree, program)
 
 
 def made_from(scene: Scene) -> str:

@@ -29,8 +29,17 @@ from tipoff.highfi.statics import inputs, joint_terms
 from tipoff.highfi.statics.held import HeldRail, distinct
 from tipoff.highfi.statics.places import Patches, pressed_together
 from tipoff.mechanics import scene_model
-from tipoff.mechanics.rail_compliance import MODES, PATTERNS, RailCompliance, digest
+from tipoff.mechanics.rail_compliance import (
+    DEGREE,
+    MODES,
+    MOST_DEGREE,
+    PATTERNS,
+    RailCompliance,
+    digest,
+)
+from tipoff.mechanics.rail_compliance import patterns as of_degree
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
+from tipoff.mechanics.rail_compliance.patterns import DRAGGED
 from tipoff.scenes.effects.thermal import FIELDS
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
@@ -46,6 +55,7 @@ class Compliance(NamedTuple):
 
     travel: np.ndarray  # (s,) m of the payload along X since ignition
     matrix: np.ndarray  # (s,f,p,f,p) m/N, zero between faces on different rails
+    dragged: np.ndarray  # (s,f,p,f,d) m/N, under tractions along X
     gram: np.ndarray  # (s,f,p,p), zero where a face has no wall
     rail: np.ndarray  # (f,) number of the rail under each face, -1 without
     half: (
@@ -64,11 +74,13 @@ def condense(
     spacing: float = _SPACING,
     modes: int = MODES,
     held: Sequence[HeldRail] | None = None,
+    degree: int = DEGREE,
 ) -> RailCompliance:
     """Flexibility and lowest ``modes`` of the rails of ``scene`` in elements of about
     ``element_size`` (m), at stations about ``spacing`` (m) apart from ignition until the last pad
-    begins to leave. The result is valid for any factor on the stiffness of the mounts. With
-    ``rails(scene, element_size)`` as ``held``, their factors can be used again.
+    begins to leave, for patterns of this ``degree``. The result is valid for any factor on the
+    stiffness of the mounts. With ``rails(scene, element_size)`` as ``held``, their factors can be
+    used again.
 
     Raises SceneError or MeshError.
     """
@@ -76,8 +88,12 @@ def condense(
     stations = _stations(scene, spacing)
     own = inputs.of(scene)
     held = held or rails(scene, element_size)
-    found = of_rails(held, own.faces, own.reach, stations, PATTERNS, modes)
+    found = of_rails(held, own.faces, own.reach, stations, of_degree.count(degree), modes, DRAGGED)
     inverse = np.linalg.pinv(found.gram, rcond=_SINGULAR, hermitian=True)
+    first = np.linalg.pinv(found.gram[..., :DRAGGED, :DRAGGED], rcond=_SINGULAR, hermitian=True)
+    dragged = np.einsum(
+        "siab,sibjc,sjcd->siajd", first, found.dragged[:, :, :DRAGGED], first, optimize=True
+    )
     flexibility = np.einsum("siab,sibjc,sjcd->siajd", inverse, found.matrix, inverse, optimize=True)
     warm = np.einsum("siab,sibt->tsia", inverse, found.warm)
     return RailCompliance(
@@ -91,9 +107,13 @@ def condense(
         warm=warm,
         joints=found.joints
         and found.joints._replace(
-            moved=inverse @ found.joints.moved, shape=inverse @ found.joints.shape
+            moved=inverse @ found.joints.moved,
+            moved_first=first @ found.joints.moved_first,
+            moved_by_friction=first @ found.joints.moved_by_friction,
+            shape=inverse @ found.joints.shape,
         ),
         drawn=_drawn(scene, element_size),
+        dragged=0.5 * (dragged + dragged.transpose(0, 3, 4, 1, 2)),
     )
 
 
@@ -161,6 +181,7 @@ def along(
     travel: Sequence[float] | np.ndarray,
     patterns: int = PATTERNS,
     modes: int = 0,
+    dragged: int = 0,
 ) -> Compliance:
     """Compliance of the rails of ``scene`` in elements of about ``element_size`` (m), the payload
     aligned and moved by each ``travel`` (m) from its place at ignition.
@@ -169,7 +190,7 @@ def along(
     an unavailable number of patterns or modes.
     """
     own, held = inputs.of(scene), _held(scene, element_size)
-    return of_rails(held, own.faces, own.reach, travel, patterns, modes)
+    return of_rails(held, own.faces, own.reach, travel, patterns, modes, dragged)
 
 
 def of_rails(
@@ -179,20 +200,22 @@ def of_rails(
     travel: Sequence[float] | np.ndarray,
     patterns: int = PATTERNS,
     modes: int = 0,
+    dragged: int = 0,
 ) -> Compliance:
     """As ``along``, for ``held`` rails whose points are in the axes of ``faces.centre`` and
-    ``faces.wall``, between the X (m) of ``reach``.
+    ``faces.wall``, between the X (m) of ``reach``. Friction
+    drags the first ``dragged`` of the patterns.
 
     Raises MeshError for a rail under a face without a mount, ValueError for an unavailable number
     of patterns or modes.
     """
-    if not 1 <= patterns <= PATTERNS:
-        raise ValueError(f"patterns: given {patterns!r}, expected 1 to {PATTERNS}")
+    if not 1 <= patterns <= (most := of_degree.count(MOST_DEGREE)):
+        raise ValueError(f"patterns: given {patterns!r}, expected 1 to {most}")
     stations = np.asarray(travel, dtype=float)
     count = faces.axis.size
     half = scene_model.half_sizes(faces)
     matrix, gram = (
-        np.zeros((stations.size, count, patterns, count, patterns)),
+        np.zeros((stations.size, count, patterns, count, patterns + dragged)),
         np.zeros((stations.size, count, patterns, patterns)),
     )
     rail_of, shape = np.full(count, -1), np.zeros((stations.size, count, patterns, modes))
@@ -200,7 +223,7 @@ def of_rails(
     parts: list[joint_terms.Part] = []
     warm = np.zeros((stations.size, count, patterns, FIELDS))
     for rail in held:
-        patches = Patches(rail.rail, patterns)
+        patches = Patches(rail.rail, patterns, dragged)
         places = [patches.under(faces, half, signs, reach, stations) for signs in rail.images]
         if not patches.found:
             continue
@@ -226,12 +249,13 @@ def of_rails(
                     parts.append(joint_terms.Part(number, signs, terms))
     return Compliance(
         travel=stations,
-        matrix=matrix,
+        matrix=matrix[..., :patterns],
+        dragged=matrix[..., patterns:],
         gram=gram,
         rail=rail_of,
         half=half,
         frequency=np.array(frequencies).reshape(len(frequencies), modes),
         shape=shape,
         warm=warm,
-        joints=joint_terms.together(parts, patterns) if parts else None,
+        joints=joint_terms.together(parts, patterns, dragged) if parts else None,
     )

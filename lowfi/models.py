@@ -25,7 +25,17 @@ def require(
     if scene.contact is None:
         return
     faults = []
+    degree = numerics.degree if numerics is not None else None
     if model == COMPLIANT:
+        if degree is not None and compliance is not None and degree > compliance.degree:
+            faults.append(
+                (
+                    "numerics.degree",
+                    str(degree),
+                    f"at most {compliance.degree}, that of this rail compliance: "
+                    f"tipoff.compliance(scene, degree={degree}) has it",
+                )
+            )
         if model_of(scene, compliance) != COMPLIANT:
             faults.append(
                 ("compliance", "no rail compliance", "tipoff.compliance(scene), or model='springs'")
@@ -59,5 +69,7 @@ def require(
             faults.append(
                 ("numerics.modes", str(numerics.modes), "0: springs stand on rigid rails")
             )
+        if degree is not None:
+            faults.append(("numerics.degree", str(degree), "none: springs stand on rigid rails"))
     if faults:
         raise SceneError([Fault(f"{scene.name}, model {model}", *fault) for fault in faults])

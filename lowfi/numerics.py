@@ -5,10 +5,11 @@ import math
 from dataclasses import dataclass, replace
 
 from tipoff.mechanics.promises import RIGID, Promises
-from tipoff.mechanics.rail_compliance import MODES
+from tipoff.mechanics.rail_compliance import DEGREE, MODES, MOST_DEGREE
 from tipoff.scenes.units import is_number, single
 
 AUTO = "auto"
+_LEAST_CELLS, _MOST_CELLS = 4, 100
 # A relative error of 0.1 % per step gives no solution; below 1e-13 there is only rounding.
 _COARSEST, _FINEST = 1e-2, 1e-13
 
@@ -31,6 +32,11 @@ class Numerics:
     #: Number of the lowest modes of each rail that vibrate on compliant contact. 0 means rails
     #: without inertia, ``"auto"`` as many modes as matter to the run (``lowfi.modes``).
     modes: int | str = AUTO
+    #: Degree of the patterns of pressure and displacement on a pad face. None means that of the rail
+    #: compliance, which may have a higher one: ``tipoff.compliance(scene, degree=4)``.
+    degree: int | None = None
+    #: Contact cells along each edge of a pad face on compliant contact.
+    cells: int = 10
 
     def __post_init__(self):
         for name, value in vars(self).items():  # scalars of numpy, as Python has them
@@ -57,8 +63,24 @@ class Numerics:
                 f"modes: given {self.modes!r}, expected a whole number from 0 to {MODES}, or "
                 f"{AUTO!r}"
             )
+        if self.degree is not None and not (
+            type(self.degree) is int and 1 <= self.degree <= MOST_DEGREE
+        ):
+            faults.append(
+                f"degree: given {self.degree!r}, expected a whole number from 1 to {MOST_DEGREE}"
+            )
+        if not (type(self.cells) is int and _LEAST_CELLS <= self.cells <= _MOST_CELLS):
+            faults.append(
+                f"cells: given {self.cells!r}, expected {_LEAST_CELLS} to {_MOST_CELLS} along each "
+                f"edge of a pad"
+            )
         if faults:
             raise ValueError("; ".join(faults))
+
+    @property
+    def needed_degree(self) -> int:
+        """Degree of the rail compliance that a run computes for itself."""
+        return max(self.degree or DEGREE, DEGREE)
 
     @property
     def count(self) -> int:

@@ -43,9 +43,10 @@ def prepare(
     model, modes = models[0], numerics.count
     thermal_offset.require(scene, compliance)
     found = compliance.of(scene) if compliance and scene.contact else None
+    found = found.of_degree(numerics.degree or found.degree) if found else None
     common = system.build(
         model,
-        compliance=record.under_pads(scene, model, found, modes),
+        compliance=record.under_pads(scene, model, found, modes, numerics.cells),
         thermal_offset=thermal_offset.under_pads(model, found),
         neglected=neglected.watched(scene, found, modes, watches),
     )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from tipoff import scenes, sources
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
-from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.mechanics.rail_compliance import DEGREE, MOST_DEGREE, RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import (
     Calibration,
@@ -32,6 +32,7 @@ _EXPECTED = {
     "workers": arguments.whole(1, 1024),
     "store": arguments.PATH,
     "sensitivity": arguments.CHOICE,
+    "degree": arguments.whole(DEGREE, MOST_DEGREE),
     "seed": arguments.whole(0, 2**32 - 1),
     "fit": arguments.NAMES,
 }
@@ -122,7 +123,7 @@ def run(
         with kernel_marks.first_use(Run("highfi", scene.name, scene, sizes)):
             return highfi.run(scene, sizes, progress)
     chosen = arguments.numerics(lowfi.Numerics, numerics, highfi.Numerics, model)
-    found = _pressed(scene, model, compliance, calibration)
+    found = _pressed(scene, model, compliance, calibration, chosen.needed_degree)
     asked = Run(
         fidelity="lowfi",
         label=scene.name,
@@ -212,7 +213,7 @@ def ensemble(
     if not isinstance(cases, Uncertainty):
         cases = arguments.rows(cases)
     chosen = arguments.numerics(lowfi.Numerics, options, highfi.Numerics, model)
-    found = _pressed(scene, model, compliance, calibration)
+    found = _pressed(scene, model, compliance, calibration, chosen.needed_degree)
     like = Run(
         fidelity="lowfi",
         label=scene.name,
@@ -236,7 +237,7 @@ def ensemble(
 
 
 def compliance(
-    scene: Scene | str | Path, element_size: float | str | None = None
+    scene: Scene | str | Path, element_size: float | str | None = None, degree: int = DEGREE
 ) -> RailCompliance:
     """Rail compliance under the pads of a scene, from the statics of its finite elements.
 
@@ -247,6 +248,8 @@ def compliance(
         scene: the scene; only its rail and pads matter.
         element_size: size of the elements (m, or text with a unit); by default that of the
             reference, which the scene may state (``[studies]``).
+        degree: of the polynomials of pressure and displacement on a pad face, 2 to 6. A run may
+            have a lower one.
 
     Returns:
         RailCompliance: flexibility and lowest modes at stations along the rail.
@@ -266,7 +269,9 @@ def compliance(
     size = studies.element_size(scene.studies)
     if element_size is not None:
         size = arguments.length("element_size", element_size)
-    return rail_compliance.kept(scene, sources.cache_folder() / "compliance", size, say)
+    arguments.require(_EXPECTED, degree=degree)
+    folder = sources.cache_folder() / "compliance"
+    return rail_compliance.kept(scene, folder, size, say, degree)
 
 
 def calibrate(
@@ -364,6 +369,7 @@ def _pressed(
     model: str,
     given: RailCompliance | None,
     calibration: Calibration | None = None,
+    degree: int = DEGREE,
 ) -> RailCompliance | None:
     """The rail compliance that ``model`` needs; rigid walls for springs at warm walls or walls from
     a file."""
@@ -372,7 +378,7 @@ def _pressed(
     if model == COMPLIANT:
         if calibration is not None and calibration.is_of_springs:  # before the statics, for speed
             _require_none(scene, model, calibration=calibration)
-        return given or compliance(scene)
+        return given or compliance(scene, degree=degree)
     if given is not None:
         return given
     if scene.thermal is not None:

@@ -17,11 +17,20 @@ from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST, TERMS, Joi
 _BATCH = 64  # loads solved for at once; bounds the memory
 
 
+class Loads(NamedTuple):
+    """Nodal loads (N) of one rail."""
+
+    pressure: csc_array  # (3n,l)
+    drag: csc_array  # (3n,d) traction along X
+    heat: np.ndarray  # (3n,t) thermal
+
+
 class Terms(NamedTuple):
     """Terms and shapes of one rail under l loads; see ``JointTerms``."""
 
     share: np.ndarray  # (n,)
     moved: np.ndarray  # (l,n)
+    moved_by_friction: np.ndarray  # (d,n)
     heated: np.ndarray  # (n,t)
     shape: np.ndarray  # (l,m)
     stiffness: np.ndarray  # (m,m)
@@ -31,36 +40,36 @@ class Terms(NamedTuple):
 def solved(
     operator: Operator,
     held: Clamped,
-    loads: csc_array,
-    heat: np.ndarray,
+    loads: Loads,
     modes: np.ndarray,
     direct: np.ndarray,
 ) -> Terms:
-    """Terms of a rail that only its joints hold, under nodal ``loads`` (3n,l) and thermal loads
-    ``heat`` (3n,t) N, with its ``modes`` (3n,c); ``direct`` (l,) m is the displacement of each load
-    under itself."""
+    """Terms of a rail that only its joints hold, under nodal ``loads``, with its ``modes``
+    (3n,c); ``direct`` (l,) m is the displacement of each pressure under itself."""
     assert operator.joints is not None
     joints = operator.joints
     own = np.flatnonzero(np.diff(joints.indptr))
     root = cholesky(joints[own][:, own].toarray(), lower=True)
-    moved = np.empty((loads.shape[1], own.size))
-    inner, heated = np.empty((own.size, own.size)), np.empty((own.size, heat.shape[1]))
+    moved, dragged, heated = (np.empty((each.shape[1], own.size)) for each in loads)
+    inner = np.empty((own.size, own.size))
     for start in range(0, own.size, _BATCH):
         part = slice(start, start + _BATCH)
         right = np.zeros((joints.shape[0], root[:, part].shape[1]))
         right[own] = root[:, part]
         answer = held.solve(right)
-        moved[:, part] = loads.T @ answer
-        inner[part], heated[part] = answer[own].T @ root, answer.T @ heat
+        for found, each in zip((moved, dragged, heated), loads):
+            found[:, part] = each.T @ answer
+        inner[part] = answer[own].T @ root
     share, turn = eigh(0.5 * (inner + inner.T))
-    moved = moved @ turn
+    moved, dragged, heated = moved @ turn, dragged @ turn, heated @ turn
     kept = _large(moved, direct)
     basis = _basis(operator, modes)
     return Terms(
         share=share[kept],
         moved=moved[:, kept],
-        heated=(turn.T @ heated)[kept],
-        shape=loads.T @ basis,
+        moved_by_friction=dragged[:, kept],
+        heated=heated[:, kept].T,
+        shape=loads.pressure.T @ basis,
         stiffness=basis.T @ (held.stiffness @ basis),
         joint=basis.T @ (joints @ basis),
     )
@@ -96,8 +105,8 @@ class Part(NamedTuple):
     terms: Terms
 
 
-def together(parts: list[Part], patterns: int) -> JointTerms:
-    """Terms of rails in their order; faces have so many ``patterns``."""
+def together(parts: list[Part], patterns: int, dragged: int) -> JointTerms:
+    """Terms of rails in their order; faces have so many ``patterns``, and ``dragged`` ones."""
     most = max(part.terms.share.size for part in parts)
 
     def padded(values: np.ndarray, axis: int) -> np.ndarray:
@@ -105,7 +114,7 @@ def together(parts: list[Part], patterns: int) -> JointTerms:
         width[axis] = (0, most - values.shape[axis])
         return np.pad(values, width)
 
-    def under(part: Part, values: np.ndarray) -> np.ndarray:
+    def under(part: Part, values: np.ndarray, patterns: int = patterns) -> np.ndarray:
         places = values.reshape(-1, patterns, values.shape[1])
         # an additional last place without displacement, for faces without a wall (number -1)
         return np.pad(places, [(0, 1), (0, 0), (0, 0)])[part.number]
@@ -113,6 +122,12 @@ def together(parts: list[Part], patterns: int) -> JointTerms:
     return JointTerms(
         share=np.array([padded(part.terms.share, 0) for part in parts]),
         moved=_sum(under(part, padded(part.terms.moved, 1)) for part in parts),
+        moved_first=_sum(
+            under(part, padded(part.terms.moved, 1))[:, :, :dragged] for part in parts
+        ),
+        moved_by_friction=_sum(
+            under(part, padded(part.terms.moved_by_friction, 1), dragged) for part in parts
+        ),
         heated=np.array(
             [padded(part.terms.heated * np.r_[1.0, part.signs, 1.0], 0) for part in parts]
         ),

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 
 import numpy as np
-from scipy.sparse import coo_array, csc_array
+from scipy.sparse import coo_array, csc_array, hstack
 
 from tipoff.highfi.contact import surface
 from tipoff.highfi.mesh.rail_mesh import RailMesh
@@ -47,10 +47,11 @@ def reported() -> Callable[[float], None]:
 
 class Patches:
     """All different places on one rail that are under a face; the rail also stands for its mirror
-    images."""
+    images. A face has so many ``patterns`` of pressure, the first of them ``dragged`` along X by
+    friction too."""
 
-    def __init__(self, rail: RailMesh, patterns: int):
-        self._rail, self._patterns = rail, patterns
+    def __init__(self, rail: RailMesh, patterns: int, dragged: int = 0):
+        self._rail, self._patterns, self._dragged = rail, patterns, dragged
         self._facets = np.concatenate(
             [group for name, group in sorted(rail.surfaces.items()) if name.startswith("contact")]
         )
@@ -101,23 +102,25 @@ class Patches:
     def solved(
         self, held: HeldRail, middle: float, modes: int, pairs: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, joint_terms.Terms | None]:
-        """Displacement (q,p,p) in m of the first place of each of the ``pairs`` (q,2) under the
-        loads of the second, normals of the faces positive, and (m,p,t) of all places under a unit
+        """Displacement (q,p,p+d) in m of the first place of each of the ``pairs`` (q,2) under the
+        loads of the second, normals of the faces positive: p pressures, then d tractions along X;
+        and (m,p,t) of all places under a unit
         of each field of temperature around X = ``middle`` (m); frequencies (n,) rad/s of the lowest
         modes and their displacement (m,p,n); the terms of a joint if there are modes."""
         operator, loads = held.operator, self.loads()
         clamped = held.clamped(loads.shape[1])
         load, still = thermal.of_each_field(self._rail, operator, held.material, middle)
         warm = loads.T @ clamped.displaced(load, still)
-        loads = loads[clamped.free]
-        answer = _under_each_other(clamped, loads, pairs, self._patterns)
+        loads, drag = loads[clamped.free], self.loads(friction=True)[clamped.free]
+        answer = _under_each_other(clamped, loads, drag, pairs, self._patterns)
         frequency, shape = held.modes(modes)
         terms = None
         if operator.joints is not None and modes:
             heat = load + operator.joints @ still
-            direct = answer[pairs[:, 0] == pairs[:, 1]]
+            direct = answer[pairs[:, 0] == pairs[:, 1], :, : self._patterns]
             own = np.einsum("maa->ma", direct).ravel()
-            terms = joint_terms.solved(operator, clamped, loads, heat, shape, own)
+            both = joint_terms.Loads(loads, drag, heat)
+            terms = joint_terms.solved(operator, clamped, both, shape, own)
         under = len(self.found), self._patterns
         return (
             answer,
@@ -127,16 +130,17 @@ class Patches:
             terms,
         )
 
-    def loads(self) -> csc_array:
-        """Nodal loads (3n,mp) of all patterns at all places."""
+    def loads(self, friction: bool = False) -> csc_array:
+        """Nodal loads (3n,mp) of all patterns at all places, or the tractions (3n,md) along X."""
+        size = self._dragged if friction else self._patterns
         rows, columns, values = [], [], []
         for number, (patch, (axis, sign)) in enumerate(zip(self.found, self._direction)):
-            rows.append(np.broadcast_to(3 * patch.node + axis, patch.load.shape).ravel())
-            columns.append(
-                np.repeat(number * self._patterns + np.arange(self._patterns), patch.node.size)
-            )
-            values.append(sign * patch.load.ravel())
-        shape = (3 * len(self._rail.points), len(self.found) * self._patterns)
+            along, toward = (0, 1.0) if friction else (axis, sign)
+            load = patch.load[:size]
+            rows.append(np.broadcast_to(3 * patch.node + along, load.shape).ravel())
+            columns.append(np.repeat(number * size + np.arange(size), patch.node.size))
+            values.append(toward * load.ravel())
+        shape = (3 * len(self._rail.points), len(self.found) * size)
         return csc_array(
             coo_array(
                 (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))),
@@ -167,24 +171,43 @@ def pressed_together(
 
 
 def _under_each_other(
-    clamped: Clamped, loads: csc_array, pairs: np.ndarray, width: int
+    clamped: Clamped, loads: csc_array, drag: csc_array, pairs: np.ndarray, width: int
 ) -> np.ndarray:
-    """Displacement (q,w,w) of the first place of each of the ``pairs`` (q,2) under the second,
-    L' K^-1 L, for ``loads`` (d,mw) with ``width`` columns for each place. Without a chain, threads
-    solve batches in parallel; the bits of a batch do not depend on the others."""
-    report = reported()
+    """Displacement (q,w,w+d) of the first place of each of the ``pairs`` (q,2) under the second,
+    L' K^-1 [L, X], for ``loads`` L (d,mw) with ``width`` columns for each place and the tractions
+    ``drag`` X (d,md). Without a chain, threads solve batches in parallel; the bits of a batch do not
+    depend on the others."""
+    report, places = reported(), loads.shape[1] // width
+    dragged = drag.shape[1] // places
     if clamped.chain is not None:
+        every = _side_by_side(loads, drag, places)
         with one_thread():
-            return clamped.chain.under(loads, pairs, width, report)
+            found = clamped.chain.under(every, pairs, width + dragged, report)
+        return found[:, :width]
     answer = []
     starts = range(0, loads.shape[1], BATCH)
 
-    def under(start: int) -> np.ndarray:
-        return loads.T @ clamped.solve(loads[:, start : start + BATCH].toarray())
+    def under(start: int) -> tuple[np.ndarray, np.ndarray]:
+        moved = clamped.solve(loads[:, start : start + BATCH].toarray())
+        return loads.T @ moved, drag.T @ moved
 
     with one_thread(), ThreadPoolExecutor(min(_MOST_THREADS, processors())) as pool:
-        for start, found in zip(starts, pool.map(under, starts)):
-            answer.append(found)
+        for start, both in zip(starts, pool.map(under, starts)):
+            answer.append(both)
             report(min(start + BATCH, loads.shape[1]) / loads.shape[1])
-    every = np.concatenate(answer, axis=1).reshape(-1, width, loads.shape[1] // width, width)
-    return every[pairs[:, 0], :, pairs[:, 1]]
+    pressed, moved = (np.concatenate(each, axis=1) for each in zip(*answer))
+    pressed = pressed.reshape(places, width, places, width)[pairs[:, 0], :, pairs[:, 1]]
+    # the displacement along X of the second place under the pressure on the first (Maxwell, Betti)
+    moved = moved.reshape(places, dragged, places, width)[pairs[:, 1], :, pairs[:, 0]]
+    return np.concatenate([pressed, moved.transpose(0, 2, 1)], axis=2)
+
+
+def _side_by_side(loads: csc_array, drag: csc_array, places: int) -> csc_array:
+    """Loads and tractions of each of the ``places`` in neighbouring columns."""
+    width, dragged = loads.shape[1] // places, drag.shape[1] // places
+    place = np.arange(places)[:, None]
+    order = np.concatenate(
+        [place * width + np.arange(width), places * width + place * dragged + np.arange(dragged)],
+        axis=1,
+    )
+    return csc_array(hstack([loads, drag], format="csc")[:, order.ravel()])

@@ -1,6 +1,6 @@
 """Pressure patterns of a pad face on the wall under it, as nodal loads.
 
-    f_na = 1/A integral N_n phi_a dA,    phi = 1, xi, eta, xi^2, xi eta, eta^2
+    f_na = 1/A integral N_n phi_a dA,    phi = 1, xi, eta, xi^2, ... (``mechanics.rail_compliance``)
 
 over the part of the pad face (area A) that has a wall under it; N are the nodal functions of the
 wall's facets. The face is divided into cells half as long as a facet, with 2 x 2 Gauss points each,
@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.highfi.mesh import facets as geometry
-from tipoff.mechanics.rail_compliance import POWERS
+from tipoff.mechanics.rail_compliance.patterns import MOST_DEGREE, powers
 
 _CELLS_PER_FACET = 2  # along each edge
 _SAME = 1e-9  # m, narrower parts have no pressure
@@ -59,7 +59,7 @@ class Wall:
         near = self._near(low[0], high[0])
         found, facet, weight = located(self._plane[near], self._control[near], place)
         local = (place[found] - middle) / half
-        phi = (local[:, None] ** POWERS[:patterns]).prod(axis=2)
+        phi = (local[:, None] ** powers(MOST_DEGREE)[:patterns]).prod(axis=2)
         part = area / (4.0 * np.abs(half).prod())
         return Pressed(
             part * phi.T @ phi, self._facets[near[facet]], part * phi.T[:, :, None] * weight

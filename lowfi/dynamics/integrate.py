@@ -48,7 +48,7 @@ def _begin(system, first_step, loop):
     _reset_counts(loop.counts)
     _reset_audit(loop.audit)
     slot.copy(loop.start, loop.end, loop.start.size)
-    _reset_compliance(system.compliance)
+    _reset_compliance(system.compliance, system.friction)
     reset_neglected(system.neglected)
     loop.engaged[:] = False
     loop.depth_left[:] = 0.0
@@ -87,11 +87,19 @@ def _reset_audit(audit):
 
 
 @kernel
-def _reset_compliance(compliance):
-    """Reset the displacement of the last run, and its change with the pads."""
+def _reset_compliance(compliance, friction):
+    """Reset the displacement of the last run, and its change with the pads, and take the friction of
+    this one."""
     if compliance is not None:
+        _take_friction(compliance.workspace, friction)
         compliance.workspace.displacement[:] = 0.0
         compliance.workspace.yielding[:] = 0.0
+
+
+@kernel
+def _take_friction(workspace, friction):
+    if friction is not None:
+        workspace.friction[0] = friction.dynamic
 
 
 @kernel

@@ -9,7 +9,7 @@ from tipoff import highfi
 from tipoff.highfi import compliance
 from tipoff.highfi.elements import hexahedral_recovery
 from tipoff.highfi.statics import thermal
-from tipoff.mechanics.rail_compliance import POWERS
+from tipoff.mechanics.rail_compliance.patterns import powers
 
 WARM = {"thermal__mean": 20.0, "thermal__gradient__y": 500.0, "thermal__gradient__z": -300.0}
 KEPT = ("velocity", "rate", "pad_force", "energy", "transverse_energy", "wall_stress")
@@ -150,7 +150,7 @@ def test_warm_walls_of_the_surrogate_are_those_of_the_reference(start):
             :, plane
         ] / rails.half[face]
         under = (np.abs(local) < 1.01).all(axis=1)
-        patterns = (local[under, None] ** POWERS).prod(axis=2)
+        patterns = (local[under, None] ** powers()).prod(axis=2)
         moved = faces.sign[face] * system.warm[nodes, axis]
         assert under.any() and patterns @ found[0, face] == pytest.approx(
             moved[under], abs=np.ptp(moved) / 6.0

@@ -1,7 +1,7 @@
 """Rail compliances for tests: made by hand or for the reference scene, poses that press them,
 and the plain equations again."""
 
-from functools import cache, partial
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -14,10 +14,11 @@ from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi import system as systems
 from tipoff.lowfi.contact import springs
-from tipoff.lowfi.contact.compliant import record
+from tipoff.lowfi.contact.compliant import loads, record, solution
 from tipoff.lowfi.dynamics import equations
 from tipoff.mechanics import scene_model
-from tipoff.mechanics.rail_compliance import PATTERNS, POWERS, RailCompliance, digest
+from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest
+from tipoff.mechanics.rail_compliance.patterns import powers
 from tipoff.scenes.scene import Scene
 
 REFERENCE = scenes.load("reference")
@@ -54,7 +55,10 @@ def handmade(scene: Scene, entries: dict, rail=None) -> RailCompliance:
 
 def in_one_cell(monkeypatch) -> None:
     """From now on runs use compliant contact with one cell on each pad face."""
-    monkeypatch.setattr(record, "build", partial(record.build, cells=1))
+    build = record.build
+    monkeypatch.setattr(
+        record, "build", lambda *given, **named: build(*given, **named | {"cells": 1})
+    )
 
 
 class Pose(NamedTuple):
@@ -174,7 +178,10 @@ def forces_of(
     aside = (
         place + turn @ faces.centre[face] - faces.centre[face] - model.payload.mass_centre + origin
     )[across]
-    phi = xi[:, None] ** POWERS[:, 0] * (eta + aside / half[1])[:, None] ** POWERS[:, 1]
+    phi = (
+        xi[:, None] ** powers(compliance.degree)[:, 0]
+        * (eta + aside / half[1])[:, None] ** powers(compliance.degree)[:, 1]
+    )
     area = 4.0 * np.abs(half).prod() / cells**2
     return model.interface_stiffness * area * phi.T @ np.maximum(0.0, depth - phi @ displacement)
 
@@ -182,3 +189,67 @@ def forces_of(
 def flexibility_at(compliance: RailCompliance, travel: float) -> np.ndarray:
     """(f,p,f,p) m/N between the stations."""
     return CubicSpline(compliance.travel, compliance.flexibility)(travel)
+
+
+CLEARANCE = REFERENCE.contact.clearance
+# What the pads meet: way (m), way across beyond the clearance (m), attitude (rad).
+POSES = {
+    "one leg": (0.035, (8e-6, -1e-4), (0.0, 0.0, 0.0)),
+    "both legs": (0.035, (6e-6, 9e-6), (0.0, 1e-6, -1e-6)),
+    "all faces of a rail, tilted": (0.022, (2e-5, 3e-5), (2e-5, 8e-5, -6e-5)),
+    "rails of both sides": (0.04, (-2e-4, -2e-4), (0.0, 3.1e-3, 2.9e-3)),
+    "front pads over the end": (0.0513, (1e-5, 2e-5), (0.0, -2e-5, 1e-5)),
+    "rear pads over the end": (0.2071, (4e-5, 3e-5), (1e-5, 1e-5, -3e-5)),
+    "rear pads over the begin": (-0.0042, (4e-5, 3e-5), (1e-5, -1e-5, 3e-5)),
+}
+BASES = {
+    "in place": ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+    "moved and turned": ((0.3, -0.2, 0.1), (0.4, -0.3, 0.5)),
+}
+
+
+def pose_of(model, name, base=((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))):
+    travel, beyond, attitude = POSES[name]
+    return relative(model, travel, [CLEARANCE + way for way in beyond], attitude, *base)
+
+
+def solved(system, model, pose, rail, active=None, modes=()):
+    """Number of faces of a rail solved for at ``pose``, which ``system.compliance.workspace`` then holds;
+    ``modes`` are those of the state."""
+    state = np.append(state_of(model, pose), modes)
+    place, turn = seen_from_platform(system.platform, system.payload, state)
+    active = np.ones(len(system.faces), dtype=np.bool_) if active is None else active
+    return solution.solve(system.compliance, system.faces, rail, active, place, turn, state)
+
+
+def energy(system, model, pose, modes=()) -> float:
+    return sum(
+        loads.energy(system.compliance, solved(system, model, pose, rail, None, modes))
+        for rail in range(len(system.compliance.members))
+    )
+
+
+def derivative(system, model, pose, twist, modes=()):
+    """What compliant contact alone adds to the derivative of the state at ``pose`` and ``twist``."""
+    state, every = (
+        np.append(state_of(model, pose, twist), modes),
+        np.ones(len(system.faces), dtype=np.bool_),
+    )
+    out = np.zeros(state.size)
+    add_compliant_contact(system, every, state, out)
+    return out
+
+
+def generalised(pose, out):
+    """Generalised forces (12,) of twists, from forces and their moments about the origin."""
+    found = []
+    for (first, about_origin), place, attitude in zip(
+        slot.BODIES,
+        (pose.place, pose.base_place),
+        (pose.attitude, pose.base_attitude),
+        strict=True,
+    ):
+        force, moment = out[first + slot.VELOCITY :][:3], out[about_origin:][:3]
+        about = tuple(moment - np.cross(place, force))
+        found += [force, rotation.unrotate(rotation.matrix(attitude), about)]
+    return np.concatenate(found)

@@ -8,6 +8,7 @@ import pytest
 from tipoff import lowfi, scenes
 from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
+from tipoff.mechanics.rail_compliance.patterns import DRAGGED
 from tipoff.scenes.effects.thermal import FIELDS
 from tipoff.scenes.faults import SceneError
 
@@ -137,6 +138,8 @@ def test_terms_of_joints_that_do_not_belong_together_are_refused(compliance, tmp
     whole = JointTerms(
         share=np.full((rails, 3), 0.5),
         moved=np.zeros((stations, faces, PATTERNS, 3)),
+        moved_first=np.zeros((stations, faces, DRAGGED, 3)),
+        moved_by_friction=np.zeros((stations, faces, DRAGGED, 3)),
         heated=np.zeros((rails, 3, FIELDS)),
         shape=np.zeros((stations, faces, PATTERNS, modes)),
         stiffness=np.tile(np.eye(modes), (rails, 1, 1)),

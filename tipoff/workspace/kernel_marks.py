@@ -96,6 +96,7 @@ def mark(run: Run, chosen: bool = False, many: bool = False) -> tuple[Path, str]
         run.model,
         _not_compiled(run.scene),
         _vibrates(run, chosen),
+        _degree(run),
         many,
         # many cases that choose their modes need the kernels without and with modes
         many and not chosen and _modes(run) == AUTO,
@@ -128,3 +129,10 @@ def _modes(run: Run) -> str | int:
     """Modes of the rails that ``run`` requests, zero if nothing presses a rail."""
     pressed = run.model == COMPLIANT and run.compliance is not None
     return getattr(run.numerics, "modes", 0) if pressed else 0
+
+
+def _degree(run: Run) -> int | None:
+    """Degree of the patterns on a pad face, for which kernels are compiled; None on rigid walls."""
+    if run.model != COMPLIANT or run.compliance is None:
+        return None
+    return run.numerics.degree or run.compliance.degree

@@ -16,7 +16,7 @@ from contextlib import contextmanager, suppress
 import numpy as np
 
 from tipoff.mechanics import scene_model
-from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest
+from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance, digest, patterns
 from tipoff.scenes import parse
 from tipoff.scenes.effects.thermal import FIELDS
 from tipoff.scenes.rail import SectionTable
@@ -27,9 +27,9 @@ from tipoff.workspace.run import Run
 
 
 @contextmanager
-def compiled_beside(scene: Scene, workers: int) -> Iterator[None]:
-    """Compile the kernels of compliant contact for ``scene`` in a process during the block, and wait
-    for it at the end. An exception in the block, such as Ctrl-C, ends the process.
+def compiled_beside(scene: Scene, workers: int, degree: int = DEGREE) -> Iterator[None]:
+    """Compile the kernels of compliant contact for ``scene``, with patterns of this ``degree``, in a
+    process during the block, and wait for it at the end. An exception in the block, such as Ctrl-C, ends the process.
 
     Does nothing if the kernels are there, with one of ``workers``, on one core, and for a rail from
     a file: whether its walls are straight is not known before it is meshed.
@@ -37,7 +37,7 @@ def compiled_beside(scene: Scene, workers: int) -> Iterator[None]:
     if min(workers, machine.cores()) < 2 or not isinstance(scene.rail, SectionTable):
         yield
         return
-    run = request(scene)
+    run = request(scene, degree)
     if kernel_marks.are_there(run):
         yield
         return
@@ -53,7 +53,7 @@ def compiled_beside(scene: Scene, workers: int) -> Iterator[None]:
     assert process.stdin is not None
     try:
         with suppress(BrokenPipeError), process.stdin as order:  # it may have ended
-            json.dump(run.scene.resolved(), order)
+            json.dump([run.scene.resolved(), degree], order)
         yield
         if process.wait() == 0:
             kernel_marks.remember(run)
@@ -63,11 +63,12 @@ def compiled_beside(scene: Scene, workers: int) -> Iterator[None]:
 
 
 def main() -> None:
-    """Compile the kernels of the scene on standard input."""
-    warm_up(request(parse(json.load(sys.stdin), bare_numbers_are_si=True)))
+    """Compile the kernels of the scene and the degree on standard input."""
+    scene, degree = json.load(sys.stdin)
+    warm_up(request(parse(scene, bare_numbers_are_si=True), degree))
 
 
-def request(scene: Scene) -> Run:
+def request(scene: Scene, degree: int = DEGREE) -> Run:
     """A run of ``scene`` with the kernels of any of its runs on compliant contact that begin without
     modes of the rails. Its walls do not yield."""
     from tipoff import lowfi
@@ -75,15 +76,17 @@ def request(scene: Scene) -> Run:
     if scene.rail.mount_stiffness is not None:
         scene = scene.replace({"rail.mount_stiffness.factor": 1.0})
     faces = scene_model.built(scene).nominal
-    count = faces.axis.size
+    count, size = faces.axis.size, patterns.count(degree)
+    first = patterns.DRAGGED
     still = RailCompliance(
         travel=np.array([0.0, 1.0]),
-        flexibility=np.zeros((2, count, PATTERNS, count, PATTERNS)),
+        flexibility=np.zeros((2, count, size, count, size)),
         rail=np.zeros(count, dtype=np.int64),
         half=scene_model.half_sizes(faces),
         frequency=np.zeros((1, 0)),
-        shape=np.zeros((2, count, PATTERNS, 0)),
+        shape=np.zeros((2, count, size, 0)),
         made_for=digest(scene),
-        warm=None if scene.thermal is None else np.zeros((FIELDS, 2, count, PATTERNS)),
+        warm=None if scene.thermal is None else np.zeros((FIELDS, 2, count, size)),
+        dragged=np.zeros((2, count, first, count, first)),
     )
     return Run("lowfi", scene.name, scene, lowfi.Numerics(), compliance=still)

@@ -11,6 +11,7 @@ from tipoff.scenes.faults import Fault, SceneError
 _OWNERS = {
     "--calibration": SURROGATES,
     "--modes": (COMPLIANT,),
+    "--degree": (COMPLIANT,),
     "--checkpoint-every": (FINITE_ELEMENTS,),
 }
 
@@ -21,6 +22,7 @@ class Options(NamedTuple):
     name: str | None = None  # None: the default
     calibration: Path | None = None  # file, of a surrogate
     modes: int | str | None = None  # of each rail on compliant contact; None: "auto"
+    degree: int | None = None  # of the patterns on a pad face; None: the default
 
     @property
     def asked(self) -> int | str:
@@ -38,7 +40,11 @@ def require(options: Options, **others: object) -> None:
     ``others`` are further options by the name of their parameter, None if not given."""
     if options.model not in MODELS:
         raise SceneError([Fault("--model", "name", options.model, f"one of {', '.join(MODELS)}")])
-    given: dict[str, object] = {"--calibration": options.calibration, "--modes": options.modes}
+    given: dict[str, object] = {
+        "--calibration": options.calibration,
+        "--modes": options.modes,
+        "--degree": options.degree,
+    }
     given |= {f"--{name.replace('_', '-')}": value for name, value in others.items()}
     faults = [
         Fault(

@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 
 from tipoff import cache, sources
 from tipoff.files import content_hash, read_json
-from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import plausibility
 from tipoff.scenes.calibration import Calibration
@@ -142,21 +142,21 @@ class Study:
         )
 
     def rail_compliance(
-        self, scene: Scene, element_size: float | None = None
+        self, scene: Scene, element_size: float | None = None, degree: int = DEGREE
     ) -> RailCompliance | None:
         """Rail compliance under the pads of ``scene``, on elements of ``element_size`` (m; None:
-        those of the reference). It is computed once for a rail with its pads and clearance, and
-        stored in this folder. The kernels of runs on it are compiled at the same time
-        (``workspace.kernel_process``). None without contact."""
+        those of the reference), for patterns of this ``degree``. It is computed once for a rail
+        with its pads and clearance, and stored in this folder. The kernels of runs on it are
+        compiled at the same time (``workspace.kernel_process``). None without contact."""
         if scene.contact is None:
             return None
         from tipoff.calibration import rail_compliance  # slow to load
 
         size = element_size or self.settings.element_size
-        if rail_compliance.kept_file(scene, self.folder, size).exists():
-            return rail_compliance.kept(scene, self.folder, size, say)
-        with compiled_beside(scene, self.settings.workers):
-            return rail_compliance.kept(scene, self.folder, size, say)
+        if rail_compliance.kept_file(scene, self.folder, size, degree).exists():
+            return rail_compliance.kept(scene, self.folder, size, say, degree)
+        with compiled_beside(scene, self.settings.workers, degree):
+            return rail_compliance.kept(scene, self.folder, size, say, degree)
 
     def rail_compliances(
         self, names: Iterable[str], element_size: float | None = None

@@ -16,8 +16,8 @@ of the rows.
 
 import numpy as np
 
-from tipoff.kernels.jit import kernel
-from tipoff.lowfi.contact.compliant import drawn_walls
+from tipoff.kernels.jit import inlined, kernel
+from tipoff.lowfi.contact.compliant import drawn_walls, patterns
 from tipoff.lowfi.contact.compliant.record import (
     ASIDE,
     BY_ETA,
@@ -30,7 +30,6 @@ from tipoff.lowfi.contact.compliant.record import (
 from tipoff.lowfi.contact.springs import along, penetration
 from tipoff.lowfi.faces import NORMAL_Y, NORMAL_Z
 
-_NO_FORCE, _NO_MOMENTS = (0.0,) * 6, (0.0,) * 15
 # in xi, half the travel over which the place of a pad on the wall slows down to rest while the pad
 # begins to overhang an end
 _EASED = 0.1
@@ -91,19 +90,43 @@ def _behind(compliance, row, xi):
     return 0.5 + part if away > 0.0 else 0.5 - part, 0.5 * compliance.node.size * slope
 
 
-@kernel
-def row_depth(compliance, face, xi, displacement):
-    """Coefficients of 1, eta' and eta'^2 in p (m) along the row of cells at ``xi``, without the
-    crown across it."""
-    lever, u = compliance.workspace.lever[face], displacement
+@inlined
+def fill_row(compliance, face, xi, displacement):
+    """Fill ``Workspace.row`` with the coefficients of the powers of eta' in p (m) along the row of
+    cells at ``xi``, without the crown across it. A row beyond the wall continues its last one."""
+    workspace, lever = compliance.workspace, compliance.workspace.lever[face]
+    row, degree = workspace.row, patterns.degree(workspace.levels)
     x = xi + lever[SHIFT]
-    rigid = lever[DEPTH] + lever[BY_XI] * xi - lever[BY_ETA] * lever[ASIDE]
+    if lever[SHIFT] != 0.0:  # rows over the wall are within this distance
+        edge = 1.0 + 2.0 / compliance.node.size
+        x = min(max(x, -edge), edge)
+    for j in range(degree + 1):
+        total = 0.0
+        for i in range(degree - j, -1, -1):
+            total = total * x + displacement[patterns.number(i, j)]
+        row[j] = -total
+    if degree < 2:
+        row[2] = 0.0
     w = drawn_walls.height(compliance.drawn, face, _place(compliance, face, xi))
-    return (
-        rigid - u[0] - x * (u[1] + x * u[3]) - w[0],
-        lever[BY_ETA] - u[2] - x * u[4] - w[1],
-        -u[5] - w[2],
-    )
+    row[0] += lever[DEPTH] + lever[BY_XI] * xi - lever[BY_ETA] * lever[ASIDE] - w[0]
+    row[1] += lever[BY_ETA] - w[1]
+    row[2] -= w[2]
+
+
+@inlined
+def along_row(workspace, eta):
+    """p (m) at eta' of the filled row."""
+    row = workspace.row
+    return row[0] + eta * (row[1] + eta * (row[2] + _beyond(workspace, eta)))
+
+
+@inlined
+def _beyond(workspace, eta):
+    """Terms of the third and higher powers of eta', over eta'^2."""
+    total = 0.0
+    for j in range(patterns.degree(workspace.levels), 2, -1):
+        total = (total + workspace.row[j]) * eta
+    return total
 
 
 @kernel
@@ -119,106 +142,101 @@ def press(compliance, face):
     workspace, half, relief = compliance.workspace, compliance.half[face], compliance.relief[face]
     lever, count = workspace.lever[face], compliance.node.size
     stiffness = compliance.interface_stiffness * 4.0 * half[0] * abs(half[1]) / (count * count)
-    force, moments, slack = _NO_FORCE, _NO_MOMENTS, np.inf
-    for row in range(count):
-        xi, weight = compliance.node[row], stiffness
+    slack = np.inf
+    _clear(workspace, face)
+    for number in range(count):
+        xi, weight = compliance.node[number], stiffness
         if lever[DRIFT] != 0.0:  # else all of the face is over the wall
-            weight *= cover(compliance, half[0], lever[MIDDLE], row)[0]
+            weight *= cover(compliance, half[0], lever[MIDDLE], number)[0]
         if weight > 0.0:
-            level, tilt, bend = row_depth(compliance, face, xi, workspace.displacement[face])
-            level -= relief * compliance.crown[row]
-            f0, f1, f2 = 0.0, 0.0, 0.0
-            m0, m1, m2, m3, m4 = 0.0, 0.0, 0.0, 0.0, 0.0
-            for column in range(count):
-                eta = compliance.node[column] + lever[ASIDE]
-                p = level + eta * (tilt + eta * bend) - relief * compliance.crown[column]
-                slack = min(slack, abs(p))
-                if p > 0.0:
-                    square = eta * eta
-                    f0, f1, f2 = f0 + p, f1 + p * eta, f2 + p * square
-                    m0, m1, m2, m3, m4 = (
-                        m0 + 1.0,
-                        m1 + eta,
-                        m2 + square,
-                        m3 + eta * square,
-                        m4 + square * square,
-                    )
-            if m0 > 0.0:
-                x = xi + lever[SHIFT]
-                force = _with_force(force, weight, x, f0, f1, f2)
-                moments = _with_moments(moments, weight, x, (m0, m1, m2, m3, m4))
-    _fill_row(workspace.force[face], force)
-    _fill_stiffness(workspace.stiffness[face], moments)
+            fill_row(compliance, face, xi, workspace.displacement[face])
+            workspace.row[0] -= relief * compliance.crown[number]
+            slack = min(slack, _sum_row(compliance, relief, lever[ASIDE]))
+            if workspace.counted[0] > 0.0:
+                _add_row(workspace, face, xi + lever[SHIFT], weight)
+    _fill_stiffness(workspace, face)
     return slack
 
 
-@kernel
-def _with_force(force, weight, x, f0, f1, f2):
-    """``force`` plus that of one more row of cells."""
-    return (
-        force[0] + weight * f0,
-        force[1] + weight * x * f0,
-        force[2] + weight * f1,
-        force[3] + weight * x * x * f0,
-        force[4] + weight * x * f1,
-        force[5] + weight * f2,
-    )
+@inlined
+def _clear(workspace, face):
+    """Set force and moments to zero."""
+    for a in range(patterns.count(workspace.levels)):
+        workspace.force[face, a] = 0.0
+    size = 2 * patterns.degree(workspace.levels) + 1
+    for i in range(size):
+        for j in range(size - i):
+            workspace.moments[i, j] = 0.0
 
 
-@kernel
-def _with_moments(moments, weight, x, sums):
-    """``moments`` plus those of one more row of cells: sums over pressed cells of k dA xi'^i eta'^j
-    with i + j up to 4, in the order of i, then j."""
-    m0, m1, m2, m3, m4 = sums
-    first, second = weight * x, weight * x * x
-    third, fourth = second * x, second * x * x
-    return (
-        moments[0] + weight * m0,
-        moments[1] + weight * m1,
-        moments[2] + weight * m2,
-        moments[3] + weight * m3,
-        moments[4] + weight * m4,
-        moments[5] + first * m0,
-        moments[6] + first * m1,
-        moments[7] + first * m2,
-        moments[8] + first * m3,
-        moments[9] + second * m0,
-        moments[10] + second * m1,
-        moments[11] + second * m2,
-        moments[12] + third * m0,
-        moments[13] + third * m1,
-        moments[14] + fourth * m0,
-    )
+@inlined
+def _sum_row(compliance, relief, aside):
+    """Fill sums over the pressed cells of the filled row: of eta'^j and of p eta'^j. Returns the
+    smallest |p| (m)."""
+    workspace, slack = compliance.workspace, np.inf
+    degree = patterns.degree(workspace.levels)
+    counted, pressed = workspace.counted, workspace.pressed
+    for j in range(2 * degree + 1):
+        counted[j] = 0.0
+    for j in range(degree + 1):
+        pressed[j] = 0.0
+    # read before the loop, in which sums are written
+    level, tilt, bend = workspace.row[0], workspace.row[1], workspace.row[2]
+    for column in range(compliance.node.size):
+        eta = compliance.node[column] + aside
+        p = level + eta * (tilt + eta * (bend + _beyond(workspace, eta)))
+        p -= relief * compliance.crown[column]
+        slack = min(slack, abs(p))
+        if p > 0.0:
+            power = 1.0
+            for j in range(2 * degree + 1):
+                counted[j] += power
+                if j <= degree:
+                    pressed[j] += p * power
+                power *= eta
+    return slack
 
 
-@kernel
-def _fill_stiffness(stiffness, moments):
-    """K_ab from the moments; the patterns are 1, xi', eta', xi'^2, xi' eta' and eta'^2."""
-    m00, m01, m02, m03, m04, m10, m11, m12, m13, m20, m21, m22, m30, m31, m40 = moments
-    _fill_row(stiffness[0], (m00, m10, m01, m20, m11, m02))
-    _fill_row(stiffness[1], (m10, m20, m11, m30, m21, m12))
-    _fill_row(stiffness[2], (m01, m11, m02, m21, m12, m03))
-    _fill_row(stiffness[3], (m20, m30, m21, m40, m31, m22))
-    _fill_row(stiffness[4], (m11, m21, m12, m31, m22, m13))
-    _fill_row(stiffness[5], (m02, m12, m03, m22, m13, m04))
+@inlined
+def _add_row(workspace, face, x, weight):
+    """Add the sums of a row at xi' = ``x``, times its ``weight`` (N/m), to the force and to the
+    moments: sums over pressed cells of k dA xi'^i eta'^j with i + j up to twice the degree."""
+    degree, moments = patterns.degree(workspace.levels), workspace.moments
+    factor = weight
+    for i in range(2 * degree + 1):
+        for j in range(2 * degree + 1 - i):
+            moments[i, j] += factor * workspace.counted[j]
+        for j in range(degree + 1 - i):
+            workspace.force[face, patterns.number(i, j)] += factor * workspace.pressed[j]
+        factor *= x
 
 
-@kernel
-def _fill_row(row, values):
-    row[0], row[1], row[2], row[3], row[4], row[5] = values
+@inlined
+def _fill_stiffness(workspace, face):
+    """K_ab from the moments."""
+    levels = workspace.levels
+    for n in range(len(levels)):
+        for j in range(n + 1):
+            row = workspace.stiffness[face, patterns.number(n - j, j)]
+            for m in range(len(levels)):
+                for i in range(m + 1):
+                    row[patterns.number(m - i, i)] = workspace.moments[n - j + m - i, j + i]
 
 
 @kernel
 def largest_change(compliance, face, change):
     """Bound (m) of the change of p in all cells of a face for a ``change`` (p,) of the displacement
     of its wall."""
-    lever = compliance.workspace.lever[face]
+    lever, levels = compliance.workspace.lever[face], compliance.workspace.levels
     xi, eta = 1.0 + abs(lever[SHIFT]), 1.0 + abs(lever[ASIDE])
-    return (
-        abs(change[0])
-        + xi * (abs(change[1]) + xi * abs(change[3]))
-        + eta * (abs(change[2]) + xi * abs(change[4]) + eta * abs(change[5]))
-    )
+    total, across = 0.0, 1.0
+    for j in range(len(levels)):
+        along = 0.0
+        for i in range(patterns.degree(levels) - j, -1, -1):
+            along = along * xi + abs(change[patterns.number(i, j)])
+        total += along * across
+        across *= eta
+    return total
 
 
 @kernel
@@ -233,13 +251,11 @@ def deepest(compliance, face, displacement):
         0.0,
     )
     for row in range(compliance.node.size):
-        level, tilt, bend = row_depth(compliance, face, compliance.node[row], displacement)
+        fill_row(compliance, face, compliance.node[row], displacement)
         for column in range(compliance.node.size):
             eta = compliance.node[column] + aside
-            p = (
-                level
-                + eta * (tilt + eta * bend)
-                - relief * (compliance.crown[row] + compliance.crown[column])
+            p = along_row(compliance.workspace, eta) - relief * (
+                compliance.crown[row] + compliance.crown[column]
             )
             if p > largest:
                 largest, along, across = p, compliance.node[row], compliance.node[column]
@@ -277,16 +293,13 @@ def stored(compliance, face):
         xi = compliance.node[row]
         share, lost = cover(compliance, half[0], lever[MIDDLE], row)
         if share > 0.0:
-            level, tilt, bend = row_depth(
-                compliance, face, xi, compliance.workspace.displacement[face]
-            )
+            fill_row(compliance, face, xi, compliance.workspace.displacement[face])
             squares = 0.0
             for column in range(count):
                 eta = compliance.node[column] + lever[ASIDE]
                 p = max(
                     0.0,
-                    level
-                    + eta * (tilt + eta * bend)
+                    along_row(compliance.workspace, eta)
                     - relief * (compliance.crown[row] + compliance.crown[column]),
                 )
                 squares += p * p
@@ -317,16 +330,13 @@ def _push_of_slopes(compliance, face):
         xi = compliance.node[row]
         share = cover(compliance, half[0], lever[MIDDLE], row)[0]
         if share > 0.0:
-            level, tilt, bend = row_depth(
-                compliance, face, xi, compliance.workspace.displacement[face]
-            )
+            fill_row(compliance, face, xi, compliance.workspace.displacement[face])
             x, f0, f1, f2 = _place(compliance, face, xi), 0.0, 0.0, 0.0
             for column in range(count):
                 eta = compliance.node[column] + lever[ASIDE]
                 p = max(
                     0.0,
-                    level
-                    + eta * (tilt + eta * bend)
+                    along_row(compliance.workspace, eta)
                     - relief * (compliance.crown[row] + compliance.crown[column]),
                 )
                 f0, f1, f2 = f0 + p, f1 + p * eta, f2 + p * eta * eta

@@ -21,7 +21,7 @@ the whole rail.
 
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
-from tipoff.lowfi.contact.compliant import thermal_offset
+from tipoff.lowfi.contact.compliant import patterns, thermal_offset
 from tipoff.lowfi.contact.compliant.cells import push_of_drawn_slopes, stored
 from tipoff.lowfi.contact.compliant.modes import offset, slope
 from tipoff.lowfi.contact.compliant.record import ASIDE, DRIFT, SHIFT
@@ -33,7 +33,6 @@ from tipoff.lowfi.contact.springs import (
     pad_point,
     relative_velocity,
 )
-from tipoff.mechanics.rail_compliance import PATTERNS
 
 
 @kernel
@@ -72,32 +71,42 @@ def wall_force(compliance, faces, face, body, base):
     u, force = compliance.workspace.displacement[face], compliance.workspace.force[face]
     drift, along = compliance.workspace.lever[face, DRIFT], 0.0
     if drift != 0.0:  # else all of it is over the wall
-        along = drift * (u[1] * force[0] + 2.0 * u[3] * force[1] + u[4] * force[2])
+        along = drift * _work_of_slope(compliance.workspace.levels, u, force, 1, 0)
         along += stored(compliance, face)[1]
     ahead, aside = push_of_drawn_slopes(compliance, face)
     along += ahead
-    size = (u[2] * force[0] + u[4] * force[1] + 2.0 * u[5] * force[2] + aside) / compliance.half[
-        face, 1
-    ]
-    across = along_width(faces[face], size)
+    sideways = _work_of_slope(compliance.workspace.levels, u, force, 0, 1) + aside
+    across = along_width(faces[face], sideways / compliance.half[face, 1])
     turned = rotation.rotate(base.turn, (along, across[1], across[2]))
     return turned, pad_point(faces[face], body)
 
 
 @kernel
+def _work_of_slope(levels, u, force, by_xi, by_eta):
+    """Sum (N m) of the pressure times du/dxi' (``by_xi`` 1) or du/deta' (``by_eta`` 1)."""
+    total = 0.0
+    for n in range(1, len(levels)):
+        for j in range(by_eta, n + 1 - by_xi):
+            power = by_xi * (n - j) + by_eta * j
+            lower = patterns.number(n - j - by_xi, j - by_eta)
+            total += power * u[patterns.number(n - j, j)] * force[lower]
+    return total
+
+
+@kernel
 def axial_force(compliance, count):
     """Force (N) along the rail of the ``count`` solved faces on the payload's mass centre."""
-    workspace, pull = compliance.workspace, 0.0
+    workspace, pull, size = compliance.workspace, 0.0, patterns.count(compliance.workspace.levels)
     for i in range(count):
         face = workspace.order[i]
         force = workspace.force[face]
         pull += thermal_offset.axial_force(compliance.thermal_offset, face, force)
-        for a in range(PATTERNS):
+        for a in range(size):
             total = 0.0
             for j in range(count):
                 other = workspace.force[workspace.order[j]]
-                for b in range(PATTERNS):
-                    total += workspace.slope[i, j, a * PATTERNS + b] * other[b]
+                for b in range(size):
+                    total += workspace.slope[i, j, a * size + b] * other[b]
             pull += force[a] * (0.5 * total + slope(compliance.modes, face, a))
     return pull
 
@@ -106,11 +115,11 @@ def axial_force(compliance, count):
 def energy(compliance, count):
     """Energy (J) in rail and interface under the ``count`` solved faces: P' F P is P' (U - T - W
     q)."""
-    total = 0.0
+    total, size = 0.0, patterns.count(compliance.workspace.levels)
     for i in range(count):
         face = compliance.workspace.order[i]
         total += stored(compliance, face)[0]
-        for a in range(PATTERNS):
+        for a in range(size):
             own = thermal_offset.offset(compliance.thermal_offset, face, a) + offset(
                 compliance.modes, face, a
             )

@@ -19,10 +19,8 @@ a wall vibrates at 10 mm/s. So the momenta of payload and platform are conserved
 """
 
 from tipoff.kernels.jit import kernel
+from tipoff.lowfi.contact.compliant import patterns
 from tipoff.lowfi.state import STATE_SIZE
-from tipoff.mechanics.rail_compliance import PATTERNS, POWERS
-
-_XI, _ETA = POWERS.T.copy()
 
 
 @kernel
@@ -30,14 +28,14 @@ def evaluate(modes, rail, face, station, way, changes, state):
     """Fill shapes, displacement and speed of the modes of ``rail`` under ``face``, ``way`` (m) from
     a station; ``changes`` is the derivative of ``way`` by the place."""
     if modes is not None:
-        count = modes.square.shape[1]
+        count, size = modes.square.shape[1], patterns.count(modes.levels)
         first, rates = STATE_SIZE + rail * count, STATE_SIZE + modes.square.size + rail * count
         modes.offset[face, :] = 0.0
         modes.slope[face, :] = 0.0
         modes.speed[face, :] = 0.0
         for i in range(count):
             c = modes.cubic[station, face, i]
-            for a in range(PATTERNS):
+            for a in range(size):
                 value = c[0, a] + way * (c[1, a] + way * (c[2, a] + way * c[3, a]))
                 modes.shape[face, i, a] = value
                 modes.offset[face, a] += state[first + i] * value
@@ -72,8 +70,7 @@ def speed_at(modes, face, xi, eta):
     """Speed (m/s) at which the modes move the point (xi, eta) of the wall away."""
     value = 0.0
     if modes is not None:
-        for a in range(PATTERNS):
-            value += modes.speed[face, a] * xi ** _XI[a] * eta ** _ETA[a]
+        value = patterns.value(modes.levels, modes.speed[face], xi, eta)
     return value
 
 
@@ -82,13 +79,13 @@ def vibrate(modes, workspace, rail, count, state, out):
     """Fill the derivative ``out`` of the modes of ``rail`` under the ``count`` solved faces;
     returns the power (W) of their damping."""
     loss = 0.0
-    number = modes.square.shape[1]
+    number, size = modes.square.shape[1], patterns.count(modes.levels)
     first, rates = STATE_SIZE + rail * number, STATE_SIZE + modes.square.size + rail * number
     for i in range(number):
         rate, pressed = state[rates + i], 0.0
         for k in range(count):
             face = workspace.order[k]
-            for a in range(PATTERNS):
+            for a in range(size):
                 pressed += modes.shape[face, i, a] * workspace.force[face, a]
         out[first + i] = rate
         out[rates + i] = (

@@ -33,13 +33,14 @@ from tipoff.kernels.jit import kernel
 from tipoff.kernels.memory import zeros
 from tipoff.kernels.reference import by_reference
 from tipoff.lowfi import state as slot
+from tipoff.lowfi.contact.compliant import patterns
 from tipoff.lowfi.contact.compliant.free_vibration import is_pressed, oscillated
 from tipoff.lowfi.contact.compliant.record import damping_of, drag_of
 from tipoff.lowfi.contact.compliant.solution import between_stations
 from tipoff.lowfi.contact.springs import outward, pad_point, relative_pose
 from tipoff.lowfi.contact.step_limit import inverse_mass
 from tipoff.lowfi.contact.wall_ends import CLOSING
-from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance
+from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.scene import Scene
 
 MODE = np.dtype(
@@ -146,7 +147,7 @@ def _begin(neglected, members, rail, time):
 @kernel
 def _press(neglected, system, loop, rail):
     compliance, dt = system.compliance, loop.clock.now - neglected.rails[rail].time
-    payload = system.payload
+    payload, size = system.payload, patterns.count(compliance.workspace.levels)
     body = slot.motion(payload, loop.end, slot.PAYLOAD)
     place, _ = relative_pose(system.platform, body, slot.frame(system.platform, loop.end))
     station, way, _ = between_stations(compliance, place[0] + system.faces[0, 0])
@@ -156,7 +157,7 @@ def _press(neglected, system, loop, rail):
             face = compliance.members[rail, k]
             if face >= 0 and loop.touching[face]:
                 c, pressure = neglected.cubic[station, face, i], compliance.workspace.force[face]
-                for a in range(PATTERNS):
+                for a in range(size):
                     value = c[0, a] + way * (c[1, a] + way * (c[2, a] + way * c[3, a]))
                     total += value * pressure[a]
         drive(neglected.modes[rail, i], dt, total)

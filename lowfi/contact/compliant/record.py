@@ -8,6 +8,7 @@ from tipoff.kernels.memory import zeros
 from tipoff.kernels.reference import by_reference
 from tipoff.mechanics import drawn_walls
 from tipoff.mechanics import rail_compliance as data
+from tipoff.mechanics.rail_compliance.patterns import count
 from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.effects.friction import require_two_step
 from tipoff.scenes.effects.structural_damping import Damping
@@ -22,8 +23,11 @@ DEPTH, BY_XI, BY_ETA, SHIFT, DRIFT, MIDDLE, ASIDE, LEVER_SIZE = range(8)
 
 @by_reference
 class Workspace(NamedTuple):
-    """Workspace of one run, for f faces, p patterns, at most m faces on a rail, w = m p, and n
-    modes."""
+    """Workspace of one run, for f faces, p patterns of degree d, at most m faces on a rail, w = m p,
+    and n modes."""
+
+    levels: tuple  # (d+1,) degrees of the patterns (``patterns``)
+    friction: np.ndarray  # (1,) coefficient of the friction that drags the walls
 
     lever: np.ndarray  # (f, LEVER_SIZE)
     displacement: np.ndarray  # (f, p) m, of the walls; the first guess of the next solution
@@ -33,6 +37,10 @@ class Workspace(NamedTuple):
     yielding: np.ndarray
     force: np.ndarray  # (f, p) N
     stiffness: np.ndarray  # (f, p, p) N/m, of the pressed cells: K of ``solution``
+    row: np.ndarray  # (d+1,), at least 3, m: p along a row of cells, by powers of eta'
+    counted: np.ndarray  # (2d+1,) sums over the pressed cells of a row: of powers of eta'
+    pressed: np.ndarray  # (d+1,) m, of p times these powers
+    moments: np.ndarray  # (2d+1, 2d+1) N/m, of powers of xi' and eta' over all cells
     order: np.ndarray  # (m,) numbers of the faces that are solved together
     flexibility: np.ndarray  # (m, m, p p) m/N, between these faces
     slope: np.ndarray  # (m, m, p p) 1/N, its derivative along the rail
@@ -50,6 +58,7 @@ class Modes(NamedTuple):
     drag: np.ndarray  # (r, n) 1/s, damping rates
     # (s-1, f, n, 4, p) 1/kg^0.5, shapes between stations, as ``Compliance.cubic``
     cubic: np.ndarray
+    levels: tuple  # (d+1,) as in ``Workspace``
     reach: np.ndarray  # (f, n) 1/kg^0.5, bound of the displacement of a point under a face
     shape: np.ndarray  # (f, n, p) 1/kg^0.5, workspace: shapes at the faces
     offset: np.ndarray  # (f, p) m, workspace: displacement
@@ -61,6 +70,7 @@ class Modes(NamedTuple):
 class ThermalOffset(NamedTuple):
     """Displacement of warm walls without load."""
 
+    levels: tuple  # (d+1,) as in ``Workspace``
     cubic: np.ndarray  # (s-1, f, 4, p) m, between stations, as ``Compliance.cubic``
     offset: np.ndarray  # (f, p) m, workspace: value under the faces
     slope: np.ndarray  # (f, p) workspace: its derivative along the rail
@@ -82,6 +92,9 @@ class Compliance(NamedTuple):
     """Compliant contact of f faces on r rails, with its statics at s stations."""
 
     cubic: np.ndarray  # (s-1, f, f, 4, p p) m/N, as powers of the distance (m) from a station
+    # (s-1, f, f, 4, d d) m/N, as ``cubic``, in the first d patterns for a coefficient of 1; None
+    # without friction
+    dragged: np.ndarray | None
     origin: float  # m, X of the first face at ignition: the first station
     spacing: float  # m, between stations
     members: np.ndarray  # (r, m) numbers of the faces on each rail; -1 fills up
@@ -101,16 +114,20 @@ class Compliance(NamedTuple):
 
 
 def under_pads(
-    scene: Scene, model: Model, found: data.RailCompliance | None, modes: int = 0
+    scene: Scene,
+    model: Model,
+    found: data.RailCompliance | None,
+    modes: int = 0,
+    cells: int = CELLS,
 ) -> Compliance | None:
     """Record of the compliance ``found`` of ``scene``, with so many vibrating ``modes`` of each
-    rail; None for rigid walls. Raises SceneError for a compliance without these modes, and for
-    friction with sticking."""
+    rail and ``cells`` along each edge of a face; None for rigid walls. Raises SceneError for a
+    compliance without these modes, and for friction with sticking."""
     if found is None or found.flexibility is None:
         return None
     require_two_step(scene)
     data.require_modes(scene.name, found, modes)
-    return build(found, model, modes=modes, damping=damping_of(scene))
+    return build(found, model, cells=cells, modes=modes, damping=damping_of(scene))
 
 
 def damping_of(scene: Scene) -> Damping | None:
@@ -148,8 +165,10 @@ def build(
     node, crown = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges**5) / (5.0 * np.diff(edges))
     flexibility, shape = found.cubic(modes)
     vibrating = _modes(found, shape, damping) if shape.size else None
+    rubs = model.friction is not None
     return Compliance(
         cubic=flexibility,
+        dragged=found.cubic_of_dragged if rubs else None,
         origin=float(nominal[0, 0]),
         spacing=spacing,
         members=members,
@@ -165,15 +184,18 @@ def build(
         modes=vibrating,
         thermal_offset=_thermal_offset(found, model),
         drawn=_drawn(found, model),
-        workspace=_workspace(faces.axis.size, members.shape[1], shape.shape[2]),
+        workspace=_workspace(
+            faces.axis.size, members.shape[1], shape.shape[2], found.degree, model
+        ),
     )
 
 
 def _thermal_offset(found: data.RailCompliance, model: Model) -> ThermalOffset | None:
     if model.thermal is None:
         return None
-    by_pattern = (model.faces.axis.size, data.PATTERNS)
+    by_pattern = found.shape.shape[1:3]
     return ThermalOffset(
+        levels=tuple(range(found.degree + 1)),
         cubic=data.cubic(found.travel, found.moved(model.thermal.amounts)).swapaxes(-1, -2).copy(),
         offset=zeros(by_pattern),
         slope=zeros(by_pattern),
@@ -205,32 +227,41 @@ def states(compliance: Compliance | None) -> int:
 def _modes(found: data.RailCompliance, cubic: np.ndarray, damping: Damping | None) -> Modes:
     count = cubic.shape[2]
     square = found.frequency[:, :count] ** 2
-    faces, by_pattern = found.rail.size, (found.rail.size, data.PATTERNS)
+    by_pattern = found.shape.shape[1:3]
+    faces, patterns = by_pattern
     return Modes(
+        levels=tuple(range(found.degree + 1)),
         square=square,
         drag=drag_of(square, damping),
         cubic=cubic,
         reach=np.abs(found.shape[..., :count]).sum(axis=2).max(axis=0),
-        shape=zeros((faces, count, data.PATTERNS)),
+        shape=zeros((faces, count, patterns)),
         offset=zeros(by_pattern),
         slope=zeros(by_pattern),
         speed=zeros(by_pattern),
     )
 
 
-def _workspace(faces: int, members: int, modes: int) -> Workspace:
-    wide, by_pattern = members * data.PATTERNS, (faces, data.PATTERNS)
+def _workspace(faces: int, members: int, modes: int, degree: int, model: Model) -> Workspace:
+    patterns = count(degree)
+    wide, by_pattern = members * patterns, (faces, patterns)
     return Workspace(
+        levels=tuple(range(degree + 1)),
+        friction=np.array([model.friction.dynamic if model.friction is not None else 0.0]),
         lever=zeros((faces, LEVER_SIZE)),
         displacement=zeros(by_pattern),
         saved_displacement=zeros(by_pattern),
         saved_lever=zeros((faces, LEVER_SIZE)),
-        yielding=zeros((faces, 3, data.PATTERNS)),
+        yielding=zeros((faces, 3, patterns)),
         force=zeros(by_pattern),
-        stiffness=zeros((faces, data.PATTERNS, data.PATTERNS)),
+        stiffness=zeros((faces, patterns, patterns)),
+        row=zeros((max(degree, 2) + 1,)),
+        counted=zeros((2 * degree + 1,)),
+        pressed=zeros((degree + 1,)),
+        moments=zeros((2 * degree + 1, 2 * degree + 1)),
         order=np.zeros(members, dtype=np.int64),
-        flexibility=zeros((members, members, data.PATTERNS**2)),
-        slope=zeros((members, members, data.PATTERNS**2)),
+        flexibility=zeros((members, members, patterns**2)),
+        slope=zeros((members, members, patterns**2)),
         matrix=zeros((wide, wide)),
         right=zeros((wide, 3 * members + modes)),
         answers=zeros((3 * members, 18)),

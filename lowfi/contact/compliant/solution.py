@@ -4,7 +4,8 @@ piecewise linear equations.
     U = T + F P(U) + W q,    (1 + F K) dU = T + F P + W q - U,
     K_iab = dP_ia/d(-U_ib) = sum over pressed cells of k dA phi_a phi_b
 
-F is the flexibility without the modes, W q the displacement of the modes
+F is the flexibility without the modes, plus what friction of the payload that slides forward adds
+(``Workspace.friction`` times D of ``mechanics.rail_compliance``), W q the displacement of the modes
 (``lowfi.contact.compliant.modes``), T the thermal offset
 (``lowfi.contact.compliant.thermal_offset``). P is the gradient of a convex potential, so the
 solution is unique. While the set of pressed cells does not change, the equations are linear and a
@@ -15,11 +16,11 @@ previous displacement, moved with the pad as at the end of the last step
 import numpy as np
 
 from tipoff.kernels.jit import kernel
-from tipoff.lowfi.contact.compliant import thermal_offset
+from tipoff.lowfi.contact.compliant import patterns, thermal_offset
 from tipoff.lowfi.contact.compliant.cells import eased, largest_change, press, take_lever
 from tipoff.lowfi.contact.compliant.modes import evaluate, offset
 from tipoff.lowfi.contact.compliant.record import BY_ETA, BY_XI, DEPTH
-from tipoff.mechanics.rail_compliance import PATTERNS
+from tipoff.mechanics.rail_compliance.patterns import DRAGGED
 
 _ARRIVED = 1e-14  # m; a smaller correction is rounding
 _MOST = 60  # corrections
@@ -50,9 +51,12 @@ def _move(compliance, faces, face, place, turn):
     lever, displacement = compliance.workspace.lever[face], compliance.workspace.displacement[face]
     depth, by_xi, by_eta = lever[DEPTH], lever[BY_XI], lever[BY_ETA]
     take_lever(compliance, faces, face, place, turn)
-    yielding = compliance.workspace.yielding[face]
+    yielding, size = (
+        compliance.workspace.yielding[face],
+        patterns.count(compliance.workspace.levels),
+    )
     depth, by_xi, by_eta = lever[DEPTH] - depth, lever[BY_XI] - by_xi, lever[BY_ETA] - by_eta
-    for a in range(PATTERNS):
+    for a in range(size):
         moved = depth * yielding[0, a] + by_xi * yielding[1, a] + by_eta * yielding[2, a]
         guess = displacement[a] + moved
         displacement[a] = guess if abs(guess) < np.inf else 0.0
@@ -118,39 +122,69 @@ def take_flexibility(compliance, count, place, state):
             for k in range(block.size):
                 block[k] = c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k]))
                 slope[k] = changes * (c[1, k] + s * (2.0 * c[2, k] + s * 3.0 * c[3, k]))
+            _add_drag(compliance.dragged, workspace, i, j, station, s, changes)
+
+
+@kernel
+def _add_drag(dragged, workspace, i, j, station, s, changes):
+    """Add what friction adds to flexibility and slope between two faces in order."""
+    if dragged is not None:
+        c = dragged[station, workspace.order[i], workspace.order[j]]
+        share, size = workspace.friction[0], patterns.count(workspace.levels)
+        for a in range(DRAGGED):
+            for b in range(DRAGGED):
+                k, n = a * DRAGGED + b, a * size + b
+                workspace.flexibility[i, j, n] += share * (
+                    c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k]))
+                )
+                workspace.slope[i, j, n] += (
+                    share * changes * (c[1, k] + s * (2.0 * c[2, k] + s * 3.0 * c[3, k]))
+                )
+
+
+@kernel
+def _follow_drag(dragged, workspace, face, other, station, s, out):
+    """Add to ``out`` the displacement of the wall under a face by the friction of another one."""
+    if dragged is not None:
+        c, share = dragged[station, face, other], workspace.friction[0]
+        for a in range(DRAGGED):
+            for b in range(DRAGGED):
+                k = a * DRAGGED + b
+                value = c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k]))
+                out[a] += share * value * workspace.force[other, b]
 
 
 @kernel
 def _correct(compliance, count, share):
     """Apply ``share`` of one correction; returns its largest size (m), zero if it is exact."""
-    workspace = compliance.workspace
+    workspace, size = compliance.workspace, patterns.count(compliance.workspace.levels)
     for i in range(count):
         workspace.slack[i] = press(compliance, workspace.order[i])
     fill_matrix(workspace, count)
     for i in range(count):
         face = workspace.order[i]
-        for a in range(PATTERNS):
+        for a in range(size):
             total = 0.0
             for j in range(count):
                 force = workspace.force[workspace.order[j]]
-                for c in range(PATTERNS):
-                    total += workspace.flexibility[i, j, a * PATTERNS + c] * force[c]
-            workspace.right[i * PATTERNS + a, 0] = total - (
+                for c in range(size):
+                    total += workspace.flexibility[i, j, a * size + c] * force[c]
+            workspace.right[i * size + a, 0] = total - (
                 workspace.displacement[face, a]
                 - thermal_offset.offset(compliance.thermal_offset, face, a)
                 - offset(compliance.modes, face, a)
             )
-    eliminate(workspace.matrix, workspace.right, count * PATTERNS, 1)
+    eliminate(workspace.matrix, workspace.right, count * size, 1)
     largest, exact = 0.0, share == 1.0
     for i in range(count):
         face = workspace.order[i]
-        changes = workspace.right[i * PATTERNS : (i + 1) * PATTERNS, 0]
+        changes = workspace.right[i * size : (i + 1) * size, 0]
         exact = exact and largest_change(compliance, face, changes) < workspace.slack[i]
-        for a in range(PATTERNS):
+        for a in range(size):
             change = share * changes[a]
             largest = max(largest, abs(change))
             workspace.displacement[face, a] += change
-            for b in range(PATTERNS):
+            for b in range(size):
                 workspace.force[face, b] -= workspace.stiffness[face, a, b] * change
     return 0.0 if exact or largest != largest else largest  # NaN in the displacement stays
 
@@ -158,15 +192,16 @@ def _correct(compliance, count, share):
 @kernel
 def fill_matrix(workspace, count):
     """1 + F K over the first ``count`` faces in order."""
+    size = patterns.count(workspace.levels)
     for i in range(count):
         for j in range(count):
             block, stiffness = workspace.flexibility[i, j], workspace.stiffness[workspace.order[j]]
-            for a in range(PATTERNS):
-                for b in range(PATTERNS):
+            for a in range(size):
+                for b in range(size):
                     total = 1.0 if i == j and a == b else 0.0
-                    for c in range(PATTERNS):
-                        total += block[a * PATTERNS + c] * stiffness[c, b]
-                    workspace.matrix[i * PATTERNS + a, j * PATTERNS + b] = total
+                    for c in range(size):
+                        total += block[a * size + c] * stiffness[c, b]
+                    workspace.matrix[i * size + a, j * size + b] = total
 
 
 @kernel
@@ -202,18 +237,20 @@ def eliminate(matrix, right, size, columns):
 def follow(compliance, face, place, count, state, out):
     """Fill ``out`` (p,) with the displacement of the wall under a face that may not press, due to
     the ``count`` solved faces and the modes."""
-    workspace = compliance.workspace
+    workspace, size = compliance.workspace, patterns.count(compliance.workspace.levels)
     station, s, changes = between_stations(compliance, place)
     evaluate(compliance.modes, compliance.rail[face], face, station, s, changes, state)
     thermal_offset.evaluate(compliance.thermal_offset, face, station, s, changes)
-    for a in range(PATTERNS):
+    for a in range(size):
         out[a] = thermal_offset.offset(compliance.thermal_offset, face, a) + offset(
             compliance.modes, face, a
         )
         for j in range(count):
             other = workspace.order[j]
             c = compliance.cubic[station, face, other]
-            for b in range(PATTERNS):
-                k = a * PATTERNS + b
+            for b in range(size):
+                k = a * size + b
                 value = c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k]))
                 out[a] += value * workspace.force[other, b]
+    for j in range(count):
+        _follow_drag(compliance.dragged, workspace, face, workspace.order[j], station, s, out)

@@ -23,7 +23,7 @@ import numpy as np
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
-from tipoff.lowfi.contact.compliant import drawn_slopes
+from tipoff.lowfi.contact.compliant import drawn_slopes, patterns
 from tipoff.lowfi.contact.compliant.loads import load
 from tipoff.lowfi.contact.compliant.modes import fastest
 from tipoff.lowfi.contact.compliant.record import ASIDE, SHIFT
@@ -35,7 +35,6 @@ from tipoff.lowfi.contact.compliant.solution import (
 )
 from tipoff.lowfi.contact.springs import along_width, outward, pad_point, relative_pose
 from tipoff.lowfi.contact.step_limit import friction_damping, inverse_mass
-from tipoff.mechanics.rail_compliance import PATTERNS
 
 _RIGID = 3  # depth, tilt along, tilt across
 # Columns of ``Workspace.answers``: force, moment and rate of the payload, then those of the platform.
@@ -80,29 +79,29 @@ def _tangent(compliance, count):
     """Fill ``right`` with dU (w,) for a unit of each rigid motion, then of each mode, and
     ``yielding`` with dU of each face for its own motions; returns the number of columns of rigid
     motions."""
-    workspace = compliance.workspace
+    workspace, size = compliance.workspace, patterns.count(compliance.workspace.levels)
     fill_matrix(workspace, count)
     for i in range(count):
         for j in range(count):
             face, block = workspace.order[j], workspace.flexibility[i, j]
             for rigid in range(_RIGID):
-                for a in range(PATTERNS):
+                for a in range(size):
                     total = 0.0
-                    for c in range(PATTERNS):
-                        total += block[a * PATTERNS + c] * _reaction(workspace, face, c, rigid)
-                    workspace.right[i * PATTERNS + a, j * _RIGID + rigid] = total
+                    for c in range(size):
+                        total += block[a * size + c] * _reaction(workspace, face, c, rigid)
+                    workspace.right[i * size + a, j * _RIGID + rigid] = total
     # dU = (1 + F K)^-1 F K e, dP = K (e - dU)
     eliminate(
         workspace.matrix,
         workspace.right,
-        count * PATTERNS,
+        count * size,
         count * _RIGID + _add_modes(compliance.modes, workspace, count),
     )
     for i in range(count):
         for rigid in range(_RIGID):
-            for a in range(PATTERNS):
+            for a in range(size):
                 workspace.yielding[workspace.order[i], rigid, a] = workspace.right[
-                    i * PATTERNS + a, i * _RIGID + rigid
+                    i * size + a, i * _RIGID + rigid
                 ]
     return count * _RIGID
 
@@ -112,13 +111,13 @@ def _add_modes(modes, workspace, count):
     """Fill the columns of the modes before elimination; returns their number."""
     number = 0
     if modes is not None:
-        number = modes.square.shape[1]
-        for row in range(count * PATTERNS):
+        number, size = modes.square.shape[1], patterns.count(workspace.levels)
+        for row in range(count * size):
             for i in range(number):
-                total, first = 0.0, row % PATTERNS * PATTERNS
+                total, first = 0.0, row % size * size
                 for j in range(count):
-                    face, block = workspace.order[j], workspace.flexibility[row // PATTERNS, j]
-                    for c in range(PATTERNS):
+                    face, block = workspace.order[j], workspace.flexibility[row // size, j]
+                    for c in range(size):
                         total += block[first + c] * _pressure(modes, workspace, face, c, i)
                 workspace.right[row, count * _RIGID + i] = total
     return number
@@ -128,7 +127,7 @@ def _add_modes(modes, workspace, count):
 def _pressure(modes, workspace, face, a, i):
     """dP_a for a unit of mode i on an otherwise rigid wall."""
     value = 0.0
-    for b in range(PATTERNS):
+    for b in range(patterns.count(workspace.levels)):
         value += workspace.stiffness[face, a, b] * modes.shape[face, i, b]
     return value
 
@@ -138,12 +137,13 @@ def _trace_of_modes(modes, workspace, count, first):
     """Trace (1/s2) of W' T W; ``right`` has dU of the modes from the column ``first`` on."""
     total = 0.0
     if modes is not None:
+        size = patterns.count(workspace.levels)
         for k in range(count):
             face = workspace.order[k]
-            for a in range(PATTERNS):
+            for a in range(size):
                 for i in range(modes.square.shape[1]):
                     total += _pressure(modes, workspace, face, a, i) * (
-                        modes.shape[face, i, a] - workspace.right[k * PATTERNS + a, first + i]
+                        modes.shape[face, i, a] - workspace.right[k * size + a, first + i]
                     )
     return total
 
@@ -167,10 +167,10 @@ def _beyond(workspace, face, rigid):
 def _answer(workspace, i, rigid, column):
     """Generalised force of rigid motion ``rigid`` on face i of the order, for a unit of motion
     number ``column``."""
-    face = workspace.order[i]
+    face, size = workspace.order[i], patterns.count(workspace.levels)
     total = _own(workspace, face, rigid, column % _RIGID) if column // _RIGID == i else 0.0
-    for c in range(PATTERNS):
-        total -= _reaction(workspace, face, c, rigid) * workspace.right[i * PATTERNS + c, column]
+    for c in range(size):
+        total -= _reaction(workspace, face, c, rigid) * workspace.right[i * size + c, column]
     return total
 
 
@@ -281,9 +281,18 @@ def _wrench(compliance, faces, face, rigid, body, base):
 def _by_slope(workspace, face, rigid):
     """Slope of the wall across the rail under a rigid motion."""
     u, lever = workspace.displacement[face], workspace.lever[face]
-    if rigid == 0:
-        return u[2] + lever[SHIFT] * u[4] + 2.0 * lever[ASIDE] * u[5]
-    return u[4] if rigid == 1 else 2.0 * u[5]
+    x, y, total = lever[SHIFT], lever[ASIDE], 0.0
+    for n in range(1, len(workspace.levels)):
+        for j in range(1, n + 1):
+            i = n - j
+            amount = j * u[patterns.number(i, j)]
+            if rigid == 0:
+                total += amount * x**i * y ** (j - 1)
+            elif rigid == 1 and i > 0:
+                total += amount * i * x ** (i - 1) * y ** (j - 1)
+            elif rigid == 2 and j > 1:
+                total += amount * (j - 1) * x**i * y ** (j - 2)
+    return total
 
 
 @kernel

@@ -3,9 +3,7 @@
 nothing."""
 
 from tipoff.kernels.jit import kernel
-from tipoff.mechanics.rail_compliance import PATTERNS, POWERS
-
-_XI, _ETA = POWERS.T.copy()
+from tipoff.lowfi.contact.compliant import patterns
 
 
 @kernel
@@ -20,7 +18,7 @@ def evaluate(warm, face, station, s, changes):
 def fill(warm, face, station, s, changes):
     """``evaluate`` on warm rails."""
     c = warm.cubic[station, face]
-    for a in range(PATTERNS):
+    for a in range(patterns.count(warm.levels)):
         warm.offset[face, a] = c[0, a] + s * (c[1, a] + s * (c[2, a] + s * c[3, a]))
         warm.slope[face, a] = changes * (c[1, a] + s * (2.0 * c[2, a] + s * 3.0 * c[3, a]))
 
@@ -39,7 +37,7 @@ def axial_force(warm, face, force):
     """Force (N) along the rail of ``force`` (p,) N on a wall whose offset changes ahead."""
     total = 0.0
     if warm is not None:
-        for a in range(PATTERNS):
+        for a in range(patterns.count(warm.levels)):
             total += force[a] * warm.slope[face, a]
     return total
 
@@ -49,6 +47,5 @@ def slope(warm, face, xi, eta):
     """Slope of the wall at a point of the face."""
     total = 0.0
     if warm is not None:
-        for a in range(PATTERNS):
-            total += warm.slope[face, a] * xi ** _XI[a] * eta ** _ETA[a]
+        total = patterns.value(warm.levels, warm.slope[face], xi, eta)
     return total

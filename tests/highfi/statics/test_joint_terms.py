@@ -40,6 +40,7 @@ def test_a_factor_gives_what_condensation_there_gives(nominal, factor):
     exact = highfi.condense(on_joints(factor), SIZE)
     assert largest(found.flexibility, exact.flexibility) < 1e-6
     assert largest(found.warm, exact.warm) < 1e-6
+    assert largest(found.dragged, exact.dragged) < 1e-6
     assert largest(nominal.flexibility, exact.flexibility) > 0.1
     assert found.frequency[:, :10] == pytest.approx(exact.frequency[:, :10], rel=1e-4)
     assert (found.frequency >= exact.frequency * (1.0 - 1e-9)).all()

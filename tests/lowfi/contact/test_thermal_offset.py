@@ -13,7 +13,8 @@ from tipoff.lowfi import Numerics
 from tipoff.lowfi import system as systems
 from tipoff.lowfi.contact import springs, thermal_offset
 from tipoff.mechanics import scene_model
-from tipoff.mechanics.rail_compliance import GRAM, PATTERNS
+from tipoff.mechanics.rail_compliance import PATTERNS
+from tipoff.mechanics.rail_compliance.patterns import gram
 from tipoff.scenes.effects.thermal import FIELDS
 from validation import oracle
 
@@ -47,7 +48,7 @@ def test_places_of_the_walls():
     record = thermal_offset.under_pads(model, compliance)
     wanted = CubicSpline(
         compliance.travel,
-        np.tensordot(scene.thermal.record(scene.rail).amounts, compliance.warm, 1) @ GRAM[0],
+        np.tensordot(scene.thermal.record(scene.rail).amounts, compliance.warm, 1) @ gram()[0],
     )
     first, last = compliance.travel[[0, -1]]
     for face in (0, 5, 15):

@@ -5,11 +5,21 @@ On pad face i, with xi along the rail and eta across it in [-1, 1], a pressure p
 away from the payload by u::
 
     u_i = sum_a U_ia phi_a(xi, eta),   P_jb = integral over face j of p phi_b dA,   U_ia = sum_jb F_iajb(travel) P_jb
-    phi = 1, xi, eta, xi^2, xi eta, eta^2
+    phi = 1, xi, eta, xi^2, xi eta, eta^2 (``patterns``, here of the second degree)
 
 F is the flexibility of linear statics, symmetric and positive definite, at every station along the
 rail. Near an end of the rail a face keeps the last station where it is completely over the wall,
 and xi continues beyond.
+
+Friction of the coefficient mu drags the wall along X, the way the payload goes. It acts on the
+surface, half a wall away from the middle of the leg, so its moment bends the leg::
+
+    U = F P + mu (D P),   D = (T + T') / 2,   T_iajb: pattern a of face i under traction along X in pattern b on face j
+
+Only the first three patterns count: traction with the resultant and the moments of the pressure, and
+the mean and the tilt of the wall.
+The symmetric part D has a potential. The other part, T - D, is left out: it moves a wall by about a
+tenth as much.
 
 The lowest modes of the rail, mass-normalised and with frequencies omega_m, are a part of it. The
 rest is static::
@@ -24,11 +34,9 @@ stiffness this holds for the nominal stiffness, and ``RailCompliance.of`` gives 
 a scene (``mechanics.rail_compliance.joint_terms``).
 """
 
+from tipoff.mechanics.rail_compliance.patterns import DEGREE, MOST_DEGREE, PATTERNS
 from tipoff.mechanics.rail_compliance.record import (
-    GRAM,
     MODES,
-    PATTERNS,
-    POWERS,
     RailCompliance,
     content,
     cubic,
@@ -39,10 +47,10 @@ from tipoff.mechanics.rail_compliance.record import (
 )
 
 __all__ = [
-    "GRAM",
+    "DEGREE",
     "MODES",
+    "MOST_DEGREE",
     "PATTERNS",
-    "POWERS",
     "RailCompliance",
     "content",
     "cubic",

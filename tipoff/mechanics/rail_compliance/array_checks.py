@@ -7,18 +7,22 @@ import numpy as np
 
 from tipoff.mechanics import drawn_walls
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST
+from tipoff.mechanics.rail_compliance.patterns import DRAGGED, degree_of
 from tipoff.scenes.effects.thermal import FIELDS
 
 _ROUNDING = 1e-6
 
 
-def require(found: Any, patterns: int) -> None:
+def require(found: Any) -> None:
     """Raise ValueError if types or shapes of ``found``, a ``RailCompliance``, are not consistent,
-    or if a number is not finite; ``patterns``: number of patterns of a face."""
+    or if a number is not finite."""
     _require_plain(found)
     _require_dimensions("travel", found.travel, 1)
     _require_dimensions("rail", found.rail, 1, "iu")
     _require_dimensions("frequency", found.frequency, 2)
+    _require_dimensions("shape", found.shape, 4)
+    patterns = found.shape.shape[2]
+    degree_of(patterns)
     stations, faces, modes = found.travel.size, found.rail.size, found.frequency.shape[1]
     if stations < 2:
         raise ValueError(f"travel: given {stations} stations, expected at least 2")
@@ -35,6 +39,8 @@ def require(found: Any, patterns: int) -> None:
     }
     if found.warm is not None:
         expected["warm"] = (FIELDS, stations, faces, patterns)
+    if found.dragged is not None:
+        expected["dragged"] = (stations, faces, DRAGGED, faces, DRAGGED)
     if found.drawn is not None:
         _require_dimensions("drawn", found.drawn, 3)
         expected["drawn"] = (max(len(found.drawn), 2), faces, drawn_walls.ACROSS)
@@ -50,6 +56,8 @@ def require(found: Any, patterns: int) -> None:
     for name, shape in {
         "share": (rails, count),
         "moved": (stations, faces, patterns, count),
+        "moved_first": (stations, faces, DRAGGED, count),
+        "moved_by_friction": (stations, faces, DRAGGED, count),
         "heated": (rails, count, FIELDS),
         "shape": (stations, faces, patterns, shapes),
         "stiffness": (rails, shapes, shapes),

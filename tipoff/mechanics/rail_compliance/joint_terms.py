@@ -29,6 +29,8 @@ class JointTerms(NamedTuple):
 
     share: np.ndarray  # (r,n) a
     moved: np.ndarray  # (s,f,p,n) 1/N^0.5 m^0.5, d under the faces
+    moved_first: np.ndarray  # (s,f,d,n) as ``moved``, projected on the first d patterns
+    moved_by_friction: np.ndarray  # (s,f,d,n) 1/N^0.5 m^0.5, by traction along X in these
     heated: np.ndarray  # (r,n,t) N^0.5 m^0.5, part of each term in the load of each thermal field
     shape: np.ndarray  # (s,f,p,m) 1/kg^0.5, displacement in orthonormal shapes that span the modes
     stiffness: np.ndarray  # (r,m,m) 1/s2, of the rail on its joints in these shapes
@@ -45,14 +47,29 @@ def flexibility(
 ) -> np.ndarray:
     """Flexibility (s,f,p,f,p) m/N at a ``factor``, from the ``nominal`` one; ``rail`` (f,): number
     of the rail of each face."""
-    found, weights = nominal.copy(), _weights(terms, factor)
+    return nominal - _together(terms, factor, (terms.moved, terms.moved), rail)
+
+
+def dragged(terms: JointTerms, factor: float, nominal: np.ndarray, rail: np.ndarray) -> np.ndarray:
+    """As ``flexibility`` for the displacement (s,f,d,f,d) m/N by friction."""
+    change = _together(terms, factor, (terms.moved_first, terms.moved_by_friction), rail)
+    return nominal - 0.5 * (change + change.transpose(0, 3, 4, 1, 2))
+
+
+def _together(
+    terms: JointTerms, factor: float, both: tuple[np.ndarray, np.ndarray], rail: np.ndarray
+) -> np.ndarray:
+    """Sum (s,f,p,f,p) of the products of the terms of ``both`` (s,f,p,n) loads."""
+    weights, (stations, faces, patterns, _) = _weights(terms, factor), both[0].shape
+    found = np.zeros((stations, faces, patterns, faces, patterns))
     for number in range(len(weights)):
         own = np.flatnonzero(rail == number)
-        moved = terms.moved[:, own]
-        flat = moved.reshape(len(moved), -1, moved.shape[-1])
-        change = (flat * weights[number]) @ flat.transpose(0, 2, 1)
-        shape = (len(moved), *moved.shape[1:3], *moved.shape[1:3])
-        found[:, own[:, None], :, own[None, :], :] -= change.reshape(shape).transpose(1, 3, 0, 2, 4)
+        shape = (stations, own.size, patterns)
+        flat, other = (each[:, own].reshape(stations, own.size * patterns, -1) for each in both)
+        change = (flat * weights[number]) @ other.transpose(0, 2, 1)
+        found[:, own[:, None], :, own[None, :], :] += change.reshape(*shape, *shape[1:]).transpose(
+            1, 3, 0, 2, 4
+        )
     return found
 
 

@@ -12,25 +12,19 @@ import numpy as np
 
 from tipoff.files import DamageError, content_hash, require_whole, write_sealed
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
-from tipoff.mechanics.rail_compliance import array_checks, joint_terms
+from tipoff.mechanics.rail_compliance import array_checks, joint_terms, patterns
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST, JointTerms
 from tipoff.mechanics.rail_compliance.shown import Shown
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
 MODES = 20  # of each rail, stored with its compliance
-PATTERNS = 6  # phi: all products of powers of xi and eta up to the second degree
-POWERS = np.array([[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]])  # of xi and eta
 
 _KEEPING = threading.Lock()
 _KEPT_FACTORS = 4  # compliances at other factors that are kept in memory
 _PLAIN = ("made_for", "element_size", "frequency_uncertainty", "not_known")  # no arrays
 _JOINTS = "joints."  # prefix of the names of their arrays in a file
 _ROUNDING = 1e-9  # of the largest eigenvalue of F: error of a zero eigenvalue due to the modes
-
-# Means over a face of products of two patterns: the mean of xi^n is 1 / (n + 1) for even n.
-_TOGETHER = POWERS[:, None] + POWERS
-GRAM = np.where((_TOGETHER % 2 == 0).all(axis=2), 1.0 / (_TOGETHER + 1.0).prod(axis=2), 0.0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -65,11 +59,20 @@ class RailCompliance(Shown):
     #: (n,f,3) m, offset of walls that are not straight, from end to end
     #: (``mechanics.drawn_walls``).
     drawn: np.ndarray | None = None
+    #: (s,f,d,f,d) m/N, symmetric part of the displacement by friction along X, in the first d
+    #: patterns, for a unit of pressure in each and a coefficient of 1. None for walls that friction
+    #: does not move.
+    dragged: np.ndarray | None = None
 
     def __post_init__(self):
         for array in (*vars(self).values(), *(self.joints or ())):
             if isinstance(array, np.ndarray):
                 array.flags.writeable = False  # runs share a compliance, and what follows from it
+
+    @property
+    def degree(self) -> int:
+        """Degree of the patterns."""
+        return patterns.degree_of(self.shape.shape[2])
 
     def of(self, scene: Scene) -> "RailCompliance":
         """This compliance at the factor of ``scene`` on the stiffness of its mounts. Raises
@@ -98,6 +101,9 @@ class RailCompliance(Shown):
             flexibility = joint_terms.flexibility(terms, factor, flexibility, self.rail)
         if heat is not None:
             heat = joint_terms.warm(terms, factor, heat, self.rail)
+        dragged = self.dragged
+        if dragged is not None:
+            dragged = joint_terms.dragged(terms, factor, dragged, self.rail)
         frequency, shape = joint_terms.modes(terms, factor, self.frequency.shape[1], self.rail)
         return replace(
             self,
@@ -106,6 +112,7 @@ class RailCompliance(Shown):
             shape=shape,
             warm=heat,
             joints=None,
+            dragged=dragged,
         )
 
     def cubic(self, modes: int = 0) -> tuple[np.ndarray, np.ndarray]:
@@ -113,16 +120,21 @@ class RailCompliance(Shown):
         (s-1,f,n,4,p), between stations: coefficients of the rising powers of the distance (m) from
         the one before. Raises ValueError as ``residual`` does."""
         if modes not in self._cubics:
-            flexibility, shape = (
-                cubic(self.travel, table)
-                for table in (self.residual(modes), self.shape[..., :modes])
-            )
-            between = flexibility.transpose(0, 1, 3, 5, 2, 4)
+            shape = cubic(self.travel, self.shape[..., :modes])
             self._cubics[modes] = (
-                np.ascontiguousarray(between.reshape(*between.shape[:4], PATTERNS**2)),
+                self._between_faces(self.residual(modes)),
                 np.ascontiguousarray(shape.transpose(0, 1, 3, 4, 2)),
             )
         return self._cubics[modes]
+
+    @cached_property
+    def cubic_of_dragged(self) -> np.ndarray | None:
+        """``dragged`` between stations, as the flexibility in ``cubic``."""
+        return None if self.dragged is None else self._between_faces(self.dragged)
+
+    def _between_faces(self, table: np.ndarray) -> np.ndarray:
+        between = cubic(self.travel, table).transpose(0, 1, 3, 5, 2, 4)
+        return np.ascontiguousarray(between.reshape(*between.shape[:4], -1))
 
     @cached_property
     def shapes(self) -> np.ndarray:
@@ -143,7 +155,7 @@ class RailCompliance(Shown):
         part = self.shape[..., :modes] / self.frequency[self.rail, None, :modes]
         together = (self.rail[:, None] == self.rail)[:, None, :, None]
         rest = flexibility - together * np.einsum("siam,sjbm->siajb", part, part)
-        size = rest.shape[1] * PATTERNS
+        size = rest.shape[1] * rest.shape[2]
         lowest, largest = (
             np.linalg.eigvalsh(table.reshape(-1, size, size))[:, end]
             for table, end in ((rest, 0), (flexibility, -1))
@@ -178,6 +190,7 @@ class RailCompliance(Shown):
             self.warm,
             *(self.joints or ()),
             self.drawn,
+            self.dragged,
         ):
             if array is not None:
                 digest.update(np.ascontiguousarray(array).tobytes())
@@ -186,34 +199,88 @@ class RailCompliance(Shown):
     def compliance(self) -> np.ndarray:
         """Mean displacement (s,f,f) in m/N of each face under a unit force spread evenly over
         each."""
-        return (GRAM @ self._flexibility().transpose(0, 1, 3, 2, 4) @ GRAM)[..., 0, 0]
+        gram = patterns.gram(self.degree)
+        return (gram @ self._flexibility().transpose(0, 1, 3, 2, 4) @ gram)[..., 0, 0]
 
     def rigid(self) -> "RailCompliance":
         """The same walls without flexibility: only their offsets, for springs."""
-        return replace(self, flexibility=None, element_size=None, uncertainty=None)
+        return replace(self, flexibility=None, dragged=None, element_size=None, uncertainty=None)
 
     def moved(self, amounts: np.ndarray) -> np.ndarray:
         """Thermal offset T (s,f,p) m under ``amounts`` (t,) of the fields of temperature."""
         assert self.warm is not None
         return np.tensordot(amounts, self.warm, 1)
 
-    def restricted(self, patterns: int = PATTERNS, coupled: bool = True) -> "RailCompliance":
-        """The compliance of a simpler model: only the first ``patterns``, and, unless ``coupled``,
-        without the coupling between faces and without modes."""
-        kept = np.arange(PATTERNS) < patterns
-        full = self._flexibility()
-        blocks = (GRAM @ full.transpose(0, 1, 3, 2, 4) @ GRAM)[..., kept, :][..., kept]
-        inverse = np.linalg.inv(GRAM[np.ix_(kept, kept)])
-        flexibility = np.zeros_like(full)
-        flexibility[:, :, :patterns, :, :patterns] = (inverse @ blocks @ inverse).transpose(
-            0, 1, 3, 2, 4
+    def of_degree(self, degree: int) -> "RailCompliance":
+        """The compliance for the patterns of a lower ``degree``: the same loads, and displacements
+        projected on these patterns. Raises ValueError for a degree above its own."""
+        if not patterns.LEAST_DEGREE <= degree <= self.degree:
+            raise ValueError(f"degree: given {degree!r}, expected 1 to {self.degree}")
+        if degree == self.degree:
+            return self
+        if degree not in self._of_degrees:
+            self._of_degrees[degree] = self._kept(np.arange(patterns.count(degree)))
+        return self._of_degrees[degree]
+
+    @cached_property
+    def _of_degrees(self) -> dict[int, "RailCompliance"]:
+        return {}
+
+    def restricted(self, count: int, coupled: bool = True) -> "RailCompliance":
+        """The compliance of a simpler model: only the first ``count`` patterns of the same degree,
+        and, unless ``coupled``, without the coupling between faces, without modes and without
+        friction on the walls."""
+        size = self.shape.shape[2]
+        kept = self._kept(np.arange(count))
+
+        def padded(table: np.ndarray, *axes: int) -> np.ndarray:
+            width = [(0, size - count if axis in axes else 0) for axis in range(table.ndim)]
+            return np.pad(table, width)
+
+        found = replace(
+            kept,
+            flexibility=padded(kept._flexibility(), 2, 4),
+            shape=padded(kept.shape, 2),
+            warm=self.warm,
         )
-        frequency, shape = self.frequency, np.zeros_like(self.shape)
-        shape[:, :, :patterns] = inverse @ (GRAM @ self.shape)[:, :, kept]
-        if not coupled:
-            flexibility *= np.eye(len(self.rail))[None, :, None, :, None]
-            frequency, shape = frequency[:, :0], shape[..., :0]
-        return replace(self, flexibility=flexibility, frequency=frequency, shape=shape, joints=None)
+        if coupled:
+            return found
+        alone = np.eye(len(self.rail))[None, :, None, :, None]
+        return replace(
+            found,
+            flexibility=found._flexibility() * alone,
+            dragged=None,
+            frequency=found.frequency[:, :0],
+            shape=found.shape[..., :0],
+        )
+
+    def _kept(self, kept: np.ndarray) -> "RailCompliance":
+        """Loads in the ``kept`` patterns alone, and displacements projected on them."""
+        gram = patterns.gram(self.degree)
+        inverse = np.linalg.inv(gram[np.ix_(kept, kept)])
+
+        def between(table: np.ndarray | None) -> np.ndarray | None:
+            if table is None:
+                return None
+            blocks = (gram @ table.transpose(0, 1, 3, 2, 4) @ gram)[..., kept, :][..., kept]
+            return (inverse @ blocks @ inverse).transpose(0, 1, 3, 2, 4)
+
+        warm = self.warm
+        return replace(
+            self,
+            flexibility=between(self.flexibility),
+            dragged=self._dragged_in(kept),
+            shape=inverse @ (gram @ self.shape)[:, :, kept],
+            warm=None if warm is None else (warm @ gram)[..., kept] @ inverse,
+            joints=None,
+        )
+
+    def _dragged_in(self, kept: np.ndarray) -> np.ndarray | None:
+        """``dragged`` without the patterns that are not ``kept``; those it has are orthogonal."""
+        if self.dragged is None:
+            return None
+        inside = np.isin(np.arange(patterns.DRAGGED), kept)
+        return self.dragged * inside[:, None] * inside[:, None, None, None]
 
     def require(self, scene: Scene) -> None:
         """Raise SceneError if ``scene`` has another rail or other pads than this compliance, a
@@ -286,7 +353,7 @@ class RailCompliance(Shown):
             compliance = cls(
                 **arrays | {name: arrays[name].item() for name in {*_PLAIN} & {*arrays}}
             )
-            array_checks.require(compliance, PATTERNS)
+            array_checks.require(compliance)
         except DamageError as fault:
             raise ValueError(f"{path}: not a file of rail compliance: it {fault.reason}") from fault
         except FileNotFoundError:

@@ -141,6 +141,17 @@ Modes = Annotated[
         "many as the rates need.",
     ),
 ]
+Degree = Annotated[
+    int | None,
+    typer.Option(
+        "--degree",
+        metavar="N",
+        min=2,
+        max=6,
+        help="Degree of the polynomials of pressure and displacement on a pad face, with --model "
+        "compliant; 2 (default) to 6: slower, and nearer to the reference.",
+    ),
+]
 CalibrationFile = Annotated[
     Path | None,
     typer.Option(

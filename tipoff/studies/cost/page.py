@@ -7,7 +7,7 @@ from typing import Any
 from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.cost import choice, scaling_page
-from tipoff.studies.cost.results import Cost, Match, Point
+from tipoff.studies.cost.results import BY_MODES, Cost, Match, Point
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.column import Column, of_record
 from tipoff.studies.render.document import Figure, Heading, Part
@@ -31,6 +31,7 @@ _LOOKS = (
     (VERMILION, "D", "-"),
     (NAVY, "o", ":"),
     (NAVY, "x", ""),
+    (VERMILION, "P", ":"),
 )
 
 
@@ -193,7 +194,8 @@ def _cost_line(
     their own."""
     colour, marker, dash = look
     varied = any(point.modes is not None for point in points)
-    labels = [str(point.modes) if varied else point.numerics.split(",")[0] for point in points]
+    by_modes = model == BY_MODES
+    labels = [str(point.modes) if by_modes else point.numerics.split(",")[0] for point in points]
     if model != FINITE_ELEMENTS and not varied:
         # to the right of the slowest point there is no other surrogate
         named = max(points, key=lambda point: point.wall_s, default=None)

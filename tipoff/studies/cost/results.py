@@ -3,8 +3,10 @@
 from dataclasses import dataclass
 from typing import Annotated
 
+from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.studies.render.column import Column
 
+BY_MODES, BY_PATTERNS = f"{COMPLIANT}, modes varied", f"{COMPLIANT}, patterns varied"
 _ERROR = Column("error", "deg/s", ".2g")
 _WALL = Column("wall time", "s")
 
@@ -12,9 +14,9 @@ _WALL = Column("wall time", "s")
 @dataclass(frozen=True, kw_only=True)
 class Point:
     """A run of one model. ``setting``: element size (m) or relative tolerance; ``modes``: None if
-    they are not varied; errors: None if a run did not settle, and for the reference; ``reference``:
-    whether it is the finest mesh and settled; ``pareto``: whether no faster point has an error
-    bound as small."""
+    neither they nor the patterns are varied; errors: None if a run did not settle, and for the
+    reference; ``reference``: whether it is the finest mesh and settled; ``pareto``: whether no
+    faster point has an error bound as small."""
 
     model: Annotated[str, Column("model")]
     rung: str

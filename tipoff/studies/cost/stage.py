@@ -21,6 +21,7 @@ from tipoff.comparison.metrics import compare
 from tipoff.files import write_text
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
+from tipoff.mechanics.rail_compliance import MODES as ALL_MODES
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.ablation import stage as ablation
 from tipoff.studies.agreement import refinement, verdicts
@@ -29,7 +30,7 @@ from tipoff.studies.agreement.verdicts import Context
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.cost import choice, scaling, trends
 from tipoff.studies.cost.choice import Trusted
-from tipoff.studies.cost.results import Cost, Match, Point, Scaling
+from tipoff.studies.cost.results import BY_MODES, BY_PATTERNS, Cost, Match, Point, Scaling
 from tipoff.workspace import machine
 from tipoff.workspace.compiling import warm_up
 from tipoff.workspace.progress import Board
@@ -39,8 +40,9 @@ from tipoff.workspace.study import Study
 from tipoff.workspace.timing import timed
 from tipoff.workspace.words import counted
 
-BY_MODES = f"{COMPLIANT}, modes varied"
 MODES = (0, 1, 2, 8)  # modes of each rail, in addition to those of the agreement study
+CELLS_BY_DEFAULT = Numerics().cells
+DEGREES, CELLS = (2, 4), 16  # of the patterns, with all modes and the cells of the reference
 STIFFNESS_ALONG = f"{COMPLIANT}, mean pressure of each face by itself"
 NAME, POINTS = "cost_study", "cost.json"
 
@@ -55,6 +57,7 @@ def run(study: Study) -> dict:
         for candidate in compared:
             points += surrogate_points(study, name, candidate, finest, study.settings.tolerances)
         points += points_by_modes(study, name, compared[-1], finest)
+        points += points_by_patterns(study, name, compared[-1], finest)
         without = ablation.STAGE.read(ablation.run(study))
         growing = Scaling(
             elements=scaling.elements(study, name),
@@ -170,14 +173,38 @@ def points_by_modes(
     ]
 
 
+def points_by_patterns(
+    study: Study, name: str, candidate: Candidate, finest: Trajectory
+) -> list[Point]:
+    """Points with patterns of other degrees, all modes of the rail compliance and the cells of the
+    reference: the most accurate that the surrogate is; errors against the ``finest`` mesh."""
+    scene, found = study.condition(name), []
+    for degree in DEGREES if scene.contact is not None else ():
+        walls = study.rail_compliance(scene, degree=degree)
+        better = candidate._replace(modes=ALL_MODES, compliance={name: walls})
+        numerics = f"degree {degree}, {CELLS} cells, {ALL_MODES} modes"
+        tolerance = [Numerics().relative_tolerance]
+        found += [
+            replace(point, model=BY_PATTERNS, numerics=numerics, modes=ALL_MODES)
+            for point in surrogate_points(study, name, better, finest, tolerance, cells=CELLS)
+        ]
+    return found
+
+
 def surrogate_points(
-    study: Study, name: str, candidate: Candidate, finest: Trajectory, tolerances: Iterable[float]
+    study: Study,
+    name: str,
+    candidate: Candidate,
+    finest: Trajectory,
+    tolerances: Iterable[float],
+    cells: int = CELLS_BY_DEFAULT,
 ) -> list[Point]:
     """Points of one surrogate, the loosest of the ``tolerances`` first; errors against the ``finest``
     mesh."""
     tolerances = sorted(tolerances)
     wanted = [
-        candidate.request(study, name, relative_tolerance=tolerance) for tolerance in tolerances
+        candidate.request(study, name, relative_tolerance=tolerance, cells=cells)
+        for tolerance in tolerances
     ]
     warm_up(wanted[0])
     measured = [[timed(run) for _ in range(study.settings.lowfi_repeats)] for run in wanted]

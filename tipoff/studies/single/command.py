@@ -7,6 +7,7 @@ import typer
 from tipoff.studies.commands.options import (
     CalibrationFile,
     CheckpointEvery,
+    Degree,
     Model,
     Modes,
     Resume,
@@ -33,6 +34,7 @@ def run(
     ] = None,
     model: Model = None,
     modes: Modes = None,
+    degree: Degree = None,
     calibration: CalibrationFile = None,
     accuracy: Annotated[
         str | None,
@@ -84,7 +86,7 @@ def run(
     def shown(found: dict) -> "list[Part]":
         return [page.settled(single.rows(found))] if "conditions" in found else []
 
-    options, quiet = models.Options(model, calibration, modes), request.json_
+    options, quiet = models.Options(model, calibration, modes, degree), request.json_
     study = request.study(
         condition or ["nominal"], checkpoint_every=checkpoint_every, resume=resume
     )
@@ -99,7 +101,12 @@ def run(
             names, lambda name: ranged(name, single.run(study, name, options, quiet))
         )
         return Output(found, shown)
-    given = {"--model": model, "--calibration": calibration, "--modes": modes}
+    given = {
+        "--model": model,
+        "--calibration": calibration,
+        "--modes": modes,
+        "--degree": degree,
+    }
     if wrong := [name for name, value in given.items() if value is not None]:
         expected = "none: --accuracy and --budget choose the model"
         raise SceneError([Fault(name, "option", "given", expected) for name in wrong])

@@ -9,6 +9,7 @@ from pydantic import TypeAdapter
 
 from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
+from tipoff.mechanics.rail_compliance import DEGREE
 from tipoff.scenes.faults import InputError
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
@@ -54,7 +55,7 @@ def run(
     vibrating = study.lowfi(condition, fitted, modes=options.asked)
     if scene.contact is None:
         return result_of(study, condition, vibrating, quiet)
-    found = study.rail_compliance(scene)
+    found = study.rail_compliance(scene, degree=options.degree or DEGREE)
     request = study.lowfi(condition, fitted, compliance=found, modes=options.asked)
     return result_of(study, condition, request, quiet)
 

@@ -6,15 +6,22 @@ import pytest
 from scipy.sparse.linalg import splu
 
 from tests.lowfi.compliance import (
+    BASES,
+    CLEARANCE,
+    POSES,
     REFERENCE,
     SMOOTH,
-    add_compliant_contact,
+    derivative,
+    energy,
     flexibility_at,
     forces_of,
+    generalised,
+    pose_of,
     pressed,
     reference_compliance,
     relative,
     seen_from_platform,
+    solved,
     state_of,
 )
 from tipoff.highfi.contact import surface
@@ -24,21 +31,9 @@ from tipoff.highfi.run import prepare
 from tipoff.highfi.statics import assembly
 from tipoff.kernels import rotation
 from tipoff.lowfi import state as slot
-from tipoff.lowfi.contact.compliant import cells, loads, record, solution, step_limit
+from tipoff.lowfi.contact.compliant import cells, record, solution, step_limit
 from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import PATTERNS
-
-CLEARANCE = REFERENCE.contact.clearance
-# What the pads meet: way (m), way across beyond the clearance (m), attitude (rad).
-POSES = {
-    "one leg": (0.035, (8e-6, -1e-4), (0.0, 0.0, 0.0)),
-    "both legs": (0.035, (6e-6, 9e-6), (0.0, 1e-6, -1e-6)),
-    "all faces of a rail, tilted": (0.022, (2e-5, 3e-5), (2e-5, 8e-5, -6e-5)),
-    "rails of both sides": (0.04, (-2e-4, -2e-4), (0.0, 3.1e-3, 2.9e-3)),
-    "front pads over the end": (0.0513, (1e-5, 2e-5), (0.0, -2e-5, 1e-5)),
-    "rear pads over the end": (0.2071, (4e-5, 3e-5), (1e-5, 1e-5, -3e-5)),
-    "rear pads over the begin": (-0.0042, (4e-5, 3e-5), (1e-5, -1e-5, 3e-5)),
-}
 
 
 @pytest.fixture(scope="module")
@@ -46,59 +41,6 @@ def reference():
     """Rail compliance, model, records."""
     compliance = reference_compliance()
     return compliance, *pressed(REFERENCE.replace(SMOOTH), compliance)
-
-
-def pose_of(model, name, base=((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))):
-    travel, beyond, attitude = POSES[name]
-    return relative(model, travel, [CLEARANCE + way for way in beyond], attitude, *base)
-
-
-def solved(system, model, pose, rail, active=None, modes=()):
-    """Number of faces of a rail solved for at ``pose``, which ``system.compliance.workspace`` then holds;
-    ``modes`` are those of the state."""
-    state = np.append(state_of(model, pose), modes)
-    place, turn = seen_from_platform(system.platform, system.payload, state)
-    active = np.ones(len(system.faces), dtype=np.bool_) if active is None else active
-    return solution.solve(system.compliance, system.faces, rail, active, place, turn, state)
-
-
-def energy(system, model, pose, modes=()) -> float:
-    return sum(
-        loads.energy(system.compliance, solved(system, model, pose, rail, None, modes))
-        for rail in range(len(system.compliance.members))
-    )
-
-
-def derivative(system, model, pose, twist, modes=()):
-    """What compliant contact alone adds to the derivative of the state at ``pose`` and ``twist``."""
-    state, every = (
-        np.append(state_of(model, pose, twist), modes),
-        np.ones(len(system.faces), dtype=np.bool_),
-    )
-    out = np.zeros(state.size)
-    add_compliant_contact(system, every, state, out)
-    return out
-
-
-def generalised(pose, out):
-    """Generalised forces (12,) of twists, from forces and their moments about the origin."""
-    found = []
-    for (first, about_origin), place, attitude in zip(
-        slot.BODIES,
-        (pose.place, pose.base_place),
-        (pose.attitude, pose.base_attitude),
-        strict=True,
-    ):
-        force, moment = out[first + slot.VELOCITY :][:3], out[about_origin:][:3]
-        about = tuple(moment - np.cross(place, force))
-        found += [force, rotation.unrotate(rotation.matrix(attitude), about)]
-    return np.concatenate(found)
-
-
-BASES = {
-    "in place": ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
-    "moved and turned": ((0.3, -0.2, 0.1), (0.4, -0.3, 0.5)),
-}
 
 
 @pytest.mark.parametrize("base", BASES)
