@@ -27,9 +27,9 @@ from tipoff.highfi.rail import drawn_walls
 from tipoff.highfi.run import prepare
 from tipoff.highfi.statics import inputs, joint_terms
 from tipoff.highfi.statics.held import HeldRail, distinct
-from tipoff.highfi.statics.places import Patches, pressed_together
+from tipoff.highfi.statics.places import Patches, part_of_wall, pressed_together
 from tipoff.mechanics import scene_model
-from tipoff.mechanics.rail_compliance import MODES, PATTERNS, RailCompliance, digest
+from tipoff.mechanics.rail_compliance import MODES, PATTERNS, RailCompliance, digest, on_part
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 from tipoff.scenes.effects.thermal import FIELDS
 from tipoff.scenes.rail import SectionTable
@@ -38,15 +38,18 @@ from tipoff.scenes.scene import Scene
 _SPACING = 4e-3  # m between stations; mounts and ends act over about the length of a leg
 # of the largest eigenvalue of G; below it, patterns hardly differ on the wall that a face covers
 _SINGULAR = 1e-6
+_FARTHEST = 2.0  # in xi, of the middle of a part; a face that has left presses no more
 
 
 class Compliance(NamedTuple):
     """Compliance at s stations between f pad faces with p patterns each, and n modes of r rails.
-    Near an end of the rail a face stays at the last place where it is completely on the rail."""
+    Near an end of the rail, xi runs over the ``part`` of a face that has a wall."""
 
     travel: np.ndarray  # (s,) m of the payload along X since ignition
     matrix: np.ndarray  # (s,f,p,f,p) m/N, zero between faces on different rails
     gram: np.ndarray  # (s,f,p,p), zero where a face has no wall
+    # (s,f,2) middle and half length, in xi of the whole face, of the part that has a wall
+    part: np.ndarray
     rail: np.ndarray  # (f,) number of the rail under each face, -1 without
     half: (
         np.ndarray
@@ -66,8 +69,8 @@ def condense(
     held: Sequence[HeldRail] | None = None,
 ) -> RailCompliance:
     """Flexibility and lowest ``modes`` of the rails of ``scene`` in elements of about
-    ``element_size`` (m), at stations about ``spacing`` (m) apart from ignition until the last pad
-    begins to leave. The result is valid for any factor on the stiffness of the mounts. With
+    ``element_size`` (m), at stations about ``spacing`` (m) apart, from half a pad before ignition
+    until the last pad has left by half a pad. The result is valid for any factor on the stiffness of the mounts. With
     ``rails(scene, element_size)`` as ``held``, their factors can be used again.
 
     Raises SceneError or MeshError.
@@ -78,7 +81,10 @@ def condense(
     held = held or rails(scene, element_size)
     found = of_rails(held, own.faces, own.reach, stations, PATTERNS, modes)
     inverse = np.linalg.pinv(found.gram, rcond=_SINGULAR, hermitian=True)
-    flexibility = np.einsum("siab,sibjc,sjcd->siajd", inverse, found.matrix, inverse, optimize=True)
+    middle, size = found.part[..., 0], found.part[..., 1]
+    whole = on_part(np.stack([-middle, np.ones_like(size)], axis=-1) / size[..., None])
+    inverse = whole.swapaxes(-1, -2) @ inverse
+    flexibility = np.einsum("siab,sibjc,sjdc->siajd", inverse, found.matrix, inverse, optimize=True)
     warm = np.einsum("siab,sibt->tsia", inverse, found.warm)
     return RailCompliance(
         travel=stations,
@@ -88,6 +94,7 @@ def condense(
         frequency=found.frequency,
         shape=inverse @ found.shape,
         made_for=digest(scene),
+        part=found.part,
         warm=warm,
         joints=found.joints
         and found.joints._replace(
@@ -99,8 +106,9 @@ def condense(
 
 def _stations(scene: Scene, spacing: float) -> np.ndarray:
     own = inputs.of(scene)
-    way = own.reach[1] - own.faces.half_length - own.faces.centre[:, 0]
-    return np.linspace(0.0, way.max(), int(np.ceil(way.max() / spacing)) + 1)
+    half, middle = own.faces.half_length, own.faces.centre[:, 0]
+    first, last = -half.max(), (own.reach[1] + 2.0 * half - middle).max()
+    return np.linspace(first, last, int(np.ceil((last - first) / spacing)) + 1)
 
 
 def _drawn(scene: Scene, element_size: float) -> np.ndarray | None:
@@ -195,6 +203,10 @@ def of_rails(
         np.zeros((stations.size, count, patterns, count, patterns)),
         np.zeros((stations.size, count, patterns, patterns)),
     )
+    middle = faces.centre[:, 0] + stations[:, None]
+    part = np.stack([part_of_wall(x, long, reach) for x, long in zip(middle.T, half[:, 0])], axis=1)
+    part = (part - np.stack([middle, np.zeros_like(middle)], axis=-1)) / half[:, :1]
+    part[..., 0] = part[..., 0].clip(-_FARTHEST, _FARTHEST)
     rail_of, shape = np.full(count, -1), np.zeros((stations.size, count, patterns, modes))
     frequencies: list[np.ndarray] = []
     parts: list[joint_terms.Part] = []
@@ -228,6 +240,7 @@ def of_rails(
         travel=stations,
         matrix=matrix,
         gram=gram,
+        part=part,
         rail=rail_of,
         half=half,
         frequency=np.array(frequencies).reshape(len(frequencies), modes),

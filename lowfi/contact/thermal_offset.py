@@ -20,7 +20,7 @@ import scipy  # its parts load when they are first used
 from tipoff.kernels.jit import kernel
 from tipoff.kernels.reference import by_reference
 from tipoff.mechanics import drawn_walls
-from tipoff.mechanics.rail_compliance import GRAM, RailCompliance, cubic
+from tipoff.mechanics.rail_compliance import RailCompliance, cubic
 from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import SectionTable
@@ -45,7 +45,8 @@ def under_pads(model: Model, compliance: RailCompliance | None) -> ThermalOffset
     origin = model.faces.centre[:, 0] + (model.payload.mass_centre[0] - platform)
     travel, mean = compliance.travel, None
     if model.thermal is not None:
-        mean = compliance.moved(model.thermal.amounts) @ GRAM[0]
+        offset = compliance.moved(model.thermal.amounts)
+        mean = (offset * compliance.gram[..., 0, :]).sum(axis=-1)
     if compliance.drawn is not None:
         fine = drawn_walls.grid(travel[0], travel[-1])
         warm = 0.0 if mean is None else scipy.interpolate.CubicSpline(travel, mean)(fine)

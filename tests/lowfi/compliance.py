@@ -154,7 +154,7 @@ def forces_of(
     compliance: RailCompliance, model, cells: int, face: int, pose: Pose, displacement: np.ndarray
 ) -> np.ndarray:
     """P (p,) N of a face on a wall displaced by (p,) m: the equations of ``lowfi.contact.compliant.cells`` cell
-    by cell, over the middle of the rail."""
+    by cell, on a face without overhang."""
     faces, base = model.faces, rotation.matrices([pose.base_attitude])[0]
     turn, place = (
         base.T @ rotation.matrices([pose.attitude])[0],
@@ -174,7 +174,8 @@ def forces_of(
     aside = (
         place + turn @ faces.centre[face] - faces.centre[face] - model.payload.mass_centre + origin
     )[across]
-    phi = xi[:, None] ** POWERS[:, 0] * (eta + aside / half[1])[:, None] ** POWERS[:, 1]
+    ahead = (turn @ faces.centre[face] - faces.centre[face])[0]
+    phi = (xi[:, None] + ahead / half[0]) ** POWERS[:, 0] * (eta + aside / half[1])[:, None] ** POWERS[:, 1]
     area = 4.0 * np.abs(half).prod() / cells**2
     return model.interface_stiffness * area * phi.T @ np.maximum(0.0, depth - phi @ displacement)
 

@@ -15,9 +15,9 @@ from tipoff.scenes.scene import Scene
 
 CELLS = 10  # along each edge of a pad face
 # Columns of a face's lever: penetration (m) of its flat face at the middle, and its change per xi
-# and eta; distance of xi on the wall ahead of xi on the pad, and its change per metre of travel; X
-# (m) of the middle; distance of eta on the wall beyond eta on the pad.
-DEPTH, BY_XI, BY_ETA, SHIFT, DRIFT, MIDDLE, ASIDE, LEVER_SIZE = range(8)
+# and eta; distance of xi on the wall ahead of xi on the pad; middle and half length, in xi, of the part
+# over the wall; X (m) of the middle; distance of eta on the wall beyond eta on the pad.
+DEPTH, BY_XI, BY_ETA, SHIFT, PART, SPAN, MIDDLE, ASIDE, LEVER_SIZE = range(9)
 
 
 @by_reference
@@ -82,7 +82,7 @@ class Compliance(NamedTuple):
     """Compliant contact of f faces on r rails, with its statics at s stations."""
 
     cubic: np.ndarray  # (s-1, f, f, 4, p p) m/N, as powers of the distance (m) from a station
-    origin: float  # m, X of the first face at ignition: the first station
+    origin: float  # m, X of the first face at the first station
     spacing: float  # m, between stations
     members: np.ndarray  # (r, m) numbers of the faces on each rail; -1 fills up
     rail: np.ndarray  # (f,) number of the rail of each face
@@ -150,7 +150,7 @@ def build(
     vibrating = _modes(found, shape, damping) if shape.size else None
     return Compliance(
         cubic=flexibility,
-        origin=float(nominal[0, 0]),
+        origin=float(nominal[0, 0] + found.travel[0]),
         spacing=spacing,
         members=members,
         rail=found.rail.copy(),  # kernels have one type for arrays, that of the writable ones
@@ -206,11 +206,12 @@ def _modes(found: data.RailCompliance, cubic: np.ndarray, damping: Damping | Non
     count = cubic.shape[2]
     square = found.frequency[:, :count] ** 2
     faces, by_pattern = found.rail.size, (found.rail.size, data.PATTERNS)
+    on_parts = found.on_part.swapaxes(-1, -2)
     return Modes(
         square=square,
         drag=drag_of(square, damping),
         cubic=cubic,
-        reach=np.abs(found.shape[..., :count]).sum(axis=2).max(axis=0),
+        reach=np.abs(on_parts @ found.shape[..., :count]).sum(axis=2).max(axis=0),
         shape=zeros((faces, count, data.PATTERNS)),
         offset=zeros(by_pattern),
         slope=zeros(by_pattern),

@@ -8,8 +8,8 @@ away from the payload by u::
     phi = 1, xi, eta, xi^2, xi eta, eta^2
 
 F is the flexibility of linear statics, symmetric and positive definite, at every station along the
-rail. Near an end of the rail a face keeps the last station where it is completely over the wall,
-and xi continues beyond.
+rail. Near an end of the rail it is that of the part of the face that has a wall, at least the last
+half of a pad length of the rail, in the patterns of the whole face.
 
 The lowest modes of the rail, mass-normalised and with frequencies omega_m, are a part of it. The
 rest is static::
@@ -35,6 +35,7 @@ from tipoff.mechanics.rail_compliance.record import (
     digest,
     may_vibrate,
     model_of,
+    on_part,
     require_modes,
 )
 
@@ -49,5 +50,6 @@ __all__ = [
     "digest",
     "may_vibrate",
     "model_of",
+    "on_part",
     "require_modes",
 ]

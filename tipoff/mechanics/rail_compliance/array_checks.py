@@ -35,6 +35,8 @@ def require(found: Any, patterns: int) -> None:
     }
     if found.warm is not None:
         expected["warm"] = (FIELDS, stations, faces, patterns)
+    if found.part is not None:
+        expected["part"] = (stations, faces, 2)
     if found.drawn is not None:
         _require_dimensions("drawn", found.drawn, 3)
         expected["drawn"] = (max(len(found.drawn), 2), faces, drawn_walls.ACROSS)

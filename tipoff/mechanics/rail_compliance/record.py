@@ -3,6 +3,7 @@
 import hashlib
 import io
 import json
+import math
 import threading
 from dataclasses import MISSING, dataclass, fields, replace
 from functools import cached_property, lru_cache
@@ -58,6 +59,9 @@ class RailCompliance(Shown):
     shape: np.ndarray
     #: Digest of the rail and pads.
     made_for: str
+    #: (s,f,2) middle and half length, in xi, of the part of each face that has a wall; None if every
+    #: face is completely on its rail. Near an end it is the last part of the rail.
+    part: np.ndarray | None = None
     #: (t,s,f,p) m, displacement away from the payload for a unit of each field of temperature.
     warm: np.ndarray | None = None
     #: Effect of a factor on the stiffness of the mounts.
@@ -175,6 +179,7 @@ class RailCompliance(Shown):
             self.half,
             self.frequency,
             self.shape,
+            self.part,
             self.warm,
             *(self.joints or ()),
             self.drawn,
@@ -184,9 +189,22 @@ class RailCompliance(Shown):
         return digest.hexdigest()
 
     def compliance(self) -> np.ndarray:
-        """Mean displacement (s,f,f) in m/N of each face under a unit force spread evenly over
-        each."""
-        return (GRAM @ self._flexibility().transpose(0, 1, 3, 2, 4) @ GRAM)[..., 0, 0]
+        """Mean displacement (s,f,f) in m/N of each face under a unit force spread evenly over each,
+        both on the parts that have a wall."""
+        mean = self.gram[..., 0, :]
+        return np.einsum("sia,siajb,sjb->sij", mean, self._flexibility(), mean, optimize=True)
+
+    @cached_property
+    def gram(self) -> np.ndarray:
+        """Means (s,f,p,p) of products of two patterns over the part of each face that has a wall."""
+        found = self.on_part
+        return found @ GRAM @ found.swapaxes(-1, -2)
+
+    @cached_property
+    def on_part(self) -> np.ndarray:
+        """``on_part`` (s,f,p,p) of the parts of the faces that have a wall."""
+        whole = np.tile([0.0, 1.0], (self.travel.size, self.rail.size, 1))
+        return on_part(whole if self.part is None else self.part)
 
     def rigid(self) -> "RailCompliance":
         """The same walls without flexibility: only their offsets, for springs."""
@@ -202,14 +220,14 @@ class RailCompliance(Shown):
         without the coupling between faces and without modes."""
         kept = np.arange(PATTERNS) < patterns
         full = self._flexibility()
-        blocks = (GRAM @ full.transpose(0, 1, 3, 2, 4) @ GRAM)[..., kept, :][..., kept]
-        inverse = np.linalg.inv(GRAM[np.ix_(kept, kept)])
+        gram = self.gram[..., kept, :]
+        onto = np.linalg.inv(gram[..., kept]) @ gram
         flexibility = np.zeros_like(full)
-        flexibility[:, :, :patterns, :, :patterns] = (inverse @ blocks @ inverse).transpose(
-            0, 1, 3, 2, 4
+        flexibility[:, :, :patterns, :, :patterns] = np.einsum(
+            "siab,sibjc,sjdc->siajd", onto, full, onto, optimize=True
         )
         frequency, shape = self.frequency, np.zeros_like(self.shape)
-        shape[:, :, :patterns] = inverse @ (GRAM @ self.shape)[:, :, kept]
+        shape[:, :, :patterns] = onto @ self.shape
         if not coupled:
             flexibility *= np.eye(len(self.rail))[None, :, None, :, None]
             frequency, shape = frequency[:, :0], shape[..., :0]
@@ -329,6 +347,19 @@ def require_modes(source: str, compliance: RailCompliance | None, modes: int) ->
                 )
             ]
         )
+
+
+def on_part(part: np.ndarray) -> np.ndarray:
+    """Coefficients (...,p,p) by which patterns of a whole face are sums of those of a ``part``
+    (...,2) of it, its middle and half length in xi, by the binomial theorem."""
+    middle, half = part[..., 0], part[..., 1]
+    found = np.zeros((*middle.shape, PATTERNS, PATTERNS))
+    for row, (power, across) in enumerate(POWERS):
+        for column, (lower, same) in enumerate(POWERS):
+            if same == across and lower <= power:
+                ways = math.comb(power, lower)
+                found[..., row, column] = ways * middle ** (power - lower) * half**lower
+    return found
 
 
 def cubic(travel: np.ndarray, values: np.ndarray) -> np.ndarray:

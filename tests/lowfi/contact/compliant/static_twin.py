@@ -7,7 +7,8 @@ compliance G of these nodes, the displacement u of the pressed nodes and the pre
     u = G N' k A c (d - N u),    pressed: d - N u > 0
 
 c is the share of a cell over the wall (``highfi.contact.wall``), A its area, k the interface
-stiffness. Inertia and friction are left out.
+stiffness. Inertia and friction are left out. The cells of the surrogate divide the part of the face
+that is over the wall instead, so that their share is one.
 """
 
 from typing import NamedTuple
@@ -46,12 +47,13 @@ class Pressed(NamedTuple):
 
 class StaticTwin:
     """Statics of the first rail of ``scene`` in elements of ``element_size`` (m), under faces with
-    so many ``cells`` along each edge."""
+    so many ``cells`` along each edge, those of the reference, or of the surrogate if they
+    ``follow`` the end of the rail."""
 
-    def __init__(self, scene: Scene, element_size: float, cells: int):
+    def __init__(self, scene: Scene, element_size: float, cells: int, follow: bool = False):
         own = inputs.of(scene)
         self.model_faces, self._half = own.faces, scene_model.half_sizes(own.faces)
-        self._reach, self._cells = own.reach, cells
+        self._reach, self._cells, self._follow = own.reach, cells, follow
         self._interface = scene.contact.series_stiffness()
         self.held = compliance.rails(scene, element_size)[0]
         points = self.held.rail.points
@@ -102,14 +104,23 @@ class StaticTwin:
         faces, half, count = self.model_faces, self._half[face], self._cells
         axis, sign = faces.axis[face], faces.sign[face]
         edges = np.linspace(-1.0, 1.0, count + 1)
-        node, crown = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges**5) / (5.0 * np.diff(edges))
-        xi, eta = (grid.ravel() for grid in np.meshgrid(node, node, indexing="ij"))
+        rows = edges
+        if self._follow:
+            middle = (place + turn @ faces.centre[face])[0]
+            ends = ((np.array(self._reach) - middle) / half[0]).clip(-1.0, 1.0)
+            rows = np.linspace(*ends, count + 1)
+            if rows[0] == rows[-1]:
+                rows = edges  # all of it is off the wall
+        (node, row_crown), (across, crown) = _middles(rows), _middles(edges)
+        xi, eta = (grid.ravel() for grid in np.meshgrid(node, across, indexing="ij"))
         arm = np.zeros((xi.size, 3))
         arm[:, 0], arm[:, 3 - axis] = half[0] * xi, half[1] * eta
-        arm[:, axis] = -sign * faces.relief[face] * np.add.outer(crown, crown).ravel()
+        arm[:, axis] = -sign * faces.relief[face] * np.add.outer(row_crown, crown).ravel()
         at = place + (faces.centre[face] + arm) @ turn.T
         way = np.minimum(at[:, 0] - self._reach[0], self._reach[1] - at[:, 0])
         share = np.clip(0.5 + 0.5 * count * way / half[0], 0.0, 1.0)
+        if self._follow:
+            share = np.where(way > 0.0, 0.5 * (rows[-1] - rows[0]), 0.0)
         on = share > 0.0
         stiffness = self._interface * 4.0 * abs(half.prod()) / count**2 * share
         x, y, grid = self._grid[face]
@@ -182,6 +193,11 @@ class StaticTwin:
         found = np.zeros(clamped.free.size)
         found[clamped.free] = clamped.solve(loads[clamped.free])
         return found.reshape(-1, 3)
+
+
+def _middles(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Middles of cells, and the means of the fourth power over them."""
+    return 0.5 * (edges[1:] + edges[:-1]), np.diff(edges**5) / (5.0 * np.diff(edges))
 
 
 def _between(lines: np.ndarray, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
