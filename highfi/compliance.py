@@ -35,7 +35,7 @@ from tipoff.scenes.effects.thermal import FIELDS
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
 
-_SPACING = 4e-3  # m between stations; mounts and ends act over about the length of a leg
+_SPACING = 2e-3  # m between stations; over an end, compliance changes within a quarter of a pad
 # of the largest eigenvalue of G; below it, patterns hardly differ on the wall that a face covers
 _SINGULAR = 1e-6
 _FARTHEST = 2.0  # in xi, of the middle of a part; a face that has left presses no more
@@ -108,7 +108,7 @@ def _stations(scene: Scene, spacing: float) -> np.ndarray:
     own = inputs.of(scene)
     half, middle = own.faces.half_length, own.faces.centre[:, 0]
     first, last = -half.max(), (own.reach[1] + 2.0 * half - middle).max()
-    return np.linspace(first, last, int(np.ceil((last - first) / spacing)) + 1)
+    return np.linspace(first, last, int(np.ceil((last - first) / spacing - 1e-9)) + 1)
 
 
 def _drawn(scene: Scene, element_size: float) -> np.ndarray | None:

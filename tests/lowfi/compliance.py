@@ -175,7 +175,9 @@ def forces_of(
         place + turn @ faces.centre[face] - faces.centre[face] - model.payload.mass_centre + origin
     )[across]
     ahead = (turn @ faces.centre[face] - faces.centre[face])[0]
-    phi = (xi[:, None] + ahead / half[0]) ** POWERS[:, 0] * (eta + aside / half[1])[:, None] ** POWERS[:, 1]
+    phi = (xi[:, None] + ahead / half[0]) ** POWERS[:, 0] * (eta + aside / half[1])[
+        :, None
+    ] ** POWERS[:, 1]
     area = 4.0 * np.abs(half).prod() / cells**2
     return model.interface_stiffness * area * phi.T @ np.maximum(0.0, depth - phi @ displacement)
 

@@ -327,9 +327,7 @@ def _push_of_slopes(compliance, face):
                 eta = compliance.node[column] + lever[ASIDE]
                 p = max(
                     0.0,
-                    level
-                    + eta * (tilt + eta * bend)
-                    - relief * (crown + compliance.crown[column]),
+                    level + eta * (tilt + eta * bend) - relief * (crown + compliance.crown[column]),
                 )
                 f0, f1, f2 = f0 + p, f1 + p * eta, f2 + p * eta * eta
             ahead = drawn_walls.slope(compliance.drawn, face, x)

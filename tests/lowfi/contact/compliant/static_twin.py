@@ -104,13 +104,9 @@ class StaticTwin:
         faces, half, count = self.model_faces, self._half[face], self._cells
         axis, sign = faces.axis[face], faces.sign[face]
         edges = np.linspace(-1.0, 1.0, count + 1)
-        rows = edges
-        if self._follow:
-            middle = (place + turn @ faces.centre[face])[0]
-            ends = ((np.array(self._reach) - middle) / half[0]).clip(-1.0, 1.0)
-            rows = np.linspace(*ends, count + 1)
-            if rows[0] == rows[-1]:
-                rows = edges  # all of it is off the wall
+        middle = (place + turn @ faces.centre[face])[0]
+        ends = ((np.array(self._reach) - middle) / half[0]).clip(-1.0, 1.0)
+        rows = np.linspace(*ends, count + 1) if self._follow and ends[0] < ends[1] else edges
         (node, row_crown), (across, crown) = _middles(rows), _middles(edges)
         xi, eta = (grid.ravel() for grid in np.meshgrid(node, across, indexing="ij"))
         arm = np.zeros((xi.size, 3))
@@ -120,7 +116,7 @@ class StaticTwin:
         way = np.minimum(at[:, 0] - self._reach[0], self._reach[1] - at[:, 0])
         share = np.clip(0.5 + 0.5 * count * way / half[0], 0.0, 1.0)
         if self._follow:
-            share = np.where(way > 0.0, 0.5 * (rows[-1] - rows[0]), 0.0)
+            share[:] = 0.5 * (ends[1] - ends[0])
         on = share > 0.0
         stiffness = self._interface * 4.0 * abs(half.prod()) / count**2 * share
         x, y, grid = self._grid[face]
@@ -145,10 +141,7 @@ class StaticTwin:
         }
         node = np.concatenate([each.node for each in found.values()])
         sign = np.concatenate(
-            [
-                np.full(each.depth.size, self.model_faces.sign[face])
-                for face, each in found.items()
-            ]
+            [np.full(each.depth.size, self.model_faces.sign[face]) for face, each in found.items()]
         )
         weight = sign[:, None] * np.concatenate([each.weight for each in found.values()])
         depth = np.concatenate([each.depth for each in found.values()])

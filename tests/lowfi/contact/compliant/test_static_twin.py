@@ -56,7 +56,16 @@ POSES = 20  # of each group
 # root mean square of the displacement of a wall relative to its largest value.
 BOUNDS = {
     2: {
-        "on the rail": (0.0, 0.0, 0.0),
+        "on the rail": (2.7, 1.4, 2.8),
+        "at the end": (2.2, 1.5, 2.6),
+        "on the rail, 0.03 deg": (3.3, 1.9, 3.2),
+        "at the end, 0.03 deg": (2.6, 1.2, 2.5),
+        "on the rail, 0.5 deg": (1.8, 1.6, 5.9),
+        "at the end, 0.5 deg": (3.7, 3.3, 4.9),
+        "flat, on the rail": (0.4, 0.6, 1.3),
+        "flat, at the end": (0.9, 1.6, 1.5),
+        "flat, at the end, 0.03 deg": (2.2, 2.2, 2.2),
+        "flat, at the end, 0.5 deg": (5.2, 4.7, 11.0),
     }
 }
 
@@ -95,7 +104,11 @@ class Law:
             lever, force = workspace.lever[face], workspace.force[face]
             beyond = lever[[record.SHIFT, record.ASIDE]]
             moment = system.compliance.half[face] * (force[1:3] - beyond * force[0])
-            answer[int(face)] = force[0], moment, _shape(workspace.displacement[face].copy(), beyond)
+            answer[int(face)] = (
+                force[0],
+                moment,
+                _shape(workspace.displacement[face].copy(), beyond),
+            )
         return answer
 
 
