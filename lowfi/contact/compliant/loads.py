@@ -15,8 +15,9 @@ acts across if the wall slopes::
     X = sum of pressure d(xi')/dx du/dxi' - dE/dx of the part over the wall
     Y = sum of pressure d(eta')/dy du/deta'
 
-The place of xi' by the travel moves too: minus the first term of X acts at the mass centre. Here u is the displacement of the wall plus its offset W as drawn, which moves with the pad along
-the whole rail.
+The place of xi' by the travel moves too: minus the first term of X acts at the mass centre. Here u
+is the displacement of the wall plus its offset W as drawn, which moves with the pad along the whole
+rail.
 """
 
 from tipoff.kernels import rotation
