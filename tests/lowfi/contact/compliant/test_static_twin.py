@@ -14,6 +14,7 @@ from tests.lowfi.contact.compliant.static_twin import StaticTwin
 from tipoff.highfi import compliance as statics
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.run import prepare
+from tipoff.highfi.state.records import OVER
 from tipoff.kernels import rotation
 from tipoff.lowfi import system as systems
 from tipoff.lowfi.contact.compliant import record, solution
@@ -188,23 +189,25 @@ def test_the_twin_is_the_reference_at_rest(name):
     state, points = loop.stepper.state, loop.setup.system.rail.points
     origin = state.payload.position.copy()
     far, nodes = KDTree(points).query(
-        twin.held.rail.points + points.min(axis=0) - mesh.points.min(axis=0)
+        twin.held.rail.points + points.max(axis=0) - mesh.points.max(axis=0)
     )
     assert far.max() < 1e-9
     free = loop.setup.system.rail.inverse_mass[nodes] > 0.0
+    near = 1e-6 if "deg" not in name else 2e-3  # rows of a turned pad cross the end at an angle
     for place, vector in poses(name)[:5]:
         exact = twin.solve(place, _matrix(vector))
         state.displacement[:] = 0.0
         state.displacement[nodes] = twin.field()
         state.payload.position[:] = origin + place
         state.payload.quaternion[:] = rotation.exponential(tuple(vector))
-        loop.stepper.active.wait[:] = 0
+        active = loop.stepper.active
+        active.wait[:], active.side[:], active.struck["depth"][:] = 0, OVER, 0.0
         loop.stepper.evaluate()
         total = max(one.force for one in exact.values())
         for face, one in exact.items():
             axis = twin.model_faces.axis[face]
             pushed = -twin.model_faces.sign[face] * state.face_force[face, axis]
-            assert pushed == pytest.approx(one.force, abs=1e-6 * total)
-        assert np.abs(state.resistance[nodes][free]).max() < 1e-6 * total
+            assert pushed == pytest.approx(one.force, abs=near * total)
+        assert np.abs(state.resistance[nodes][free]).max() < near * total
         # Control: the wall at rest does not resist.
         assert np.abs(twin.load).max() > 1e-2 * total
