@@ -46,8 +46,8 @@ def take_lever(compliance, faces, face, place, turn):
     middle = along(faces[face], place, turn)
     lever[MIDDLE] = middle
     lever[SHIFT] = (middle - place[0] - faces[face, 0]) / half[0]
-    over_start = max(-1.0, (compliance.start - middle) / half[0])
-    over_end = min(1.0, (compliance.end - middle) / half[0])
+    over_start = min(max(-1.0, (compliance.start - middle) / half[0]), 1.0)
+    over_end = max(-1.0, min((compliance.end - middle) / half[0], 1.0))
     lever[PART], lever[SPAN] = 0.5 * (over_start + over_end), 0.5 * (over_end - over_start)
     first = 6 if z == 0.0 else 3  # of the row of the turn for the axis across the rail
     across = (
@@ -73,7 +73,7 @@ def row_place(compliance, face, row):
 def cell_stiffness(compliance, face):
     """Stiffness (N/m) of a cell; zero if no part of the face is over the wall."""
     half, count = compliance.half[face], compliance.node.size
-    share = max(0.0, compliance.workspace.lever[face, SPAN])
+    share = compliance.workspace.lever[face, SPAN]
     return compliance.interface_stiffness * 4.0 * half[0] * abs(half[1]) * share / (count * count)
 
 
@@ -207,8 +207,8 @@ def largest_change(compliance, face, change):
 
 @kernel
 def deepest(compliance, face, displacement):
-    """Largest p (m) of all cells, over the wall or its continuation, and xi and eta of that cell on
-    the pad."""
+    """Largest p (m) of all cells, and xi and eta of that cell on the pad. Off the wall, the cells are
+    on the edge that is nearest to it."""
     aside, relief, largest, along, across = (
         compliance.workspace.lever[face, ASIDE],
         compliance.relief[face],
@@ -217,16 +217,13 @@ def deepest(compliance, face, displacement):
         0.0,
     )
     for row in range(compliance.node.size):
-        level, tilt, bend = row_depth(compliance, face, compliance.node[row], displacement)
+        xi, _, crown = row_place(compliance, face, row)
+        level, tilt, bend = row_depth(compliance, face, xi, displacement)
         for column in range(compliance.node.size):
             eta = compliance.node[column] + aside
-            p = (
-                level
-                + eta * (tilt + eta * bend)
-                - relief * (compliance.crown[row] + compliance.crown[column])
-            )
+            p = level + eta * (tilt + eta * bend) - relief * (crown + compliance.crown[column])
             if p > largest:
-                largest, along, across = p, compliance.node[row], compliance.node[column]
+                largest, along, across = p, xi, compliance.node[column]
     return largest, along, across
 
 
@@ -237,9 +234,10 @@ def deepest_at_rest(compliance, face):
     lever, relief = compliance.workspace.lever[face], compliance.relief[face]
     along, across, by_xi, by_eta = 0.0, 0.0, -np.inf, -np.inf
     for i in range(compliance.node.size):
+        xi, _, row_crown = row_place(compliance, face, i)
+        if lever[BY_XI] * xi - relief * row_crown > by_xi:
+            along, by_xi = xi, lever[BY_XI] * xi - relief * row_crown
         place, crown = compliance.node[i], relief * compliance.crown[i]
-        if lever[BY_XI] * place - crown > by_xi:
-            along, by_xi = place, lever[BY_XI] * place - crown
         if lever[BY_ETA] * place - crown > by_eta:
             across, by_eta = place, lever[BY_ETA] * place - crown
     return lever[DEPTH] + by_xi + by_eta, along, across
@@ -267,15 +265,38 @@ def stored(compliance, face):
 def push_of_end(compliance, face):
     """Force (N) along the rail on a face that overhangs an end: the decrease of its energy per metre
     of travel as the part over the wall, and the rows with it, become shorter."""
-    lever, half = compliance.workspace.lever[face], compliance.half[face, 0]
     total, stiffness = 0.0, cell_stiffness(compliance, face)
-    if lever[SPAN] < 1.0 and stiffness > 0.0:
-        at_end = 1.0 if lever[MIDDLE] + half > compliance.end else 0.0
-        at_start = 1.0 if lever[MIDDLE] - half < compliance.start else 0.0
-        moved, grown = -0.5 * (at_end + at_start) / half, -0.5 * (at_end - at_start) / half
+    moved, grown = _drift_of_part(compliance, face)
+    if stiffness > 0.0 and moved != 0.0:
         for row in range(compliance.node.size):
             total -= stiffness * _change_of_row(compliance, face, row, moved, grown)
     return total
+
+
+@kernel
+def _drift_of_part(compliance, face):
+    """Rates at which the middle of the part over the wall moves in xi, and its half length grows, per
+    metre of travel; zeros on a face that is completely over the wall or off it."""
+    lever, half = compliance.workspace.lever[face], compliance.half[face, 0]
+    at_end, at_start = 0.0, 0.0
+    if 0.0 < lever[SPAN] < 1.0:
+        at_end = 1.0 if lever[MIDDLE] + half > compliance.end else 0.0
+        at_start = 1.0 if lever[MIDDLE] - half < compliance.start else 0.0
+    return -0.5 * (at_end + at_start) / half, -0.5 * (at_end - at_start) / half
+
+
+@kernel
+def drift_of_depth(compliance, face, xi, eta):
+    """Change of p per metre of travel in a cell of a face that overhangs an end, because the cells
+    follow the part over the wall."""
+    moved, grown = _drift_of_part(compliance, face)
+    change = 0.0
+    if moved != 0.0:
+        lever, u = compliance.workspace.lever[face], compliance.workspace.displacement[face]
+        slope = lever[BY_XI] - 4.0 * compliance.relief[face] * xi * xi * xi
+        slope -= u[1] + 2.0 * u[3] * (xi + lever[SHIFT]) + u[4] * (eta + lever[ASIDE])
+        change = slope * (moved + grown * (xi - lever[PART]) / lever[SPAN])
+    return change
 
 
 @kernel

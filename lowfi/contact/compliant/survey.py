@@ -10,6 +10,7 @@ from tipoff.lowfi.contact.compliant.cells import (
     deepest,
     deepest_at_rest,
     drawn_slope,
+    drift_of_depth,
     take_lever,
 )
 from tipoff.lowfi.contact.compliant.free_vibration import note_reach
@@ -77,7 +78,8 @@ def _approach(compliance, faces, face, xi, eta, drift, swing):
     along, across = _on_wall(compliance, face, xi, eta)
     away = thermal_offset.slope(compliance.thermal_offset, face, along, across) * drift[0]
     away += drawn_slope(compliance, face, xi, eta) * forward(faces[face], drift, swing)
-    return approach(None, faces[face], None, None, drift, swing) + turning - away
+    along_edge = drift_of_depth(compliance, face, xi, eta) * forward(faces[face], drift, swing)
+    return approach(None, faces[face], None, None, drift, swing) + turning - away + along_edge
 
 
 @kernel

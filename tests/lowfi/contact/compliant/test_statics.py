@@ -32,7 +32,7 @@ CLEARANCE = REFERENCE.contact.clearance
 # What the pads meet: way (m), way across beyond the clearance (m), attitude (rad).
 POSES = {
     "one leg": (0.035, (8e-6, -1e-4), (0.0, 0.0, 0.0)),
-    "both legs": (0.035, (6e-6, 9e-6), (0.0, 1e-6, -1e-6)),
+    "both legs": (0.035, (6.3e-6, 9.3e-6), (0.0, 1e-6, -1e-6)),
     "all faces of a rail, tilted": (0.022, (2e-5, 3e-5), (2e-5, 8e-5, -6e-5)),
     "rails of both sides": (0.04, (-2e-4, -2e-4), (0.0, 3.1e-3, 2.9e-3)),
     "front pads over the end": (0.0513, (1e-5, 2e-5), (0.0, -2e-5, 1e-5)),
