@@ -62,9 +62,11 @@ def take_lever(compliance, faces, face, place, turn):
 @kernel
 def row_place(compliance, face, row):
     """xi of a row of cells, half its length in xi, and the mean of xi^4 over it. The rows divide the
-    part of the face that is over the wall, so no row leaves the wall."""
-    lever = compliance.workspace.lever[face]
-    xi, half = lever[PART] + lever[SPAN] * compliance.node[row], lever[SPAN] / compliance.node.size
+    part of the face that is over the wall, so no row leaves the wall; off the wall, all of it."""
+    middle, span = compliance.workspace.lever[face, PART], compliance.workspace.lever[face, SPAN]
+    if span == 0.0:
+        middle, span = 0.0, 1.0
+    xi, half = middle + span * compliance.node[row], span / compliance.node.size
     square, wide = xi * xi, half * half
     return xi, half, square * square + 2.0 * square * wide + 0.2 * wide * wide
 
@@ -207,8 +209,8 @@ def largest_change(compliance, face, change):
 
 @kernel
 def deepest(compliance, face, displacement):
-    """Largest p (m) of all cells, and xi and eta of that cell on the pad. Off the wall, the cells are
-    on the edge that is nearest to it."""
+    """Largest p (m) of all cells, and xi and eta of that cell on the pad. Off the wall, they are
+    those of the whole face, so that a contact in the step in which it leaves is found."""
     aside, relief, largest, along, across = (
         compliance.workspace.lever[face, ASIDE],
         compliance.relief[face],
