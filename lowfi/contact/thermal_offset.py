@@ -33,7 +33,7 @@ class ThermalOffset(NamedTuple):
 
     cubic: np.ndarray  # (s-1, f, 4) W (m) as powers of the distance (m) from the station before
     spacing: float  # m, between stations
-    origin: np.ndarray  # (f,) m, X of the first station: the centre of the face at ignition
+    origin: np.ndarray  # (f,) m, X of the centre of the face at the first station
 
 
 def under_pads(model: Model, compliance: RailCompliance | None) -> ThermalOffset | None:
@@ -56,7 +56,7 @@ def under_pads(model: Model, compliance: RailCompliance | None) -> ThermalOffset
     return ThermalOffset(
         cubic(travel, mean),
         float(travel[1] - travel[0]),
-        np.ascontiguousarray(origin),
+        np.ascontiguousarray(origin + travel[0]),
     )
 
 
