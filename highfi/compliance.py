@@ -27,7 +27,7 @@ from tipoff.highfi.rail import drawn_walls
 from tipoff.highfi.run import prepare
 from tipoff.highfi.statics import inputs, joint_terms
 from tipoff.highfi.statics.held import HeldRail, distinct
-from tipoff.highfi.statics.places import Patches, pressed_together
+from tipoff.highfi.statics.places import Patches, part_of_wall, pressed_together
 from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import (
     DEGREE,
@@ -36,6 +36,7 @@ from tipoff.mechanics.rail_compliance import (
     PATTERNS,
     RailCompliance,
     digest,
+    on_part,
 )
 from tipoff.mechanics.rail_compliance import patterns as of_degree
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
@@ -44,19 +45,22 @@ from tipoff.scenes.effects.thermal import FIELDS
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
 
-_SPACING = 4e-3  # m between stations; mounts and ends act over about the length of a leg
+_SPACING = 2e-3  # m between stations; over an end, compliance changes within a quarter of a pad
 # of the largest eigenvalue of G; below it, patterns hardly differ on the wall that a face covers
 _SINGULAR = 1e-6
+_FARTHEST = 2.0  # in xi, of the middle of a part; a face that has left presses no more
 
 
 class Compliance(NamedTuple):
     """Compliance at s stations between f pad faces with p patterns each, and n modes of r rails.
-    Near an end of the rail a face stays at the last place where it is completely on the rail."""
+    Near an end of the rail, xi runs over the ``part`` of a face that has a wall."""
 
     travel: np.ndarray  # (s,) m of the payload along X since ignition
     matrix: np.ndarray  # (s,f,p,f,p) m/N, zero between faces on different rails
     dragged: np.ndarray  # (s,f,p,f,d) m/N, under tractions along X
     gram: np.ndarray  # (s,f,p,p), zero where a face has no wall
+    # (s,f,2) middle and half length, in xi of the whole face, of the part that has a wall
+    part: np.ndarray
     rail: np.ndarray  # (f,) number of the rail under each face, -1 without
     half: (
         np.ndarray
@@ -77,10 +81,10 @@ def condense(
     degree: int = DEGREE,
 ) -> RailCompliance:
     """Flexibility and lowest ``modes`` of the rails of ``scene`` in elements of about
-    ``element_size`` (m), at stations about ``spacing`` (m) apart from ignition until the last pad
-    begins to leave, for patterns of this ``degree``. The result is valid for any factor on the
-    stiffness of the mounts. With ``rails(scene, element_size)`` as ``held``, their factors can be
-    used again.
+    ``element_size`` (m), at stations about ``spacing`` (m) apart, from half a pad before ignition
+    until the last pad has left by half a pad, for patterns of this ``degree``. The result is valid
+    for any factor on the stiffness of the mounts. With ``rails(scene, element_size)`` as ``held``,
+    their factors can be used again.
 
     Raises SceneError or MeshError.
     """
@@ -90,11 +94,15 @@ def condense(
     held = held or rails(scene, element_size)
     found = of_rails(held, own.faces, own.reach, stations, of_degree.count(degree), modes, DRAGGED)
     inverse = np.linalg.pinv(found.gram, rcond=_SINGULAR, hermitian=True)
+    middle, size = found.part[..., 0], found.part[..., 1]
+    place = np.stack([-middle, np.ones_like(size)], axis=-1) / size[..., None]
+    whole = on_part(place, degree).swapaxes(-1, -2)
     first = np.linalg.pinv(found.gram[..., :DRAGGED, :DRAGGED], rcond=_SINGULAR, hermitian=True)
-    dragged = np.einsum(
-        "siab,sibjc,sjcd->siajd", first, found.dragged[:, :, :DRAGGED], first, optimize=True
+    inverse, first = whole @ inverse, whole[..., :DRAGGED, :DRAGGED] @ first
+    flexibility, dragged = (
+        np.einsum("siab,sibjc,sjdc->siajd", each, matrix, each, optimize=True)
+        for each, matrix in ((inverse, found.matrix), (first, found.dragged[:, :, :DRAGGED]))
     )
-    flexibility = np.einsum("siab,sibjc,sjcd->siajd", inverse, found.matrix, inverse, optimize=True)
     warm = np.einsum("siab,sibt->tsia", inverse, found.warm)
     return RailCompliance(
         travel=stations,
@@ -104,6 +112,7 @@ def condense(
         frequency=found.frequency,
         shape=inverse @ found.shape,
         made_for=digest(scene),
+        part=found.part,
         warm=warm,
         joints=found.joints
         and found.joints._replace(
@@ -119,8 +128,9 @@ def condense(
 
 def _stations(scene: Scene, spacing: float) -> np.ndarray:
     own = inputs.of(scene)
-    way = own.reach[1] - own.faces.half_length - own.faces.centre[:, 0]
-    return np.linspace(0.0, way.max(), int(np.ceil(way.max() / spacing)) + 1)
+    half, middle = own.faces.half_length, own.faces.centre[:, 0]
+    first, last = -half.max(), (own.reach[1] + 2.0 * half - middle).max()
+    return np.linspace(first, last, int(np.ceil((last - first) / spacing - 1e-9)) + 1)
 
 
 def _drawn(scene: Scene, element_size: float) -> np.ndarray | None:
@@ -218,6 +228,12 @@ def of_rails(
         np.zeros((stations.size, count, patterns, count, patterns + dragged)),
         np.zeros((stations.size, count, patterns, patterns)),
     )
+    middle = faces.centre[:, 0] + stations[:, None]
+    part = np.stack(
+        [part_of_wall(x, long, reach, patterns) for x, long in zip(middle.T, half[:, 0])], axis=1
+    )
+    part = (part - np.stack([middle, np.zeros_like(middle)], axis=-1)) / half[:, :1]
+    part[..., 0] = part[..., 0].clip(-_FARTHEST, _FARTHEST)
     rail_of, shape = np.full(count, -1), np.zeros((stations.size, count, patterns, modes))
     frequencies: list[np.ndarray] = []
     parts: list[joint_terms.Part] = []
@@ -252,6 +268,7 @@ def of_rails(
         matrix=matrix[..., :patterns],
         dragged=matrix[..., patterns:],
         gram=gram,
+        part=part,
         rail=rail_of,
         half=half,
         frequency=np.array(frequencies).reshape(len(frequencies), modes),

@@ -17,8 +17,12 @@ from tipoff.highfi.statics.held import HeldRail
 from tipoff.highfi.statics.pressure import Pressed, Wall
 from tipoff.highfi.statics.solve import Clamped, one_thread
 from tipoff.mechanics import scene_model
+from tipoff.mechanics.rail_compliance import PATTERNS
 from tipoff.scenes.effects.thermal import FIELDS
 
+# of the length of a pad: the least length of the part of its wall that is seen near an end of the
+# rail, so that the patterns keep well apart; for patterns of the second degree, and for others
+_LEAST_PART, _LEAST_PART_OF_MORE = 0.5, 0.75
 BATCH = 64  # loads solved for at once; bounds the memory
 _MOST_THREADS = 8  # also bounds the memory
 _DIGITS = 9  # decimals of a place in m; faces at equal places share one solution
@@ -81,9 +85,10 @@ class Patches:
             if not facets.size:
                 continue
             wall = Wall(self._rail.points, facets, across[face])
-            size = half[face] * [1.0, signs[across[face]]]
-            for station, moved in enumerate(travel):
-                x = np.clip(seen.centre[face, 0] + moved, reach[0] + size[0], reach[1] - size[0])
+            middles = seen.centre[face, 0] + travel
+            parts = part_of_wall(middles, half[face, 0], reach, self._patterns)
+            for station, (x, long) in enumerate(parts):
+                size = np.array([long, half[face, 1] * signs[across[face]]])
                 middle = np.array([x, seen.centre[face, across[face]]])
                 key = (
                     axis[face],
@@ -147,6 +152,19 @@ class Patches:
                 shape=shape,
             )
         )
+
+
+def part_of_wall(
+    middle: np.ndarray, half: float, reach: tuple[float, float], patterns: int = PATTERNS
+) -> np.ndarray:
+    """Middle and half length (s,2) m of the part of a wall between the X of ``reach`` under a face of
+    half length ``half`` with its middle at X = ``middle`` (s,) m. Near an end, and past it, it is
+    the last half of a pad, or three quarters for more ``patterns`` than the default."""
+    share = _LEAST_PART if patterns <= PATTERNS else _LEAST_PART_OF_MORE
+    least = min(2.0 * half * share, reach[1] - reach[0])
+    low = np.clip(middle - half, reach[0], reach[1] - least)
+    high = np.clip(middle + half, reach[0] + least, reach[1])
+    return np.stack([0.5 * (low + high), 0.5 * (high - low)], axis=-1)
 
 
 def pressed_together(

@@ -21,7 +21,6 @@ from tipoff.kernels.jit import kernel
 from tipoff.kernels.reference import by_reference
 from tipoff.mechanics import drawn_walls
 from tipoff.mechanics.rail_compliance import RailCompliance, cubic
-from tipoff.mechanics.rail_compliance.patterns import gram
 from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import SectionTable
@@ -34,7 +33,7 @@ class ThermalOffset(NamedTuple):
 
     cubic: np.ndarray  # (s-1, f, 4) W (m) as powers of the distance (m) from the station before
     spacing: float  # m, between stations
-    origin: np.ndarray  # (f,) m, X of the first station: the centre of the face at ignition
+    origin: np.ndarray  # (f,) m, X of the centre of the face at the first station
 
 
 def under_pads(model: Model, compliance: RailCompliance | None) -> ThermalOffset | None:
@@ -46,7 +45,8 @@ def under_pads(model: Model, compliance: RailCompliance | None) -> ThermalOffset
     origin = model.faces.centre[:, 0] + (model.payload.mass_centre[0] - platform)
     travel, mean = compliance.travel, None
     if model.thermal is not None:
-        mean = compliance.moved(model.thermal.amounts) @ gram(compliance.degree)[0]
+        offset = compliance.moved(model.thermal.amounts)
+        mean = (offset * compliance.gram[..., 0, :]).sum(axis=-1)
     if compliance.drawn is not None:
         fine = drawn_walls.grid(travel[0], travel[-1])
         warm = 0.0 if mean is None else scipy.interpolate.CubicSpline(travel, mean)(fine)
@@ -56,7 +56,7 @@ def under_pads(model: Model, compliance: RailCompliance | None) -> ThermalOffset
     return ThermalOffset(
         cubic(travel, mean),
         float(travel[1] - travel[0]),
-        np.ascontiguousarray(origin),
+        np.ascontiguousarray(origin + travel[0]),
     )
 
 

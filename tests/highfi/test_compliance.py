@@ -97,14 +97,24 @@ def test_beam_under_two_pads():
     )
 
 
-def test_a_pad_over_the_end_keeps_its_last_whole_place():
+def test_a_pad_over_the_end_presses_the_part_that_has_a_wall():
+    """As a shorter pad there, with its place on the whole one. Past the end it is the last half of
+    its length of the rail. Control: the whole pad at its last place has another compliance."""
+    travel = np.array([-0.25, 0.0, 0.5, 1.0]) * 2.0 * HALF  # 75, 50, 0 % of the pad have a wall
     over = compliance.of_rails(
-        distinct(beam(), elastic()), pads(LENGTH), (0.0, LENGTH), (0.0, 2.0 * HALF), patterns=1
+        distinct(beam(), elastic()), pads(LENGTH), (0.0, LENGTH), travel, patterns=2
     )
-    last = compliance.of_rails(
-        distinct(beam(), elastic()), pads(LENGTH - HALF), (0.0, LENGTH), (0.0,), patterns=1
+
+    def shorter(middle, half):
+        rails, faces = distinct(beam(), elastic()), pads(LENGTH + middle * HALF, half_length=half)
+        return compliance.of_rails(rails, faces, (0.0, LENGTH), (0.0,), patterns=2).matrix[0]
+
+    assert over.part[:, 0] == pytest.approx(
+        np.array([[-0.25, 0.75], [-0.5, 0.5], [-1.5, 0.5], [-2.0, 0.5]])
     )
-    assert (over.matrix == last.matrix).all()
+    for matrix, half in zip(over.matrix, (0.75, 0.5, 0.5, 0.5)):
+        assert matrix == pytest.approx(shorter(-half, half * HALF), rel=1e-9)
+    assert shorter(-1.0, HALF)[0, 0, 0, 0] < 0.95 * over.matrix[1, 0, 0, 0, 0]
 
 
 def test_half_a_wall_is_pressed_at_its_place():

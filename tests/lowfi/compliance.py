@@ -158,7 +158,7 @@ def forces_of(
     compliance: RailCompliance, model, cells: int, face: int, pose: Pose, displacement: np.ndarray
 ) -> np.ndarray:
     """P (p,) N of a face on a wall displaced by (p,) m: the equations of ``lowfi.contact.compliant.cells`` cell
-    by cell, over the middle of the rail."""
+    by cell, on a face without overhang."""
     faces, base = model.faces, rotation.matrices([pose.base_attitude])[0]
     turn, place = (
         base.T @ rotation.matrices([pose.attitude])[0],
@@ -178,10 +178,9 @@ def forces_of(
     aside = (
         place + turn @ faces.centre[face] - faces.centre[face] - model.payload.mass_centre + origin
     )[across]
-    phi = (
-        xi[:, None] ** powers(compliance.degree)[:, 0]
-        * (eta + aside / half[1])[:, None] ** powers(compliance.degree)[:, 1]
-    )
+    ahead = (turn @ faces.centre[face] - faces.centre[face])[0]
+    by_xi, by_eta = powers(compliance.degree).T
+    phi = (xi[:, None] + ahead / half[0]) ** by_xi * (eta + aside / half[1])[:, None] ** by_eta
     area = 4.0 * np.abs(half).prod() / cells**2
     return model.interface_stiffness * area * phi.T @ np.maximum(0.0, depth - phi @ displacement)
 
@@ -195,7 +194,7 @@ CLEARANCE = REFERENCE.contact.clearance
 # What the pads meet: way (m), way across beyond the clearance (m), attitude (rad).
 POSES = {
     "one leg": (0.035, (8e-6, -1e-4), (0.0, 0.0, 0.0)),
-    "both legs": (0.035, (6e-6, 9e-6), (0.0, 1e-6, -1e-6)),
+    "both legs": (0.035, (6.3e-6, 9.3e-6), (0.0, 1e-6, -1e-6)),
     "all faces of a rail, tilted": (0.022, (2e-5, 3e-5), (2e-5, 8e-5, -6e-5)),
     "rails of both sides": (0.04, (-2e-4, -2e-4), (0.0, 3.1e-3, 2.9e-3)),
     "front pads over the end": (0.0513, (1e-5, 2e-5), (0.0, -2e-5, 1e-5)),

@@ -9,9 +9,9 @@ With the lever (p_0, a, b) of the rigid face, the displacement U of its wall
 where W is the offset as drawn of a wall that is not straight (``drawn_walls``) at the place X of
 the cell, the crown is its mean over the cell, and xi' = xi + shift, eta' = eta + aside is the place
 on the wall. The compliance is that of pads midway between all rails; 0.25 mm aside, the leg of an
-L, held along one edge only, is three percent softer or stiffer. Of a row of cells that overhangs an
-end of the rail, only the part over the wall presses; sums are piecewise linear between the middles
-of the rows.
+L, held along one edge only, is three percent softer or stiffer. shift is not zero on a payload that is
+turned: then the pad is not at its place by the travel. Cells divide the part of the face that is
+over the wall.
 """
 
 import numpy as np
@@ -23,16 +23,13 @@ from tipoff.lowfi.contact.compliant.record import (
     BY_ETA,
     BY_XI,
     DEPTH,
-    DRIFT,
     MIDDLE,
+    PART,
     SHIFT,
+    SPAN,
 )
 from tipoff.lowfi.contact.springs import along, penetration
 from tipoff.lowfi.faces import NORMAL_Y, NORMAL_Z
-
-# in xi, half the travel over which the place of a pad on the wall slows down to rest while the pad
-# begins to overhang an end
-_EASED = 0.1
 
 
 @kernel
@@ -46,9 +43,10 @@ def take_lever(compliance, faces, face, place, turn):
     lever[BY_ETA] = half[1] * (y * turn[5] + z * turn[7])
     middle = along(faces[face], place, turn)
     lever[MIDDLE] = middle
-    over_end, by_end = eased((middle - compliance.end) / half[0] + 1.0)
-    over_start, by_start = eased((compliance.start - middle) / half[0] + 1.0)
-    lever[SHIFT], lever[DRIFT] = over_end - over_start, (by_end + by_start) / half[0]
+    lever[SHIFT] = (middle - place[0] - faces[face, 0]) / half[0]
+    over_start = min(max(-1.0, (compliance.start - middle) / half[0]), 1.0)
+    over_end = max(-1.0, min((compliance.end - middle) / half[0], 1.0))
+    lever[PART], lever[SPAN] = 0.5 * (over_start + over_end), 0.5 * (over_end - over_start)
     first = 6 if z == 0.0 else 3  # of the row of the turn for the axis across the rail
     across = (
         place[first // 3]
@@ -60,46 +58,32 @@ def take_lever(compliance, faces, face, place, turn):
 
 
 @kernel
-def eased(over):
-    """max(``over``, 0) with a rounded corner, and its slope, which a force along the rail
-    contains."""
-    if abs(over) >= _EASED:
-        return max(over, 0.0), 1.0 if over > 0.0 else 0.0
-    return 0.25 * (over + _EASED) ** 2 / _EASED, 0.5 * (over + _EASED) / _EASED
+def row_place(compliance, face, row):
+    """xi of a row of cells, half its length in xi, and the mean of xi^4 over it. The rows divide the
+    part of the face that is over the wall, so no row leaves the wall; off the wall, all of it."""
+    middle, span = compliance.workspace.lever[face, PART], compliance.workspace.lever[face, SPAN]
+    if span == 0.0:
+        middle, span = 0.0, 1.0
+    xi, half = middle + span * compliance.node[row], span / compliance.node.size
+    square, wide = xi * xi, half * half
+    return xi, half, square * square + 2.0 * square * wide + 0.2 * wide * wide
 
 
 @kernel
-def cover(compliance, half, middle, row):
-    """Share over the wall of a row of cells, and its decrease per metre of travel."""
-    behind_end, at_end = _behind(compliance, row, (compliance.end - middle) / half)
-    behind_start, at_start = _behind(compliance, row, (compliance.start - middle) / half)
-    return behind_end - behind_start, (at_end - at_start) / half
-
-
-@kernel
-def _behind(compliance, row, xi):
-    """Share of a row of cells behind an end of the rail at ``xi``, and its slope. The sums of
-    neighbouring rows change linearly from middle to middle, so the rate of lost energy does not
-    jump."""
-    away = 0.5 * compliance.node.size * (xi - compliance.node[row])  # in cells
-    outermost = row == 0 if away < 0.0 else row == compliance.node.size - 1
-    reach = 0.5 if outermost else 1.0
-    near = min(abs(away), reach)
-    part = near if outermost else near - 0.5 * near * near
-    slope = (1.0 if outermost else 1.0 - near) if near < reach else 0.0
-    return 0.5 + part if away > 0.0 else 0.5 - part, 0.5 * compliance.node.size * slope
+def cell_stiffness(compliance, face):
+    """Stiffness (N/m) of a cell; zero if no part of the face is over the wall."""
+    half, count = compliance.half[face], compliance.node.size
+    share = compliance.workspace.lever[face, SPAN]
+    return compliance.interface_stiffness * 4.0 * half[0] * abs(half[1]) * share / (count * count)
 
 
 @inlined
 def fill_row(compliance, face, xi, displacement):
     """Fill ``Workspace.row`` with the coefficients of the powers of eta' in p (m) along the row of
-    cells at ``xi``, without the crown across it. A row beyond the wall continues its last one."""
+    cells at ``xi``, without the crown across it."""
     workspace, lever = compliance.workspace, compliance.workspace.lever[face]
     row, degree = workspace.row, patterns.degree(workspace.levels)
     x = xi + lever[SHIFT]
-    if lever[SHIFT] != 0.0:  # rows over the wall are within this distance
-        edge = 1.0 + 2.0 / compliance.node.size
-        x = min(max(x, -edge), edge)
     for j in range(degree + 1):
         total = 0.0
         for i in range(degree - j, -1, -1):
@@ -139,18 +123,14 @@ def _place(compliance, face, xi):
 def press(compliance, face):
     """Fill the face's force (p,) N and stiffness (p, p) N/m. Returns the smallest |p| (m) of all
     cells over the wall: the same cells press while p changes by less."""
-    workspace, half, relief = compliance.workspace, compliance.half[face], compliance.relief[face]
-    lever, count = workspace.lever[face], compliance.node.size
-    stiffness = compliance.interface_stiffness * 4.0 * half[0] * abs(half[1]) / (count * count)
-    slack = np.inf
+    workspace, relief = compliance.workspace, compliance.relief[face]
+    lever, weight, slack = workspace.lever[face], cell_stiffness(compliance, face), np.inf
     _clear(workspace, face)
-    for number in range(count):
-        xi, weight = compliance.node[number], stiffness
-        if lever[DRIFT] != 0.0:  # else all of the face is over the wall
-            weight *= cover(compliance, half[0], lever[MIDDLE], number)[0]
-        if weight > 0.0:
+    if weight > 0.0:
+        for number in range(compliance.node.size):
+            xi, _, crown = row_place(compliance, face, number)
             fill_row(compliance, face, xi, workspace.displacement[face])
-            workspace.row[0] -= relief * compliance.crown[number]
+            workspace.row[0] -= relief * crown
             slack = min(slack, _sum_row(compliance, relief, lever[ASIDE]))
             if workspace.counted[0] > 0.0:
                 _add_row(workspace, face, xi + lever[SHIFT], weight)
@@ -241,8 +221,8 @@ def largest_change(compliance, face, change):
 
 @kernel
 def deepest(compliance, face, displacement):
-    """Largest p (m) of all cells, over the wall or its continuation, and xi and eta of that cell on
-    the pad."""
+    """Largest p (m) of all cells, and xi and eta of that cell on the pad. Off the wall, they are
+    those of the whole face, so that a contact in the step in which it leaves is found."""
     aside, relief, largest, along, across = (
         compliance.workspace.lever[face, ASIDE],
         compliance.relief[face],
@@ -251,14 +231,13 @@ def deepest(compliance, face, displacement):
         0.0,
     )
     for row in range(compliance.node.size):
-        fill_row(compliance, face, compliance.node[row], displacement)
+        xi, _, crown = row_place(compliance, face, row)
+        fill_row(compliance, face, xi, displacement)
         for column in range(compliance.node.size):
             eta = compliance.node[column] + aside
-            p = along_row(compliance.workspace, eta) - relief * (
-                compliance.crown[row] + compliance.crown[column]
-            )
+            p = along_row(compliance.workspace, eta) - relief * (crown + compliance.crown[column])
             if p > largest:
-                largest, along, across = p, compliance.node[row], compliance.node[column]
+                largest, along, across = p, xi, compliance.node[column]
     return largest, along, across
 
 
@@ -269,9 +248,10 @@ def deepest_at_rest(compliance, face):
     lever, relief = compliance.workspace.lever[face], compliance.relief[face]
     along, across, by_xi, by_eta = 0.0, 0.0, -np.inf, -np.inf
     for i in range(compliance.node.size):
+        xi, _, row_crown = row_place(compliance, face, i)
+        if lever[BY_XI] * xi - relief * row_crown > by_xi:
+            along, by_xi = xi, lever[BY_XI] * xi - relief * row_crown
         place, crown = compliance.node[i], relief * compliance.crown[i]
-        if lever[BY_XI] * place - crown > by_xi:
-            along, by_xi = place, lever[BY_XI] * place - crown
         if lever[BY_ETA] * place - crown > by_eta:
             across, by_eta = place, lever[BY_ETA] * place - crown
     return lever[DEPTH] + by_xi + by_eta, along, across
@@ -279,33 +259,84 @@ def deepest_at_rest(compliance, face):
 
 @kernel
 def stored(compliance, face):
-    """Energy (J) in the interface of the face, and its decrease per metre of travel (N) as the face
-    slides over an end of the rail."""
-    lever, relief, half = (
-        compliance.workspace.lever[face],
-        compliance.relief[face],
-        compliance.half[face],
-    )
-    count = compliance.node.size
-    stiffness = compliance.interface_stiffness * 4.0 * half[0] * abs(half[1]) / (count * count)
-    energy, fading = 0.0, 0.0
-    for row in range(count):
-        xi = compliance.node[row]
-        share, lost = cover(compliance, half[0], lever[MIDDLE], row)
-        if share > 0.0:
+    """Energy (J) in the interface of the face."""
+    relief, stiffness = compliance.relief[face], cell_stiffness(compliance, face)
+    energy = 0.0
+    if stiffness > 0.0:
+        for row in range(compliance.node.size):
+            xi, _, crown = row_place(compliance, face, row)
             fill_row(compliance, face, xi, compliance.workspace.displacement[face])
-            squares = 0.0
-            for column in range(count):
-                eta = compliance.node[column] + lever[ASIDE]
-                p = max(
-                    0.0,
-                    along_row(compliance.workspace, eta)
-                    - relief * (compliance.crown[row] + compliance.crown[column]),
+            for column in range(compliance.node.size):
+                eta = compliance.node[column] + compliance.workspace.lever[face, ASIDE]
+                p = along_row(compliance.workspace, eta) - relief * (
+                    crown + compliance.crown[column]
                 )
-                squares += p * p
-            energy += 0.5 * stiffness * share * squares
-            fading += 0.5 * stiffness * lost * squares
-    return energy, fading
+                energy += 0.5 * stiffness * max(0.0, p) ** 2
+    return energy
+
+
+@kernel
+def push_of_end(compliance, face):
+    """Force (N) along the rail on a face that overhangs an end: the decrease of its energy per metre
+    of travel as the part over the wall, and the rows with it, become shorter."""
+    total, stiffness = 0.0, cell_stiffness(compliance, face)
+    moved, grown = _drift_of_part(compliance, face)
+    if stiffness > 0.0 and moved != 0.0:
+        for row in range(compliance.node.size):
+            total -= stiffness * _change_of_row(compliance, face, row, moved, grown)
+    return total
+
+
+@kernel
+def _drift_of_part(compliance, face):
+    """Rates at which the middle of the part over the wall moves in xi, and its half length grows, per
+    metre of travel; zeros on a face that is completely over the wall or off it."""
+    lever, half = compliance.workspace.lever[face], compliance.half[face, 0]
+    at_end, at_start = 0.0, 0.0
+    if 0.0 < lever[SPAN] < 1.0:
+        at_end = 1.0 if lever[MIDDLE] + half > compliance.end else 0.0
+        at_start = 1.0 if lever[MIDDLE] - half < compliance.start else 0.0
+    return -0.5 * (at_end + at_start) / half, -0.5 * (at_end - at_start) / half
+
+
+@kernel
+def drift_of_depth(compliance, face, xi, eta):
+    """Change of p per metre of travel in a cell of a face that overhangs an end, because the cells
+    follow the part over the wall."""
+    moved, grown = _drift_of_part(compliance, face)
+    change = 0.0
+    if moved != 0.0:
+        lever, u = compliance.workspace.lever[face], compliance.workspace.displacement[face]
+        slope = lever[BY_XI] - 4.0 * compliance.relief[face] * xi * xi * xi
+        levels = compliance.workspace.levels
+        slope -= patterns.by_xi(levels, u, xi + lever[SHIFT], eta + lever[ASIDE])
+        change = slope * (moved + grown * (xi - lever[PART]) / lever[SPAN])
+    return change
+
+
+@kernel
+def _change_of_row(compliance, face, row, moved, grown):
+    """Change of the sum of p^2 / 2 over a row, per metre of travel, while the middle of the part over
+    the wall moves by ``moved`` in xi and its half length grows by ``grown``."""
+    lever, u = compliance.workspace.lever[face], compliance.workspace.displacement[face]
+    relief, place = compliance.relief[face], compliance.node[row]
+    xi, half, crown = row_place(compliance, face, row)
+    fill_row(compliance, face, xi, u)
+    ahead = drawn_walls.slope(compliance.drawn, face, _place(compliance, face, xi))
+    away, x = compliance.half[face, 0], xi + lever[SHIFT]
+    onward = moved + grown * place
+    by_crown = relief * (4.0 * xi * (xi * xi + half * half) * onward)
+    by_crown += relief * half * (4.0 * xi * xi + 0.8 * half * half) * grown / compliance.node.size
+    total = 0.0
+    for column in range(compliance.node.size):
+        eta = compliance.node[column] + lever[ASIDE]
+        p = along_row(compliance.workspace, eta) - relief * (crown + compliance.crown[column])
+        if p > 0.0:
+            slope = lever[BY_XI] - patterns.by_xi(compliance.workspace.levels, u, x, eta)
+            slope -= away * (ahead[0] + eta * (ahead[1] + eta * ahead[2]))
+            change = onward * slope - by_crown
+            total += p * (change + 0.5 * p * grown / lever[SPAN])
+    return total
 
 
 @kernel
@@ -319,31 +350,25 @@ def push_of_drawn_slopes(compliance, face):
 
 @kernel
 def _push_of_slopes(compliance, face):
-    lever, relief, half = (
-        compliance.workspace.lever[face],
-        compliance.relief[face],
-        compliance.half[face],
-    )
-    count, along, across = compliance.node.size, 0.0, 0.0
-    stiffness = compliance.interface_stiffness * 4.0 * half[0] * abs(half[1]) / (count * count)
-    for row in range(count):
-        xi = compliance.node[row]
-        share = cover(compliance, half[0], lever[MIDDLE], row)[0]
-        if share > 0.0:
+    lever, relief = compliance.workspace.lever[face], compliance.relief[face]
+    along, across, stiffness = 0.0, 0.0, cell_stiffness(compliance, face)
+    if stiffness > 0.0:
+        for row in range(compliance.node.size):
+            xi, _, crown = row_place(compliance, face, row)
             fill_row(compliance, face, xi, compliance.workspace.displacement[face])
             x, f0, f1, f2 = _place(compliance, face, xi), 0.0, 0.0, 0.0
-            for column in range(count):
+            for column in range(compliance.node.size):
                 eta = compliance.node[column] + lever[ASIDE]
                 p = max(
                     0.0,
                     along_row(compliance.workspace, eta)
-                    - relief * (compliance.crown[row] + compliance.crown[column]),
+                    - relief * (crown + compliance.crown[column]),
                 )
                 f0, f1, f2 = f0 + p, f1 + p * eta, f2 + p * eta * eta
             ahead = drawn_walls.slope(compliance.drawn, face, x)
             aside = drawn_walls.height(compliance.drawn, face, x)
-            along += stiffness * share * (ahead[0] * f0 + ahead[1] * f1 + ahead[2] * f2)
-            across += stiffness * share * (aside[1] * f0 + 2.0 * aside[2] * f1)
+            along += stiffness * (ahead[0] * f0 + ahead[1] * f1 + ahead[2] * f2)
+            across += stiffness * (aside[1] * f0 + 2.0 * aside[2] * f1)
     return along, across
 
 

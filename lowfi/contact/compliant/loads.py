@@ -9,22 +9,23 @@ and along X, where the rail becomes softer or stiffer ahead::
 
 which acts on payload and platform at the payload's mass centre, because it depends on its travel.
 Two more act at the middle of the pad, because they depend on its place. One acts along X if the
-face overhangs an end: xi' then moves with the pad, and cells leave the wall. One acts across if the
-wall slopes::
+wall slopes, and if the face overhangs an end, so that its part over the wall becomes shorter. One
+acts across if the wall slopes::
 
-    X = sum of pressure d(xi')/dx du/dxi' - dE/dx of the shares of the cells over the wall
+    X = sum of pressure d(xi')/dx du/dxi' - dE/dx of the part over the wall
     Y = sum of pressure d(eta')/dy du/deta'
 
-where u is the displacement of the wall plus its offset W as drawn, which moves with the pad along
-the whole rail.
+The place of xi' by the travel moves too: minus the first term of X acts at the mass centre. Here u
+is the displacement of the wall plus its offset W as drawn, which moves with the pad along the whole
+rail.
 """
 
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi.contact.compliant import patterns, thermal_offset
-from tipoff.lowfi.contact.compliant.cells import push_of_drawn_slopes, stored
+from tipoff.lowfi.contact.compliant.cells import push_of_drawn_slopes, push_of_end, stored
 from tipoff.lowfi.contact.compliant.modes import offset, slope
-from tipoff.lowfi.contact.compliant.record import ASIDE, DRIFT, SHIFT
+from tipoff.lowfi.contact.compliant.record import ASIDE, SHIFT
 from tipoff.lowfi.contact.springs import (
     Load,
     along_width,
@@ -69,10 +70,7 @@ def wall_force(compliance, faces, face, body, base):
     """Force (N) along the wall of a pressed face on the payload, due to the slope and the end of
     the wall, and its point of action (m), in scene axes."""
     u, force = compliance.workspace.displacement[face], compliance.workspace.force[face]
-    drift, along = compliance.workspace.lever[face, DRIFT], 0.0
-    if drift != 0.0:  # else all of it is over the wall
-        along = drift * _work_of_slope(compliance.workspace.levels, u, force, 1, 0)
-        along += stored(compliance, face)[1]
+    along = _push_of_shift(compliance, face) + push_of_end(compliance, face)
     ahead, aside = push_of_drawn_slopes(compliance, face)
     along += ahead
     sideways = _work_of_slope(compliance.workspace.levels, u, force, 0, 1) + aside
@@ -94,12 +92,22 @@ def _work_of_slope(levels, u, force, by_xi, by_eta):
 
 
 @kernel
+def _push_of_shift(compliance, face):
+    """Force (N) along the rail of the slope of the wall, where the pad is ahead of its place by the
+    travel."""
+    u, force = compliance.workspace.displacement[face], compliance.workspace.force[face]
+    work = _work_of_slope(compliance.workspace.levels, u, force, 1, 0)
+    return work / compliance.half[face, 0]
+
+
+@kernel
 def axial_force(compliance, count):
     """Force (N) along the rail of the ``count`` solved faces on the payload's mass centre."""
     workspace, pull, size = compliance.workspace, 0.0, patterns.count(compliance.workspace.levels)
     for i in range(count):
         face = workspace.order[i]
         force = workspace.force[face]
+        pull -= _push_of_shift(compliance, face)
         pull += thermal_offset.axial_force(compliance.thermal_offset, face, force)
         for a in range(size):
             total = 0.0
@@ -118,7 +126,7 @@ def energy(compliance, count):
     total, size = 0.0, patterns.count(compliance.workspace.levels)
     for i in range(count):
         face = compliance.workspace.order[i]
-        total += stored(compliance, face)[0]
+        total += stored(compliance, face)
         for a in range(size):
             own = thermal_offset.offset(compliance.thermal_offset, face, a) + offset(
                 compliance.modes, face, a

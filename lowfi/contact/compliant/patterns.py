@@ -36,3 +36,16 @@ def value(levels, amounts, xi, eta):
         total += along * across
         across *= eta
     return total
+
+
+@kernel
+def by_xi(levels, amounts, xi, eta):
+    """Derivative by xi of ``value``."""
+    total, across = 0.0, 1.0
+    for j in range(len(levels) - 1):
+        along = 0.0
+        for i in range(degree(levels) - j, 0, -1):
+            along = along * xi + i * amounts[number(i, j)]
+        total += along * across
+        across *= eta
+    return total

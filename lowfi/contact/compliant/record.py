@@ -16,9 +16,9 @@ from tipoff.scenes.scene import Scene
 
 CELLS = 10  # along each edge of a pad face
 # Columns of a face's lever: penetration (m) of its flat face at the middle, and its change per xi
-# and eta; distance of xi on the wall ahead of xi on the pad, and its change per metre of travel; X
-# (m) of the middle; distance of eta on the wall beyond eta on the pad.
-DEPTH, BY_XI, BY_ETA, SHIFT, DRIFT, MIDDLE, ASIDE, LEVER_SIZE = range(8)
+# and eta; distance of xi on the wall ahead of xi on the pad; middle and half length, in xi, of the part
+# over the wall; X (m) of the middle; distance of eta on the wall beyond eta on the pad.
+DEPTH, BY_XI, BY_ETA, SHIFT, PART, SPAN, MIDDLE, ASIDE, LEVER_SIZE = range(9)
 
 
 @by_reference
@@ -95,7 +95,7 @@ class Compliance(NamedTuple):
     # (s-1, f, f, 4, d d) m/N, as ``cubic``, in the first d patterns for a coefficient of 1; None
     # without friction
     dragged: np.ndarray | None
-    origin: float  # m, X of the first face at ignition: the first station
+    origin: float  # m, X of the first face at the first station
     spacing: float  # m, between stations
     members: np.ndarray  # (r, m) numbers of the faces on each rail; -1 fills up
     rail: np.ndarray  # (f,) number of the rail of each face
@@ -169,7 +169,7 @@ def build(
     return Compliance(
         cubic=flexibility,
         dragged=found.cubic_of_dragged if rubs else None,
-        origin=float(nominal[0, 0]),
+        origin=float(nominal[0, 0] + found.travel[0]),
         spacing=spacing,
         members=members,
         rail=found.rail.copy(),  # kernels have one type for arrays, that of the writable ones
@@ -229,12 +229,13 @@ def _modes(found: data.RailCompliance, cubic: np.ndarray, damping: Damping | Non
     square = found.frequency[:, :count] ** 2
     by_pattern = found.shape.shape[1:3]
     faces, patterns = by_pattern
+    on_parts = found.on_part.swapaxes(-1, -2)
     return Modes(
         levels=tuple(range(found.degree + 1)),
         square=square,
         drag=drag_of(square, damping),
         cubic=cubic,
-        reach=np.abs(found.shape[..., :count]).sum(axis=2).max(axis=0),
+        reach=np.abs(on_parts @ found.shape[..., :count]).sum(axis=2).max(axis=0),
         shape=zeros((faces, count, patterns)),
         offset=zeros(by_pattern),
         slope=zeros(by_pattern),

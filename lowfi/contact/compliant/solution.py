@@ -17,7 +17,7 @@ import numpy as np
 
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi.contact.compliant import patterns, thermal_offset
-from tipoff.lowfi.contact.compliant.cells import eased, largest_change, press, take_lever
+from tipoff.lowfi.contact.compliant.cells import largest_change, press, take_lever
 from tipoff.lowfi.contact.compliant.modes import evaluate, offset
 from tipoff.lowfi.contact.compliant.record import BY_ETA, BY_XI, DEPTH
 from tipoff.mechanics.rail_compliance.patterns import DRAGGED
@@ -86,15 +86,11 @@ def solve_unless(solved, compliance, faces, rail, touching, place, turn, state):
 @kernel
 def between_stations(compliance, place):
     """Number of the station before X = ``place`` (m) of the first face, the distance (m) from it,
-    limited to the table, and its derivative by the place. At the last station the distance stops,
-    as the places of pads on the wall do at the end of the rail."""
-    half = compliance.half[0, 0]
-    over, rate = eased(
-        (place - compliance.origin - compliance.spacing * compliance.cubic.shape[0]) / half
-    )
-    way, changes = place - compliance.origin - half * over, 1.0 - rate
-    if not way >= 0.0:  # also where the place is not a number
-        way, changes = 0.0, 0.0
+    limited to the table, and its derivative by the place."""
+    way, changes = place - compliance.origin, 1.0
+    longest = compliance.spacing * compliance.cubic.shape[0]
+    if not 0.0 <= way <= longest:  # also where the place is not a number
+        way, changes = longest if way > longest else 0.0, 0.0
     station = min(int(way / compliance.spacing), compliance.cubic.shape[0] - 1)
     return station, way - station * compliance.spacing, changes
 

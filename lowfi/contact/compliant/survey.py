@@ -10,12 +10,13 @@ from tipoff.lowfi.contact.compliant.cells import (
     deepest,
     deepest_at_rest,
     drawn_slope,
+    drift_of_depth,
     take_lever,
 )
 from tipoff.lowfi.contact.compliant.free_vibration import note_reach
 from tipoff.lowfi.contact.compliant.loads import energy as energy_of_rail
 from tipoff.lowfi.contact.compliant.modes import speed_at
-from tipoff.lowfi.contact.compliant.record import ASIDE, DRIFT, MIDDLE, SHIFT
+from tipoff.lowfi.contact.compliant.record import ASIDE, MIDDLE, SHIFT
 from tipoff.lowfi.contact.compliant.solution import follow, solve, solve_unless
 from tipoff.lowfi.contact.springs import (
     across,
@@ -77,7 +78,8 @@ def _approach(compliance, faces, face, xi, eta, drift, swing):
     along, across = _on_wall(compliance, face, xi, eta)
     away = thermal_offset.slope(compliance.thermal_offset, face, along, across) * drift[0]
     away += drawn_slope(compliance, face, xi, eta) * forward(faces[face], drift, swing)
-    return approach(None, faces[face], None, None, drift, swing) + turning - away
+    along_edge = drift_of_depth(compliance, face, xi, eta) * forward(faces[face], drift, swing)
+    return approach(None, faces[face], None, None, drift, swing) + turning - away + along_edge
 
 
 @kernel
@@ -128,10 +130,9 @@ def survey(compliance, faces, platform, payload, touching, state, solved, out):
 @kernel
 def longest_step_at_ends(compliance, faces, platform, payload, touching, state):
     """Longest step (s) if a ``touching`` face (f,) is near an end of the rail. The force of the end
-    jumps when the face begins to overhang, and its slope jumps with every row of cells that leaves.
-    No error estimate sees this. The last strip of the face leaves at once. So a step ends there at
-    the latest, and where a face that comes over an end is completely over it. It is at most a
-    quarter of a cell long."""
+    jumps when the face begins to overhang. No error estimate sees this. The last strip of the face
+    leaves at once. So a step ends there at the latest, and where a face that comes over an end is
+    completely over it."""
     body, base = (
         slot.motion(payload, state, slot.PAYLOAD),
         slot.frame(platform, state),
@@ -146,11 +147,7 @@ def longest_step_at_ends(compliance, faces, platform, payload, touching, state):
             speed = forward(faces[face], drift, swing)
             ahead = compliance.end - middle if speed > 0.0 else middle - compliance.start
             behind = middle - compliance.start if speed > 0.0 else compliance.end - middle
-            way = (
-                np.inf
-                if compliance.workspace.lever[face, DRIFT] == 0.0
-                else 0.25 * half / compliance.node.size
-            )
+            way = np.inf
             for to in (ahead - half, ahead + half * (1.0 - LAST_STRIP)):
                 way = min(way, to + _THERE) if to > 0.0 else way
             if half - behind > _THERE:

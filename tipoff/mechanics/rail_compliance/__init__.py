@@ -8,8 +8,8 @@ away from the payload by u::
     phi = 1, xi, eta, xi^2, xi eta, eta^2 (``patterns``, here of the second degree)
 
 F is the flexibility of linear statics, symmetric and positive definite, at every station along the
-rail. Near an end of the rail a face keeps the last station where it is completely over the wall,
-and xi continues beyond.
+rail. Near an end of the rail it is that of the part of the face that has a wall, at least the last
+half of a pad length of the rail, in the patterns of the whole face.
 
 Friction of the coefficient mu drags the wall along X, the way the payload goes. It acts on the
 surface, half a wall away from the middle of the leg, so its moment bends the leg::
@@ -34,16 +34,14 @@ stiffness this holds for the nominal stiffness, and ``RailCompliance.of`` gives 
 a scene (``mechanics.rail_compliance.joint_terms``).
 """
 
-from tipoff.mechanics.rail_compliance.patterns import DEGREE, MOST_DEGREE, PATTERNS
+from tipoff.mechanics.rail_compliance.models import may_vibrate, model_of, require_modes
+from tipoff.mechanics.rail_compliance.patterns import DEGREE, MOST_DEGREE, PATTERNS, on_part
 from tipoff.mechanics.rail_compliance.record import (
     MODES,
     RailCompliance,
     content,
     cubic,
     digest,
-    may_vibrate,
-    model_of,
-    require_modes,
 )
 
 __all__ = [
@@ -57,5 +55,6 @@ __all__ = [
     "digest",
     "may_vibrate",
     "model_of",
+    "on_part",
     "require_modes",
 ]

@@ -39,6 +39,8 @@ def require(found: Any) -> None:
     }
     if found.warm is not None:
         expected["warm"] = (FIELDS, stations, faces, patterns)
+    if found.part is not None:
+        expected["part"] = (stations, faces, 2)
     if found.dragged is not None:
         expected["dragged"] = (stations, faces, DRAGGED, faces, DRAGGED)
     if found.drawn is not None:

@@ -4,12 +4,13 @@ The order is that of the degree, then of j, so that the patterns of a lower degr
 eta, xi^2, xi eta, eta^2 for the second.
 """
 
+import math
 from functools import cache
 
 import numpy as np
 
 DEGREE = 2  # by default
-LEAST_DEGREE, MOST_DEGREE = 1, 6
+LEAST_DEGREE, MOST_DEGREE = 1, 4
 DRAGGED = 3  # patterns of the traction of friction
 
 
@@ -43,6 +44,19 @@ def gram(degree: int = DEGREE) -> np.ndarray:
     even = (together % 2 == 0).all(axis=2)
     found = np.where(even, 1.0 / (together + 1.0).prod(axis=2), 0.0)
     found.flags.writeable = False
+    return found
+
+
+def on_part(part: np.ndarray, degree: int = DEGREE) -> np.ndarray:
+    """Coefficients (...,p,p) by which patterns of a whole face are sums of those of a ``part``
+    (...,2) of it, its middle and half length in xi, by the binomial theorem."""
+    middle, half = part[..., 0], part[..., 1]
+    found = np.zeros((*middle.shape, count(degree), count(degree)))
+    for row, (power, across) in enumerate(powers(degree).tolist()):
+        for lower in range(power + 1):
+            column = (lower + across) * (lower + across + 1) // 2 + across
+            ways = math.comb(power, lower)
+            found[..., row, column] = ways * middle ** (power - lower) * half**lower
     return found
 
 

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 
 from tipoff.files import DamageError, content_hash, require_whole, write_sealed
-from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import array_checks, joint_terms, patterns
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST, JointTerms
 from tipoff.mechanics.rail_compliance.shown import Shown
@@ -52,6 +51,9 @@ class RailCompliance(Shown):
     shape: np.ndarray
     #: Digest of the rail and pads.
     made_for: str
+    #: (s,f,2) middle and half length, in xi, of the part of each face that has a wall; None if every
+    #: face is completely on its rail. Near an end it is the last part of the rail.
+    part: np.ndarray | None = None
     #: (t,s,f,p) m, displacement away from the payload for a unit of each field of temperature.
     warm: np.ndarray | None = None
     #: Effect of a factor on the stiffness of the mounts.
@@ -187,6 +189,7 @@ class RailCompliance(Shown):
             self.half,
             self.frequency,
             self.shape,
+            self.part,
             self.warm,
             *(self.joints or ()),
             self.drawn,
@@ -197,10 +200,276 @@ class RailCompliance(Shown):
         return digest.hexdigest()
 
     def compliance(self) -> np.ndarray:
-        """Mean displacement (s,f,f) in m/N of each face under a unit force spread evenly over
-        each."""
-        gram = patterns.gram(self.degree)
-        return (gram @ self._flexibility().transpose(0, 1, 3, 2, 4) @ gram)[..., 0, 0]
+        """Mean displacement (s,f,f) in m/N of each face under a unit force spread evenly over each,
+        both on the parts that have a wall."""
+        mean = self.gram[..., 0, :]
+        return np.einsum("sia,siajb,sjb->sij", mean, self._flexibility(), mean, optimize=True)
+
+    @cached_property
+    def gram(self) -> np.ndarray:
+        """Means (s,f,p,p) of products of two patterns over the part of each face that has a wall."""
+        found = self.on_part
+        return found @ patterns.gram(self.degree) @ found.swapaxes(-1, -2)
+
+    @cached_property
+    def on_part(self) -> np.ndarray:
+        """``on_part`` (s,f,p,p) of the parts of the faces that have a wall."""
+        whole = np.tile([0.0, 1.0], (self.travel.size, self.rail.size, 1))
+        part = whole if self.part is None else self.part
+        return patterns.on_part(part, self.degree)
+
+    def rigid(self) -> "RailCompliance":
+        """The same walls without flexibility: only their offsets, for springs."""
+        return replace(self, flexibility=None, dragged=None, element_size=None, uncertainty=None)
+
+    def moved(self, amounts: np.ndarray) -> np.ndarray:
+        """Thermal offset T (s,f,p) m under ``amounts`` (t,) of the fields of temperature."""
+        assert self.warm is not None
+        return np.tensordot(amounts, self.warm, 1)
+
+    def of_degree(self, degree: int) -> "RailCompliance":
+        """The compliance for the patterns of a lower ``degree``: the same loads, and displacements
+        projected on these patterns. Raises ValueError for a degree above its own."""
+        if not patterns.LEAST_DEGREE <= degree <= self.degree:
+            raise ValueError(f"degree: given {degree!r}, expected 1 to {self.degree}")
+        if degree == self.degree:
+            return self
+        if degree not in self._of_degrees:
+            self._of_degrees[degree] = self.of_first(patterns.count(degree))
+        return self._of_degrees[degree]
+
+    @cached_property
+    def _of_degrees(self) -> dict[int, "RailCompliance"]:
+        return {}
+
+    def of_first(self, count: int) -> "RailCompliance":
+        """The compliance for the first ``count`` patterns: loads in these alone, and displacements
+        projected on them."""
+        gram, flexibility, dragged = self.gram[..., :count, :], self.flexibility, self.dragged
+        onto = np.linalg.inv(gram[..., :count]) @ gram
+        if flexibility is not None:
+            flexibility = np.einsum("siab,sibjc,sjdc->siajd", onto, flexibility, onto, optimize=True)
+        if dragged is not None:
+            inside = np.arange(patterns.DRAGGED) < count
+            dragged = dragged * inside[:, None] * inside[:, None, None, None]
+        return replace(
+            self,
+            flexibility=flexibility,
+            dragged=dragged,
+            shape=onto @ self.shape,
+            warm=None if self.warm is None else np.einsum("siab,tsib->tsia", onto, self.warm),
+            joints=None,
+        )
+
+    def restricted(self, count: int, coupled: bool = True) -> "RailCompliance":
+        """The compliance of a simpler model: only the first ``count`` patterns of the same degree,
+        and, unless ``coupled``, without the coupling between faces, without modes and without
+        friction on the walls."""
+        first = self.of_first(count)
+        flexibility, shape = np.zeros_like(self._flexibility()), np.zeros_like(self.shape)
+        flexibility[:, :, :count, :, :count] = first._flexibility()
+        shape[:, :, :count] = first.shape
+        found = replace(first, flexibility=flexibility, shape=shape, warm=self.warm)
+        if coupled:
+            return found
+        alone = np.eye(len(self.rail))[None, :, None, :, None]
+        return replace(
+            found,
+            flexibility=flexibility * alone,
+            dragged=None,
+            frequency=self.frequency[:, :0],
+            shape=shape[..., :0],
+        )
+
+    def require(self, scene: Scene) -> None:
+        """Raise SceneError if ``scene`` has another rail or other pads than this compliance, a
+        temperature while this has no thermal offset, or a factor on the stiffness of its mounts
+        outside its range."""
+        if self.made_for != digest(scene):
+            expected = "those of this compliance: compute it again"
+            raise SceneError([Fault(scene.name, "rail", "another rail, or other pads", expected)])
+        if scene.thermal is not None and self.warm is None:
+            given = "a compliance without thermal offset"
+            expected = "a compliance for warm rails: compute it again"
+            raise SceneError([Fault(scene.name, "thermal", given, expected)])
+        factor = _factor(scene)
+        if factor != 1.0 and (self.joints is None or not LEAST <= factor <= MOST):
+            expected = (
+                "1, for a compliance of fewer patterns"
+                if self.joints is None
+                else f"{LEAST:g} to {MOST:g}: change normal and shear for others"
+            )
+            key = "rail.mount_stiffness.factor"
+            raise SceneError([Fault(scene.name, key, f"{factor:g}", expected)])
+
+    def save(self, path: str | Path) -> None:
+        """Write atomically, as arrays with their digest.
+
+        Args:
+            path: file to write, ``.npz``.
+
+        Example:
+            >>> tipoff.compliance(tipoff.load("tiny"), 8e-3).save("rail.npz")
+        """
+        write_sealed(path, content(self))
+
+    def _arrays(self) -> dict:
+        """The fields by name, with the arrays of ``joints`` one by one."""
+        found = self.__getstate__()
+        terms = found.pop("joints")
+        parts = terms._asdict() if terms is not None else {}
+        return found | {f"{_JOINTS}{name}": part for name, part in parts.items()}
+
+    @classmethod
+    def load(cls, path: str | Path) -> "RailCompliance":
+        """Read what ``save`` wrote.
+
+        Args:
+            path: file to read.
+
+        Returns:
+            RailCompliance: the compliance.
+
+        Raises:
+            FileNotFoundError: no such file.
+            ValueError: a foreign or damaged file.
+
+        Example:
+            >>> tipoff.compliance(tipoff.load("tiny"), 8e-3).save("rail.npz")
+            >>> rail = tipoff.RailCompliance.load("rail.npz")
+        """
+        try:
+            require_whole(path)
+            with np.load(path, allow_pickle=False) as found:
+                arrays = {
+                    field.name: found[field.name]
+                    for field in fields(cls)
+                    if field.default is MISSING or field.name in found
+                }
+                names = [f"{_JOINTS}{name}" for name in JointTerms._fields]
+                if names[0] in found:
+                    arrays["joints"] = JointTerms(*(found[name] for name in names))
+            compliance = cls(
+                **arrays | {name: arrays[name].item() for name in {*_PLAIN} & {*arrays}}
+            )
+            array_checks.require(compliance)
+        except DamageError as fault:
+            raise ValueError(f"{path}: not a file of rail compliance: it {fault.reason}") from fault
+        except FileNotFoundError:
+            raise
+        except Exception as error:  # NumPy and zipfile raise many kinds on damaged bytes
+            raise ValueError(f"{path}: not a file of rail compliance ({error})") from error
+        return compliance
+
+
+def content(compliance: RailCompliance) -> bytes:
+    """The file that ``RailCompliance.save`` writes, without its digest."""
+    stream = io.BytesIO()
+    arrays = {name: value for name, value in compliance._arrays().items() if value is not None}
+    np.savez_compressed(stream, **arrays)
+    return stream.getvalue()
+
+
+def cubic(self, modes: int = 0) -> tuple[np.ndarray, np.ndarray]:
+        """Flexibility (s-1,f,f,4,p p) without the part of the first ``modes``, and their shapes
+        (s-1,f,n,4,p), between stations: coefficients of the rising powers of the distance (m) from
+        the one before. Raises ValueError as ``residual`` does."""
+        if modes not in self._cubics:
+            shape = cubic(self.travel, self.shape[..., :modes])
+            self._cubics[modes] = (
+                self._between_faces(self.residual(modes)),
+                np.ascontiguousarray(shape.transpose(0, 1, 3, 4, 2)),
+            )
+        return self._cubics[modes]
+
+    @cached_property
+    def cubic_of_dragged(self) -> np.ndarray | None:
+        """``dragged`` between stations, as the flexibility in ``cubic``."""
+        return None if self.dragged is None else self._between_faces(self.dragged)
+
+    def _between_faces(self, table: np.ndarray) -> np.ndarray:
+        between = cubic(self.travel, table).transpose(0, 1, 3, 5, 2, 4)
+        return np.ascontiguousarray(between.reshape(*between.shape[:4], -1))
+
+    @cached_property
+    def shapes(self) -> np.ndarray:
+        """Shapes (s-1,f,n,4,p) of all modes between stations, as in ``cubic``."""
+        between = cubic(self.travel, self.shape)
+        return np.ascontiguousarray(between.transpose(0, 1, 3, 4, 2))
+
+    @cached_property
+    def _cubics(self) -> dict:
+        return {}
+
+    def residual(self, modes: int) -> np.ndarray:
+        """Flexibility (s,f,p,f,p) m/N without the part of the first ``modes`` of each rail. Raises
+        ValueError if this is not positive semidefinite: the modes then belong to another rail."""
+        flexibility = self._flexibility()
+        if modes == 0:
+            return flexibility
+        part = self.shape[..., :modes] / self.frequency[self.rail, None, :modes]
+        together = (self.rail[:, None] == self.rail)[:, None, :, None]
+        rest = flexibility - together * np.einsum("siam,sjbm->siajb", part, part)
+        size = rest.shape[1] * rest.shape[2]
+        lowest, largest = (
+            np.linalg.eigvalsh(table.reshape(-1, size, size))[:, end]
+            for table, end in ((rest, 0), (flexibility, -1))
+        )
+        if not (lowest >= -_ROUNDING * largest).all():
+            raise ValueError(
+                f"modes: given {modes} with more compliance than the wall has, expected modes of "
+                f"the same rail"
+            )
+        return rest
+
+    def _flexibility(self) -> np.ndarray:
+        """The flexibility; fails for rigid walls."""
+        assert self.flexibility is not None
+        return self.flexibility
+
+    def __getstate__(self) -> dict:
+        """The fields, for another process; derived arrays are computed again there."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    @cached_property
+    def hash(self) -> str:
+        """Hexadecimal SHA-256 of all fields except ``mechanics.rail_compliance.elements_stated``."""
+        digest = hashlib.sha256(self.made_for.encode())
+        for array in (
+            self.travel,
+            self.flexibility,
+            self.rail,
+            self.half,
+            self.frequency,
+            self.shape,
+            self.part,
+            self.warm,
+            *(self.joints or ()),
+            self.drawn,
+            self.dragged,
+        ):
+            if array is not None:
+                digest.update(np.ascontiguousarray(array).tobytes())
+        return digest.hexdigest()
+
+    def compliance(self) -> np.ndarray:
+        """Mean displacement (s,f,f) in m/N of each face under a unit force spread evenly over each,
+        both on the parts that have a wall."""
+        mean = self.gram[..., 0, :]
+        return np.einsum("sia,siajb,sjb->sij", mean, self._flexibility(), mean, optimize=True)
+
+    @cached_property
+    def gram(self) -> np.ndarray:
+        """Means (s,f,p,p) of products of two patterns over the part of each face that has a wall."""
+        found = self.on_part
+        return found @ patterns.gram(self.degree) @ found.swapaxes(-1, -2)
+
+    @cached_property
+    def on_part(self) -> np.ndarray:
+        """``on_part`` (s,f,p,p) of the parts of the faces that have a wall."""
+        whole = np.tile([0.0, 1.0], (self.travel.size, self.rail.size, 1))
+        part = whole if self.part is None else self.part
+        return patterns.on_part(part, self.degree)
 
     def rigid(self) -> "RailCompliance":
         """The same walls without flexibility: only their offsets, for springs."""
@@ -256,31 +525,24 @@ class RailCompliance(Shown):
 
     def _kept(self, kept: np.ndarray) -> "RailCompliance":
         """Loads in the ``kept`` patterns alone, and displacements projected on them."""
-        gram = patterns.gram(self.degree)
-        inverse = np.linalg.inv(gram[np.ix_(kept, kept)])
-
-        def between(table: np.ndarray | None) -> np.ndarray | None:
-            if table is None:
-                return None
-            blocks = (gram @ table.transpose(0, 1, 3, 2, 4) @ gram)[..., kept, :][..., kept]
-            return (inverse @ blocks @ inverse).transpose(0, 1, 3, 2, 4)
-
-        warm = self.warm
+        gram = self.gram[..., kept, :]
+        onto = np.linalg.inv(gram[..., kept]) @ gram
+        flexibility, dragged = self.flexibility, self.dragged
+        if flexibility is not None:
+            flexibility = np.einsum(
+                "siab,sibjc,sjdc->siajd", onto, flexibility, onto, optimize=True
+            )
+        if dragged is not None:
+            inside = np.isin(np.arange(patterns.DRAGGED), kept)
+            dragged = dragged * inside[:, None] * inside[:, None, None, None]
         return replace(
             self,
-            flexibility=between(self.flexibility),
-            dragged=self._dragged_in(kept),
-            shape=inverse @ (gram @ self.shape)[:, :, kept],
-            warm=None if warm is None else (warm @ gram)[..., kept] @ inverse,
+            flexibility=flexibility,
+            dragged=dragged,
+            shape=onto @ self.shape,
+            warm=None if self.warm is None else np.einsum("siab,tsib->tsia", onto, self.warm),
             joints=None,
         )
-
-    def _dragged_in(self, kept: np.ndarray) -> np.ndarray | None:
-        """``dragged`` without the patterns that are not ``kept``; those it has are orthogonal."""
-        if self.dragged is None:
-            return None
-        inside = np.isin(np.arange(patterns.DRAGGED), kept)
-        return self.dragged * inside[:, None] * inside[:, None, None, None]
 
     def require(self, scene: Scene) -> None:
         """Raise SceneError if ``scene`` has another rail or other pads than this compliance, a

@@ -147,9 +147,9 @@ Degree = Annotated[
         "--degree",
         metavar="N",
         min=2,
-        max=6,
+        max=4,
         help="Degree of the polynomials of pressure and displacement on a pad face, with --model "
-        "compliant; 2 (default) to 6: slower, and nearer to the reference.",
+        "compliant; 2 (default) to 4: slower, and nearer to the reference.",
     ),
 ]
 CalibrationFile = Annotated[

@@ -1,0 +1,2 @@
+"""The models of the surrogate that a rail compliance allows."""
+
