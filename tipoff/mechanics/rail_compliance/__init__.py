@@ -40,9 +40,9 @@ from tipoff.mechanics.rail_compliance.record import (
     MODES,
     RailCompliance,
     content,
-    cubic,
     digest,
 )
+from tipoff.mechanics.rail_compliance.stations import cubic
 
 __all__ = [
     "DEGREE",

@@ -14,6 +14,7 @@ from tipoff.files import DamageError, content_hash, require_whole, write_sealed
 from tipoff.mechanics.rail_compliance import array_checks, joint_terms, patterns
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST, JointTerms
 from tipoff.mechanics.rail_compliance.shown import Shown
+from tipoff.mechanics.rail_compliance.stations import cubic
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
@@ -253,7 +254,7 @@ class RailCompliance(Shown):
             )
         if dragged is not None:
             inside = np.arange(patterns.DRAGGED) < count
-            dragged = dragged * inside[:, None] * inside[:, None, None, None]
+            dragged = dragged * inside[:, None, None] * inside
         return replace(
             self,
             flexibility=flexibility,
@@ -370,16 +371,6 @@ def content(compliance: RailCompliance) -> bytes:
     arrays = {name: value for name, value in compliance._arrays().items() if value is not None}
     np.savez_compressed(stream, **arrays)
     return stream.getvalue()
-
-
-def cubic(travel: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Cubic spline (s-1,...,4) through ``values`` (s,...) at ``travel`` (s,) m: coefficients of the
-    rising powers of the distance (m) from the station before."""
-    from scipy.interpolate import CubicSpline
-
-    if not values.size:
-        return np.zeros((len(travel) - 1, *values.shape[1:], 4))
-    return np.ascontiguousarray(np.moveaxis(CubicSpline(travel, values).c[::-1], 0, -1))
 
 
 def _factor(scene: Scene) -> float:
