@@ -64,8 +64,9 @@ def test_friction_acts_half_a_wall_from_the_middle_of_the_leg(condensed):
     slope = np.gradient(own, condensed.travel)
     expected = 0.25 * scene.rail.thickness * slope
     found = condensed.dragged[:, face, 0, face, 0]
-    inside = slice(2, -6)  # away from both ends of the rail
+    whole = np.isclose(condensed.part[:, face], [0.0, 1.0]).all(axis=1)  # away from both ends
+    inside = np.flatnonzero(whole)[2:-2]
     likeness = np.corrcoef(found[inside], expected[inside])[0, 1]
     assert likeness > 0.95
     assert 0.6 < np.std(found[inside]) / np.std(expected[inside]) < 1.6
-    assert np.corrcoef(found[inside], np.roll(expected, 4)[inside])[0, 1] < 0.6
+    assert np.corrcoef(found[inside], np.roll(expected, 8)[inside])[0, 1] < 0.6

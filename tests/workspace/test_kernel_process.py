@@ -84,7 +84,9 @@ def test_the_process_gets_the_scene(started, tmp_path):
     started.code = f"import sys; open('{tmp_path}/given', 'w').write(sys.stdin.read())"
     with compiled_beside(scene, 2):
         pass
-    given = parse(json.loads((tmp_path / "given").read_text()), bare_numbers_are_si=True)
+    described, degree = json.loads((tmp_path / "given").read_text())
+    given = parse(described, bare_numbers_are_si=True)
+    assert degree == 2
     assert given.hash == REFERENCE.replace(JOINTS).hash  # the factor changes no kernel
 
 

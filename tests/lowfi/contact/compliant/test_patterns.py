@@ -85,11 +85,14 @@ def test_a_lower_degree_is_the_compliance_that_is_condensed_for_it(fourth):
     facets alone. Control: the first patterns of the higher degree, without projection."""
     lower, exact = fourth.of_degree(2), highfi.condense(REFERENCE, 8e-3)
     size = patterns.count(2)
+    # near an end, degrees see other parts
+    whole = np.isclose(exact.part, [0.0, 1.0], atol=1e-9).all(axis=(1, 2))
+    assert whole.sum() > 15
     for name in ("flexibility", "dragged", "shape"):
-        found, wanted = getattr(lower, name), getattr(exact, name)
+        found, wanted = getattr(lower, name)[whole], getattr(exact, name)[whole]
         assert np.abs(found - wanted).max() < 1e-2 * np.abs(wanted).max()
-    cut = fourth.flexibility[:, :, :size, :, :size]
-    assert np.abs(cut - exact.flexibility).max() > 0.05 * np.abs(exact.flexibility).max()
+    cut, wanted = fourth.flexibility[whole, :, :size, :, :size], exact.flexibility[whole]
+    assert np.abs(cut - wanted).max() > 0.05 * np.abs(wanted).max()
     assert fourth.of_degree(4) is fourth and fourth.of_degree(2) is lower
 
 
