@@ -115,7 +115,7 @@ def run(
     scene = arguments.scene_of(scene)
     _require(scene, model, MODELS)
     if model == FINITE_ELEMENTS:
-        _require_none(scene, model, compliance=compliance, calibration=calibration)
+        arguments.require_none(scene, model, compliance=compliance, calibration=calibration)
     arguments.require(_EXPECTED, compliance=compliance, calibration=calibration, progress=progress)
     if model == FINITE_ELEMENTS:
         given = {"element_size": studies.element_size(scene.studies)} | numerics
@@ -377,7 +377,7 @@ def _pressed(
         return given
     if model == COMPLIANT:
         if calibration is not None and calibration.is_of_springs:  # before the statics, for speed
-            _require_none(scene, model, calibration=calibration)
+            arguments.require_none(scene, model, calibration=calibration)
         return given or compliance(scene, degree=degree)
     if given is not None:
         return given
@@ -391,15 +391,3 @@ def _pressed(
 def _require(scene: Scene, model: str, models: Sequence[str]) -> None:
     if not isinstance(model, str) or model not in models:
         raise SceneError([Fault(scene.name, "model", repr(model), f"one of {', '.join(models)}")])
-
-
-def _require_none(scene: Scene, model: str, **given: object) -> None:
-    faults = [
-        Fault(
-            f"{scene.name}, model {model}", name, "given", "none: it is an option of another model"
-        )
-        for name, value in given.items()
-        if value is not None
-    ]
-    if faults:
-        raise SceneError(faults)

@@ -25,6 +25,19 @@ def scene_of(given: Any) -> Scene:
     raise SceneError([Fault("arguments", "scene", kind_of(given), expected)])
 
 
+def require_none(scene: Scene, model: str, **given: object) -> None:
+    """Raise SceneError if an option of another model is ``given``, not None."""
+    faults = [
+        Fault(
+            f"{scene.name}, model {model}", name, "given", "none: it is an option of another model"
+        )
+        for name, value in given.items()
+        if value is not None
+    ]
+    if faults:
+        raise SceneError(faults)
+
+
 def numerics(kind: Callable[..., _T], given: Mapping[str, Any], other: type, model: str) -> _T:
     """Numerics of a ``kind`` from the options ``given``; ``other`` are those of other models. Text
     and quantities have their units. Raises SceneError with every option that ``model`` does not
@@ -205,7 +218,7 @@ def _number(name: str, value: Any) -> Any:
     value = plain(value)
     if name in ("relative_tolerance", "safety"):
         return units.parse(value, "dimensionless", bare_numbers_are_si=True)
-    whole = name in ("cells", "maximum_steps")
+    whole = name in ("cells", "degree", "maximum_steps")
     if whole and value is not None and (isinstance(value, bool) or not isinstance(value, int)):
         raise ValueError("a whole number")
     return value
