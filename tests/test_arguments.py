@@ -34,8 +34,8 @@ WRONG = {
     "true": (lambda: tipoff.run(TINY, FE, element_size=True), ["element_size", "True"]),
     "a mass": (lambda: tipoff.run(TINY, FE, element_size="4 kg"), ["element_size", "4 kg"]),
     "other models": (
-        lambda: tipoff.run(TINY, "springs", element_size=4e-3, cells=3, mode=1),
-        ["3 faults", "element_size", "cells", "another model", "did you mean modes"],
+        lambda: tipoff.run(TINY, "springs", element_size=4e-3, safety=0.5, mode=1),
+        ["3 faults", "element_size", "safety", "another model", "did you mean modes"],
     ),
     "modes of elements": (lambda: tipoff.run(TINY, FE, modes=3), ["modes", "another model"]),
     "half a cell": (lambda: tipoff.run(TINY, FE, cells=2.5), ["cells", "whole number"]),

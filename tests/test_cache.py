@@ -95,7 +95,7 @@ def walls(folder, monkeypatch) -> Kept:
     """A rail compliance."""
     made, sizes = [], {MINE: 8e-3, THEIRS: 4e-3}
 
-    def compute(scene, element_size):
+    def compute(scene, element_size, degree):
         made.append(element_size)
         return replace(compliance(), travel=np.array([0.0, element_size]))
 

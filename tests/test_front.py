@@ -14,7 +14,7 @@ SCENE = tipoff.load("tiny")
 CALIBRATION = tipoff.Calibration(
     {"contact.stiffness": 2.2e9}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0
 )
-FOUND = SimpleNamespace(flexibility=1.0, accuracy=lambda: "")
+FOUND = SimpleNamespace(flexibility=1.0, degree=2, accuracy=lambda: "")
 
 
 @pytest.fixture
@@ -33,7 +33,7 @@ def found(monkeypatch, tmp_path):
     """What was done to find compliances, with element done (m), in place of their statics."""
     done = []
 
-    def compute(scene, element_size):
+    def compute(scene, element_size, degree):
         done.append(element_size)
         return FOUND
 

@@ -260,7 +260,7 @@ def compliance(
 
     Example:
         >>> tipoff.compliance(tipoff.load("tiny"), element_size=8e-3).travel.size
-        53
+        121
     """
     from tipoff.calibration import rail_compliance
     from tipoff.workspace.progress import say

@@ -135,7 +135,7 @@ def test_the_faces_of_a_rail_from_a_file_are_part_of_it():
 
 
 def test_the_elements_are_those_that_are_asked_for_or_of_the_scene(monkeypatch):
-    monkeypatch.setattr(rail_compliance.statics, "condense", lambda scene, size, held: size)
+    monkeypatch.setattr(rail_compliance.statics, "condense", lambda scene, size, held, degree: size)
     monkeypatch.setattr(
         rail_compliance.discretisation, "stated", lambda scene, size, found, rails: found
     )
@@ -148,7 +148,7 @@ def _said(monkeypatch, tmp_path, seconds: float) -> list[str]:
     """What is said while four equal parts of the loads take ``seconds`` each."""
     now = 0.0
 
-    def condense(scene, size, held):
+    def condense(scene, size, held, degree):
         nonlocal now
         report = places.reported()
         for part in range(4):

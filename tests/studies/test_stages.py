@@ -53,15 +53,16 @@ def test_ablation_takes_every_effect_away_once():
         scene.replace({"rail.material.expansion": None})
     )
     # Every effect with code of its own is looked for in the compiled kernels of both models;
-    # sticking is a second law of friction, the reference feels temperature before its kernels run,
-    # and the surrogate has damping and mounts in its modes and its rail compliance.
-    assert (set(lowfi_laws) - {"sticking", "compliance", "modes"}) | {
+    # sticking is a second law of friction and pushers one of the thrust, the reference feels
+    # temperature before its kernels run, and the surrogate has damping and mounts in its modes and
+    # its rail compliance.
+    assert (set(lowfi_laws) - {"sticking", "pushers", "compliance", "modes"}) | {
         "mass_offset",
         "initial",
         "rail.damping",
         "rail.mount_stiffness",
     } == set(effects)
-    assert set(highfi_laws) | {"mass_offset", "initial", "thermal"} == set(effects)
+    assert (set(highfi_laws) - {"pushers"}) | {"mass_offset", "initial", "thermal"} == set(effects)
 
 
 def test_surrogate_is_timed_by_turns(monkeypatch, tmp_path):

@@ -108,11 +108,16 @@ def test_an_interrupt_ends_the_process(started, error):
 
 
 def test_an_interrupt_while_it_is_awaited_ends_the_process(started):
+    # a shell's background process ignores this signal
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     started.code = WAITING
     main = threading.main_thread().ident
     interrupt = threading.Timer(0.3, signal.pthread_kill, (main, signal.SIGINT))
-    with pytest.raises(KeyboardInterrupt), compiled_beside(REFERENCE, 2):
-        interrupt.start()
+    try:
+        with pytest.raises(KeyboardInterrupt), compiled_beside(REFERENCE, 2):
+            interrupt.start()
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert started[0].returncode == -signal.SIGKILL and not is_there(started[0])
 
 

@@ -20,7 +20,7 @@ from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
 
 # modes that do not matter, and one that does
-ROWS = [{"thrust_offset.misalignment.radial": math.radians(angle)} for angle in (60.0, 15.0)]
+ROWS = [{"thrust_offset.misalignment.radial": math.radians(angle)} for angle in (45.0, 15.0)]
 GATE = 0.1  # deg/s
 
 
