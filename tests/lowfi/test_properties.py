@@ -88,6 +88,8 @@ def check_promises(raw: dict) -> None:
     assert run.status in ("exited", "time_limit", "jammed"), run.message
     # values at the exit may stand without settled ones
     at_exit = {"exit_time", "exit_velocity", "exit_rate", "impulse_after_exit"}
+    if run.outcome.exit_time is None:
+        assert all(getattr(run.outcome, name) is None for name in at_exit)
     settled = [value for name, value in run.outcome._asdict().items() if name not in at_exit]
     assert all((value is not None) == (run.status == "exited") for value in settled)
     for name in (

@@ -34,14 +34,16 @@ def largest(found, exact):
 @pytest.mark.parametrize("factor", [0.4, pytest.param(2.0, marks=pytest.mark.slow)])
 def test_a_factor_gives_what_condensation_there_gives(nominal, factor):
     """Flexibility and thermal offset to 1e-6, frequencies of the lowest modes to 1e-4. What is
-    left beside the modes is positive. Controls: the nominal stiffness is off by a twentieth and more,
+    left beside the modes is positive. Controls: the nominal stiffness is off by a tenth and more
+    under whole faces,
     and linear interpolation in 1 / k between 1/4, 1 and 4 by more than 1e-4."""
     found = nominal.of(on_joints().replace({KEY: factor}))
     exact = highfi.condense(on_joints(factor), SIZE)
     assert largest(found.flexibility, exact.flexibility) < 1e-6
     assert largest(found.warm, exact.warm) < 1e-6
     assert largest(found.dragged, exact.dragged) < 1e-6
-    assert largest(nominal.flexibility, exact.flexibility) > 0.05
+    whole = np.isclose(exact.part, [0.0, 1.0], atol=1e-9).all(axis=(1, 2))
+    assert largest(nominal.flexibility[whole], exact.flexibility[whole]) > 0.1
     assert found.frequency[:, :10] == pytest.approx(exact.frequency[:, :10], rel=1e-4)
     assert (found.frequency >= exact.frequency * (1.0 - 1e-9)).all()
     found.residual(20)

@@ -224,10 +224,11 @@ def test_ledgers_and_momentum(condition):
         np.degrees(coarse.outcome.rate), abs=close
     )
     # Control: without the force along the rail the transverse ledger would miss hundreds of times
-    # as much.
+    # as much, in h8 and h9 dozens of times.
+    least = 1e-3 if condition in ("h8", "h9") else 1e-2
     assert (
         work_along(asked, compliance, fine)
-        > 1e-3 * np.abs(fine.transverse_energy[:, ledger.STATE].sum(axis=1)).max()
+        > least * np.abs(fine.transverse_energy[:, ledger.STATE].sum(axis=1)).max()
     )
 
 
