@@ -13,4 +13,4 @@ def _load() -> Contents:
     )
 
 
-ENTRY = Entry((command.bench, command.waits), _load)
+ENTRY = Entry((command.bench, command.waits, command.ladder), _load)

@@ -1,11 +1,11 @@
-"""``python -m validation bench`` and ``python -m validation waits``."""
+"""``python -m validation bench``, ``waits`` and ``ladder``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tipoff.studies.commands.options import Json, Out, in_millimetres
+from tipoff.studies.commands.options import Conditions, Json, Out, SceneName, in_millimetres
 from tipoff.studies.commands.running import Output, guarded
 
 if TYPE_CHECKING:
@@ -90,5 +90,33 @@ def waits(
         earlier = read_json(against) if against else None
         found = waits.run(out, repeats, tuple(length) if length else waits.LENGTHS, cold)
         return Output(found, lambda found: [waits.table(found, earlier)])
+
+    guarded(work, json_)
+
+
+def ladder(
+    out: Out = Path("out"),
+    scene: SceneName = "reference",
+    condition: Conditions = None,
+    element_size: Annotated[
+        float,
+        typer.Option(
+            "--element-size",
+            metavar="LENGTH",
+            parser=in_millimetres,
+            help='Element size of both models, "4 mm" or 4.',
+        ),
+    ] = 4.0,
+    json_: Json = False,
+) -> None:
+    """Measure errors and times of compliant contact by degree of the patterns, contact cells and
+    modes, against finite elements on the same mesh; writes bench/ladder.json."""
+
+    def work() -> Output:
+        from validation.bench import ladder
+
+        names = tuple(name for text in condition or () for name in text.split(","))
+        found = ladder.run(out, scene, names, 1e-3 * element_size)
+        return Output(found, lambda found: [ladder.table(found)])
 
     guarded(work, json_)

@@ -1,0 +1,97 @@
+"""Errors of compliant contact against the finite elements by degree of the patterns, contact cells
+and modes, and the time of each: rungs from the default to the most accurate.
+
+Both models have the same mesh, so its error is not in the table.
+"""
+
+import statistics
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from tipoff import front
+from tipoff.comparison.metrics import compare
+from tipoff.files import write_json
+from tipoff.mechanics.model_names import FINITE_ELEMENTS
+from tipoff.mechanics.rail_compliance import MODES, RailCompliance
+from tipoff.scenes.scene import load
+from tipoff.studies.render.table import Column, Table
+from tipoff.workspace import machine
+from tipoff.workspace.progress import say
+
+# degree of the patterns, cells along an edge of a pad face, modes of each rail
+RUNGS = ((2, 10, 0), (2, 16, MODES), (4, 16, MODES))
+_REPEATS = 5
+
+
+@dataclass(frozen=True)
+class Step:
+    """One condition on one rung; errors are None if a run did not settle."""
+
+    condition: str
+    degree: int
+    cells: int
+    modes: int
+    settled_error_deg_s: float | None  # largest of a settled rate
+    rate_l2: float | None  # relative
+    wall_ms: float
+    reference_wall_s: float
+
+
+def run(out: Path, scene: str, conditions: tuple[str, ...], element_size: float) -> dict:
+    """``rows``, one for each condition and rung, in elements of ``element_size`` (m) for both
+    models; writes ``out``/bench/ladder.json. Default: all conditions."""
+    every = load(scene)
+    walls: dict[int, RailCompliance] = {}
+    rows: list[Step] = []
+    for name in conditions or tuple(every.conditions):
+        asked = every.condition(name)
+        reference = front.run(asked, FINITE_ELEMENTS, element_size=element_size)
+        for degree, cells, modes in RUNGS:
+            if degree not in walls:
+                walls[degree] = front.compliance(every, element_size, degree)
+            numerics: dict[str, Any] = {"compliance": walls[degree], "cells": cells, "modes": modes}
+            found, times = front.run(asked, **numerics), []
+            for _ in range(_REPEATS):
+                began = time.perf_counter()
+                front.run(asked, **numerics)
+                times.append(time.perf_counter() - began)
+            difference = compare(reference, found)
+            rows.append(
+                Step(
+                    condition=name,
+                    degree=degree,
+                    cells=cells,
+                    modes=modes,
+                    settled_error_deg_s=difference.settled_rate_error_deg_s,
+                    rate_l2=difference.rate_relative_l2,
+                    wall_ms=1e3 * statistics.median(times),
+                    reference_wall_s=reference.cost["wall_s"],
+                )
+            )
+        say(f"  {name}: done")
+    result = {
+        "scene": scene,
+        "element_size": element_size,
+        "rows": [asdict(row) for row in rows],
+        "hardware": machine.describe(),
+    }
+    write_json(Path(out) / "bench" / "ladder.json", result)
+    return result
+
+
+def table(found: dict) -> Table:
+    """All rows."""
+    columns = (
+        *(("condition", "condition"), ("degree", "degree"), ("cells", "cells"), ("modes", "modes")),
+        (Column("settled error", "deg/s", ".3f"), "settled_error_deg_s"),
+        (Column("rate L2", "%", ".2f", 100.0), "rate_l2"),
+        (Column("wall time", "ms", ".3g"), "wall_ms"),
+        (Column("finite elements", "s", ".3g"), "reference_wall_s"),
+    )
+    note = (
+        f"Scene {found['scene']}, both models in elements of {1e3 * found['element_size']:g} mm. "
+        f"Times are medians of {_REPEATS} runs one after another, kernels compiled."
+    )
+    return Table.of(found["rows"], columns, notes=(note,))
