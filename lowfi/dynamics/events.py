@@ -175,15 +175,18 @@ def _time_of_travel(system, loop, dt, span, i, level):
         f = pushers.travel_at(pushing, i, system.platform, system.payload, loop.work) - level
         if abs(f) < 1e-13 or high - low < 1e-14:
             return theta
-        if f * f_high > 0.0:
-            high, f_high = theta, f
-            f_low = 0.5 * f_low if side == 1 else f_low
-            side = 1
-        else:
-            low, f_low = theta, f
-            f_high = 0.5 * f_high if side == -1 else f_high
-            side = -1
+        low, f_low, high, f_high, side = _narrowed((low, f_low, high, f_high, side), theta, f)
     return high
+
+
+@kernel
+def _narrowed(bracket, theta, f):
+    """The bracket (low, f_low, high, f_high, side) of a root with the new point ``theta``, ``f``. The
+    value at an end that stays twice is halved (the Illinois method)."""
+    low, f_low, high, f_high, side = bracket
+    if f * f_high > 0.0:
+        return low, 0.5 * f_low if side == 1 else f_low, theta, f, 1
+    return theta, f, high, 0.5 * f_high if side == -1 else f_high, -1
 
 
 @kernel
@@ -234,14 +237,7 @@ def _locate(system, loop, dt, span, face, kind, level):
         f = _quantity(system.is_compliant, system, loop, face, kind) - level
         if abs(f) < close or high - low < 1e-14:
             return theta
-        if f * f_high > 0.0:
-            high, f_high = theta, f
-            f_low = 0.5 * f_low if side == 1 else f_low
-            side = 1
-        else:
-            low, f_low = theta, f
-            f_high = 0.5 * f_high if side == -1 else f_high
-            side = -1
+        low, f_low, high, f_high, side = _narrowed((low, f_low, high, f_high, side), theta, f)
         theta = (low * f_high - high * f_low) / (f_high - f_low)
     return high
 

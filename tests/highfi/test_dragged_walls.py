@@ -9,6 +9,7 @@ from tipoff import highfi
 from tipoff.highfi import compliance
 from tipoff.highfi.statics import assembly, inputs
 from tipoff.highfi.statics.places import Patches
+from tipoff.scenes import load
 
 SIZE = 4e-3
 
@@ -51,6 +52,17 @@ def test_one_solution_gives_it(condensed):
             assert found.dragged[0, i, 0, j, 0] == pytest.approx(
                 moved[places[i], places[j]], rel=1e-9, abs=1e-9 * np.abs(moved).max()
             )
+
+
+def test_its_size_on_the_reference_rail():
+    """Relative to the compliance under a pad, at the coefficient of the scene."""
+    scene = load("reference")
+    found = highfi.condense(scene, SIZE)
+    faces = np.arange(found.rail.size)
+    own = found.compliance()[:, faces, faces]
+    share = scene.friction.dynamic * found.dragged[:, faces, 0, faces, 0] / own
+    whole = np.isclose(found.part, [0.0, 1.0], atol=1e-9).all(axis=2)
+    assert np.abs(share[whole]).max() == pytest.approx(0.0167, abs=5e-4)
 
 
 def test_friction_acts_half_a_wall_from_the_middle_of_the_leg(condensed):

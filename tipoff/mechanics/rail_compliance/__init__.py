@@ -18,8 +18,7 @@ surface, half a wall away from the middle of the leg, so its moment bends the le
 
 Only the first three patterns count: traction with the resultant and the moments of the pressure, and
 the mean and the tilt of the wall.
-The symmetric part D has a potential. The other part, T - D, is left out: it moves a wall by about a
-tenth as much.
+The symmetric part D has a potential. The other part, T - D, is left out.
 
 The lowest modes of the rail, mass-normalised and with frequencies omega_m, are a part of it. The
 rest is static::
