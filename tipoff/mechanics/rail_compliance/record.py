@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from tipoff.files import DamageError, content_hash, require_whole, write_sealed
-from tipoff.mechanics.rail_compliance import array_checks, joint_terms, patterns
+from tipoff.mechanics.rail_compliance import array_checks, fewer, joint_terms, patterns
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST, JointTerms
 from tipoff.mechanics.rail_compliance.shown import Shown
 from tipoff.mechanics.rail_compliance.stations import cubic
@@ -230,7 +230,13 @@ class RailCompliance(Shown):
 
     def rigid(self) -> "RailCompliance":
         """The same walls without flexibility: only their offsets, for springs."""
-        return replace(self, flexibility=None, dragged=None, element_size=None, uncertainty=None)
+        return replace(
+            self,
+            flexibility=None,
+            dragged=None,
+            element_size=None,
+            uncertainty=None,
+        )
 
     def moved(self, amounts: np.ndarray) -> np.ndarray:
         """Thermal offset T (s,f,p) m under ``amounts`` (t,) of the fields of temperature."""
@@ -255,43 +261,13 @@ class RailCompliance(Shown):
     def of_first(self, count: int) -> "RailCompliance":
         """The compliance for the first ``count`` patterns: loads in these alone, and displacements
         projected on them."""
-        gram, flexibility, dragged = self.gram[..., :count, :], self.flexibility, self.dragged
-        onto = np.linalg.inv(gram[..., :count]) @ gram
-        if flexibility is not None:
-            flexibility = np.einsum(
-                "siab,sibjc,sjdc->siajd", onto, flexibility, onto, optimize=True
-            )
-        if dragged is not None:
-            inside = np.arange(patterns.DRAGGED) < count
-            dragged = dragged * inside[:, None, None] * inside
-        return replace(
-            self,
-            flexibility=flexibility,
-            dragged=dragged,
-            shape=onto @ self.shape,
-            warm=None if self.warm is None else np.einsum("siab,tsib->tsia", onto, self.warm),
-            joints=None,
-        )
+        return replace(self, **fewer.of_first(self, count))
 
     def restricted(self, count: int, coupled: bool = True) -> "RailCompliance":
         """The compliance of a simpler model: only the first ``count`` patterns of the same degree,
         and, unless ``coupled``, without the coupling between faces, without modes and without
         friction on the walls."""
-        first = self.of_first(count)
-        flexibility, shape = np.zeros_like(self._flexibility()), np.zeros_like(self.shape)
-        flexibility[:, :, :count, :, :count] = first._flexibility()
-        shape[:, :, :count] = first.shape
-        found = replace(first, flexibility=flexibility, shape=shape, warm=self.warm)
-        if coupled:
-            return found
-        alone = np.eye(len(self.rail))[None, :, None, :, None]
-        return replace(
-            found,
-            flexibility=flexibility * alone,
-            dragged=None,
-            frequency=self.frequency[:, :0],
-            shape=shape[..., :0],
-        )
+        return replace(self, **fewer.restricted(self, count, coupled))
 
     def require(self, scene: Scene) -> None:
         """Raise SceneError if ``scene`` has another rail or other pads than this compliance, a

@@ -1,0 +1,45 @@
+"""Fields of a rail compliance for fewer patterns than its own."""
+
+from typing import Any
+
+import numpy as np
+
+from tipoff.mechanics.rail_compliance import patterns
+
+
+def of_first(own: Any, count: int) -> dict[str, Any]:
+    """Fields that change if loads are in the first ``count`` patterns of ``own``, a
+    ``RailCompliance``, and displacements projected on them."""
+    gram, flexibility, dragged = own.gram[..., :count, :], own.flexibility, own.dragged
+    onto = np.linalg.inv(gram[..., :count]) @ gram
+    if flexibility is not None:
+        flexibility = np.einsum("siab,sibjc,sjdc->siajd", onto, flexibility, onto, optimize=True)
+    if dragged is not None:
+        inside = np.arange(patterns.DRAGGED) < count
+        dragged = dragged * inside[:, None, None] * inside
+    return {
+        "flexibility": flexibility,
+        "dragged": dragged,
+        "shape": onto @ own.shape,
+        "warm": None if own.warm is None else np.einsum("siab,tsib->tsia", onto, own.warm),
+        "joints": None,
+    }
+
+
+def restricted(own: Any, count: int, coupled: bool) -> dict[str, Any]:
+    """Fields that change in a model of the first ``count`` patterns of the same degree; unless
+    ``coupled``, without the coupling between faces, modes and friction on the walls."""
+    first = of_first(own, count)
+    flexibility, shape = np.zeros_like(own.flexibility), np.zeros_like(own.shape)
+    flexibility[:, :, :count, :, :count] = first["flexibility"]
+    shape[:, :, :count] = first["shape"]
+    found = first | {"flexibility": flexibility, "shape": shape, "warm": own.warm}
+    if coupled:
+        return found
+    alone = np.eye(len(own.rail))[None, :, None, :, None]
+    return found | {
+        "flexibility": flexibility * alone,
+        "dragged": None,
+        "frequency": own.frequency[:, :0],
+        "shape": shape[..., :0],
+    }
