@@ -104,9 +104,7 @@ def test_gravity_that_all_bodies_share_is_not_compiled():
 @pytest.mark.slow
 def test_without_any_effect_nothing_of_them_is_compiled():
     found = lowfi.compiled_effects(
-        load("clamped").replace(
-            dict.fromkeys(("friction", "platform", "contact", "thrust_offset"))
-        )
+        load("clamped").replace(dict.fromkeys(("friction", "platform", "contact", "thrust_offset")))
     )
     assert not any(found.values())
 
