@@ -27,7 +27,7 @@ from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from validation.bench.surrogate import varied
 
-CATALOG = ("channel", "paper_like", "reference", "sensitive", "thin", "tiny", "titanium")
+CATALOG = ("channel", "clamped", "paper_like", "reference", "sensitive", "thin", "tiny", "titanium")
 CASES = 1000  # of an ensemble
 COARSE = 8e-3  # m, elements of the rails: the numbers need to be the same, not right
 # Parts of the names of entries that differ from run to run, or with the code alone.

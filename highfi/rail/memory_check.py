@@ -28,7 +28,7 @@ def check_before(scene: Scene, element_size: float) -> None:
 
     if needed(element_size) > left:
         size = element_size
-        while needed(size) > left and size < _COARSEST:
+        while needed(1e-3 * float(_in_mm(size))) > left and size < _COARSEST:
             size *= _COARSER
         raise too_large(
             scene,
@@ -36,8 +36,12 @@ def check_before(scene: Scene, element_size: float) -> None:
             l_rail.elements(section, element_size),
             needed(element_size),
             left,
-            f"{1e3 * size:.2g} mm or more",
+            f"{_in_mm(size)} mm or more",
         )
+
+
+def _in_mm(size: float) -> str:
+    return f"{1e3 * size:.2g}"
 
 
 def check_mesh(scene: Scene, element_size: float, mesh: RailMesh) -> None:

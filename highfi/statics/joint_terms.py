@@ -114,8 +114,8 @@ def together(parts: list[Part], patterns: int, dragged: int) -> JointTerms:
         width[axis] = (0, most - values.shape[axis])
         return np.pad(values, width)
 
-    def under(part: Part, values: np.ndarray, patterns: int = patterns) -> np.ndarray:
-        places = values.reshape(-1, patterns, values.shape[1])
+    def under(part: Part, values: np.ndarray, own: int = patterns) -> np.ndarray:
+        places = values.reshape(len(part.terms.moved) // patterns, own, values.shape[1])
         # an additional last place without displacement, for faces without a wall (number -1)
         return np.pad(places, [(0, 1), (0, 0), (0, 0)])[part.number]
 

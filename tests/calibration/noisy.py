@@ -9,7 +9,7 @@ from tipoff.scenes.calibration import Calibration
 from validation.recovery.draws import LOCAL, noisy
 
 CONDITIONS = ("phi15", "phi35", "phi60")
-SCENE = scenes.load("reference").replace({"agreement.fitted": list(CONDITIONS)})
+SCENE = scenes.load("clamped").replace({"agreement.fitted": list(CONDITIONS)})
 CLEARANCE, STIFFNESS = "contact.clearance", "contact.interface_stiffness"
 FRICTION, LINE = "friction.dynamic", "thrust_offset.eccentricity.y"
 

@@ -25,7 +25,7 @@ TRUTH = {
 def scene() -> scenes.Scene:
     """The reference scene with two conditions to fit, its constants wrong by 30 % and more; d has
     its true value."""
-    return scenes.load("reference").replace(
+    return scenes.load("clamped").replace(
         {
             "agreement.fitted": list(CONDITIONS),
             "contact.damping_depth": "0.05 mm",

@@ -14,7 +14,7 @@ from tipoff.mechanics import scene_model
 from validation.recovery.draws import LOCAL, noisy
 
 CONDITIONS = ("phi15", "phi35")
-SCENE = scenes.load("reference").replace({"agreement.fitted": list(CONDITIONS)})
+SCENE = scenes.load("clamped").replace({"agreement.fitted": list(CONDITIONS)})
 FREE = SCENE.replace({"contact": "absent", "friction": "absent"})
 TINY = Plan(points=4, starts=1, evaluations=8, polish=6)
 TILT, LINE, CENTRE = (

@@ -22,7 +22,7 @@ from tipoff.studies.single import disturbed
 from validation.recovery.draws import LOCAL
 
 CONDITIONS = ("phi15", "phi35", "phi60")
-SCENE = scenes.load("reference").replace({"agreement.fitted": list(CONDITIONS)})
+SCENE = scenes.load("clamped").replace({"agreement.fitted": list(CONDITIONS)})
 TRUTH = {
     "contact.interface_stiffness": 4.1e12,
     "contact.clearance": 0.262e-3,

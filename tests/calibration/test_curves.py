@@ -203,12 +203,14 @@ def test_command_fits_files_and_names_them(tmp_path, quick):
         two,
         "--condition",
         "phi60",
+        "--scene",
+        "clamped",
         "--out",
         tmp_path / "out",
     )
     result = call(*asked)
     assert result.exit_code == 0, result.output
-    found = Calibration.load(tmp_path / "out" / "reference" / "curves" / "calibration.toml")
+    found = Calibration.load(tmp_path / "out" / "clamped" / "curves" / "calibration.toml")
     assert (
         found.conditions == list(CONDITIONS)
         and "curves/calibration.toml" in result.stdout
@@ -217,7 +219,7 @@ def test_command_fits_files_and_names_them(tmp_path, quick):
     for path in (one, two):
         assert str(path) in found.provenance["references"]
         assert hashlib.sha256(path.read_bytes()).hexdigest() in found.provenance["references"]
-    assert not (tmp_path / "out" / "reference" / "calibration.toml").exists()
+    assert not (tmp_path / "out" / "clamped" / "calibration.toml").exists()
     assert "nothing changed" in call(*asked).stderr
     again = json.loads(
         call(

@@ -10,7 +10,7 @@ from tipoff.calibration import alignment, compliant
 from tipoff.calibration.search import Plan
 from tipoff.mechanics.rail_compliance import RailCompliance
 
-SCENE = scenes.load("reference").replace({"agreement.fitted": ["phi60"]})
+SCENE = scenes.load("clamped").replace({"agreement.fitted": ["phi60"]})
 QUICK = Plan(points=8, starts=2, evaluations=10, polish=4)
 BOLTED = {
     "rail.mount_stiffness.normal": "1e13 N/m**3",

@@ -6,7 +6,7 @@ from tests.calibration.support import SMALL
 from tipoff import calibration, lowfi, scenes
 from tipoff.calibration import parameters
 
-REFERENCE = scenes.load("reference")
+REFERENCE = scenes.load("clamped")
 IMPACT = dict(
     law="impact", clearance=0.25e-3, exponent=1.5, stiffness=2e9, damping=6e4, damping_depth=3e-4
 )

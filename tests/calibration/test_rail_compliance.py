@@ -141,7 +141,7 @@ def test_the_elements_are_those_that_are_asked_for_or_of_the_scene(monkeypatch):
     )
     assert calibration.compliance(load("tiny"), 6e-3) == 6e-3
     assert calibration.compliance(load("tiny")) == 8e-3
-    assert calibration.compliance(load("reference").replace({"name": "tiny"})) == 2e-3
+    assert calibration.compliance(load("clamped").replace({"name": "tiny"})) == 2e-3
 
 
 def _said(monkeypatch, tmp_path, seconds: float) -> list[str]:

@@ -31,7 +31,7 @@ from tipoff.studies.calibration.files import constants
 from tipoff.studies.commands.running import Output, guarded, study_of
 from tipoff.studies.droptest import analysis, sheet
 
-SCENES = ("reference", "tiny", "channel", "paper_like", "sensitive", "thin", "titanium", "filleted")
+SCENES = ("reference", "tiny", "channel", "paper_like", "sensitive", "thin", "titanium", "clamped")
 COARSE = 8.0  # mm
 _CPU_SECONDS = 10  # for gmsh, which some damaged solids keep busy without end
 TABLE = (

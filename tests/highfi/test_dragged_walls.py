@@ -54,9 +54,9 @@ def test_one_solution_gives_it(condensed):
             )
 
 
-def test_its_size_on_the_reference_rail():
+def test_its_size_on_the_clamped_rail():
     """Relative to the compliance under a pad, at the coefficient of the scene."""
-    scene = load("reference")
+    scene = load("clamped")
     found = highfi.condense(scene, SIZE)
     faces = np.arange(found.rail.size)
     own = found.compliance()[:, faces, faces]

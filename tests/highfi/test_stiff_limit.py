@@ -32,7 +32,7 @@ def launcher(
 ) -> scenes.Scene:
     """A payload without thrust or friction on a fixed platform, its pads ``pad_at`` (m) from the
     mass centre if not where they are."""
-    scene = scenes.load("reference")
+    scene = scenes.load("clamped")
     raw = {
         key: value
         for key, value in scene.resolved().items()

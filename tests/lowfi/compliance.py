@@ -1,4 +1,4 @@
-"""Rail compliances for tests: made by hand or for the reference scene, poses that press them,
+"""Rail compliances for tests: made by hand or for the scene ``clamped``, poses that press them,
 and the plain equations again."""
 
 from functools import cache
@@ -21,14 +21,14 @@ from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest
 from tipoff.mechanics.rail_compliance.patterns import powers
 from tipoff.scenes.scene import Scene
 
-REFERENCE = scenes.load("reference")
+REFERENCE = scenes.load("clamped")
 # the kernels of friction, without its forces
 SMOOTH = {"friction.static": 0.0, "friction.dynamic": 0.0}
 
 
 @cache
 def reference_compliance() -> RailCompliance:
-    """Those of the reference scene, from elements of 4 mm."""
+    """Those of ``REFERENCE``, from elements of 4 mm."""
     return compliance.condense(REFERENCE, 4e-3)
 
 

@@ -49,7 +49,7 @@ def evaluate(scene):
     records, begin = system.build(built), state.initial(built)
     call(records, np.ones(16, dtype=np.bool_), begin, np.empty_like(begin))
     return len(coefficient_over_speed.signatures)
-reference = load("reference")
+reference = load("clamped")
 print(evaluate(reference.replace({"friction": None, "platform": None})),
       evaluate(reference.replace({"platform": None})))
 """
@@ -84,7 +84,7 @@ def test_one_absent_effect_is_not_compiled(effect):
     change changes nothing else. Without contact there is no friction either. Gravity acts on a fixed
     platform only: with a free one everything falls together."""
     fixed = {"platform": None} if effect == "gravity" else {}
-    base = load("reference").replace(fixed)
+    base = load("clamped").replace(fixed)
     present = lowfi.compiled_effects(base)
     assert present == {name: name not in (*ADDED, *ON_RAILS, *fixed) for name in LAWS}
     changed = lowfi.compiled_effects(base.replace(ADDED.get(effect, {effect: None})))
@@ -97,16 +97,14 @@ def test_one_absent_effect_is_not_compiled(effect):
 
 def test_gravity_that_all_bodies_share_is_not_compiled():
     """Everything falls with a free platform, so no rate depends on it."""
-    base = load("reference")
+    base = load("clamped")
     assert lowfi.compiled_effects(base.replace(ADDED["gravity"])) == lowfi.compiled_effects(base)
 
 
 @pytest.mark.slow
 def test_without_any_effect_nothing_of_them_is_compiled():
     found = lowfi.compiled_effects(
-        load("reference").replace(
-            dict.fromkeys(("friction", "platform", "contact", "thrust_offset"))
-        )
+        load("clamped").replace(dict.fromkeys(("friction", "platform", "contact", "thrust_offset")))
     )
     assert not any(found.values())
 
@@ -114,7 +112,7 @@ def test_without_any_effect_nothing_of_them_is_compiled():
 @pytest.mark.slow
 def test_temperature_is_compiled_for_a_warm_scene_only():
     """Contact laws need the places of warm walls; compliant contact has code of its own."""
-    cold, compliance = load("reference"), reference_compliance()
+    cold, compliance = load("clamped"), reference_compliance()
     warm = cold.replace({"thermal.mean": 20.0})
     assert lowfi.compiled_effects(warm, compliance=compliance.rigid()) == lowfi.compiled_effects(
         cold
@@ -125,7 +123,7 @@ def test_temperature_is_compiled_for_a_warm_scene_only():
 
 def test_compliant_contact_replaces_the_contact_law():
     """Nothing of its package is in a kernel without it."""
-    scene = load("reference")
+    scene = load("clamped")
     assert lowfi.compiled_effects(
         scene, compliance=reference_compliance()
     ) == lowfi.compiled_effects(scene) | {"contact": False, "compliance": True}
@@ -134,7 +132,7 @@ def test_compliant_contact_replaces_the_contact_law():
 
 
 def test_modes_of_the_rails_are_compiled_where_there_are_any():
-    scene, compliance = load("reference"), reference_compliance()
+    scene, compliance = load("clamped"), reference_compliance()
     without, with_modes = (
         lowfi.compiled_effects(scene, lowfi.Numerics(modes=count), compliance) for count in (0, 4)
     )

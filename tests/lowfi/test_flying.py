@@ -8,7 +8,7 @@ from tipoff import lowfi
 from tipoff.scenes import load
 from tipoff.scenes.scene import Scene
 
-REFERENCE = load("reference").condition("phi35")
+REFERENCE = load("clamped").condition("phi35")
 # m/s, the last one 7.5 km/s across the axes
 FLIGHTS = [(1000.0, 0.0, 0.0), (0.0, -5000.0, 0.0), (4330.1, 3061.9, -5303.3)]
 AXES = "xyz"

@@ -77,7 +77,7 @@ def test_a_loose_tolerance_stays_below_the_proven_limit():
 
 def test_a_spent_budget_is_a_status_with_a_reason():
     run = lowfi.run(
-        load("reference").condition("phi15"), "springs", numerics=lowfi.Numerics(maximum_steps=20)
+        load("clamped").condition("phi15"), "springs", numerics=lowfi.Numerics(maximum_steps=20)
     )
     assert run.status == "diverged" and "maximum_steps" in run.message
     assert run.outcome.rate is None and run.time.size >= 1
@@ -87,7 +87,7 @@ def test_a_spent_budget_is_a_status_with_a_reason():
 def test_overflow_diverges_and_leaves_finite_samples():
     """An energy beyond all numbers ends as a status, with the finite part of the samples."""
     run = lowfi.run(
-        load("reference").replace({"thrust.peak": 1e200, "thrust_offset.misalignment.axial": 0.0}),
+        load("clamped").replace({"thrust.peak": 1e200, "thrust_offset.misalignment.axial": 0.0}),
         "springs",
     )
     assert run.status == "diverged" and "infinite" in run.message and run.outcome.velocity is None

@@ -9,7 +9,7 @@ from tipoff import lowfi
 from tipoff.lowfi.ensemble import columns
 from tipoff.scenes import load
 
-BASE = load("reference").condition("phi15")
+BASE = load("clamped").condition("phi15")
 ENDS = {
     "exited": ({}, {}),
     "time_limit": ({"duration": "5 ms"}, {}),

@@ -15,7 +15,7 @@ from tipoff.mechanics import scene_model
 from tipoff.scenes import SceneError, changes, load
 from tipoff.workspace.run import Run
 
-SCENE = load("reference")
+SCENE = load("clamped")
 TILT = 2e-3
 CHANGES = {
     "thrust_offset.misalignment.y": TILT,

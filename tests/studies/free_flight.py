@@ -28,7 +28,7 @@ BRIEF = {
 
 def scene() -> scenes.Scene:
     """The reference scene without contact, friction and platform; its own misalignment is zero."""
-    return scenes.load("reference").replace(
+    return scenes.load("clamped").replace(
         {
             "contact": None,
             "friction": None,

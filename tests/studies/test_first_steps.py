@@ -80,7 +80,7 @@ def test_a_bad_element_size(text):
         (["--set", "mass=9 kg"], ["did you mean payload.mass or platform.mass?"]),
         (["--set", "contact.clearance=9 kg"], ['for example "0.25 mm"']),
         (["--set", "thrust_offset.misalignment.axial=9 kg"], ['for example "0.1 deg"']),
-        (["--set", "pads.3.inset=9 kg"], ['for example "9 mm"']),
+        (["--set", "pads.3.inset=9 kg"], ['for example "10 mm"']),
     ],
 )
 def test_a_fault_of_an_option_helps(arguments, words, tmp_path):

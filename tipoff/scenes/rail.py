@@ -127,7 +127,7 @@ class SectionTable(_RailTable):
     leg: Dimension = 0.024
     #: Thickness of a leg.
     thickness: Dimension = 0.004
-    #: Width of the clamped strip on the back of a leg, from the outer corner.
+    #: Width of the strip on the back of a leg that the platform holds, from the outer corner.
     mount_width: Dimension = 0.004
     #: Radius of the fillet between the inner walls, at most 1.25 times the thickness; a sharp
     #: corner where absent. The walls end where the fillet begins.

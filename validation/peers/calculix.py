@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.highfi.mesh.rail_mesh import RailMesh
+from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from validation.peers.case import PeerMissing
 
 LINEAR, QUADRATIC = "C3D8I", "C3D20R"
@@ -30,6 +31,8 @@ _FACES = np.array(
     [[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]]
 )
 _PER_LINE = 16
+_LAYER = 1e-5  # m, thickness of the layer that stands for a joint
+_WEAK = 1e-3  # of its stiffness across: along the layer
 _TIMEOUT = 3600.0  # s
 
 
@@ -157,6 +160,58 @@ def members(kind: str, name: str, numbers: np.ndarray) -> str:
 def held(of: Solid, facets: np.ndarray) -> str:
     """The set HELD of all nodes of ``facets`` (m,4), fixed in all directions."""
     return members("NSET", "HELD", sides(of, facets)[2]) + "*BOUNDARY\nHELD,1,3\n"
+
+
+def joined(of: Solid, facets: np.ndarray, joint: MountStiffness) -> str:
+    """A thin elastic layer on ``facets`` (m,4), whose other side is fixed: its stiffness over its
+    thickness is that of the ``joint``. Facets must be normal to y or z."""
+    _, _, nodes = sides(of, facets)
+    count, last = len(of.points), len(of.cells)
+    deck = ""
+    for axis in (1, 2):
+        flat = np.ptp(of.points[nodes][..., axis], axis=1) < 1e-9
+        under = nodes[flat]
+        own, place = np.unique(under, return_inverse=True)
+        outwards = _LAYER * np.sign(of.points[own, axis]) * np.eye(3)[axis][:, None]
+        away = of.points[own] + outwards.T
+        place = place.reshape(under.shape) + count
+        cells = [place[:, :4], under[:, :4]]
+        points = away
+        if of.kind == QUADRATIC:
+            points = np.vstack([away, 0.5 * (away + of.points[own])])
+            cells += [place[:, 4:], under[:, 4:], place[:, :4] + len(own)]
+        name = f"JOINT{'XYZ'[axis]}"
+        kind = {LINEAR: "C3D8", QUADRATIC: "C3D20"}[of.kind]
+        deck += "\n".join(
+            [
+                "*NODE",
+                *(
+                    f"{i},{x:.13g},{y:.13g},{z:.13g}"
+                    for i, (x, y, z) in enumerate(points, count + 1)
+                ),
+                f"*ELEMENT, TYPE={kind}, ELSET={name}",
+                *(_element(i, row + 1) for i, row in enumerate(np.hstack(cells), last + 1)),
+                f"*MATERIAL, NAME=M{name}",
+                f"*ELASTIC, TYPE=ENGINEERING CONSTANTS\n{_layer(axis, joint)}",
+                "*DENSITY\n1e-3",
+                f"*SOLID SECTION, ELSET={name}, MATERIAL=M{name}\n",
+            ]
+        )
+        deck += members("NSET", f"AWAY{name}", count + np.arange(len(own)))
+        deck += f"*BOUNDARY\nAWAY{name},1,3\n"
+        count, last = count + len(points), last + len(under)
+    return deck
+
+
+def _layer(axis: int, joint: MountStiffness) -> str:
+    """Engineering constants (Pa) of a layer whose normal is along ``axis``."""
+    young = [_WEAK * joint.normal] * 3
+    young[axis] = joint.normal
+    pairs = ((0, 1), (0, 2), (1, 2))
+    shear = [joint.shear if axis in pair else _WEAK * joint.shear for pair in pairs]
+    first = [*young, 0.0, 0.0, 0.0, *shear[:2]]
+    lines = [",".join(f"{_LAYER * value:.13g}" for value in row) for row in (first, shear[2:])]
+    return "\n".join(lines)
 
 
 def surface(name: str, of: Solid, facets: np.ndarray, first: int) -> str:

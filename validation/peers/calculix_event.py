@@ -1,4 +1,4 @@
-"""The first contact of scene ``reference``, condition phi35, by the implicit dynamics of CalculiX.
+"""The first contact of scene ``clamped``, condition phi35, by the implicit dynamics of CalculiX.
 
 The event starts just before pad 3 touches its rail. It ends when the pad leaves, just before a second pad
 touches. The payload starts with the motion of the reference at that time. There is no thrust, and the
@@ -54,7 +54,7 @@ class Body(NamedTuple):
 @cache
 def scene() -> Scene:
     """The event as a scene of its own."""
-    found = load("reference").condition("phi35")
+    found = load("clamped").condition("phi35")
     thrust = {"kind": "constant", "force": 0.0, "duration": DURATION}
     initial = {name: dict(zip(AXES, values)) for name, values in START.items()}
     return found.replace(
@@ -217,9 +217,9 @@ def cases() -> tuple[Case, ...]:
     return (
         Case(
             name="calculix-event",
-            title="First contact of scene `reference`, condition phi35: pad 3 on its rail",
+            title="First contact of scene `clamped`, condition phi35: pad 3 on its rail",
             inputs=lambda: (
-                {"scene": "reference", "condition": "phi35", "duration_s": DURATION}
+                {"scene": "clamped", "condition": "phi35", "duration_s": DURATION}
                 | {name: list(values) for name, values in START.items()}
             ),
             matched="mesh and element of the rail, mass and inertia of the payload, pad and its "

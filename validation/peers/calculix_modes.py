@@ -9,6 +9,8 @@ mass of their own::
 With this mass on the elements of the reference, a remaining difference comes from the stiffness.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.sparse import coo_array, csc_array
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
@@ -20,11 +22,22 @@ from tipoff.highfi.statics.solve import Clamped
 from tipoff.scenes.rail import MaterialTable
 from validation.peers import calculix
 from validation.peers.calculix import LINEAR, QUADRATIC
-from validation.peers.calculix_rail import SETTINGS, Setting, constants, rail
-from validation.peers.case import Case
+from validation.peers.calculix_rail import (
+    FINEST,
+    JOINTS_MATCHED,
+    JOINTS_UNMATCHED,
+    ON_JOINTS,
+    SETTINGS,
+    Setting,
+    constants,
+    rail,
+    supported,
+)
+from validation.peers.case import Case, extrapolated
 
 MODES = 4
 _BUBBLES = 3
+_BY_SIZE = {4.0: 0.03, 2.0: 0.015, 1.0: 2e-3}
 CHANNEL = {
     "C3D8I 4 mm, ours 4 mm": Setting(LINEAR, 4.0, 4.0),
     "C3D8I 2 mm, ours 2 mm": Setting(LINEAR, 2.0, 2.0),
@@ -36,7 +49,7 @@ def here(name: str, chosen: Setting) -> dict[str, float]:
     """Frequencies (Hz) of a rail with the masses of the reference; if both codes have the same
     elements, also with the masses of CalculiX."""
     scene, mesh = rail(name, chosen.ours)
-    operator = assembly.of_material(mesh, scene.rail.material)
+    operator = assembly.of_material(mesh, scene.rail.material, joint=scene.rail.joint())
     clamped = Clamped(operator)
     mass = np.repeat(operator.mass, 3)[clamped.free]
     found, _ = vibration.modes(clamped.stiffness, mass, clamped.solve, MODES)
@@ -51,7 +64,7 @@ def there(name: str, chosen: Setting) -> dict[str, float]:
     scene, mesh = rail(name, chosen.theirs)
     of = calculix.solid(mesh, chosen.kind)
     deck = calculix.head(of, constants(scene.rail.material))
-    deck += calculix.held(of, mesh.surfaces["mount"])
+    deck += supported(of, scene, mesh)
     deck += f"*STEP\n*FREQUENCY\n{MODES}\n*END STEP\n"
     answer = calculix.run(deck)
     # mode, eigenvalue, rad/s, Hz, its imaginary part
@@ -103,20 +116,36 @@ def _assembled(blocks: np.ndarray, freedom: np.ndarray, free: np.ndarray) -> csc
 
 
 def cases() -> tuple[Case, ...]:
-    """The rails of ``reference`` and ``channel``."""
-    return _case("reference", SETTINGS, 1e-6), _case("channel", CHANNEL, 3e-4)
+    """The rails of ``clamped`` and ``channel``, and that of ``reference`` on its joints."""
+    joined = _case("reference", ON_JOINTS, {2.0: 0.01, 1.0: 1e-3})
+    joined = replace(
+        joined,
+        title="Lowest frequencies of a rail of scene `reference`, on its joints",
+        matched=JOINTS_MATCHED,
+        unmatched=f"CalculiX has no lumped masses; {JOINTS_UNMATCHED}",
+    )
+    return _case("clamped", SETTINGS, _BY_SIZE), _case("channel", CHANNEL, _BY_SIZE, 3e-4), joined
 
 
-def _case(name: str, settings: dict[str, Setting], same: float) -> Case:
-    """``same``: the largest difference with equal elements and masses."""
+def _case(
+    name: str, settings: dict[str, Setting], by_size: dict[float, float], same: float = 1e-6
+) -> Case:
+    """``by_size``: the largest difference by the size of our elements (mm); ``same``: that with equal
+    elements and masses."""
 
     def within(setting: str, quantity: str) -> float:
-        if "bubbles" in quantity:
-            return same
-        return {4.0: 0.03, 2.0: 0.015, 1.0: 2e-3}[settings[setting].ours]
+        return same if "bubbles" in quantity else by_size[settings[setting].ours]
 
     distorted = "; C3D8I around the holes, where elements are no bricks" if same > 1e-6 else ""
-    kinds = ("lumped", "with bubbles")
+    has_both = any(map(_has_same_mass, settings.values()))
+    kinds = ("lumped", "with bubbles") if has_both else ("lumped",)
+
+    def ours(setting: str) -> dict[str, float]:
+        found = here(name, settings[setting])
+        if setting != FINEST:
+            return found
+        return extrapolated(here(name, Setting(QUADRATIC, 2.0, 2.0)), found)
+
     return Case(
         name=f"calculix-modes-{name}",
         title=f"Lowest frequencies of a rail of scene `{name}`, held at its mounts",
@@ -126,7 +155,7 @@ def _case(name: str, settings: dict[str, Setting], same: float) -> Case:
         unmatched=f"`mass lumped`: CalculiX has no lumped masses{distorted}",
         settings=tuple(settings),
         units={f"f{number + 1}, mass {kind}": "Hz" for kind in kinds for number in range(MODES)},
-        ours=lambda setting: here(name, settings[setting]),
+        ours=ours,
         theirs=lambda setting: there(name, settings[setting]),
         within=within,
         slow=tuple(key for key, chosen in settings.items() if chosen.ours < 4.0),

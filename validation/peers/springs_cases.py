@@ -1,4 +1,4 @@
-"""The surrogate's model ``springs`` in Exudyn and in MuJoCo, on ten conditions of scene ``reference``."""
+"""The surrogate's model ``springs`` in Exudyn and in MuJoCo, on ten conditions of scene ``clamped``."""
 
 import statistics
 from collections.abc import Callable
@@ -22,7 +22,7 @@ from validation.peers.springs_problem import (
 )
 
 _AFTER = 2.1e-3  # s from the start of the window to the end of a run
-_FRICTION, _SLIP = 0.2, 0.01  # of scene ``reference``: coefficient, m/s
+_FRICTION, _SLIP = 0.2, 0.01  # of scene ``clamped``: coefficient, m/s
 IMPACT = exudyn_model.Law(
     7e4 * 1e3**1.5, 1.5, damping=6e4, depth=3e-4, friction=_FRICTION, slip=_SLIP
 )
@@ -131,7 +131,7 @@ def _case(
         name=name,
         title=title,
         inputs=lambda: {
-            "scene": "reference",
+            "scene": "clamped",
             "contact": dict(LINEAR) if law == "linear" else "as the scene",
             "friction": friction,
         },

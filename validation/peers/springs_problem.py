@@ -59,8 +59,8 @@ class Problem(NamedTuple):
 
 @cache
 def scene(condition: str, law: str, friction: bool) -> Scene:
-    """A condition of ``reference`` with its own contact law, ``impact``, or the ``linear`` one."""
-    found = load("reference").condition(condition)
+    """A condition of ``clamped`` with its own contact law, ``impact``, or the ``linear`` one."""
+    found = load("clamped").condition(condition)
     if law == "linear":
         interface = found.contact.interface_stiffness if found.contact else None
         found = found.replace({"contact": LINEAR | {"interface_stiffness": interface}})

@@ -98,7 +98,7 @@ def test_elements_around_a_fillet_are_no_slivers_and_not_skewed(size, radius):
 
 @pytest.mark.parametrize("size, factor", [(0.004, 1.70), (0.002, 1.05), (0.001, 1.10)])
 def test_a_fillet_of_2_mm_costs_few_steps(size, factor):
-    scene = scenes.load("filleted")
+    scene = scenes.load("reference")
     geometry = GEOMETRY._replace(x_start=0.0, x_end=2.0 * size, mount_spans=((0.0, size),))
     mesh = read(l_rail.build(geometry, size))
     found = step_cost.ratio(scene.rail.material, size, mesh.points, mesh.cells)
@@ -119,7 +119,7 @@ def test_scene_and_mesh_have_the_same_limit():
 
 def test_pads_on_a_fillet_are_bad_input():
     """Those of the scene end where its fillet of 2 mm begins, in any unit."""
-    scene = scenes.load("filleted")
+    scene = scenes.load("reference")
     for radius in ("2 mm", "0.2 cm"):
         make_mesh(scene.replace({"rail.fillet": radius}), 0.008)
     with pytest.raises(scenes.SceneError) as error:

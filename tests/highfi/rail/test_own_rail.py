@@ -252,7 +252,7 @@ def test_the_built_in_rails_from_cad_give_the_same_run(tmp_path, duration):
     built = tiny(
         duration=duration,
         thrust_offset__misalignment__axial="1 deg",
-        rail=load("reference").rail.model_dump(),
+        rail=load("clamped").rail.model_dump(),
     )
     drawing = scene_of(drawn(tmp_path / "rails.step", l_sections), l_surfaces()).rail
     first, second = (

@@ -92,7 +92,7 @@ def test_on_a_free_platform_it_cannot_be_left_out(condition):
     1.3e-6 (phi0) of it. The acceleration of the platform bends the others, so at first touch they
     are up to 5 nm away from their place. A rail that is integrated only from then on would have
     that error, which the conditioning of the scene turns into up to 2e-5 of a rate."""
-    scene, numerics = load("reference").condition(condition), Numerics()
+    scene, numerics = load("clamped").condition(condition), Numerics()
     mesh = highfi.prepare(scene, numerics)
     system = build(scene, numerics, mesh)
     stepping = choose(system, scene, numerics)

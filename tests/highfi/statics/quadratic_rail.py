@@ -134,7 +134,7 @@ def solve(
         free = basis.complement_dofs(basis.get_dofs(strip))
     else:
         stiffness = stiffness + _joint.assemble(
-            FacetBasis(mesh, element, facets=strip, intorder=4), normal=joint[0], shear=joint[1]
+            FacetBasis(flat, element, facets=strip, intorder=4), normal=joint[0], shear=joint[1]
         )
     patch = flat.facets_satisfying(
         lambda x: (

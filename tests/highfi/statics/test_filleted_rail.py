@@ -59,8 +59,8 @@ def test_kept_values_are_those_of_quadratic_hexahedra():
 @pytest.mark.case("O75")
 @pytest.mark.slow
 def test_a_filleted_rail_on_joints_converges_with_the_second_power(filleted):
-    """From 2 to 1 mm. From 4 to 2 mm the polygon of the fillet does not change, and the walls have one
-    element across and then two, so the errors do not show the power yet."""
+    """From 2 to 1 mm. From 4 to 2 mm the errors do not show the power yet: the walls have one element
+    across and then two, and the elements are as large as the fillet."""
     finest = solved(rail(1e-3, FILLET), JOINT)
     power = np.log2(errors(filleted[1], EXACT) / errors(finest, EXACT))
     assert (errors(finest, EXACT) < [0.007, 0.003, 0.06]).all()

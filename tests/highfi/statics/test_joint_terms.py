@@ -5,6 +5,7 @@ import pytest
 
 from tests.highfi.support import tiny
 from tipoff import highfi
+from tipoff.highfi import compliance
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST
 from tipoff.scenes import SceneError
@@ -75,3 +76,14 @@ def test_a_file_holds_it(nominal, tmp_path):
     assert read.hash == nominal.hash
     scene = on_joints().replace({KEY: 2.0})
     np.testing.assert_array_equal(read.of(scene).flexibility, nominal.of(scene).flexibility)
+
+
+def test_one_pattern_that_friction_does_not_drag():
+    """As the convergence study asks for: the same numbers as with friction, and none of it."""
+    without, dragged = (
+        compliance.along(on_joints(), SIZE, [0.0, 0.05], patterns=1, modes=4, dragged=count)
+        for count in (0, 1)
+    )
+    assert without.joints.moved_by_friction.shape[2] == without.joints.moved_first.shape[2] == 0
+    assert largest(without.joints.moved, dragged.joints.moved) < 1e-12
+    assert largest(without.matrix, dragged.matrix) < 1e-12

@@ -13,7 +13,7 @@ from tipoff.lowfi.single_run import SingleRun, improved
 from tipoff.mechanics import promises
 from tipoff.scenes import load
 
-REFERENCE = load("reference").condition("phi35")
+REFERENCE = load("clamped").condition("phi35")
 QUICK = ("ejection", "guided", "frictionless", "free")  # kernels that other tests compile too
 # Rattles between walls without clearance, so that hundreds of contacts add up: no law with this
 # exponent is smooth where it touches.

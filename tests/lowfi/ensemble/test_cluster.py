@@ -26,7 +26,7 @@ def small_chunks(monkeypatch):
 
 
 def ensemble(cases: int = CASES) -> Ensemble:
-    scene = load("reference")
+    scene = load("clamped")
     return Ensemble(
         scene,
         Drawn(uncertainty.load("paper", scene, cases=cases)),

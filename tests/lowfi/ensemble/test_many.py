@@ -28,7 +28,7 @@ def test_bad_rows_are_refused_alone():
         {"thrust.peak": 1e200, "thrust_offset.misalignment.axial": 0.0},
         ROWS[1],
     ]
-    found = lowfi.run_many(load("reference"), rows, "springs", workers=2)
+    found = lowfi.run_many(load("clamped"), rows, "springs", workers=2)
     assert found.status.values.tolist() == ["exited", "refused", "refused", "diverged", "exited"]
     assert found.attrs == {"modes": 0, "asked": 5, "ok": 2, "refused": 2, "failed": 1}
     assert "payload.mass" in found.message.values[1] and "clearence" in found.message.values[2]
@@ -70,7 +70,7 @@ def test_same_bits_as_single_runs(rows):
     """Varied numbers, text with units, other thrust, time that ends early, pads pressed at
     ignition, a payload that hardly moves, tables that are present or absent: on every path of the
     ensemble the results are those of ``run``."""
-    base = load("reference")
+    base = load("clamped")
     found = lowfi.run_many(base, rows, "springs", workers=2)
     for index, row in enumerate(rows):
         alone = lowfi.run(base.replace(row), "springs")
@@ -129,8 +129,8 @@ STICKING = scene(
 @pytest.mark.parametrize(
     "base, model",
     [
-        (load("reference"), "springs"),
-        (load("reference"), "compliant"),
+        (load("clamped"), "springs"),
+        (load("clamped"), "compliant"),
         (STICKING, "springs"),
     ],
     ids=["springs", "compliant", "sticking"],
@@ -148,7 +148,7 @@ def test_cases_with_their_own_clearance_and_friction_are_one_call_of_the_kernel(
 
 
 def test_refused_rows_have_the_reason_of_replace():
-    base = load("reference")
+    base = load("clamped")
     rows = [
         {"thrust_offset.misalignment.axial": value, "mass_offset.eccentricity.axial": radius}
         for value, radius in (
@@ -171,5 +171,5 @@ def test_refused_rows_have_the_reason_of_replace():
 
 
 def test_an_empty_table_is_an_empty_result():
-    found = lowfi.run_many(load("reference"), [], "springs")
+    found = lowfi.run_many(load("clamped"), [], "springs")
     assert found.sizes["case"] == 0 and found.attrs["asked"] == 0

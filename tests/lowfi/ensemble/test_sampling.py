@@ -96,7 +96,7 @@ def test_variance_shares_of_the_linear_tip_off():
     source = Drawn(
         uncertainty.parse(
             {"cases": count, "seed": 3, "vary": normal | angles},
-            load("reference"),
+            load("clamped"),
             bare_numbers_are_si=True,
         )
     )

@@ -50,7 +50,7 @@ def small_chunks(monkeypatch):
 
 
 def ensemble(scene=None, numerics=lowfi.Numerics(relative_tolerance=1e-2), **changed) -> Ensemble:
-    scene = scene or load("reference")
+    scene = scene or load("clamped")
     return Ensemble(
         scene,
         Drawn(uncertainty.load("paper", scene, **{"cases": CASES, **changed})),
@@ -134,7 +134,7 @@ def test_a_full_disk_is_reported_and_the_store_resumes(tmp_path, digest, monkeyp
 @pytest.mark.parametrize(
     "other, name",
     [
-        (lambda: ensemble(load("reference").replace({"payload.mass": "10 kg"})), "scene"),
+        (lambda: ensemble(load("clamped").replace({"payload.mass": "10 kg"})), "scene"),
         (lambda: ensemble(seed=2), "cases"),
         (lambda: ensemble(numerics=lowfi.Numerics()), "numerics"),
         (lambda: ensemble()._replace(widening=1e-6), "widening"),
@@ -190,7 +190,7 @@ def test_run_many_with_a_store_is_run_many(tmp_path):
     ]
     places = ({}, *2 * [{"store": tmp_path / "store"}])
     plain, kept, again = (
-        lowfi.run_many(load("reference"), rows, "springs", **where) for where in places
+        lowfi.run_many(load("clamped"), rows, "springs", **where) for where in places
     )
     for found in (kept, again):
         assert found.equals(plain.drop_vars("wall_s")) and found.attrs == plain.attrs == {
@@ -202,7 +202,7 @@ def test_run_many_with_a_store_is_run_many(tmp_path):
         }
     assert len(list((tmp_path / "store" / "done").iterdir())) == 1
     failures = (
-        Ensemble(load("reference"), Listed(rows), None, lowfi.Numerics(modes=0))
+        Ensemble(load("clamped"), Listed(rows), None, lowfi.Numerics(modes=0))
         .store(tmp_path / "store")
         .failures()
     )
@@ -216,7 +216,7 @@ def test_run_many_with_a_store_is_run_many(tmp_path):
 
 
 def test_draws_and_nothing_at_all_can_be_stored(tmp_path):
-    scene = load("reference")
+    scene = load("clamped")
     drawn = uncertainty.load("paper", scene, cases=20)
     plain, kept = (
         lowfi.run_many(scene, drawn, "springs"),

@@ -20,7 +20,8 @@ def with_joint(**changed):
 
 def test_stiffness_in_any_unit():
     assert parse(with_joint()).rail.joint() == MountStiffness(1e13, pytest.approx(5e12, rel=1e-14))
-    assert load("reference").rail.joint() is None
+    assert load("reference").rail.joint() == pytest.approx((1e13, 5e12), rel=1e-14)
+    assert load("clamped").rail.joint() is None
 
 
 @pytest.mark.parametrize("value", ["0 N/m^3", "-1 N/m^3", "1e13 N/m", "inf N/m^3"])

@@ -20,9 +20,9 @@ from tipoff.workspace.study import Study
 
 def study(folder, **settings) -> Study:
     return Study(
-        scenes.load("reference"),
-        folder / "reference",
-        replace(defaults("reference"), workers=2, **settings),
+        scenes.load("clamped"),
+        folder / "clamped",
+        replace(defaults("clamped"), workers=2, **settings),
     )
 
 

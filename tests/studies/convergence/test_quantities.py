@@ -7,7 +7,7 @@ import pytest
 
 from tests.studies.convergence import stub
 from tipoff import scenes
-from tipoff.studies.convergence import page
+from tipoff.studies.convergence import page, stresses
 from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.render import document
 from tipoff.studies.report.page import Page
@@ -79,3 +79,29 @@ def test_stress_is_judged_on_patches_and_never_at_its_peak(tmp_path, monkeypatch
         page.draw(Page(study.scene, study.folder, {"convergence": written}, Runs({}, {}, {}), {}))
     )
     assert "patch stress below 1 kHz" in shown and "mesh-dependent" in shown
+
+
+def test_the_peak_is_judged_on_a_fillet_and_joints(tmp_path, monkeypatch, asked):
+    """It errs with the square of the element size here. Control: with a fillet alone, with joints
+    alone, and on a rail from a file no uncertainty is stated."""
+
+    def execute(run, progress=None, threads=None, **kept):
+        if run.fidelity == "lowfi":
+            return stub.motion(run)
+        size = 1e3 * run.numerics.element_size
+        return stub.motion(run, stress={"peak_stress_pa": 1e6 * (5.0 + 1e-3 * size**2)})
+
+    monkeypatch.setattr(store_module, "execute", execute)
+    joints = {"rail.mount_stiffness.normal": 1e13, "rail.mount_stiffness.shear": 5e12}
+    scene = scenes.load("tiny").replace({f"pads.{pad}.inset": 10e-3 for pad in range(8)})
+    smooth = scene.replace({"rail.fillet": 2e-3} | joints)
+    found = convergence.STAGE.read(
+        convergence.run(Study(smooth, tmp_path / "tiny", defaults("tiny")))
+    )
+    peak = stub.row(found, "element size", "peak stress of the rail")
+    assert (peak.order, peak.method) == (pytest.approx(2.0, abs=1e-6), "GCI")
+    assert peak.uncertainty == pytest.approx(1.25 * 0.016, rel=1e-6)
+    assert stresses.has_limit(smooth) and stresses.has_limit(scenes.load("reference"))
+    for other in (scene.replace({"rail.fillet": 2e-3}), scene.replace(joints)):
+        assert not stresses.has_limit(other)
+    assert not any(stresses.has_limit(scenes.load(name)) for name in ("clamped", "channel"))

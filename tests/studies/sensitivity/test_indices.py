@@ -10,7 +10,7 @@ from tipoff.scenes import load
 from tipoff.scenes.effects import thrust_offset
 from tipoff.studies.sensitivity import indices, tolerances
 
-SCENE = load("reference")
+SCENE = load("clamped")
 ANGLES = (
     "thrust_offset.misalignment.radial",
     "thrust_offset.eccentricity.radial",

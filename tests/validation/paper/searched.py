@@ -18,7 +18,7 @@ from validation.paper import inputs, solutions
 from validation.paper import page as section
 from validation.paper import stage as paper
 
-BASE = scenes.load("reference")
+BASE = scenes.load("clamped")
 COUNT = len(inputs.UNKNOWNS)
 SMALL = paper.Options(
     1, solutions.Plan(points=6, descents=1, pool=1, hops=1, kept=3, steps=(3, 2, 2))

@@ -10,7 +10,7 @@ only; ``meshes`` has the numbers of elements. Finally both fidelities are timed 
 (``studies.agreement.equal_accuracy``)."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -138,6 +138,8 @@ def run(study: Study, options: Options | None = None) -> dict:
         )
         by_mesh = [*quantities(scene, meshes), *statics.quantities(scene, asked)]
         in_space = _judged("element size", "m", sizes, nominal, by_mesh)
+        if not stresses.has_limit(scene):
+            in_space = [_without_limit(row) for row in in_space]
         dt = [found.cost["dt_s"] for found in steps]
         in_time = _judged("time step", "s", dt, dt[0], quantities(scene, steps))
         touching = scene.contact is not None
@@ -189,8 +191,6 @@ def _judged(
     for quantity, its_unit, values in values_of:
         found = estimate(sizes, values)
         at_nominal, finest = values[sizes.index(nominal)], values[-1]
-        if quantity == stresses.PEAK and unit == "m":
-            found = Estimate(found.order, None, None, stresses.SINGULAR)
         rows.append(
             Refined(
                 **vars(found),
@@ -207,6 +207,14 @@ def _judged(
             )
         )
     return rows
+
+
+def _without_limit(row: Refined) -> Refined:
+    """``row``; that of the peak stress without an uncertainty."""
+    if row.quantity != stresses.PEAK:
+        return row
+    unknown = Estimate(row.order, None, None, stresses.SINGULAR)
+    return replace(row, **vars(unknown), nominal_uncertainty=None)
 
 
 def _interfaces(study: Study, name: str) -> tuple[OtherStiffness, ...]:

@@ -1,8 +1,9 @@
 """Deflection and natural frequencies of the rail, mesh by mesh. The settled rates depend on both.
 
 The deflection is the mean displacement of the wall under a pad face by a force spread over it, at
-the place along the way where the rail is softest on the finest mesh. At the edge of a rigid mount
-the stress is singular, so both converge with about the first power of the element size.
+the place along the way where the rail is softest on the finest mesh. At the edge of a rigid mount and
+in a sharp inner corner the stress is singular, so both converge with about the first power of the
+element size; with a fillet on joints, with the second one.
 """
 
 from collections.abc import Iterator, Sequence

@@ -3,17 +3,26 @@ rail.
 
 Contact and walls ring with the modes of the elements, so the mean stress of each patch is filtered
 like contact forces (``studies.convergence.contact_loads``) before its von Mises stress is computed.
-The peak of the whole rail is at a sharp inner corner or at the border of a clamp. There the stress
-of linear elasticity is infinite, so the peak grows with every refinement.
+The peak of the whole rail is at a sharp inner corner or at the border of a clamp, if there is one.
+There the stress of linear elasticity is infinite, so the peak grows with every refinement. A section
+with a fillet on joints has neither.
 """
 
 from tipoff.highfi.elements.hexahedral_recovery import von_mises
 from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
 from tipoff.studies.convergence import contact_loads
 
 PEAK = "peak stress of the rail"
 SINGULAR = "mesh-dependent: stress has no limit at a sharp corner or clamp"
+
+
+def has_limit(scene: Scene) -> bool:
+    """Whether the peak of the whole rail has a limit: a fillet and joints. Of rails from files it is
+    not known."""
+    rail = scene.rail
+    return isinstance(rail, SectionTable) and None not in (rail.fillet, rail.mount_stiffness)
 
 
 def patch_peak(scene: Scene, run: Trajectory) -> float | None:

@@ -1,7 +1,7 @@
 """A commented scene file of a launcher from a few numbers.
 
 The payload is a box of uniform density in four L rails. One pulse of thrust, or a measured thrust, pushes
-it with a tilt of 0.1 deg. All other values have the proportions of the scene ``reference`` and the
+it with a tilt of 0.1 deg. All other values have the proportions of the scene ``clamped`` and the
 provenance "assumed".
 """
 
@@ -15,7 +15,7 @@ import tomlkit
 from tipoff.scenes.effects.measured import read_curve
 from tipoff.scenes.faults import Fault, SceneError
 
-_WIDTH = 0.2  # m, of the payload of the scene ``reference``, whose sections are scaled
+_WIDTH = 0.2  # m, of the payload of the scene ``clamped``, whose sections are scaled
 _RAILS = 4  # one along each edge of the payload, with one pad at each station
 
 
@@ -277,8 +277,8 @@ refined = ["tilt0"]
 "payload.mass" = "given to tipoff new"
 "payload.size" = "given to tipoff new"
 "payload.inertia" = "assumed: uniform density"
-"pads" = "assumed: proportions of the scene reference"
-"rail" = "assumed: proportions of the scene reference"
+"pads" = "assumed: proportions of the scene clamped"
+"rail" = "assumed: proportions of the scene clamped"
 "rail.end" = "given to tipoff new"
 "rail.material" = "handbook, 7075-T6"
 "thrust" = "given to tipoff new"
