@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from tipoff.studies.commands.options import CalibrationFile, Modes, Surrogate
+from tipoff.studies.commands.options import At, CalibrationFile, Modes, Surrogate
 
 if TYPE_CHECKING:
     from tipoff.workspace import models
@@ -80,6 +80,7 @@ class Options:
     ] = 1e-2
     model: Surrogate = None
     modes: Modes = None
+    at: At = None
     calibration: CalibrationFile = None
     scheduler: Annotated[
         str | None,

@@ -2,16 +2,19 @@
 
 from tipoff.studies.ensemble.sensitivity import CAUSES
 from tipoff.studies.ensemble.stage import Cost, One, Ran, Sensitive
+from tipoff.studies.populations.instant import EXIT, Instant
 from tipoff.studies.render.document import Bullets, Part
 from tipoff.studies.render.table import Table, estimate, percent
 from tipoff.studies.render.uncertain import LEAST, number
 from tipoff.workspace.words import counted
 
 _LABELS = {
-    "rate_deg_s": "total rate (deg/s)",
+    "rate_deg_s": "total settled rate (deg/s)",
     "exit_rate_deg_s": "total rate at exit (deg/s)",
     "lateral_velocity_mm_s": "lateral velocity (mm/s)",
     "direction_error_deg": "direction error (deg)",
+    "exit_lateral_velocity_mm_s": "lateral velocity at exit (mm/s)",
+    "exit_direction_error_deg": "direction error at exit (deg)",
     "impulse_after_exit_percent": "impulse after the exit (%)",
 }
 _STORED = {
@@ -31,7 +34,8 @@ def summary(found: Ran) -> list[Part]:
     run = [
         f"{found.scene}, model {found.model}: {counted(counts['asked'], 'case')} = {counts['ok']:,} "
         f"ok + {counts['refused']:,} refused + {counts['failed']:,} failed; {found.settled:,} "
-        f"left the rail and settled{_others(found.statuses)}",
+        f"left the rail{'' if found.at == EXIT else ' and settled'}{_others(found.statuses)}",
+        f"rates {Instant(found.at, found.at_why).words}",
         f"agreement: {found.agreement}",
         *failures,
     ]

@@ -27,6 +27,8 @@ from tipoff.studies.ensemble import sensitivity, summary
 from tipoff.studies.ensemble.options import Options
 from tipoff.studies.ensemble.sensitivity import Sensitivity
 from tipoff.studies.ensemble.summary import Statistics
+from tipoff.studies.populations import instant
+from tipoff.studies.populations.instant import Instant
 from tipoff.workspace import kernel_marks, machine, words
 from tipoff.workspace.progress import Board, say
 from tipoff.workspace.run import Run
@@ -157,7 +159,11 @@ def run(study: Study, options: Options) -> Ran:
         raise StudyError(str(fault)) from fault
     memory = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     found = Ran(
-        **vars(summary.of(ensemble, store, options.calibration is not None)),
+        **vars(
+            summary.of(
+                ensemble, store, options.calibration is not None, _instant(ensemble, options)
+            )
+        ),
         scene=study.scene.name,
         quantities=words.QUANTITIES,
         implausible=plausibility.of_all_conditions(study.scene),
@@ -169,6 +175,12 @@ def run(study: Study, options: Options) -> Ran:
     )
     write_json(study.path("ensemble.json"), found.plain)
     return found
+
+
+def _instant(ensemble: Ensemble, options: Options) -> Instant:
+    """The instant of the statistics: the one asked for, or by one run of the scene."""
+    own = None if options.at else ensemble.nominal().outcome.impulse_after_exit
+    return instant.chosen(options.at, own)
 
 
 def _filled(
