@@ -81,6 +81,15 @@ class Options:
     model: Surrogate = None
     modes: Modes = None
     at: At = None
+    limits: Annotated[
+        tuple[str, ...],
+        typer.Option(
+            "--limit",
+            metavar="[AXIS=]RATE",
+            help='Limit of a rate, "x=10 deg/s", or of the total rate, "10 deg/s"; repeatable. The result '
+            "is the probability above any of them.",
+        ),
+    ] = ()
     calibration: CalibrationFile = None
     scheduler: Annotated[
         str | None,

@@ -2,6 +2,7 @@
 
 from tipoff.studies.ensemble.sensitivity import CAUSES
 from tipoff.studies.ensemble.stage import Cost, One, Ran, Sensitive
+from tipoff.studies.ensemble.summary import Above
 from tipoff.studies.populations.instant import EXIT, Instant
 from tipoff.studies.render.document import Bullets, Part
 from tipoff.studies.render.table import Table, estimate, percent
@@ -43,10 +44,24 @@ def summary(found: Ran) -> list[Part]:
         Bullets(run),
         *_varied(found.cases.get("vary", {})),
         *([table_of_quantiles(found)] if found.quantiles else []),
+        *([_above(found.above, found.confidence)] if found.above else []),
         f"run time: {_time(cost)}; {(cost.peak_memory_bytes or 0) / 1e6:.0f} MB of memory at most",
         *(_sensitivity(found.sensitivity) if found.sensitivity else []),
         f"store: {found.store}",
     ]
+
+
+def _above(found: Above, confidence: float) -> str:
+    """The probability above any limit."""
+    most = (
+        ""
+        if found.low is None or found.high is None
+        else (f" ({confidence:.0%} bounds {percent(found.low)} to {percent(found.high)} %)")
+    )
+    return (
+        f"above any of the limits {', '.join(found.limits)}: {percent(found.share)} % of the cases, "
+        f"{found.count:,}{most}"
+    )
 
 
 def _others(statuses: dict[str, int]) -> str:

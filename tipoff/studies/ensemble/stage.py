@@ -27,7 +27,7 @@ from tipoff.studies.ensemble import sensitivity, summary
 from tipoff.studies.ensemble.options import Options
 from tipoff.studies.ensemble.sensitivity import Sensitivity
 from tipoff.studies.ensemble.summary import Statistics
-from tipoff.studies.populations import instant
+from tipoff.studies.populations import exceedance, instant
 from tipoff.studies.populations.instant import Instant
 from tipoff.workspace import kernel_marks, machine, words
 from tipoff.workspace.progress import Board, say
@@ -148,6 +148,7 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
 def run(study: Study, options: Options) -> Ran:
     """Run the cases that the store lacks, then their twins if the sensitivity is requested. Returns
     the statistics, also written as ``ensemble.json``. Raises StudyError when the store fails."""
+    limits = exceedance.limits(options.limits)
     ensemble, path = request(study, options)
     try:
         store = ensemble.store(path)
@@ -158,12 +159,9 @@ def run(study: Study, options: Options) -> Ran:
     except StoreError as fault:
         raise StudyError(str(fault)) from fault
     memory = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    at, calibrated = _instant(ensemble, options), options.calibration is not None
     found = Ran(
-        **vars(
-            summary.of(
-                ensemble, store, options.calibration is not None, _instant(ensemble, options)
-            )
-        ),
+        **vars(summary.of(ensemble, store, calibrated, at, limits)),
         scene=study.scene.name,
         quantities=words.QUANTITIES,
         implausible=plausibility.of_all_conditions(study.scene),

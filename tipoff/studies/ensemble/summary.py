@@ -1,6 +1,6 @@
 """The statistics of an ensemble: counts, quantiles with their bounds, and how it was drawn."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,7 +10,8 @@ from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.lowfi.ensemble.store import Store
-from tipoff.studies.populations import instant, spread
+from tipoff.studies.populations import exceedance, instant, spread
+from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.instant import Instant
 from tipoff.studies.populations.spread import Quantile
 from tipoff.workspace import words
@@ -39,9 +40,22 @@ _AFTER = ("impulse_after_exit", lambda share: 100.0 * share)
 
 
 @dataclass(frozen=True, kw_only=True)
+class Above:
+    """Cases above any of the ``limits`` (in words), or without a rate, and the bounds of their share;
+    None where the cases are not independent draws."""
+
+    limits: tuple[str, ...]
+    count: int
+    share: float
+    low: float | None
+    high: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
 class Statistics:
     """Counts, and quantiles of the cases that settled, with the method of their bounds. ``at``: the
-    instant of the quantities, and why; ``settled``: cases with values at it. ``cases``: the source of
+    instant of the quantities, and why; ``settled``: cases with values at it; ``above``: None without
+    limits. ``cases``: the source of
     the cases; ``provenance`` of the distributions by key; ``failures``: the first ones, with number,
     status, reason and inputs; ``failed``: their reasons if no case is ok."""
 
@@ -54,6 +68,7 @@ class Statistics:
     confidence: float
     bounds: str
     quantiles: dict[str, tuple[Quantile, ...]]
+    above: Above | None
     cases: dict[str, Any]
     provenance: dict[str, str]
     numerics: dict[str, Any]
@@ -63,7 +78,13 @@ class Statistics:
     failed: list[str]
 
 
-def of(ensemble: Ensemble, store: Store, calibrated: bool, chosen: Instant) -> Statistics:
+def of(
+    ensemble: Ensemble,
+    store: Store,
+    calibrated: bool,
+    chosen: Instant,
+    limits: Sequence[Limit] = (),
+) -> Statistics:
     """Statistics of a whole store at the ``chosen`` instant; ``calibrated``: the constants of the model
     are not the scene's."""
     own, other = (_AT_EXIT, _SETTLED) if chosen.at == instant.EXIT else (_SETTLED, _AT_EXIT)
@@ -93,6 +114,7 @@ def of(ensemble: Ensemble, store: Store, calibrated: bool, chosen: Instant) -> S
             )
             for name, what in shown.items()
         },
+        above=_above(store, rate, limits, unbounded is None) if limits else None,
         cases=ensemble.source.identity,
         provenance=_provenance(ensemble.source),
         numerics=ensemble.numerics.as_dict(),
@@ -100,6 +122,21 @@ def of(ensemble: Ensemble, store: Store, calibrated: bool, chosen: Instant) -> S
         failures=failures,
         digest=store.digest(),
         failed=[] if counts["ok"] else lines,
+    )
+
+
+def _above(store: Store, rate: str, limits: Sequence[Limit], bounded: bool) -> Above:
+    """Share of the cases whose column ``rate`` is above any of the ``limits``."""
+    places = [store.bounds(number) for number in range(len(store))]
+    rates = (np.degrees(store.column(rate, *place)) for place in places)
+    count = int(sum(exceedance.any_above(each, limits).sum() for each in rates))
+    low, high = exceedance.bounds(count, store.asked, CONFIDENCE) if bounded else (None, None)
+    return Above(
+        limits=tuple(limit.words for limit in limits),
+        count=count,
+        share=count / store.asked,
+        low=low,
+        high=high,
     )
 
 
