@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 
 from tests.exact.spring import end_of_stroke
-from tipoff import lowfi
+from tipoff import highfi, lowfi
+from tipoff.calibration import rail_compliance
 from tipoff.scenes import load, uncertainty
 
 SCENE = load("cubesat_3u")
 # Typed here a second time on purpose, in SI, from the public documents.
 MASS, SIZE, BOX = 4.0, (0.3405, 0.1, 0.1), 0.02
+ELEMENTS, FRICTION = 0.016, 6  # m; place of the friction in the ledger
 FREE = {"contact": None, "friction": None, "mass_offset": None}
 
 
@@ -76,3 +78,40 @@ def test_the_errors_are_inputs_of_the_scene():
     largest = found.vary["mass_offset.eccentricity.axial"].ppf(np.array([1.0 - 1e-12]))[0]
     assert largest <= BOX * (1.0 + 1e-9)
     assert all(item.provenance for item in found.vary.values())
+
+
+@pytest.mark.slow
+def test_both_models_have_like_launches(tmp_path):
+    """One run of the reference among twelve neighbours of the surrogate within 1 µm, on the same elements
+    of 16 mm: exit speed, friction and total rate lie among them, with a margin of half their spread. A
+    single launch is chaotic, so no closer comparison of one run is possible. Control: without friction the
+    exit speed is outside."""
+    scene = SCENE.condition("offset15")
+    compliance = rail_compliance.kept(scene, tmp_path, ELEMENTS, lambda _: None)
+    numerics = lowfi.Numerics(relative_tolerance=1e-2, modes=compliance.frequency.shape[1])
+
+    def values(run) -> np.ndarray:
+        rate = math.degrees(np.linalg.norm(run.outcome.rate))
+        return np.array([run.outcome.velocity[0], run.energy[-1, FRICTION], rate])
+
+    changes = np.random.default_rng(1).uniform(-1e-6, 1e-6, 12)
+    near = np.array(
+        [
+            values(
+                lowfi.run(
+                    scene.replace(scene.contact.widened(change)),
+                    "compliant",
+                    compliance=compliance,
+                    numerics=numerics,
+                )
+            )
+            for change in changes
+        ]
+    )
+    found = values(highfi.run(scene, highfi.Numerics(element_size=ELEMENTS)))
+    low, high = near.min(axis=0), near.max(axis=0)
+    margin = 0.5 * (high - low)
+    assert (low - margin < found).all() and (found < high + margin).all()
+    # Control:
+    free = lowfi.run(scene.replace({"friction": None}), "springs").outcome.velocity[0]
+    assert free > high[0] + margin[0]
