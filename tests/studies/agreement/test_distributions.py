@@ -130,6 +130,16 @@ def test_a_surrogate_agrees_as_a_distribution_where_1_um_moves_more_than_the_lim
     assert far.verdict.endswith(" x margin") and "rate x" in far.verdict
 
 
+def test_chaos_does_not_explain_a_surrogate_beyond_the_neighbours_of_the_reference(
+    study, monkeypatch
+):
+    """The quantiles of the reference are 3.2 deg/s apart. Control: 1.6 deg/s, above, has no such words."""
+    stub(monkeypatch, 4.0)
+    words = judged(study).models["calibrated"].verdict
+    assert words.startswith("misses: ")
+    assert "a miss of the model, not chaos: the median of rate x differs by 4 deg/s" in words
+
+
 def test_too_few_neighbours_cannot_judge_and_say_how_many_can(study, monkeypatch):
     """The same pair in another order, so that it is no pair. Control: above, pair by pair."""
     stub(monkeypatch, 0.0)

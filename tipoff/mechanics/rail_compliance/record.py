@@ -68,9 +68,18 @@ class RailCompliance(Shown):
     dragged: np.ndarray | None = None
 
     def __post_init__(self):
-        for array in (*vars(self).values(), *(self.joints or ())):
-            if isinstance(array, np.ndarray):
-                array.flags.writeable = False  # runs share a compliance, and what follows from it
+        """Arrays in the order of rows, as in a file: sums over an array in another order have other
+        last bits. They are read only, because runs share a compliance and what follows from it."""
+        ordered = {
+            name: np.ascontiguousarray(value)
+            for name, value in vars(self).items()
+            if isinstance(value, np.ndarray)
+        }
+        joints = self.joints and JointTerms(*map(np.ascontiguousarray, self.joints))
+        for name, value in (ordered | {"joints": joints}).items():
+            object.__setattr__(self, name, value)
+        for array in (*ordered.values(), *(joints or ())):
+            array.flags.writeable = False
 
     @property
     def degree(self) -> int:

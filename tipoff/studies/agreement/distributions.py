@@ -228,7 +228,7 @@ def _why(word: str, found: list[Comparison], draws: int) -> str:
     if word == verdicts.MISSES:
         worst = max(shown, key=lambda item: abs(item.difference_deg_s) / item.margin_deg_s)
         times = abs(worst.difference_deg_s) / worst.margin_deg_s
-        return f"{_place(worst)} {times:.3g} x margin"
+        return f"{_place(worst)} {times:.3g} x margin{_of_the_model(found)}"
     worst = max(found, key=lambda item: item.width)
     needed = equivalence.needed(found, draws)
     # the width from few draws predicts no larger number
@@ -237,6 +237,21 @@ def _why(word: str, found: list[Comparison], draws: int) -> str:
         f"with {draws} neighbours the {_place(worst)} of the reference is uncertain by "
         f"{worst.width:.2g} x margin; {words} are needed"
     )
+
+
+def _of_the_model(found: list[Comparison]) -> str:
+    """Words for a median that differs by more than the neighbours of the reference differ among
+    themselves: from the 10 to the 90 % quantile. Chaos does not explain such a difference."""
+    for axis in equivalence.AXES:
+        low, middle, high = (item for item in found if item.axis == axis)
+        spread = high.reference_deg_s - low.reference_deg_s
+        if middle.shown and abs(middle.difference_deg_s) > spread:
+            return (
+                f"; a miss of the model, not chaos: the median of rate {axis} differs by "
+                f"{abs(middle.difference_deg_s):.2g} deg/s, the neighbours of the reference by "
+                f"{spread:.2g}"
+            )
+    return ""
 
 
 def _place(item: Comparison) -> str:
