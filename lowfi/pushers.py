@@ -28,6 +28,17 @@ class Pushing(NamedTuple):
     segment: np.ndarray  # (n,) number of the present segment of each
     before: np.ndarray  # (n,) m, travel at the start of the step
     after: np.ndarray  # (n,) m, travel at its end
+    inertia: "Inertia | None"  # None if no pusher has mass
+
+
+@by_reference
+class Inertia(NamedTuple):
+    """Evolving values of pushers with mass, and work space."""
+
+    kept: np.ndarray  # (n,) J, kinetic energy at the end of the stroke, zero before
+    speed: np.ndarray  # (n,) m/s, of the travel at the end of the step
+    matrix: np.ndarray  # (n,n)
+    pairs: np.ndarray  # (n,) N
 
 
 def pushing(pushers: law.Pushers | None) -> Pushing | None:
@@ -40,6 +51,18 @@ def pushing(pushers: law.Pushers | None) -> Pushing | None:
         segment=np.zeros(count, dtype=np.int64),
         before=np.zeros(count),
         after=np.zeros(count),
+        inertia=_inertia(pushers.mass, count),
+    )
+
+
+def _inertia(mass: np.ndarray | None, count: int) -> Inertia | None:
+    if mass is None:
+        return None
+    return Inertia(
+        kept=np.zeros(count),
+        speed=np.zeros(count),
+        matrix=np.zeros((count, count)),
+        pairs=np.zeros(count),
     )
 
 
@@ -49,6 +72,13 @@ def reset(pushing):
     if pushing is not None:
         for i in range(pushing.segment.size):
             pushing.segment[i] = law.segment_at(pushing.law, i, pushing.after[i])
+            _start(pushing.inertia, i)
+
+
+@kernel
+def _start(inertia, i):
+    if inertia is not None:
+        inertia.kept[i] = 0.0
 
 
 @kernel
@@ -59,6 +89,14 @@ def survey(pushing, platform, payload, state):
         place, turn = relative_pose(platform, body, base)
         for i in range(pushing.segment.size):
             pushing.after[i] = law.travel(pushing.law, i, place, turn)
+        _survey_speed(pushing.inertia, pushing, platform, body, base)
+
+
+@kernel
+def _survey_speed(inertia, pushing, platform, body, base):
+    if inertia is not None:
+        for i in range(inertia.speed.size):
+            inertia.speed[i] = speed_of(pushing, i, platform, body, base)
 
 
 @kernel
@@ -69,8 +107,19 @@ def begin_step(pushing):
     if pushing is not None:
         for i in range(pushing.segment.size):
             pushing.before[i] = pushing.after[i]
-            changed = _go_on(pushing, i) or changed
+            moved = _go_on(pushing, i)
+            if moved:
+                _stop(pushing.inertia, pushing.law.mass, pushing, i)
+            changed = moved or changed
     return changed
+
+
+@kernel
+def _stop(inertia, mass, pushing, i):
+    """Keep the kinetic energy of a pusher whose stroke is used up."""
+    if inertia is not None:
+        if pushing.segment[i] == law.last_segment(pushing.law, i):
+            inertia.kept[i] = 0.5 * mass[i] * inertia.speed[i] * inertia.speed[i]
 
 
 @kernel
@@ -119,11 +168,9 @@ class Push(NamedTuple):
 def push_of(pushing, i, platform, body, base):
     """Forces of pusher ``i``."""
     place, turn = relative_pose(platform, body, base)
-    arm = rotation.rotate(body.turn, law.point_of(pushing.law, i))
-    point = (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
-    e = rotation.rotate(base.turn, pushing.law.direction)
-    there, here = slot.velocity_at(body, point), slot.velocity_at(base, point)
-    slip = (there[0] - here[0], there[1] - here[1], there[2] - here[2])
+    point = place_of(pushing, i, body)
+    e = rotation.rotate(base.turn, law.direction_of(pushing.law, i))
+    slip = slip_at(body, base, point)
     segment = pushing.segment[i]
     size = law.force(pushing.law, i, segment, law.travel(pushing.law, i, place, turn))
     held = law.friction(pushing.law, i, segment, rotation.dot(e, slip))
@@ -142,8 +189,8 @@ def fastest_rate(pushing, platform, payload, state):
     stiffness, damping = 0.0, 0.0
     if pushing is not None:
         body, base = slot.motion(payload, state, slot.PAYLOAD), slot.frame(platform, state)
-        e = rotation.rotate(base.turn, pushing.law.direction)
         for i in range(pushing.segment.size):
+            e = rotation.rotate(base.turn, law.direction_of(pushing.law, i))
             push = push_of(pushing, i, platform, body, base)
             across = inverse_mass(platform, payload, body, base, push.point, e)
             segment, speed = pushing.segment[i], rotation.dot(e, push.slip)
@@ -163,4 +210,39 @@ def work(pushing, integrated, platform, body, base):
         for i in range(pushing.segment.size):
             s = law.travel(pushing.law, i, place, turn)
             total += law.given_up(pushing.law, i, pushing.segment[i], s)
+        total -= _in_pushers(pushing.inertia, pushing.law.mass, pushing, platform, body, base)
     return total
+
+
+@kernel
+def _in_pushers(inertia, mass, pushing, platform, body, base):
+    """Kinetic energy (J) that the pushers have or have kept."""
+    total = 0.0
+    if inertia is not None:
+        for i in range(inertia.kept.size):
+            total += inertia.kept[i]
+            if pushing.segment[i] != law.last_segment(pushing.law, i):
+                speed = speed_of(pushing, i, platform, body, base)
+                total += 0.5 * mass[i] * speed * speed
+    return total
+
+
+@kernel
+def place_of(pushing, i, body):
+    """Point (m) of pusher ``i`` in scene axes."""
+    arm = rotation.rotate(body.turn, law.point_of(pushing.law, i))
+    return (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
+
+
+@kernel
+def slip_at(body, base, point):
+    """Velocity (m/s) of the payload at a ``point`` relative to the platform there."""
+    there, here = slot.velocity_at(body, point), slot.velocity_at(base, point)
+    return (there[0] - here[0], there[1] - here[1], there[2] - here[2])
+
+
+@kernel
+def speed_of(pushing, i, platform, body, base):
+    """Speed (m/s) of the travel of pusher ``i``."""
+    e = rotation.rotate(base.turn, law.direction_of(pushing.law, i))
+    return rotation.dot(e, slip_at(body, base, place_of(pushing, i, body)))

@@ -17,6 +17,9 @@ UNEQUAL = (
     (5100.0, 1.1e5, 0.021, 0.045, -0.02),
 )
 ARM = 0.1  # m
+MASSES = (0.3, 0.5, 0.2, 0.4)  # kg, of the pushers of these springs
+# Misalignment (rad) of these springs, and its clock angle (rad).
+TILTS = ((0.02, 0.3), (0.03, 2.0), (0.0, 0.0), (0.025, 4.0))
 ENOUGH = 1e-4  # s, after the last stroke
 
 
@@ -24,6 +27,14 @@ def springs(numbers: Sequence[tuple] = UNEQUAL) -> dict:
     """The table ``[thrust]`` of these springs."""
     names = ("preload", "rate", "stroke", "y", "z")
     return {"kind": "springs", "arm": ARM, "springs": [dict(zip(names, row)) for row in numbers]}
+
+
+def heavy_and_tilted() -> dict:
+    """The table of the unequal springs with ``MASSES`` and ``TILTS``."""
+    table = springs()
+    for spring, mass, (axial, radial) in zip(table["springs"], MASSES, TILTS):
+        spring |= {"mass": mass, "misalignment": {"axial": axial, "radial": radial}}
+    return table
 
 
 class Free(NamedTuple):
@@ -34,33 +45,44 @@ class Free(NamedTuple):
     rate: np.ndarray  # (3,) rad/s, in body axes
 
 
-def flown(mass: float, inertia: np.ndarray, numbers: Sequence[tuple] = UNEQUAL) -> Free:
+def flown(
+    mass: float,
+    inertia: np.ndarray,
+    numbers: Sequence[tuple] = UNEQUAL,
+    masses: Sequence[float] = (0.0,) * 4,
+    tilts: Sequence[tuple] = ((0.0, 0.0),) * 4,
+) -> Free:
     """A payload of ``inertia`` (3,3) kg m2 on a fixed platform after all springs, by the plain
-    equations of a rigid body: each spring pushes along X at its point of the payload, up to its
-    stroke of that point. From one end of a stroke to the next by Dormand and Prince of order
-    eight, to 1e-12."""
+    equations of a rigid body: each spring pushes along its line at its point of the payload, up to its
+    stroke of that point, and its pusher adds its mass to the mass matrix of the payload in this
+    direction. From one end of a stroke to the next by Dormand and Prince of order eight, to 1e-12."""
+    size, angle = np.array(tilts).T
+    lines = np.column_stack(
+        [np.cos(size), np.sin(size) * np.cos(angle), np.sin(size) * np.sin(angle)]
+    )
     points = np.array([(-ARM, y, z) for *_, y, z in numbers])
     preload, rate, stroke = np.array([row[:3] for row in numbers]).T
     acts = np.ones(len(numbers), dtype=bool)
 
     def travel(state):
         turn = rotation.matrices(state[None, 6:10])[0]
-        return state[0] + (points @ turn.T - points)[:, 0]
+        return ((state[:3] + points @ turn.T - points) * lines).sum(axis=1)
 
     def change(_, state):
         turn = rotation.matrices(state[None, 6:10])[0]
         spin = np.linalg.solve(inertia, state[10:13])
         force = np.where(acts, preload - rate * travel(state), 0.0)
-        moment = np.cross(points @ turn.T, np.outer(force, [1.0, 0.0, 0.0])).sum(axis=0) @ turn
         turning = rotation.product(tuple(state[6:10]), (0.0, *(0.5 * spin)))
-        return np.concatenate(
-            [
-                state[3:6],
-                [force.sum() / mass, 0.0, 0.0],
-                turning,
-                moment - np.cross(spin, state[10:13]),
-            ]
-        )
+        # rows of the speed of each travel over velocity and body rate, and its acceleration at constant ones
+        rows = np.hstack([lines, np.cross(points, lines @ turn)])
+        inward = (np.cross(spin, np.cross(spin, points)) * (lines @ turn)).sum(axis=1)
+        moves = np.where(acts, masses, 0.0)
+        whole = np.zeros((6, 6))
+        whole[:3, :3], whole[3:, 3:] = mass * np.eye(3), inertia
+        load = rows.T @ (force - moves * inward)
+        load[3:] -= np.cross(spin, state[10:13])
+        gained = np.linalg.solve(whole + rows.T @ (moves[:, None] * rows), load)
+        return np.concatenate([state[3:6], gained[:3], turning, inertia @ gained[3:]])
 
     state, time = np.zeros(13), 0.0
     state[6] = 1.0

@@ -37,6 +37,7 @@ class Moving(NamedTuple):
     nodes: np.ndarray  # (p,3) m/s, those of ``System.nodes``
     rail_momentum: np.ndarray  # (3,) kg m/s
     impulse: np.ndarray  # (6,) N s, N m s
+    pushers: np.ndarray  # (4,n) values of n pushers with mass
 
 
 def moving(system, state: records.State) -> Moving:
@@ -51,6 +52,7 @@ def restore(system, state: records.State, saved: Moving) -> None:
 
 
 def _changed(system, state):
+    inertia = state.pushing and state.pushing.inertia
     return (
         state.payload.velocity,
         state.payload.spin,
@@ -59,6 +61,7 @@ def _changed(system, state):
         state.velocity[system.nodes],
         state.rail_momentum,
         state.impulse,
+        np.zeros((4, 0)) if inertia is None else inertia.values,
     )
 
 

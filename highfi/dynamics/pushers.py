@@ -7,17 +7,23 @@ a step of it is already in the kick before. So the next kick has the rest, and t
 does not depend on where in a step the stroke ends::
 
     F = q (F_n + F_end) / 2 - F_n / 2          friction f (q - 1/2)
+
+Pushers with mass m take from each kick the pairs of impulses m (new - old) of the speeds of their travel,
+after all other impulses (``pusher_law``). Of the last kick they resist their own force, and a share q - 1/2
+of all others.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.highfi.state.pose import body_rate, triple
-from tipoff.highfi.state.records import AXIAL, TOTAL, Pushing
+from tipoff.highfi.state.pose import body_matrix, body_rate, triple
+from tipoff.highfi.state.records import AXIAL, TOTAL, Inertia, Pushing
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined, kernel
 from tipoff.scenes.effects import pusher_law as law
+
+SPEED, GAINED, FORCE, SHARE = range(4)  # rows of ``Inertia.values``
 
 
 class Arm(NamedTuple):
@@ -39,6 +45,18 @@ def new_state(pushers: law.Pushers | None) -> Pushing | None:
         force=np.zeros(count),
         friction=np.zeros(count),
         begun=np.zeros(1),
+        inertia=_inertia(pushers.mass, count),
+    )
+
+
+def _inertia(mass: np.ndarray | None, count: int) -> Inertia | None:
+    if mass is None:
+        return None
+    return Inertia(
+        values=np.zeros((4, count)),
+        kept=np.zeros(count),
+        matrix=np.zeros((count, count)),
+        pairs=np.zeros(count),
     )
 
 
@@ -56,6 +74,14 @@ def begin_pushers(pushers, frame, state, pose):
                 speed = _speed(pushers, i, frame, state, pose)
                 pushing.force[i] = law.force(pushers, i, segment, s)
                 pushing.friction[i] = law.friction(pushers, i, segment, speed)
+                _begin_inertia(pushing.inertia, i, speed, segment == law.last_segment(pushers, i))
+
+
+@kernel
+def _begin_inertia(inertia, i, speed, is_off):
+    if inertia is not None:
+        inertia.values[SPEED, i] = np.nan if is_off else speed
+        inertia.values[SHARE, i] = 1.0
 
 
 @inlined
@@ -73,6 +99,7 @@ def _load(pushers, i, frame, state, pose):
     pushing.travel[i] = s
     if pushing.segment[i] == last:
         pushing.force[i] = pushing.friction[i] = 0.0
+        _stop(pushing.inertia, pushers.mass, i)
         return
     speed = _speed(pushers, i, frame, state, pose)
     segment = law.segment_at(pushers, i, s)
@@ -83,10 +110,28 @@ def _load(pushers, i, frame, state, pose):
         held = law.friction(pushers, i, last - 1, speed)
         pushing.force[i] = 0.5 * (share * (pushing.force[i] + end) - pushing.force[i])
         pushing.friction[i] = (share - 0.5) * held
+        _share(pushing.inertia, i, share - 0.5)
     else:
         pushing.force[i] = law.force(pushers, i, segment, s)
         pushing.friction[i] = law.friction(pushers, i, segment, speed)
     pushing.segment[i] = segment
+
+
+@kernel
+def _share(inertia, i, share):
+    if inertia is not None:
+        inertia.values[SHARE, i] = share
+
+
+@kernel
+def _stop(inertia, mass, i):
+    """Keep the kinetic energy of a pusher at its stop."""
+    if inertia is not None:
+        speed = inertia.values[SPEED, i]
+        if speed == speed:
+            inertia.kept[i] = 0.5 * mass[i] * speed * speed
+            inertia.values[SPEED, i] = np.nan
+            inertia.values[GAINED, i] = inertia.values[FORCE, i] = 0.0
 
 
 @kernel
@@ -97,7 +142,7 @@ def _arm(pushers, i, frame, state, pose):
     if frame is not None:
         p, b = state.payload.position, state.platform.position
         base = (out[0] + p[0] - b[0], out[1] + p[1] - b[1], out[2] + p[2] - b[2])
-    return Arm(rotation.rotate(pose.frame, pushers.direction), out, base)
+    return Arm(rotation.rotate(pose.frame, law.direction_of(pushers, i)), out, base)
 
 
 @kernel
@@ -136,6 +181,70 @@ def kick_pushers(pushers, constants, state, pose, dt):
             size = dt * (state.pushing.force[i] - state.pushing.friction[i])
             if size != 0.0:
                 _kick(constants, state, _arm(pushers, i, constants.frame, state, pose), size)
+        _resist(state.pushing.inertia, pushers.mass, pushers, constants, state, pose, dt)
+
+
+@kernel
+def _resist(inertia, mass, pushers, constants, state, pose, dt):
+    """Kick the bodies by the pairs that change the speeds of the pushers."""
+    if inertia is not None:
+        frame = constants.frame
+        for i in range(mass.size):
+            inertia.pairs[i] = 0.0
+            for j in range(mass.size):
+                inertia.matrix[i, j] = 1.0 if i == j else 0.0
+            if inertia.values[SPEED, i] == inertia.values[SPEED, i]:
+                now = _present_speed(pushers, i, constants, state, pose)
+                share, one = inertia.values[SHARE, i], _arm(pushers, i, frame, state, pose)
+                own = dt * (state.pushing.force[i] - state.pushing.friction[i])
+                own *= _mobility(constants, state, one, one)
+                gained = own + share * (now - inertia.values[SPEED, i] - own)
+                inertia.pairs[i] = mass[i] * gained
+                for j in range(mass.size):
+                    if inertia.values[SPEED, j] == inertia.values[SPEED, j]:
+                        other = _arm(pushers, j, frame, state, pose)
+                        resisted = mass[i] * _mobility(constants, state, one, other)
+                        inertia.matrix[i, j] += resisted if i == j else share * resisted
+        law.solve(inertia.matrix, inertia.pairs)
+        for i in range(mass.size):
+            if inertia.values[SPEED, i] == inertia.values[SPEED, i]:
+                _kick(constants, state, _arm(pushers, i, frame, state, pose), -inertia.pairs[i])
+                inertia.values[FORCE, i] = inertia.pairs[i] / dt
+                if mass[i] > 0.0:
+                    inertia.values[GAINED, i] = inertia.pairs[i] / mass[i]
+                    inertia.values[SPEED, i] += inertia.values[GAINED, i]
+
+
+@kernel
+def _present_speed(pushers, i, constants, state, pose):
+    """Speed (m/s) of the travel of pusher ``i`` at the present velocities of the bodies."""
+    arm, body = _arm(pushers, i, constants.frame, state, pose), state.payload
+    rate = body_rate(body, constants.payload.inverse_inertia)
+    there = _along(arm.direction, arm.on_payload, triple(body.velocity), rate)
+    return there - _speed_of_platform(constants.frame, state, arm)
+
+
+@kernel
+def _mobility(constants, state, one, other):
+    """Change (1/kg) of the speed of travel at the arm ``one`` by a unit impulse of a pair at the
+    ``other``."""
+    payload = constants.payload
+    turn = rotation.cross(other.on_payload, other.direction)
+    turned = rotation.angular_velocity(body_matrix(state.payload), payload.inverse_inertia, turn)
+    total = rotation.dot(one.direction, other.direction) / payload.mass
+    total += rotation.dot(rotation.cross(one.on_payload, one.direction), turned)
+    return total + _mobility_of_platform(constants.frame, state, one, other)
+
+
+@kernel
+def _mobility_of_platform(frame, state, one, other):
+    total = 0.0
+    if frame is not None:
+        turn = rotation.cross(other.on_platform, other.direction)
+        turned = rotation.angular_velocity(body_matrix(state.platform), frame.inverse_inertia, turn)
+        total = rotation.dot(one.direction, other.direction) / frame.mass
+        total += rotation.dot(rotation.cross(one.on_platform, one.direction), turned)
+    return total
 
 
 @kernel
@@ -172,16 +281,37 @@ def work_of_pushers(pushers, frame, state, pose, axial_speed, half):
     ``axial_speed`` (m/s): X velocity of the payload's mass centre relative to the platform's."""
     if pushers is not None:
         total, axial = state.work[TOTAL], state.work[AXIAL]
-        along = rotation.rotate(pose.frame, pushers.direction)[0] * axial_speed
         for i in range(state.pushing.segment.size):
             speed = _speed(pushers, i, frame, state, pose)
+            along = rotation.rotate(pose.frame, law.direction_of(pushers, i))[0] * axial_speed
             force, held = half * state.pushing.force[i], half * state.pushing.friction[i]
+            force -= half * _inertial_force(state.pushing.inertia, i)
             total.thrust += force * speed
             axial.thrust += force * along
             total.friction += held * speed
             axial.friction += held * along
 
 
+@kernel
+def _inertial_force(inertia, i):
+    """Force (N) that accelerates pusher ``i``, as in the last kick."""
+    force = 0.0
+    if inertia is not None:
+        force = inertia.values[FORCE, i]
+    return force
+
+
 def work(pushers: law.Pushers, pushing: Pushing) -> float:
-    """Energy (J) that the pushers have given up since ignition, by their potential."""
-    return law.energy_given_up(pushers, pushing.segment, pushing.travel) - float(pushing.begun[0])
+    """Work (J) of the pushers since ignition: the energy that they have given up, by their potential,
+    less their own kinetic energy."""
+    given_up = law.energy_given_up(pushers, pushing.segment, pushing.travel)
+    return given_up - float(pushing.begun[0]) - _kinetic(pushers.mass, pushing.inertia)
+
+
+def _kinetic(mass: np.ndarray | None, inertia: Inertia | None) -> float:
+    """Kinetic energy (J) that pushers have, or have kept, at the present places."""
+    if mass is None or inertia is None:
+        return 0.0
+    before, gained, *_ = inertia.values
+    speed = np.where(np.isfinite(before), before + 0.5 * gained, 0.0)
+    return float(inertia.kept.sum() + (0.5 * mass * speed**2).sum())

@@ -98,7 +98,7 @@ def _from_origin(found: Pushers | None, offset: np.ndarray) -> Pushers | None:
     centre is."""
     if found is None:
         return None
-    return found._replace(origin=found.origin + offset @ np.array(found.direction))
+    return found._replace(origin=found.origin + found.direction @ offset)
 
 
 def moving_walls(surfaces: records.Surface, moving_mass: np.ndarray) -> np.ndarray:

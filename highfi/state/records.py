@@ -195,6 +195,18 @@ class History(NamedTuple):
 
 
 @by_reference
+class Inertia(NamedTuple):
+    """Values of pushers with mass, and work space. A pusher at its stop has no speed: NaN."""
+
+    # (4,n): speed (m/s) of the travel at the half step; its change (m/s) in the last kick; force (N) on
+    # the pusher in the last kick; share of the next kick in which it resists other forces
+    values: np.ndarray
+    kept: np.ndarray  # (n,) J, kinetic energy at the end of the stroke, zero before
+    matrix: np.ndarray  # (n,n)
+    pairs: np.ndarray  # (n,) N s
+
+
+@by_reference
 class Pushing(NamedTuple):
     """Values of n spring pushers at the present places."""
 
@@ -203,6 +215,7 @@ class Pushing(NamedTuple):
     force: np.ndarray  # (n,) N, of the springs
     friction: np.ndarray  # (n,) N, of the pushers, against the motion
     begun: np.ndarray  # (1,) J, given up from zero travel to ignition
+    inertia: "Inertia | None"  # None if no pusher has mass
 
 
 @by_reference

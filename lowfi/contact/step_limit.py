@@ -146,8 +146,32 @@ def inverse_mass(platform, payload, body, base, point, direction):
 
 @kernel
 def _own(mass, inverse_inertia, body, point, direction):
-    p = body.place
-    lever = rotation.cross((point[0] - p[0], point[1] - p[1], point[2] - p[2]), direction)
+    lever = _lever(body, point, direction)
     return 1.0 / mass + rotation.dot(
         lever, rotation.angular_velocity(body.turn, inverse_inertia, lever)
+    )
+
+
+@kernel
+def _lever(body, point, direction):
+    p = body.place
+    return rotation.cross((point[0] - p[0], point[1] - p[1], point[2] - p[2]), direction)
+
+
+@kernel
+def mobility(platform, payload, body, base, one, other):
+    """Change (1/kg) of the relative velocity along and at ``one`` by a unit impulse of a pair along
+    and at the ``other``, each a direction and a point."""
+    total = _shared(payload, body, one, other)
+    if platform is not None:
+        total += _shared(platform, base, one, other)
+    return total
+
+
+@kernel
+def _shared(record, body, one, other):
+    lever = _lever(body, other[1], other[0])
+    turned = rotation.angular_velocity(body.turn, record.inverse_inertia, lever)
+    return rotation.dot(one[0], other[0]) / record.mass + rotation.dot(
+        _lever(body, one[1], one[0]), turned
     )

@@ -22,10 +22,12 @@ from tipoff.lowfi.contact.compliant.loads import load as compliant_load
 from tipoff.lowfi.contact.compliant.modes import vibrate
 from tipoff.lowfi.contact.compliant.solution import solve
 from tipoff.lowfi.contact.springs import load, penetration, relative_pose
-from tipoff.lowfi.pushers import push_of
+from tipoff.lowfi.pusher_inertia import resist
+from tipoff.lowfi.pushers import place_of, push_of, slip_at
 from tipoff.lowfi.state import IMPULSE, PAYLOAD, PLACE, PLATFORM, QUATERNION, SPIN, TURN, VELOCITY
 from tipoff.lowfi.system import Body
 from tipoff.scenes.effects.friction import Friction
+from tipoff.scenes.effects.pusher_law import direction_of
 from tipoff.scenes.effects.thrust_law import magnitude
 
 
@@ -57,6 +59,7 @@ def derivative(system, touching, stick, time, state, out):
     add_body_force(system.body_force, payload.mass, bodies, out)
     add_springs(system.contact, system.sticking, system.faces, touching, stick, bodies, out)
     add_compliant_contact(system.compliance, system.faces, touching, bodies, state, out)
+    add_pusher_inertia(system.pushing, payload, bodies, state, out)
     move(payload.mass, state, PAYLOAD, bodies.payload, out)
     move_platform(platform, state, bodies.base, out)
 
@@ -187,6 +190,28 @@ def add_pushers(pushing, bodies, out):
                 (push.drag, slot.FRICTION, slot.FRICTION_AXIAL, -1.0),
             ):
                 add_power(bodies.ledger, entry, axial, force, push.slip, speed, sign, out)
+
+
+@kernel
+def add_pusher_inertia(pushing, payload, bodies, state, out):
+    """Add the pairs of forces that accelerate pushers with mass, after all other forces."""
+    if pushing is not None:
+        _add_pusher_inertia(pushing.inertia, pushing, payload, bodies, state, out)
+
+
+@kernel
+def _add_pusher_inertia(inertia, pushing, payload, bodies, state, out):
+    if inertia is not None:
+        resist(inertia, pushing.law.mass, pushing, payload, bodies, state, out)
+        speed = _axial_speed(bodies.platform, bodies)
+        for i in range(inertia.pairs.size):
+            point, size = place_of(pushing, i, bodies.payload), inertia.pairs[i]
+            slip = slip_at(bodies.payload, bodies.base, point)
+            d = rotation.rotate(bodies.base.turn, direction_of(pushing.law, i))
+            force = (-size * d[0], -size * d[1], -size * d[2])
+            _pair(bodies.platform, bodies.ledger, force, point, out)
+            entries = slot.THRUST, slot.THRUST_AXIAL
+            add_power(bodies.ledger, entries[0], entries[1], force, slip, speed, 1.0, out)
 
 
 @kernel

@@ -70,8 +70,15 @@ class Ensemble(NamedTuple):
     def case(self, number: int) -> tuple[Mapping[str, Any], Case]:
         """Inputs and result of one case, run alone, with the same bits."""
         (row,) = self.source.rows(number, number + 1)
+        return row, self._run(row)
+
+    def nominal(self) -> Case:
+        """Result of the scene itself."""
+        return self._run({})
+
+    def _run(self, row: Mapping[str, Any]) -> Case:
         ((found,),) = completed(self.family(), [[row]], workers=1)
-        return row, found
+        return found
 
 
 @lru_cache  # the sources do not change while the program runs

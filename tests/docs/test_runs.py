@@ -58,11 +58,14 @@ def folder(tmp_path_factory):
         f"[conditions.{name}]\n" + "".join(f'"{key}" = "{value}"\n' for key, value in table.items())
         for name, table in launcher["conditions"].items()
     )
-    (place / "my_launcher.toml").write_text(f'extends = "tiny"\nname = "tiny"\n{conditions}')
+    small = 'extends = "tiny"\nname = "tiny"\n'
+    (place / "my_launcher.toml").write_text(small + conditions)
+    (place / "my_deployer.toml").write_text(small)
     errors = next(
         text for text in pages.of_language("docs/tutorials/tolerances.md", "toml") if "vary" in text
     )
-    for name in ("my_errors.toml", "my_tolerances.toml"):
+    # The balance of a deployer is that of a spring, which the small scene has not.
+    for name in ("my_errors.toml", "my_tolerances.toml", "my_balance.toml"):
         (place / name).write_text(errors)
     key = "thrust_offset.misalignment.axial"
     (place / "cases.csv").write_text(f"{key}\ndeg\n0.1\n0.2\n")

@@ -255,7 +255,8 @@ def slides(scene: Any, speed: float) -> float:
     friction from rest to twice this ``speed`` (m/s); zero without such a force."""
     pull = _pull(scene)
     if isinstance(scene.thrust, PushedTable):
-        pull += _fixed_gain(scene) * float(scene.thrust.net_force(np.zeros(1))[0])
+        gain = _fixed_gain(scene)
+        pull += gain * float(pushed.net_force(scene.thrust, np.zeros(1), gain, pull)[0])
     return 2.0 * speed / pull if pull > 0.0 and abs(_begun(scene)) < speed else 0.0
 
 

@@ -4,8 +4,9 @@ The speed at the travel s follows from energy, and the time from the speed::
 
     v^2 / 2 = v_0^2 / 2 + integral of (g F + p) ds,     t = integral of ds / v
 
-with the acceleration g per force and p of a body force, and the sum F of all springs less the friction
-of their pushers. Both are exact in a cell of s with constant force.
+with the acceleration g per force and p of a body force. F is the sum of all springs less the friction
+and the inertia of their pushers, of mass m in all: f - m (g F + p) of the rest f. Speed and time are exact
+in a cell of s with constant force.
 """
 
 from typing import NamedTuple
@@ -33,7 +34,7 @@ def motion(table: PushedTable, gain: float, pull: float, begun: float) -> Pushed
     # Closely spaced at the start, where the speed grows with the root of the travel.
     travel = np.unique(np.append(knots.max() * np.linspace(0.0, 1.0, _CELLS + 1) ** 2, knots))
     middle, steps = 0.5 * (travel[1:] + travel[:-1]), np.diff(travel)
-    gained = np.cumsum((gain * table.net_force(middle) + pull) * steps)
+    gained = np.cumsum((gain * net_force(table, middle, gain, pull) + pull) * steps)
     squares = max(begun, 0.0) ** 2 + 2.0 * np.concatenate([[0.0], gained])
     stands = np.flatnonzero(squares[1:] <= 0.0)
     count = stands[0] + 1 if stands.size else travel.size
@@ -42,11 +43,17 @@ def motion(table: PushedTable, gain: float, pull: float, begun: float) -> Pushed
     return Pushed(time, travel[:count], speed)
 
 
+def net_force(table: PushedTable, s: np.ndarray, gain: float, pull: float) -> np.ndarray:
+    """Force (n,) N of all springs on the payload at the travel ``s`` (n,) m."""
+    mass = table.moving_mass(s)
+    return (table.net_force(s) - mass * pull) / (1.0 + gain * mass)
+
+
 def over_time(table: PushedTable, gain: float, pull: float, begun: float) -> Curve:
     """Sum of all forces (N) over time (s) in this motion; of n >= 2 points."""
     found = motion(table, gain, pull, begun)
-    before = table.net_force(found.travel)
-    after = table.net_force(np.nextafter(found.travel, np.inf))
+    before = net_force(table, found.travel, gain, pull)
+    after = net_force(table, np.nextafter(found.travel, np.inf), gain, pull)
     jumps = before != after
     times = np.repeat(found.time, 1 + jumps)
     forces = np.repeat(before, 1 + jumps)
@@ -60,12 +67,15 @@ def impulses(table: PushedTable, gain: float, pull: float, begun: float) -> np.n
     """Impulse (n,) N s of each spring in this motion."""
     found = motion(table, gain, pull, begun)
     middle = 0.5 * (found.travel[1:] + found.travel[:-1])
+    gained = gain * net_force(table, middle, gain, pull) + pull
     return np.array(
         [
             np.where(
-                middle <= push.travel[-1], np.interp(middle, push.travel, push.force) - held, 0.0
+                middle <= push.travel[-1],
+                np.interp(middle, push.travel, push.force) - held - spring.mass * gained,
+                0.0,
             )
             @ np.diff(found.time)
-            for push, held in table.pushes()
+            for (push, held), (spring, *_) in zip(table.pushes(), table.places())
         ]
     )

@@ -32,6 +32,11 @@ def is_absent(value: Any) -> bool:
     return value is None
 
 
+def is_zero(value: Any) -> bool:
+    """Whether a value is zero. A new key whose zero changes nothing is left out of dumps."""
+    return value == 0.0
+
+
 def at_least_one(items: Sized) -> Sized:
     """Pydantic validator of a list that may not be empty. Pydantic's min_length would also report
     lists with refused items."""

@@ -210,6 +210,7 @@ SMALLEST_DIMENSION = 1e-6  # m, of a rail: above the rounding of its place, belo
 Dimension = quantity("m", ge=SMALLEST_DIMENSION)
 Angle = quantity("rad")
 Time = quantity("s")
+NonNegativeMass = quantity("kg", ge=0.0)
 NonNegativeTime = quantity("s", ge=0.0)
 PositiveTime = quantity("s", gt=0.0)
 LONGEST = 3600.0  # s, of a run

@@ -174,9 +174,11 @@ def test_the_record_is_about_the_actual_mass_centre():
     )
     found = scene_model.build(scene).pushers
     np.testing.assert_allclose(found.point, [[-0.1, 0.03, 0.001], [-0.1, -0.03, 0.001]], atol=1e-15)
-    assert found.direction == pytest.approx((math.cos(0.01), math.sin(0.01), 0.0), rel=1e-14)
+    np.testing.assert_allclose(
+        found.direction, 2 * [[math.cos(0.01), math.sin(0.01), 0.0]], rtol=1e-14
+    )
     place = np.array([[-0.1, 0.03, 0.002], [-0.1, -0.03, 0.002]])
-    np.testing.assert_allclose(found.origin, place @ np.array(found.direction), rtol=1e-13)
+    np.testing.assert_allclose(found.origin, (place * found.direction).sum(axis=1), rtol=1e-13)
 
 
 def test_the_energy_of_a_record_is_the_integral_of_its_force():

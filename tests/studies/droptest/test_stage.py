@@ -251,6 +251,7 @@ def population(rates, exits=0.0444):
     results = SimpleNamespace(
         rate=np.radians(rates),
         exit_time=np.where(np.isfinite(rates[:, 0]), exits, np.nan),
+        impulse_after_exit=np.where(np.isfinite(rates[:, 0]), 0.0, np.nan),
         lateral_velocity=1e-3 * values,
         direction_error=np.radians(values),
         exit_attitude=np.radians(values)[:, None] * np.ones((many, 3)),

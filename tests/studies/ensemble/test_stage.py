@@ -145,6 +145,29 @@ def test_a_disturbed_run_that_does_not_settle_is_counted():
     assert found.by["tolerance"].largest_deg_s == 0.0
 
 
+def test_the_probability_above_limits(tmp_path):
+    """The share of the cases with a rate above any limit, by the stored rates. Control: a lower limit has
+    a larger share. A limit that is none is refused before anything runs."""
+    xarray = pytest.importorskip("xarray")
+    limits = ("--limit", "x=0.5 deg/s", "--limit", "3 deg/s")
+    first = call("--cases", 300, "--out", tmp_path, *limits)
+    assert first.exit_code == 0, first.output
+    found = json.loads((tmp_path / "reference" / "ensemble.json").read_text())
+    rates = np.degrees(
+        xarray.open_zarr(f"{found['store']}/cases.zarr", consolidated=False).rate.values
+    )
+    count = int(((abs(rates[:, 0]) > 0.5) | (np.linalg.norm(rates, axis=1) > 3.0)).sum())
+    above = found["above"]
+    assert 0 < count < 300 and above["count"] == count and above["share"] == count / 300
+    assert above["low"] < above["share"] < above["high"]
+    assert "above any of the limits rate about x 0.5 deg/s, total rate 3 deg/s: " in first.stdout
+    # Control:
+    lower = call("--cases", 300, "--out", tmp_path, "--limit", "1 deg/s", "--json")
+    assert json.loads(lower.stdout)["above"]["count"] > count
+    assert call("--out", tmp_path / "no", "--limit", "w=3").exit_code == 2
+    assert not (tmp_path / "no").exists()
+
+
 def test_bad_rows_are_refused_alone(tmp_path):
     table = tmp_path / "cases.csv"
     table.write_text(

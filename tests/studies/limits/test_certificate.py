@@ -73,7 +73,7 @@ def shown(found: certificate.Certificate) -> str:
         name="together", words="set", unit="1", most=1.0, nominal=Found("found", 1.0), advised=None
     )
     made = Limits(
-        **dict(model="", modes=0, modes_why="", agreement=""),
+        **dict(model="", modes=0, modes_why="", agreement="", at="settled", at_why=""),
         **dict(asked=OPTIONS, limits=(LIMIT,), probability=0.7, confidence=0.95, cases=200),
         **dict(allowed=40, constants=Drawn(0, ()), margin=Margin(None, ""), rows=(row,)),
         **dict(map=None, certificate=found, evaluations=1),

@@ -166,3 +166,34 @@ def test_the_command_lists_every_fault(tmp_path):
     found = call("new", file, "--mass", "12 m", "--size", "1 m", "--thrust", "-4 kN")
     assert found.exit_code == 2 and not file.exists()
     assert all(option in found.stderr for option in ("--mass", "--size", "--thrust", "3 faults"))
+
+
+def test_a_deployer_has_the_given_numbers_and_the_rest_of_the_catalogue(tmp_path, monkeypatch):
+    """Mass, clearance and force are those given; the inertia is that of a homogeneous box; all other
+    values and the comments are those of ``cubesat_3u``. Control: without numbers it is that scene."""
+    monkeypatch.chdir(tmp_path)
+    asked = ("--mass", "4.5 kg", "--clearance", "0.3 mm", "--thrust", "25 N")
+    made = call("new", "own.toml", "--deployer", "3u", *asked)
+    assert made.exit_code == 0, made.output
+    scene, own = scenes.load("own.toml"), scenes.load("cubesat_3u")
+    assert (scene.payload.mass, scene.thrust.springs[0].preload) == (4.5, 25.0)
+    assert scene.contact.clearance == pytest.approx(0.3e-3, rel=1e-12)
+    assert scene.payload.inertia.xx == pytest.approx(4.5 * 0.02 / 12.0, rel=1e-5)
+    assert scene.provenance["payload.mass"] == "given to tipoff new"
+    assert plausibility.of_all_conditions(scene) == []
+    for name in ("pads", "rail", "platform", "friction", "mass_offset", "conditions"):
+        assert getattr(scene, name) == getattr(own, name)
+    text = (tmp_path / "own.toml").read_text()
+    assert "continuous" in text and "--scene own.toml --limit" in text
+    # Control:
+    assert call("new", "same.toml", "--deployer", "3u").exit_code == 0
+    assert scenes.load("same.toml").hash == own.hash
+
+
+def test_numbers_that_a_deployer_has_not_are_refused(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    made = call("new", "own.toml", "--deployer", "3u", "--pads", "4", "--mass", "-1 kg")
+    assert made.exit_code == 2 and not (tmp_path / "own.toml").exists()
+    assert "--mass" in made.stderr
+    made = call("new", "own.toml", "--deployer", "3u", "--pads", "4", "--burn-time", "1 s")
+    assert made.exit_code == 2 and "--pads" in made.stderr and "--burn-time" in made.stderr

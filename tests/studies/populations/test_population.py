@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.pushed import heavy_and_tilted
 from tests.studies import free_flight
 from tests.studies.agreement.made import ROW, table
 from tipoff import lowfi
@@ -64,6 +65,35 @@ def test_a_model_that_the_agreement_table_rejects_must_be_named(tmp_path, monkey
         == population.surrogate(study, None, "h2").name
         == COMPLIANT
     )
+
+
+def test_numbers_of_springs_vary(tmp_path):
+    """Preload, rate, place, mass and direction of a spring are inputs of a case, as they are in the
+    scene. Control: each changes the rates of a payload that nothing touches."""
+    table = heavy_and_tilted()
+    scene = free_flight.scene().replace({"thrust": table, **free_flight.BRIEF})
+    first = table["springs"][0]
+    rows = [
+        {f"thrust.springs.0.{name}": value}
+        for name, value in (
+            ("preload", 1.1 * first["preload"]),
+            ("rate", 1.1 * first["rate"]),
+            ("y", first["y"] + 1e-3),
+            ("mass", 0.6),
+            ("misalignment.axial", 0.03),
+            ("misalignment.radial", 1.0),
+        )
+    ]
+    model = Surrogate(scene, None, None)
+    found = population.run(Study(scene, tmp_path, Settings(workers=1)), "s", model, Listed(rows))
+    numerics = Numerics(relative_tolerance=population.TOLERANCE)
+    nominal, *alone = (
+        lowfi.run(scene.replace(row), "springs", numerics=numerics).outcome.rate
+        for row in ({}, *rows)
+    )
+    np.testing.assert_array_equal(found.results.rate, alone)
+    # Control:
+    assert (np.abs(np.subtract(alone, nominal)).max(axis=1) > 1e-4).all()
 
 
 def test_cases_are_kept_and_not_run_again(tmp_path, monkeypatch):

@@ -1,6 +1,6 @@
-"""The law of spring pushers: kernel records, the force over travel, and its potential.
+"""The law of spring pushers: kernel records, the force over travel, its potential, and inertia.
 
-A pusher is guided along a line that is fixed in the platform, with the unit vector e. It pushes at a
+A pusher is guided along a line that is fixed in the platform, with a unit vector e. It pushes at a
 point of the payload, at x in platform axes, and at the same place on the platform::
 
     s = e . x - e . x_0,     force F(s) e,     power F(s) ds/dt,     energy given up  W(s) = integral of F from 0 to s
@@ -12,6 +12,18 @@ stroke is used up stays off. Its friction opposes s with a constant force, which
 ``SLOW``::
 
     friction  f tanh(ds/dt / SLOW)
+
+The moving part of a pusher of mass m goes with the payload up to the end of its stroke, and then stops
+with the platform. Its inertia takes a pair of forces along e, and its kinetic energy stays behind::
+
+    inertia  -m d2s/dt2,     kept  m (ds/dt)^2 / 2
+
+Both are exact on a platform that does not move. Pushers at rest are part of a free platform; there the law
+leaves out the momentum m ds/dt that they have with it, which is m over the mass of the platform of the whole.
+With several pushers, d2s/dt2 = a - D L follows from the relative accelerations a without inertia, the pairs
+L = m d2s/dt2, and D_ij, the change of the speed of travel i by a unit impulse of pair j::
+
+    (1 + diag(m) D) L = diag(m) a
 """
 
 from typing import NamedTuple
@@ -29,14 +41,21 @@ SLOW = 1e-3  # m/s
 class Pushers(NamedTuple):
     """Kernel record of n pushers with k knots of their curves of force."""
 
-    direction: tuple  # unit vector of all of them, in platform axes
+    direction: np.ndarray  # (n,3) unit vectors, in platform axes
     point: np.ndarray  # (n,3) m, in body axes from the payload's actual mass centre
-    origin: np.ndarray  # (n,) m, place along ``direction`` at zero travel, in platform axes
+    origin: np.ndarray  # (n,) m, place along its direction at zero travel, in platform axes
     first: np.ndarray  # (n+1,) place in the arrays of knots of the first one of each
     travel: np.ndarray  # (k,) m, of each knot, rising from zero; the last one is the stroke
     force: np.ndarray  # (k,) N
     energy: np.ndarray  # (k,) J, given up from zero travel to each knot
     friction: np.ndarray  # (n,) N
+    mass: np.ndarray | None  # (n,) kg, of the moving parts; None if none has one
+
+
+@kernel
+def direction_of(pushers, i):
+    """Unit vector of pusher ``i`` in platform axes."""
+    return (pushers.direction[i, 0], pushers.direction[i, 1], pushers.direction[i, 2])
 
 
 @kernel
@@ -51,7 +70,7 @@ def travel(pushers, i, place, turn):
     rotation ``turn`` (nine numbers) in platform axes."""
     arm = rotation.rotate(turn, point_of(pushers, i))
     x = (place[0] + arm[0], place[1] + arm[1], place[2] + arm[2])
-    return rotation.dot(pushers.direction, x) - pushers.origin[i]
+    return rotation.dot(direction_of(pushers, i), x) - pushers.origin[i]
 
 
 @kernel
@@ -114,6 +133,23 @@ def damping(pushers, i, segment, speed):
         return 0.0
     share = np.tanh(speed / SLOW)
     return pushers.friction[i] / SLOW * (1.0 - share * share)
+
+
+@kernel
+def solve(a, x):
+    """Replace the right side ``x`` (n,) of the equations of the module's docstring with the matrix
+    ``a`` (n,n) by the pairs. All leading minors are positive, so no pivot is needed."""
+    count = x.size
+    for k in range(count):
+        for i in range(k + 1, count):
+            factor = a[i, k] / a[k, k]
+            x[i] -= factor * x[k]
+            for j in range(k + 1, count):
+                a[i, j] -= factor * a[k, j]
+    for k in range(count - 1, -1, -1):
+        for j in range(k + 1, count):
+            x[k] -= a[k, j] * x[j]
+        x[k] /= a[k, k]
 
 
 def energy_given_up(pushers: Pushers, segment: np.ndarray, s: np.ndarray) -> float:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 import numpy as np
 from pydantic import (
     AfterValidator,
+    Field,
     PrivateAttr,
     ValidationInfo,
     field_validator,
@@ -22,10 +23,18 @@ from tipoff.files import read_input
 from tipoff.scenes import csv_file
 from tipoff.scenes.effects.pusher_law import Pushers
 from tipoff.scenes.effects.thrust_law import Thrust
+from tipoff.scenes.effects.thrust_offset import Misalignment
 from tipoff.scenes.faults import within
 from tipoff.scenes.rounding import below
-from tipoff.scenes.table import Table, at_least_one, limited
-from tipoff.scenes.units import Length, PositiveForce, PositiveLength, PushFriction, SpringRate
+from tipoff.scenes.table import Table, at_least_one, is_absent, is_zero, limited
+from tipoff.scenes.units import (
+    Length,
+    NonNegativeMass,
+    PositiveForce,
+    PositiveLength,
+    PushFriction,
+    SpringRate,
+)
 
 _COLUMNS = {"travel": "m", "force": "N"}
 
@@ -89,6 +98,8 @@ class Spring(Table):
     file: str | None = None
     #: Constant friction of the pusher, against its motion.
     friction: PushFriction = 0.0
+    #: Mass of the part of the pusher that goes with the payload, up to the end of the stroke.
+    mass: NonNegativeMass = Field(0.0, exclude_if=is_zero)
     # of the knots, as numbers, so that tables can be compared
     _points: tuple[tuple[float, ...], tuple[float, ...]] = PrivateAttr()
 
@@ -164,6 +175,8 @@ class PlacedSpring(Spring):
     y: Length = 0.0
     #: Place of its line of action along Z.
     z: Length = 0.0
+    #: Error of its direction.
+    misalignment: Misalignment | None = Field(None, exclude_if=is_absent)
 
 
 class PushedTable(Table):
@@ -180,6 +193,10 @@ class PushedTable(Table):
         """The springs with the places (m) of their lines along Y and Z."""
         raise NotImplementedError
 
+    def tilts(self) -> list[tuple[float, float, float]]:
+        """Unit vectors of the springs, without the misalignment of the thrust."""
+        return [(1.0, 0.0, 0.0)] * len(self.places())
+
     def pushes(self) -> list[tuple[Push, float]]:
         """Force over travel and friction (N) of each spring."""
         return [(spring.push(), spring.friction) for spring, _, _ in self.places()]
@@ -195,6 +212,13 @@ class PushedTable(Table):
         for push, held in self.pushes():
             own = np.interp(s, push.travel, push.force) - held
             total += np.where(s <= push.travel[-1], own, 0.0)
+        return total
+
+    def moving_mass(self, s: np.ndarray) -> np.ndarray:
+        """Sum of the masses (kg) of all pushers within their strokes at the travel ``s`` (n,) m."""
+        total = np.zeros(np.shape(s))
+        for spring, *_ in self.places():
+            total += np.where(s <= spring.push().travel[-1], spring.mass, 0.0)
         return total
 
     def peak(self) -> float:
@@ -241,8 +265,12 @@ class PushedTable(Table):
         return (
             f"{self.kind}{f', {count} of them' if count > 1 else ''}, {self.peak():.4g} N at most, "
             f"energy {self.energy():.7g} J over a stroke of {1e3 * self.longest():.6g} mm, of which "
-            f"friction of the pusher takes {self.friction_loss():.7g} J"
+            f"friction of the pusher takes {self.friction_loss():.7g} J{self._moving()}"
         )
+
+    def _moving(self) -> str:
+        mass = sum(spring.mass for spring, *_ in self.places())
+        return f"; {mass:.4g} kg go with the payload to the end of the stroke" if mass else ""
 
     def contents(self) -> tuple[dict, list[list[float]]]:
         """The table without paths, and the points of its files, for the hash of a scene."""
@@ -289,6 +317,13 @@ class SpringsTable(PushedTable):
         """The springs."""
         return [(spring, spring.y, spring.z) for spring in self.springs]
 
+    def tilts(self) -> list[tuple[float, float, float]]:
+        """Unit vectors of the springs."""
+        return [
+            (1.0, 0.0, 0.0) if spring.misalignment is None else spring.misalignment.direction()
+            for spring in self.springs
+        ]
+
     def named(self) -> Iterator[tuple[str, Spring]]:
         """The springs."""
         for number, spring in enumerate(self.springs):
@@ -300,21 +335,32 @@ def record(thrust, thrust_offset, mass_offset, platform) -> Pushers | None:
     and ``mass_offset`` are tables or None, ``platform`` is a kernel record or None."""
     if not isinstance(thrust, PushedTable):
         return None
-    direction, line = (1.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    direction, line = np.array(thrust.tilts()), (0.0, 0.0, 0.0)
     if thrust_offset is not None:
-        direction = thrust_offset.misalignment.direction()
+        direction = direction @ _turned(thrust_offset.misalignment.direction())
         line = thrust_offset.eccentricity.offset()
     centre = np.array(mass_offset.eccentricity.offset() if mass_offset else (0.0, 0.0, 0.0))
     place = np.array([(-thrust.arm, line[1] + y, line[2] + z) for _, y, z in thrust.places()])
     base = np.array(platform.mass_centre if platform else (0.0, 0.0, 0.0))
     pushes = [push for push, _ in thrust.pushes()]
+    mass = np.array([spring.mass for spring, *_ in thrust.places()])
     return Pushers(
         direction=direction,
         point=place - centre,
-        origin=(place - base) @ np.array(direction),
+        origin=((place - base) * direction).sum(axis=1),
         first=np.cumsum([0, *(push.travel.size for push in pushes)]),
         travel=np.concatenate([push.travel for push in pushes]),
         force=np.concatenate([push.force for push in pushes]),
         energy=np.concatenate([push.energy() for push in pushes]),
         friction=np.array([held for _, held in thrust.pushes()]),
+        mass=mass if mass.any() else None,
     )
+
+
+def _turned(thrust: tuple[float, float, float]) -> np.ndarray:
+    """The shortest rotation of the X axis to the unit vector ``thrust``, (3,3), for rows."""
+    x, y, z = thrust
+    if x == 1.0:
+        return np.eye(3)
+    axis = np.array([[0.0, y, z], [-y, 0.0, 0.0], [-z, 0.0, 0.0]])
+    return np.eye(3) + axis + axis @ axis / (1.0 + x)

@@ -131,6 +131,14 @@ Surrogate = Annotated[
         "at the pad faces, the method of the paper.",
     ),
 ]
+At = Annotated[
+    Literal["exit", "settled"] | None,
+    typer.Option(
+        "--at",
+        help="Instant of velocity and rates; default: exit if more than 1 % of the impulse comes after "
+        "it, else settled.",
+    ),
+]
 Modes = Annotated[
     str | None,
     typer.Option(

@@ -24,11 +24,13 @@ from tipoff.studies.droptest.options import Options
 from tipoff.studies.droptest.reduction import COVERAGE
 from tipoff.studies.droptest.results import Cases, Compared, Curve, Droptest, Row, Together
 from tipoff.studies.populations import answers, population, spread
+from tipoff.studies.populations.instant import MOST, SETTLED, Instant
 from tipoff.studies.populations.population import Population
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study, StudyError
 
 NAME = "droptest"
+_INSTANT = Instant(SETTLED, "because a log is read over a window without thrust")
 _FEWEST = 20  # fewest settled cases for a useful covariance
 _SHOWN = 2000  # cases in the figure
 _EVERY = 4  # curves of a result file hold every fourth sample
@@ -52,7 +54,7 @@ def run(study: Study, options: Options = Options()) -> dict:
         from tipoff.studies.render.document import with_figures
 
         model = population.surrogate(study, options.model, options.condition)
-        cases = population.run(study, NAME, model, drawn)
+        cases = population.run(study, NAME, model._replace(instant=_INSTANT), drawn)
         data = study.path(f"{NAME}.nc")
         signals.write(data, drops)
         compared = result(study, drops, cases, drawn.uncertainty.sampling == "random")
@@ -142,8 +144,10 @@ def result(
             f"at least {_FEWEST} are needed"
         )
     rates, exits = np.degrees(cases.results.rate[settled]), cases.results.exit_time[settled]
+    pushed = pushed_on(cases.results.impulse_after_exit[settled])
     tests = tuple(
-        _row(number, drop, rates, _doubts(study, drop, exits)) for number, drop in enumerate(drops)
+        _row(number, drop, rates, [*_doubts(study, drop, exits), *pushed])
+        for number, drop in enumerate(drops)
     )
     return Compared(
         simulated_logs=all(row.simulated for row in tests),
@@ -225,6 +229,17 @@ def _together(tests: Sequence[Row], simulated: np.ndarray) -> Together:
         smallest_p=1.0 / (len(simulated) + 1),
         inside_range=all(all(row.inside_range) for row in tests),
     )
+
+
+def pushed_on(shares: np.ndarray) -> list[str]:
+    """A sentence if the ``shares`` (n,) of the impulse after the exit are not small."""
+    share = float(np.median(shares))
+    if not share > MOST:
+        return []
+    return [
+        f"{100.0 * share:.2g} % of the impulse comes after the exit: windows.exit must be the end of "
+        "the thrust, because the settled rates of the cases are those after it"
+    ]
 
 
 def _doubts(study: Study, drop: Drop, exits: np.ndarray) -> list[str]:

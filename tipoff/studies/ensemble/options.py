@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from tipoff.studies.commands.options import CalibrationFile, Modes, Surrogate
+from tipoff.studies.commands.options import At, CalibrationFile, Modes, Surrogate
 
 if TYPE_CHECKING:
     from tipoff.workspace import models
@@ -80,6 +80,16 @@ class Options:
     ] = 1e-2
     model: Surrogate = None
     modes: Modes = None
+    at: At = None
+    limits: Annotated[
+        tuple[str, ...],
+        typer.Option(
+            "--limit",
+            metavar="[AXIS=]RATE",
+            help='Limit of a rate, "x=10 deg/s", or of the total rate, "10 deg/s"; repeatable. The result '
+            "is the probability above any of them.",
+        ),
+    ] = ()
     calibration: CalibrationFile = None
     scheduler: Annotated[
         str | None,

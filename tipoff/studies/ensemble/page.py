@@ -2,16 +2,20 @@
 
 from tipoff.studies.ensemble.sensitivity import CAUSES
 from tipoff.studies.ensemble.stage import Cost, One, Ran, Sensitive
+from tipoff.studies.ensemble.summary import Above
+from tipoff.studies.populations.instant import EXIT, Instant
 from tipoff.studies.render.document import Bullets, Part
 from tipoff.studies.render.table import Table, estimate, percent
 from tipoff.studies.render.uncertain import LEAST, number
 from tipoff.workspace.words import counted
 
 _LABELS = {
-    "rate_deg_s": "total rate (deg/s)",
+    "rate_deg_s": "total settled rate (deg/s)",
     "exit_rate_deg_s": "total rate at exit (deg/s)",
     "lateral_velocity_mm_s": "lateral velocity (mm/s)",
     "direction_error_deg": "direction error (deg)",
+    "exit_lateral_velocity_mm_s": "lateral velocity at exit (mm/s)",
+    "exit_direction_error_deg": "direction error at exit (deg)",
     "impulse_after_exit_percent": "impulse after the exit (%)",
 }
 _STORED = {
@@ -31,7 +35,8 @@ def summary(found: Ran) -> list[Part]:
     run = [
         f"{found.scene}, model {found.model}: {counted(counts['asked'], 'case')} = {counts['ok']:,} "
         f"ok + {counts['refused']:,} refused + {counts['failed']:,} failed; {found.settled:,} "
-        f"left the rail and settled{_others(found.statuses)}",
+        f"left the rail{'' if found.at == EXIT else ' and settled'}{_others(found.statuses)}",
+        f"rates {Instant(found.at, found.at_why).words}",
         f"agreement: {found.agreement}",
         *failures,
     ]
@@ -39,10 +44,24 @@ def summary(found: Ran) -> list[Part]:
         Bullets(run),
         *_varied(found.cases.get("vary", {})),
         *([table_of_quantiles(found)] if found.quantiles else []),
+        *([_above(found.above, found.confidence)] if found.above else []),
         f"run time: {_time(cost)}; {(cost.peak_memory_bytes or 0) / 1e6:.0f} MB of memory at most",
         *(_sensitivity(found.sensitivity) if found.sensitivity else []),
         f"store: {found.store}",
     ]
+
+
+def _above(found: Above, confidence: float) -> str:
+    """The probability above any limit."""
+    most = (
+        ""
+        if found.low is None or found.high is None
+        else (f" ({confidence:.0%} bounds {percent(found.low)} to {percent(found.high)} %)")
+    )
+    return (
+        f"above any of the limits {', '.join(found.limits)}: {percent(found.share)} % of the cases, "
+        f"{found.count:,}{most}"
+    )
 
 
 def _others(statuses: dict[str, int]) -> str:

@@ -27,6 +27,8 @@ from tipoff.studies.ensemble import sensitivity, summary
 from tipoff.studies.ensemble.options import Options
 from tipoff.studies.ensemble.sensitivity import Sensitivity
 from tipoff.studies.ensemble.summary import Statistics
+from tipoff.studies.populations import exceedance, instant
+from tipoff.studies.populations.instant import Instant
 from tipoff.workspace import kernel_marks, machine, words
 from tipoff.workspace.progress import Board, say
 from tipoff.workspace.run import Run
@@ -146,6 +148,7 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
 def run(study: Study, options: Options) -> Ran:
     """Run the cases that the store lacks, then their twins if the sensitivity is requested. Returns
     the statistics, also written as ``ensemble.json``. Raises StudyError when the store fails."""
+    limits = exceedance.limits(options.limits)
     ensemble, path = request(study, options)
     try:
         store = ensemble.store(path)
@@ -156,8 +159,9 @@ def run(study: Study, options: Options) -> Ran:
     except StoreError as fault:
         raise StudyError(str(fault)) from fault
     memory = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    at, calibrated = _instant(ensemble, options), options.calibration is not None
     found = Ran(
-        **vars(summary.of(ensemble, store, options.calibration is not None)),
+        **vars(summary.of(ensemble, store, calibrated, at, limits)),
         scene=study.scene.name,
         quantities=words.QUANTITIES,
         implausible=plausibility.of_all_conditions(study.scene),
@@ -169,6 +173,12 @@ def run(study: Study, options: Options) -> Ran:
     )
     write_json(study.path("ensemble.json"), found.plain)
     return found
+
+
+def _instant(ensemble: Ensemble, options: Options) -> Instant:
+    """The instant of the statistics: the one asked for, or by one run of the scene."""
+    own = None if options.at else ensemble.nominal().outcome.impulse_after_exit
+    return instant.chosen(options.at, own)
 
 
 def _filled(

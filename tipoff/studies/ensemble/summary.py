@@ -1,6 +1,6 @@
 """The statistics of an ensemble: counts, quantiles with their bounds, and how it was drawn."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,35 +10,65 @@ from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.lowfi.ensemble.store import Store
-from tipoff.studies.populations import spread
+from tipoff.studies.populations import exceedance, instant, spread
+from tipoff.studies.populations.exceedance import Limit
+from tipoff.studies.populations.instant import Instant
 from tipoff.studies.populations.spread import Quantile
 from tipoff.workspace import words
 
 SHARES = (0.05, 0.5, 0.95, 0.99, 0.9973)
 CONFIDENCE = 0.95
 _SHOWN = 5  # failed cases in the result; the store lists all
-_VALUES: dict[str, tuple[str, Callable[[np.ndarray], np.ndarray]]] = {
-    "rate_deg_s": ("rate", lambda rate: np.degrees(np.linalg.norm(rate, axis=1))),
-    "exit_rate_deg_s": ("exit_rate", lambda rate: np.degrees(np.linalg.norm(rate, axis=1))),
+
+
+def _total(rate: np.ndarray) -> np.ndarray:
+    return np.degrees(np.linalg.norm(rate, axis=1))
+
+
+# the column, and a function of it; those of the instant first, then the total rate of the other one
+_SETTLED: dict[str, tuple[str, Callable[[np.ndarray], np.ndarray]]] = {
+    "rate_deg_s": ("rate", _total),
     "lateral_velocity_mm_s": ("lateral_velocity", lambda speed: 1e3 * speed),
     "direction_error_deg": ("direction_error", np.degrees),
-    "impulse_after_exit_percent": ("impulse_after_exit", lambda share: 100.0 * share),
 }
+_AT_EXIT: dict[str, tuple[str, Callable[[np.ndarray], np.ndarray]]] = {
+    "exit_rate_deg_s": ("exit_rate", _total),
+    "exit_lateral_velocity_mm_s": ("exit_velocity", lambda speed: 1e3 * instant.lateral(speed)),
+    "exit_direction_error_deg": ("exit_velocity", lambda speed: np.degrees(instant.off(speed))),
+}
+_AFTER = ("impulse_after_exit", lambda share: 100.0 * share)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Above:
+    """Cases above any of the ``limits`` (in words), or without a rate, and the bounds of their share;
+    None where the cases are not independent draws."""
+
+    limits: tuple[str, ...]
+    count: int
+    share: float
+    low: float | None
+    high: float | None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Statistics:
-    """Counts, and quantiles of the cases that settled, with the method of their bounds. ``cases``: the
-    source of the cases; ``provenance`` of the distributions by key; ``failures``: the first ones,
-    with number, status, reason and inputs; ``failed``: their reasons if no case is ok."""
+    """Counts, and quantiles of the cases that settled, with the method of their bounds. ``at``: the
+    instant of the quantities, and why; ``settled``: cases with values at it; ``above``: None without
+    limits. ``cases``: the source of
+    the cases; ``provenance`` of the distributions by key; ``failures``: the first ones, with number,
+    status, reason and inputs; ``failed``: their reasons if no case is ok."""
 
     model: str
+    at: str
+    at_why: str
     counts: dict[str, int]
     statuses: dict[str, int]
     settled: int
     confidence: float
     bounds: str
     quantiles: dict[str, tuple[Quantile, ...]]
+    above: Above | None
     cases: dict[str, Any]
     provenance: dict[str, str]
     numerics: dict[str, Any]
@@ -48,20 +78,31 @@ class Statistics:
     failed: list[str]
 
 
-def of(ensemble: Ensemble, store: Store, calibrated: bool) -> Statistics:
-    """Statistics of a whole store; ``calibrated``: the constants of the model are not the scene's."""
-    status, settled = store.column("status"), np.isfinite(store.column("lateral_velocity"))
+def of(
+    ensemble: Ensemble,
+    store: Store,
+    calibrated: bool,
+    chosen: Instant,
+    limits: Sequence[Limit] = (),
+) -> Statistics:
+    """Statistics of a whole store at the ``chosen`` instant; ``calibrated``: the constants of the model
+    are not the scene's."""
+    own, other = (_AT_EXIT, _SETTLED) if chosen.at == instant.EXIT else (_SETTLED, _AT_EXIT)
+    rate = next(iter(own.values()))[0]
+    status, settled = store.column("status"), np.isfinite(store.column(rate)[:, 0])
     failures = store.failures()[:_SHOWN]
     counts, unbounded = columns.counts(status), _no_bounds(ensemble.source)
     shown = {
         name: what
-        for name, what in _VALUES.items()
+        for name, what in _shown(own, other)
         # without thrust there is no share of its impulse
         if settled.any() and np.isfinite(store.column(what[0])[settled]).all()
     }
     lines = [f"case {item['case']}: {item['status']}: {item['reason']}" for item in failures]
     return Statistics(
         model=words.model(ensemble.scene, calibrated, ensemble.compliance),
+        at=chosen.at,
+        at_why=chosen.why,
         counts=counts,
         statuses={name: int((status == code).sum()) for code, name in enumerate(columns.STATUSES)},
         settled=int(settled.sum()),
@@ -73,6 +114,7 @@ def of(ensemble: Ensemble, store: Store, calibrated: bool) -> Statistics:
             )
             for name, what in shown.items()
         },
+        above=_above(store, rate, limits, unbounded is None) if limits else None,
         cases=ensemble.source.identity,
         provenance=_provenance(ensemble.source),
         numerics=ensemble.numerics.as_dict(),
@@ -81,6 +123,26 @@ def of(ensemble: Ensemble, store: Store, calibrated: bool) -> Statistics:
         digest=store.digest(),
         failed=[] if counts["ok"] else lines,
     )
+
+
+def _above(store: Store, rate: str, limits: Sequence[Limit], bounded: bool) -> Above:
+    """Share of the cases whose column ``rate`` is above any of the ``limits``."""
+    places = [store.bounds(number) for number in range(len(store))]
+    rates = (np.degrees(store.column(rate, *place)) for place in places)
+    count = int(sum(exceedance.any_above(each, limits).sum() for each in rates))
+    low, high = exceedance.bounds(count, store.asked, CONFIDENCE) if bounded else (None, None)
+    return Above(
+        limits=tuple(limit.words for limit in limits),
+        count=count,
+        share=count / store.asked,
+        low=low,
+        high=high,
+    )
+
+
+def _shown(own: dict, other: dict) -> list[tuple]:
+    """Name and function of each quantity."""
+    return [*own.items(), *list(other.items())[:1], ("impulse_after_exit_percent", _AFTER)]
 
 
 def _values(store: Store, name: str, of: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:

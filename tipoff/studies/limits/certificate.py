@@ -88,7 +88,9 @@ def made(
     ]
     draws.announce(study, requested)
     kept = draws.filled(study, "limits, reference", requested)
-    events = exceedance.any_above(np.degrees(draws.results(kept).rate), limits)
+    events = exceedance.any_above(
+        np.degrees(draws.results(kept, within.model.instant.at).rate), limits
+    )
     near, far = (Runs(len(part), int(part.sum())) for part in np.split(events, [len(chosen[0])]))
     bound = stratified.upper_bound(counts, near, far, options.confidence)
     return Certificate(

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from tipoff.studies.commands.options import Seed, Surrogate, condition_names
+from tipoff.studies.commands.options import At, Seed, Surrogate, condition_names
 from tipoff.workspace.options import between
 
 
@@ -13,7 +13,7 @@ from tipoff.workspace.options import between
 class Options:
     """``limits`` in the form of ``exceedance.limits``; ``cases`` None: ten times the fewest; ``draws``
     None: eight, for springs alone; ``condition`` None: the scene; ``certify`` None: no run of the
-    reference; ``model`` None: the default."""
+    reference; ``model`` and ``at`` None: the default."""
 
     limits: Annotated[
         tuple[str, ...],
@@ -81,3 +81,4 @@ class Options:
     ] = None
     seed: Seed = 1
     model: Surrogate = None
+    at: At = None

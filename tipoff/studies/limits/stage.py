@@ -58,8 +58,11 @@ def run(study: Study, options: Options = Options()) -> dict:
         from tipoff.studies.render.document import with_figures
 
         population.require_settling(model, within.without_errors(model))
+        watched = model.watched(options.at)
         with Board(NAME, 1) as board:
-            found = Search(study, options, limits, cases, model, margin, board.callback(NAME)).all()
+            found = Search(
+                study, options, limits, cases, watched, margin, board.callback(NAME)
+            ).all()
             board.finished(NAME, f"{found.evaluations:,} sets of {cases:,} cases")
         return with_figures(found, page.figures, study.path("figures"))
 

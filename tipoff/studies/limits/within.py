@@ -21,7 +21,7 @@ from tipoff.lowfi.ensemble.derived import Derived, Numbers, around_zero, frictio
 from tipoff.lowfi.ensemble.threads import PIECE, completed
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
-from tipoff.studies.populations import answers
+from tipoff.studies.populations import answers, instant
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.populations.random_factors import ERRORS, pointing
 from tipoff.workspace.study import Study
@@ -141,7 +141,7 @@ class Cases:
     def _run(self, scale: float) -> np.ndarray:
         drawn = self.source(scale)
         ensemble = self._model.ensemble(drawn)
-        key = content_hash(ensemble.key, sources.digest(answers.__name__))
+        key = content_hash(ensemble.key, self._model.instant.at, sources.digest(answers.__name__))
         path = self._study.path(f"{self._folder}/{key[:16]}.nc")
 
         def make() -> np.ndarray:
@@ -153,7 +153,8 @@ class Cases:
             found = columns.of(
                 [case for piece in completed(ensemble.family(), pieces, workers) for case in piece]
             )
-            return np.column_stack([quantity.of(found) for quantity in answers.ALL])
+            shown = instant.seen(found, self._model.instant.at)
+            return np.column_stack([quantity.of(shown) for quantity in answers.ALL])
 
         sizes = {name: scale * size for name, size in self._tolerances.items()}
         return kept(scale, sizes).get_or_make(path, key, "its cases are run again", make)

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import Seed, Surrogate
+from tipoff.studies.commands.options import At, Seed, Surrogate
 from tipoff.studies.populations.reading import Reading
 
 FEWEST_FINE = 4  # draws on the finer mesh
@@ -15,7 +15,7 @@ _SHARE_FINE = 0.1  # of the draws are on the finer mesh too
 
 @dataclass(frozen=True)
 class Cases:
-    """``limits`` in the form of ``exceedance.limits``; ``model`` None: the default."""
+    """``limits`` in the form of ``exceedance.limits``; ``model`` and ``at`` None: the default."""
 
     cases: Annotated[int, typer.Option(metavar="N", min=100, help="Number of cases.")] = 1_000_000
     seed: Seed = 1
@@ -30,6 +30,7 @@ class Cases:
         ),
     ] = ("x=5 deg/s", "y=5 deg/s", "z=5 deg/s", "5 deg/s")
     model: Surrogate = None
+    at: At = None
 
 
 @dataclass(frozen=True)

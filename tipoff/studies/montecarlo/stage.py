@@ -56,7 +56,7 @@ def run(study: Study, options: Cases = Cases()) -> dict:
 
         model = population.surrogate(study, options.model)
         population.require_settling(model, within.without_errors(model))
-        found = population.run(study, NAME, model, source)
+        found = population.run(study, NAME, model.watched(options.at), source)
         if (settled := int(found.settled.sum())) < _FEWEST:
             raise StudyError(
                 f"{settled or 'no'} case settled; {found.counts['refused']:,} were refused, for "
@@ -177,7 +177,8 @@ def compared(study: Study, options: Cases, found: Population) -> Compared | None
     cases = min(PAPER, options.cases)
     drawn = random_factors.source(study.scene, options.reading, cases, options.seed)
     names = (SPRINGS, COMPLIANT) if found.model.name == SPRINGS else (COMPLIANT, SPRINGS)
-    other = population.run(study, f"{NAME}-other", population.surrogate(study, names[1]), drawn)
+    own = population.surrogate(study, names[1])._replace(instant=found.model.instant)
+    other = population.run(study, f"{NAME}-other", own, drawn)
     both = found.settled[:cases] & other.settled
 
     def of(item: answers.Quantity) -> dict[str, np.ndarray]:

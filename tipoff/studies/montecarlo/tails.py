@@ -48,7 +48,10 @@ def run(study: Study, options: Options) -> dict:
         from tipoff.studies.render.document import with_figures
 
         whole = population.run(
-            study, montecarlo.NAME, population.surrogate(study, asked.model), source
+            study,
+            montecarlo.NAME,
+            population.surrogate(study, asked.model).watched(asked.at),
+            source,
         )
         model, rows = whole.model, source.rows(0, count)
         drawn = paired.run(study, model, rows, options.on_finer_mesh)

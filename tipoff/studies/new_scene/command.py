@@ -3,7 +3,7 @@
 import json
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -56,6 +56,14 @@ def new(
             "on each rail, and so on; default: 8.",
         ),
     ] = None,
+    deployer: Annotated[
+        Literal["3u"] | None,
+        typer.Option(
+            "--deployer",
+            help="Write a CubeSat of this size in a deployer with a spring, instead of a launcher. Takes "
+            "--mass, --clearance, and --thrust for the force of the spring at zero travel.",
+        ),
+    ] = None,
     json_: Json = False,
 ) -> None:
     """Write a commented scene of your own launcher from a few numbers; it runs as it is.
@@ -64,7 +72,7 @@ def new(
     the table provenance of the file marks them as assumed.
 
       tipoff new my_launcher.toml --mass "12 kg" --thrust "4 kN"
-      tipoff new cubesat.toml --mass "4 kg" --size "340 mm, 100 mm, 100 mm" --pads 4
+      tipoff new my_deployer.toml --deployer 3u --mass "4.5 kg"
       tipoff new measured.toml --thrust-curve firing.csv
       tipoff run --scene my_launcher.toml
     """
@@ -76,7 +84,7 @@ def new(
         "thrust": thrust,
         "burn_time": burn_time,
     }
-    nothing = all(value is None for value in (*given.values(), thrust_curve, pads))
+    nothing = all(value is None for value in (*given.values(), thrust_curve, pads, deployer))
     if nothing and sys.stdin.isatty():
         given = {
             name: typer.prompt(question, default=default)
@@ -90,13 +98,34 @@ def new(
 
         _, text = together(
             lambda: _require_new(file),
-            lambda: template.text(file.stem, _numbers(given, thrust_curve, pads), file.parent),
+            lambda: (
+                _of_deployer(
+                    file.stem, deployer, given, {"thrust_curve": thrust_curve, "pads": pads}
+                )
+                if deployer
+                else template.text(file.stem, _numbers(given, thrust_curve, pads), file.parent)
+            ),
         )
         _require_scene(text, file)
         write_text(file, text)
         return Output({"scene": file.stem, "file": str(file), "text": text}, _next)
 
     guarded(work, json_)
+
+
+def _of_deployer(
+    name: str, kind: str, given: dict[str, str | None], others: dict[str, object]
+) -> str:
+    """The scene of a deployer. Raises SceneError, every fault listed."""
+    from tipoff.studies.new_scene import deployer
+
+    beside = [option for option, value in (given | others).items() if value is not None]
+    numbers = {
+        option: quantity(_option_name(option), given[option], _ASKED[option][0], _ASKED[option][2])
+        for option in beside
+        if option in deployer.KEYS
+    }
+    return deployer.text(name, kind, numbers, [one for one in beside if one not in numbers])
 
 
 def _require_scene(text: str, file: Path) -> None:

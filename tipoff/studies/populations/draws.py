@@ -23,6 +23,7 @@ from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import NOMINAL, Scene
 from tipoff.studies.agreement import growth
+from tipoff.studies.populations import instant
 from tipoff.studies.populations.population import TOLERANCE, Surrogate
 from tipoff.workspace import kernel_marks
 from tipoff.workspace.announcing import announce
@@ -62,10 +63,11 @@ def run(study: Study, model: Surrogate, rows: Rows, fine: int) -> Draws:
     many = filled(study, "tails, reference", coarse)
     few = filled(study, "tails, finer mesh", finer)
     surrogate = filled(study, "tails, surrogate", surrogates)
+    at = model.instant.at
     return Draws(
-        results(many),
-        results(surrogate),
-        fine=results(few),
+        results(many, at),
+        results(surrogate, at),
+        fine=results(few, at),
         contacts=np.array([each.contacts for each in surrogate]),
         lost=[*lost(coarse, many), *lost(finer, few)],
         reference_cpu_s=statistics.median(each.cpu_s for each in many),
@@ -157,9 +159,9 @@ class Kept(NamedTuple):
     modes: int = 0
 
 
-def results(runs: Sequence[Kept]) -> Columns:
-    """Results of runs as columns."""
-    return columns.of([each.case for each in runs])
+def results(runs: Sequence[Kept], at: str) -> Columns:
+    """Results of runs as columns, with velocity and rate of the instant ``at``."""
+    return instant.seen(columns.of([each.case for each in runs]), at)
 
 
 @dataclass(frozen=True)

@@ -59,14 +59,14 @@ def run(study: Study, model: Surrogate, rows: Rows) -> OwnModes | None:
         return None
     found = draws.filled(study, "tails, own modes", requested)
     chosen = np.array([each.modes for each in found])
-    change = study.settings.clearance_change
+    change, at = study.settings.clearance_change, model.instant.at
     further = [_wider(each, int(count), change) for each, count in zip(requested, chosen) if count]
     return OwnModes(
         held=held,
         chosen=chosen,
         same=[_same(study, model, rows, count) for count in sorted({0, model.mode_count, held})],
-        own=Series(AUTO, draws.results(found), _seconds(requested)),
-        wider=draws.results(draws.filled(study, "tails, 1 um of clearance", further)),
+        own=Series(AUTO, draws.results(found, at), _seconds(requested)),
+        wider=draws.results(draws.filled(study, "tails, 1 um of clearance", further), at),
         clearance_change=change,
     )
 
@@ -86,7 +86,7 @@ def _same(study: Study, model: Surrogate, rows: Rows, count: int) -> Series:
     found = draws.filled(study, f"tails, {count} modes", requested)
     return Series(
         modes=count,
-        results=draws.results(found),
+        results=draws.results(found, model.instant.at),
         cpu_s=_seconds(requested),
         case_s=draws.seconds_per_case(model._replace(modes=count), rows),
     )

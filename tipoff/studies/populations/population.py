@@ -25,11 +25,14 @@ from tipoff.lowfi.numerics import AUTO, Numerics
 from tipoff.mechanics import unfinished
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
+from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import kept
 from tipoff.studies.agreement.kept import require_accepted
 from tipoff.studies.calibration import stage as calibrate
+from tipoff.studies.populations import instant
+from tipoff.studies.populations.instant import Instant
 from tipoff.workspace import kernel_marks, words
 from tipoff.workspace.progress import Board
 from tipoff.workspace.run import Run
@@ -43,13 +46,14 @@ class Surrogate(NamedTuple):
     """A scene and its contact: the ``compliance`` of its rails, or the ``calibration`` of its
     springs, with the ``compliance`` of displaced rigid walls where the rails are warm. Both are
     None without contact. ``modes`` of each rail that vibrate, with the reason ``modes_why``;
-    ``"auto"`` until the pilot cases of a population have chosen."""
+    ``"auto"`` until the pilot cases of a population have chosen. ``instant`` of its results."""
 
     scene: Scene
     calibration: Calibration | None
     compliance: RailCompliance | None
     modes: int | str = AUTO
     modes_why: str = ""
+    instant: Instant = Instant()
 
     @property
     def words(self) -> str:
@@ -64,6 +68,12 @@ class Surrogate(NamedTuple):
     def at(self, overrides: dict[str, Any]) -> "Surrogate":
         """The same on a changed scene."""
         return self._replace(scene=self.scene.replace(overrides))
+
+    def watched(self, asked: str | None) -> "Surrogate":
+        """The same at the instant ``asked``, or at that by the rule of ``instant``, from one run of
+        the scene."""
+        share = None if asked else _trial_run(self).outcome.impulse_after_exit
+        return self._replace(instant=instant.chosen(asked, share))
 
     def with_modes_of(self, ensemble: Ensemble) -> "Surrogate":
         """The same with the modes of an ``ensemble``, and their reason."""
@@ -94,9 +104,9 @@ class Surrogate(NamedTuple):
 
 
 class Population(NamedTuple):
-    """``inputs`` (n,) by dotted key, SI; ``results`` as columns, NaN in cases that did not settle;
-    the folder ``store``; ``counts`` from ``lowfi.ensemble.columns.counts``; the ``model`` with the
-    modes of its cases."""
+    """``inputs`` (n,) by dotted key, SI; ``results`` as columns, with the velocity and rate of the
+    model's instant, NaN in cases without it; the folder ``store``; ``counts`` from
+    ``lowfi.ensemble.columns.counts``; the ``model`` with the modes of its cases."""
 
     inputs: dict[str, np.ndarray]
     results: Columns
@@ -106,8 +116,9 @@ class Population(NamedTuple):
 
     @property
     def settled(self) -> np.ndarray:
-        """Whether a case left the rail and settled (n,)."""
-        return np.isfinite(self.results.rate[:, 0])
+        """Whether a case left the rail and has values at the instant (n,)."""
+        found = self.results
+        return np.isfinite(found.rate[:, 0]) & np.isfinite(found.exit_attitude[:, 0])
 
 
 def surrogate(study: Study, model: str | None = None, condition: str | None = None) -> Surrogate:
@@ -131,9 +142,7 @@ def require_settling(*models: Surrogate) -> None:
     if none settles: thousands of similar cases would end in the same way."""
     ended = []
     for model in models:
-        vibrates = model.compliance is not None and model.name == COMPLIANT
-        numerics = Numerics(relative_tolerance=TOLERANCE, modes=0 if vibrates else AUTO)
-        found = lowfi.run(model.scene, model.name, numerics=numerics, compliance=model.compliance)
+        found = _trial_run(model)
         if found.outcome.rate is not None:
             return
         ended.append(
@@ -147,16 +156,26 @@ def require_settling(*models: Surrogate) -> None:
     )
 
 
+def _trial_run(model: Surrogate) -> Trajectory:
+    """One quick run of the scene, without modes."""
+    vibrates = model.compliance is not None and model.name == COMPLIANT
+    numerics = Numerics(relative_tolerance=TOLERANCE, modes=0 if vibrates else AUTO)
+    return lowfi.run(model.scene, model.name, numerics=numerics, compliance=model.compliance)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Answering:
     """The first fields of a result of many cases: the ``model``, the number of its ``modes`` and
-    why (empty if it can have none), and its ``agreement`` with the reference as text; ``failed``: a
-    line for each figure that could not be drawn."""
+    why (empty if it can have none), and its ``agreement`` with the reference as text; ``at``: the
+    instant of velocity and rates, and why; ``failed``: a line for each figure that could not be drawn.
+    """
 
     model: str
     modes: int | str
     modes_why: str
     agreement: str
+    at: str
+    at_why: str
     failed: tuple[str, ...] = ()
 
 
@@ -167,6 +186,8 @@ def answering(study: Study, model: Surrogate, condition: str | None = None) -> d
         "modes": model.modes,
         "modes_why": model.modes_why,
         "agreement": kept.words(study, model.name, condition, model.calibration is not None),
+        "at": model.instant.at,
+        "at_why": model.instant.why,
     }
 
 
@@ -184,8 +205,9 @@ def with_modes(model: str, modes: int | str, why: str) -> str:
 
 
 def model_line(found: Answering) -> str:
-    """One line about the model of a result."""
-    return f"model {model_words(found)}; agreement: {found.agreement}"
+    """One line about the model of a result, and the instant of its rates."""
+    at = Instant(found.at, found.at_why).words
+    return f"model {model_words(found)}; agreement: {found.agreement}; rates {at}"
 
 
 def run(
@@ -223,7 +245,7 @@ def run(
         raise StudyError(str(fault)) from fault
     return Population(
         by_key,
-        results,
+        instant.seen(results, model.instant.at),
         study.relative(path),
         columns.counts(results.status),
         model.with_modes_of(ensemble),

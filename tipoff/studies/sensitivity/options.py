@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import Surrogate
+from tipoff.studies.commands.options import At, Surrogate
 from tipoff.workspace.options import Rule, between
 
 HALVINGS = 3  # parts of the points, each half of the next, for convergence
@@ -14,7 +14,7 @@ _FEWEST = 2**HALVINGS * 8
 
 @dataclass(frozen=True)
 class Options:
-    """``vary`` None: ``tolerances.DEFAULT``; ``model`` None: the default."""
+    """``vary`` None: ``tolerances.DEFAULT``; ``model`` and ``at`` None: the default."""
 
     vary: Annotated[
         str | None,
@@ -40,3 +40,4 @@ class Options:
         int, between(1), typer.Option(metavar="N", help="Seed of the points and of the bootstrap.")
     ] = 1
     model: Surrogate = None
+    at: At = None

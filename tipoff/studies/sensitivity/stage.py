@@ -51,7 +51,7 @@ def run(study: Study, options: Options = Options()) -> dict:
 
         asked = population.surrogate(study, options.model)
         population.require_settling(asked)
-        sobol, model = _sobol(study, asked, options)
+        sobol, model = _sobol(study, asked.watched(options.at), options)
         paper = contact_table.of_paper()
         found = Sensitivity(
             **population.answering(study, model),
@@ -81,7 +81,7 @@ def tables(study: Study, model: Surrogate) -> list[Constants]:
     shown = [model]
     if model.name == SPRINGS and model.scene.contact != study.scene.contact:
         # The rigid walls are the same, displaced by the temperature of the rails.
-        shown.append(Surrogate(study.scene, None, model.compliance))
+        shown.append(Surrogate(study.scene, None, model.compliance, instant=model.instant))
     return [_table(study, each) for each in shown]
 
 

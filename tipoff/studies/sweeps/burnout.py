@@ -9,13 +9,10 @@ from typing import NamedTuple
 
 from tipoff import lowfi
 from tipoff.lowfi.numerics import Numerics
-from tipoff.scenes import ends
-from tipoff.scenes.effects import thrust
 from tipoff.scenes.scene import Scene
 from tipoff.studies.populations.population import TOLERANCE, Surrogate
 
 _LEAVES_UNDER_THRUST, _BURNS_OUT = 0.15, 0.001  # share of the impulse after the exit
-_ROUNDING = 1e-12  # relative error of a difference of two equal impulses
 _MOST = 7  # doublings of the stretch
 
 
@@ -29,20 +26,15 @@ class Exit(NamedTuple):
 
 def exit_of(model: Surrogate) -> Exit | None:
     """The exit of the payload; None if it does not leave."""
-    time = lowfi.run(
+    found = lowfi.run(
         model.scene,
         model.name,
         numerics=Numerics(relative_tolerance=TOLERANCE),
         compliance=model.compliance,
-    ).outcome.exit_time
-    if time is None:
+    ).outcome
+    if found.exit_time is None:
         return None
-    record, duration = ends.over_time(model.scene), model.scene.time_limit
-    before, whole = thrust.impulse(record, time), thrust.impulse(record, duration)
-    # the larger one, because a thrust that pushes and then pulls may have no total impulse
-    scale = max(abs(before), abs(whole))
-    after = abs(whole - before) / scale if scale > 0.0 else 0.0
-    return Exit(time, after if after > _ROUNDING else 0.0)
+    return Exit(found.exit_time, found.impulse_after_exit or 0.0)
 
 
 def stretched(scene: Scene, factor: float) -> dict[str, float] | None:

@@ -61,11 +61,16 @@ def cases(directions: np.ndarray) -> Listed:
     return Listed([row for factor in FACTORS for row in factor.rows(SIZES, directions)])
 
 
-def free_rates(scene: Scene, rows: list[dict[str, float]]) -> np.ndarray:
-    """Rates (n,3), rad/s, of a free payload of ``scene`` with ``rows`` of overrides of a factor."""
+def free_rates(
+    scene: Scene, rows: list[dict[str, float]], until: float | None = None
+) -> np.ndarray:
+    """Rates (n,3), rad/s, of a free payload of ``scene`` with ``rows`` of overrides of a factor, by
+    the impulse ``until`` a time (s); None: the whole."""
     table = Listed(rows)
     inputs = dict(zip(table.keys, numbers(table.keys, rows).T))
-    impulse = float(thrust.impulse(ends.over_time(scene), scene.time_limit))
+    impulse = float(
+        thrust.impulse(ends.over_time(scene), scene.time_limit if until is None else until)
+    )
     return (
         moments.moment_impulses(scene, inputs, impulse)
         @ scene_model.build(scene).payload.inverse_inertia.T

@@ -84,7 +84,7 @@ def _scatter(factor: Swept) -> Chart:
             lines.append(Line(*line, dash="", opacity=0.65, marker=marker, size=3.5))
     direction = f"direction {_ANGLE[factor.name].split(',')[0]} (deg)"
     panels = [
-        Panel("", label, y_label="settled rate (deg/s)", lines=lines)
+        Panel("", label, y_label="rate (deg/s)", lines=lines)
         for label, lines in ((factor.title, over_size), (direction, over_angle))
     ]
     return Chart(f"sweep-{factor.name}", panels, columns=2, height=330)

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import Surrogate
+from tipoff.studies.commands.options import At, Surrogate
 from tipoff.workspace.options import between
 
 FEWEST = 8  # smallest number of directions that separates the walls
@@ -13,7 +13,7 @@ FEWEST = 8  # smallest number of directions that separates the walls
 
 @dataclass(frozen=True)
 class Options:
-    """``model`` None: the default."""
+    """``model`` and ``at`` None: the default."""
 
     angles: Annotated[
         int,
@@ -21,3 +21,4 @@ class Options:
         typer.Option("--angles", metavar="N", help="Number of directions for each size."),
     ] = 120
     model: Surrogate = None
+    at: At = None

@@ -108,7 +108,7 @@ def table_of_largest(launch: Launch) -> Table:
         (item.title, *(most(factor.largest[item.name]) for factor in launch.factors))
         for item in answers.ALL
     ]
-    note = "Largest magnitude of the settled cases, over all sizes and directions."
+    note = "Largest magnitude of the cases that leave, over all sizes and directions."
     return Table(["largest", *(factor.label for factor in launch.factors)], rows, notes=(note,))
 
 
@@ -131,7 +131,7 @@ def _details(launch: Launch) -> list[Part]:
         )
         for factor in launch.factors
     ]
-    note = Caption("Largest magnitude of the settled cases, over all directions.")
+    note = Caption("Largest magnitude of the cases that leave, over all directions.")
     return [Table(_SLOPES, slopes, notes=(_FREE,), dense=True), *tables, note]
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from tipoff import lowfi
 from tipoff.lowfi.numerics import Numerics
 from tipoff.scenes.scene import Scene
+from tipoff.studies.populations import instant
 from tipoff.studies.populations.population import TOLERANCE, Surrogate
 
 NONE = -1  # no face touched
@@ -20,7 +21,8 @@ NONE = -1  # no face touched
 
 class Sides(NamedTuple):
     """Number of the face that touched first and of the face with the largest impulse, (n,) each,
-    ``NONE`` without contact; settled rates (n,3) in rad/s, NaN where a run did not settle."""
+    ``NONE`` without contact; rates (n,3) in rad/s at the
+    instant of the model, NaN where a run has none."""
 
     first: np.ndarray
     most: np.ndarray
@@ -48,9 +50,8 @@ def found(
         run = lowfi.run(
             model.scene.replace(row), model.name, numerics=numerics, compliance=model.compliance
         )
-        return *of(run.time, np.linalg.norm(run.pad_force, axis=2)), run.outcome.rate or [
-            np.nan
-        ] * 3
+        rate = instant.rate(run.outcome, model.instant.at) or [np.nan] * 3
+        return *of(run.time, np.linalg.norm(run.pad_force, axis=2)), rate
 
     seen = []
     with ThreadPoolExecutor(workers) as pool:

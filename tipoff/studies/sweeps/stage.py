@@ -7,8 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
+from tipoff.mechanics.outcome import EXIT_WINDOW
 from tipoff.studies import published
 from tipoff.studies.populations import answers, population
+from tipoff.studies.populations.instant import EXIT
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render.document import with_figures
 from tipoff.studies.sweeps import burnout, factors, knee, sides
@@ -35,7 +37,7 @@ def run(study: Study, options: Options = Options()) -> dict:
 
     def make() -> tuple[Sweeps, list[Path]]:
         model = population.surrogate(study, options.model)
-        alone = model._replace(scene=factors.alone(model.scene))
+        alone = model._replace(scene=factors.alone(model.scene)).watched(options.at)
         launch, alone = _launch(study, alone, options, 1.0, burnout.exit_of(alone))
         faces, touched = _sides(study, alone, options)
         swept = tuple(replace(each, sides=own) for each, own in zip(launch.factors, touched))
@@ -64,6 +66,7 @@ def _launch(
     directions = factors.angles(options.angles)
     found = population.run(study, NAME, model, factors.cases(directions), _TOLERANCE)
     count = len(SIZES) * options.angles
+    until = leaves.time + 0.5 * EXIT_WINDOW if leaves and model.instant.at == EXIT else None
     made = Launch(
         stretch=stretch,
         exit_s=leaves and leaves.time,
@@ -72,7 +75,7 @@ def _launch(
         not_settled=int((~found.settled).sum()),
         store=found.store,
         factors=tuple(
-            _swept(model, factor, directions, found, slice(place * count, (place + 1) * count))
+            _swept(found, factor, directions, slice(place * count, (place + 1) * count), until)
             for place, factor in enumerate(FACTORS)
         ),
     )
@@ -80,14 +83,14 @@ def _launch(
 
 
 def _swept(
-    model: Surrogate, factor: Factor, directions: np.ndarray, found: Population, part: slice
+    found: Population, factor: Factor, directions: np.ndarray, part: slice, until: float | None
 ) -> Swept:
-    """Results of one factor from its ``part`` of the cases."""
+    """Results of one factor from its ``part`` of the cases; ``until`` (s): the end of the impulse of
+    the free payload, None for the whole."""
     shape = len(SIZES), len(directions)
     values = {item.name: item.of(found.results)[part].reshape(shape) for item in answers.ALL}
-    free = np.degrees(factors.free_rates(model.scene, factor.rows(SIZES, directions))).reshape(
-        *shape, 3
-    )
+    rows = factor.rows(SIZES, directions)
+    free = np.degrees(factors.free_rates(found.model.scene, rows, until)).reshape(*shape, 3)
     total, free_total = values[answers.TOTAL_RATE.name], np.linalg.norm(free, axis=2)
     departs = (abs(total - free_total) > _DEPARTS * free_total).any(axis=1)
     return Swept(

@@ -1,0 +1,117 @@
+"""The scene ``cubesat_3u``: its public numbers, the exit speed by energy, and its errors."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.exact.spring import end_of_stroke
+from tipoff import highfi, lowfi
+from tipoff.calibration import rail_compliance
+from tipoff.scenes import load, uncertainty
+
+SCENE = load("cubesat_3u")
+# Typed here a second time on purpose, in SI, from the public documents.
+MASS, SIZE, BOX = 4.0, (0.3405, 0.1, 0.1), 0.02
+ELEMENTS, FRICTION = 0.016, 6  # m; place of the friction in the ledger
+FREE = {"contact": None, "friction": None, "mass_offset": None}
+
+
+def test_the_public_numbers():
+    """Mass, size, width across the rails and box of the mass centre of the specification; the pads are
+    within the rails of 8.5 mm, and the way to the exit is the length of the CubeSat to 1 %."""
+    assert (SCENE.payload.mass, SCENE.payload.size) == (MASS, pytest.approx(SIZE, rel=1e-12))
+    xx = MASS * (SIZE[1] ** 2 + SIZE[2] ** 2) / 12.0
+    yy = MASS * (SIZE[0] ** 2 + SIZE[2] ** 2) / 12.0
+    inertia = SCENE.payload.inertia
+    assert (inertia.xx, inertia.yy, inertia.zz) == pytest.approx((xx, yy, yy), rel=2e-3)
+    for pad in SCENE.pads:
+        assert tuple(map(abs, pad.position[1:])) == pytest.approx((0.05, 0.05), rel=1e-12)
+        assert pad.inset + 0.5 * pad.width <= 8.5e-3 and pad.inset >= 0.5 * pad.width
+    assert SCENE.rail.end - min(pad.position[0] - 0.5 * pad.length for pad in SCENE.pads) == (
+        pytest.approx(SIZE[0], rel=0.02)
+    )
+    assert SCENE.thrust.arm == pytest.approx(0.5 * SIZE[0], rel=1e-12)
+    assert all(
+        scene.mass_offset is None or scene.mass_offset.eccentricity.axial <= BOX
+        for scene in map(SCENE.condition, SCENE.conditions)
+    )
+
+
+def test_the_exit_speed_follows_from_energy():
+    """Without the friction of the rails: the energy of the spring, less the friction of its pusher, moves
+    CubeSat and pusher. Control: without the mass of the pusher the speed differs by 2 %."""
+    (spring,) = SCENE.thrust.springs
+    numbers = spring.preload, spring.rate, spring.stroke, (MASS, SCENE.platform.mass)
+    run = lowfi.run(SCENE.replace(FREE), "springs")
+    exact = end_of_stroke(*numbers, spring.friction, spring.mass)
+    assert run.status == "exited"
+    assert run.outcome.velocity[0] == pytest.approx(exact.payload, rel=1e-6)
+    assert 1.0 < exact.payload < 2.0
+    assert np.abs(run.outcome.rate).max() < 1e-9
+    # Control:
+    light = end_of_stroke(*numbers, spring.friction)
+    assert abs(light.payload / exact.payload - 1.0) > 0.015
+
+
+def test_the_rails_take_energy_and_limit_the_rates():
+    """With rails the CubeSat is slower, by their friction, and it turns less than by the moment impulse of
+    the spring about its mass centre. Control: without rails it turns more, because a push from behind
+    turns it further."""
+    free = lowfi.run(SCENE.replace(FREE), "springs").outcome
+    held = lowfi.run(SCENE, "springs").outcome
+    loose = lowfi.run(SCENE.replace({"contact": None, "friction": None}), "springs").outcome
+    assert 0.9 * free.velocity[0] < held.velocity[0] < free.velocity[0]
+    arm = SCENE.mass_offset.eccentricity.axial
+    impulse = MASS * free.velocity[0]
+    turned = math.degrees(impulse * arm / SCENE.payload.inertia.yy)
+    assert math.degrees(np.linalg.norm(held.rate)) < 0.5 * turned
+    # Control:
+    assert math.degrees(np.linalg.norm(loose.rate)) > turned
+
+
+def test_the_errors_are_inputs_of_the_scene():
+    """Every error of the file varies in the scene, and the mass centre stays in the box. The file is that
+    of the studies of the scene."""
+    assert SCENE.studies.errors == "cubesat_3u"
+    found = uncertainty.load("cubesat_3u", SCENE)
+    largest = found.vary["mass_offset.eccentricity.axial"].ppf(np.array([1.0 - 1e-12]))[0]
+    assert largest <= BOX * (1.0 + 1e-9)
+    assert all(item.provenance for item in found.vary.values())
+
+
+@pytest.mark.slow
+def test_both_models_have_like_launches(tmp_path):
+    """One run of the reference among twelve neighbours of the surrogate within 1 µm, on the same elements
+    of 16 mm: exit speed, friction and total rate lie among them, with a margin of half their spread. A
+    single launch is chaotic, so no closer comparison of one run is possible. Control: without friction the
+    exit speed is outside."""
+    scene = SCENE.condition("offset15")
+    compliance = rail_compliance.kept(scene, tmp_path, ELEMENTS, lambda _: None)
+    numerics = lowfi.Numerics(relative_tolerance=1e-2, modes=compliance.frequency.shape[1])
+
+    def values(run) -> np.ndarray:
+        rate = math.degrees(np.linalg.norm(run.outcome.rate))
+        return np.array([run.outcome.velocity[0], run.energy[-1, FRICTION], rate])
+
+    changes = np.random.default_rng(1).uniform(-1e-6, 1e-6, 12)
+    near = np.array(
+        [
+            values(
+                lowfi.run(
+                    scene.replace(scene.contact.widened(change)),
+                    "compliant",
+                    compliance=compliance,
+                    numerics=numerics,
+                )
+            )
+            for change in changes
+        ]
+    )
+    found = values(highfi.run(scene, highfi.Numerics(element_size=ELEMENTS)))
+    low, high = near.min(axis=0), near.max(axis=0)
+    margin = 0.5 * (high - low)
+    assert (low - margin < found).all() and (found < high + margin).all()
+    # Control:
+    free = lowfi.run(scene.replace({"friction": None}), "springs").outcome.velocity[0]
+    assert free > high[0] + margin[0]
