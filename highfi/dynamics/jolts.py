@@ -76,7 +76,7 @@ def begin(rails: Rails | None) -> Jolts:
 
 def follow(rails: Rails, modes: np.ndarray, amounts: np.ndarray, span: float) -> float:
     """Advance ``modes`` by ``span`` (s) at the ``amounts`` (TERMS,); returns the largest deflection
-    (m) that is left out of a rail."""
+    (m) of a wall that is left out."""
     angle = rails.frequency * span
     cosine, sine = np.cos(angle), np.sin(angle)
     away, speed = modes[0] - amounts, modes[1].copy()
@@ -86,5 +86,5 @@ def follow(rails: Rails, modes: np.ndarray, amounts: np.ndarray, span: float) ->
 
 
 def largest(rails: Rails, amplitudes: np.ndarray) -> float:
-    """Bound (m) of the vibration of any rail under ``amplitudes`` (s,TERMS) or (TERMS,) of its terms."""
+    """Bound (m) of the vibration of any wall under ``amplitudes`` (s,TERMS) or (TERMS,) of its terms."""
     return MODES * float((rails.size * amplitudes).sum(axis=1).max(initial=0.0))

@@ -40,7 +40,8 @@ class Rails(NamedTuple):
     blocks: list[np.ndarray]  # numbers of the blocks of each
     groups: np.ndarray  # (rails, g) whether pads of a group can touch a rail
     deflections: list[list[Deflection]]  # of the solids of each rail; empty on a fixed platform
-    size: np.ndarray  # (s,TERMS) m, of the s solids without mirror images, see ``Deflection``
+    # (s,TERMS) m, of the walls of the s solids without mirror images, see ``Deflection``
+    size: np.ndarray
     frequency: np.ndarray  # (s,1) rad/s, the lowest of each
     at_ignition: bool  # whether rails may rest before the first touch
     stride: int  # steps in one long step, which is taken while all rails rest

@@ -31,7 +31,8 @@ class Deflection(NamedTuple):
     own: np.ndarray  # (n,) its nodes in the mesh
     shapes: np.ndarray  # (TERMS, n, 3) m for a unit of each term, of the solid that it mirrors
     signs: np.ndarray  # (3,) S
-    size: np.ndarray  # (TERMS,) m, largest deflection of each term
+    # (TERMS,) m, largest deflection across the rail of a wall that pads can touch, for each term
+    size: np.ndarray
     # (TERMS,) rad/s, frequency by Rayleigh's quotient of each shape; zero without deflection
     frequency: np.ndarray
 
@@ -83,7 +84,9 @@ def _solve(
         moved = clamped.solve(np.ascontiguousarray(flat.T)).T
         shapes.reshape(TERMS, -1)[:, clamped.free] = moved
         mass = np.repeat(operator.mass, 3)[clamped.free]
-        size = np.linalg.norm(shapes, axis=2).max(axis=1)
+        walls = [group for name, group in solid.surfaces.items() if name.startswith("contact")]
+        touched = np.unique(np.concatenate(walls)) if walls else np.zeros(0, dtype=np.int64)
+        size = np.linalg.norm(shapes[:, touched, 1:], axis=2).max(axis=1, initial=0.0)
         work, inertia = (moved * flat).sum(axis=1), (moved**2 * mass).sum(axis=1)
         squared = np.divide(work, inertia, out=np.zeros(TERMS), where=inertia > 0.0)
         frequency = np.sqrt(squared)
