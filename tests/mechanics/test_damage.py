@@ -25,7 +25,8 @@ def compliance() -> RailCompliance:
     scene, random = scenes.load("tiny"), np.random.default_rng(4)
     return RailCompliance(
         np.array([0.0, 0.2]),
-        random.random((2, 8, PATTERNS, 8, PATTERNS)),
+        np.kron(np.eye(4), np.ones((2, 2)))[:, None, :, None]
+        * random.random((2, 8, PATTERNS, 8, PATTERNS)),
         np.arange(8) // 2,
         random.random((8, 2)),
         2e4 * np.ones((4, 2)),

@@ -20,7 +20,9 @@ FACES = 16
 def compliance():
     """Any numbers, for the pads and rail of the scene."""
     random = np.random.default_rng(4)
-    flexibility = random.random((5, FACES, PATTERNS, FACES, PATTERNS))
+    rail = np.arange(FACES) // 4
+    together = (rail[:, None] == rail)[:, None, :, None]
+    flexibility = together * random.random((5, FACES, PATTERNS, FACES, PATTERNS))
     frequency, shape = (
         2e4 * np.arange(1.0, 4.0) * np.ones((4, 1)),
         random.random((5, FACES, PATTERNS, 3)),
@@ -28,7 +30,7 @@ def compliance():
     return RailCompliance(
         np.linspace(0.0, 0.2, 5),
         flexibility,
-        np.arange(FACES) // 4,
+        rail,
         random.random((FACES, 2)),
         frequency,
         shape,
@@ -136,6 +138,13 @@ def test_arrays_that_do_not_belong_together_are_refused(compliance, tmp_path):
             ValueError, match="not a file of rail compliance.*expected finite numbers"
         ):
             RailCompliance.load(tmp_path / "walls.npz")
+    apart = compliance.flexibility.copy()
+    apart[1, 0, 0, 15, 0] = 1e-9  # of faces on different rails: a run would leave it out
+    replace(compliance, flexibility=apart).save(tmp_path / "walls.npz")
+    with pytest.raises(
+        ValueError, match="flexibility: given some between faces on different rails"
+    ):
+        RailCompliance.load(tmp_path / "walls.npz")
     with pytest.raises(FileNotFoundError):
         RailCompliance.load(tmp_path / "none.npz")
 

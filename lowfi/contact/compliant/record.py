@@ -91,13 +91,16 @@ class DrawnWalls(NamedTuple):
 class Compliance(NamedTuple):
     """Compliant contact of f faces on r rails, with its statics at s stations."""
 
-    cubic: np.ndarray  # (s-1, f, f, 4, p p) m/N, as powers of the distance (m) from a station
-    # (s-1, f, f, 4, d d) m/N, as ``cubic``, in the first d patterns for a coefficient of 1; None
+    # (s-1, f, m, 4, p p) m/N, between a face and the m members of its rail, as powers of the distance
+    # (m) from a station
+    cubic: np.ndarray
+    # (s-1, f, m, 4, d d) m/N, as ``cubic``, in the first d patterns for a coefficient of 1; None
     # without friction
     dragged: np.ndarray | None
     origin: float  # m, X of the first face at the first station
     spacing: float  # m, between stations
     members: np.ndarray  # (r, m) numbers of the faces on each rail; -1 fills up
+    among: np.ndarray  # (f,) place of each face among the members of its rail
     rail: np.ndarray  # (f,) number of the rail of each face
     half: np.ndarray  # (f, 2) m, half length and half width
     across: np.ndarray  # (f,) m, place of the middle of each face across rail and normal, centred
@@ -157,10 +160,9 @@ def build(
     )
     nominal = faces.centre + np.subtract(model.payload.mass_centre, platform)
     spacing = float(found.travel[1] - found.travel[0])
-    rails = [np.flatnonzero(found.rail == number) for number in range(found.rail.max() + 1)]
-    members = np.full((len(rails), max(rail.size for rail in rails)), -1)
-    for row, rail in zip(members, rails):
-        row[: rail.size] = rail
+    members, among = found.members.copy(), np.zeros(found.rail.size, dtype=np.int64)
+    for rail in members:
+        among[rail[rail >= 0]] = np.arange((rail >= 0).sum())
     edges = np.linspace(-1.0, 1.0, cells + 1)
     node, crown = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges**5) / (5.0 * np.diff(edges))
     flexibility, shape = found.cubic(modes)
@@ -172,6 +174,7 @@ def build(
         origin=float(nominal[0, 0] + found.travel[0]),
         spacing=spacing,
         members=members,
+        among=among,
         rail=found.rail.copy(),  # kernels have one type for arrays, that of the writable ones
         half=found.half.copy(),
         across=nominal[np.arange(faces.axis.size), 3 - faces.axis],

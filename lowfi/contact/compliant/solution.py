@@ -113,19 +113,19 @@ def take_flexibility(compliance, count, place, state):
         )
         thermal_offset.evaluate(compliance.thermal_offset, workspace.order[i], station, s, changes)
         for j in range(count):
-            c = compliance.cubic[station, workspace.order[i], workspace.order[j]]
+            c = compliance.cubic[station, workspace.order[i], compliance.among[workspace.order[j]]]
             block, slope = workspace.flexibility[i, j], workspace.slope[i, j]
             for k in range(block.size):
                 block[k] = c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k]))
                 slope[k] = changes * (c[1, k] + s * (2.0 * c[2, k] + s * 3.0 * c[3, k]))
-            _add_drag(compliance.dragged, workspace, i, j, station, s, changes)
+            _add_drag(compliance.dragged, compliance.among, workspace, i, j, station, s, changes)
 
 
 @kernel
-def _add_drag(dragged, workspace, i, j, station, s, changes):
+def _add_drag(dragged, among, workspace, i, j, station, s, changes):
     """Add what friction adds to flexibility and slope between two faces in order."""
     if dragged is not None:
-        c = dragged[station, workspace.order[i], workspace.order[j]]
+        c = dragged[station, workspace.order[i], among[workspace.order[j]]]
         share, size = workspace.friction[0], patterns.count(workspace.levels)
         for a in range(DRAGGED):
             for b in range(DRAGGED):
@@ -139,10 +139,10 @@ def _add_drag(dragged, workspace, i, j, station, s, changes):
 
 
 @kernel
-def _follow_drag(dragged, workspace, face, other, station, s, out):
+def _follow_drag(dragged, among, workspace, face, other, station, s, out):
     """Add to ``out`` the displacement of the wall under a face by the friction of another one."""
     if dragged is not None:
-        c, share = dragged[station, face, other], workspace.friction[0]
+        c, share = dragged[station, face, among[other]], workspace.friction[0]
         for a in range(DRAGGED):
             for b in range(DRAGGED):
                 k = a * DRAGGED + b
@@ -243,10 +243,10 @@ def follow(compliance, face, place, count, state, out):
         )
         for j in range(count):
             other = workspace.order[j]
-            c = compliance.cubic[station, face, other]
+            c = compliance.cubic[station, face, compliance.among[other]]
             for b in range(size):
                 k = a * size + b
                 value = c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k]))
                 out[a] += value * workspace.force[other, b]
     for j in range(count):
-        _follow_drag(compliance.dragged, workspace, face, workspace.order[j], station, s, out)
+        _follow_drag(compliance.dragged, compliance.among, workspace, face, workspace.order[j], station, s, out)

@@ -128,9 +128,10 @@ class RailCompliance(Shown):
         )
 
     def cubic(self, modes: int = 0) -> tuple[np.ndarray, np.ndarray]:
-        """Flexibility (s-1,f,f,4,p p) without the part of the first ``modes``, and their shapes
-        (s-1,f,n,4,p), between stations: coefficients of the rising powers of the distance (m) from
-        the one before. Raises ValueError as ``residual`` does."""
+        """Flexibility (s-1,f,m,4,p p) between each face and the ``members`` of its rail, without the
+        part of the first ``modes``, and their shapes (s-1,f,n,4,p), between stations: coefficients
+        of the rising powers of the distance (m) from the one before. Raises ValueError as
+        ``residual`` does."""
         if modes not in self._cubics:
             shape = cubic(self.travel, self.shape[..., :modes])
             self._cubics[modes] = (
@@ -145,8 +146,20 @@ class RailCompliance(Shown):
         return None if self.dragged is None else self._between_faces(self.dragged)
 
     def _between_faces(self, table: np.ndarray) -> np.ndarray:
-        between = cubic(self.travel, table).transpose(0, 1, 3, 5, 2, 4)
+        """Cubics between each face and the members of its rail; the others do not move it."""
+        count = np.arange(self.rail.size)[:, None]
+        near = table.transpose(1, 3, 0, 2, 4)[count, self.members[self.rail]]  # (f,m,s,p,p)
+        between = cubic(self.travel, near.transpose(2, 0, 1, 3, 4)).transpose(0, 1, 2, 5, 3, 4)
         return np.ascontiguousarray(between.reshape(*between.shape[:4], -1))
+
+    @cached_property
+    def members(self) -> np.ndarray:
+        """Numbers (r,m) of the faces on each rail; -1 fills up."""
+        rails = [np.flatnonzero(self.rail == number) for number in range(self.rail.max() + 1)]
+        found = np.full((len(rails), max(rail.size for rail in rails)), -1)
+        for row, rail in zip(found, rails):
+            row[: rail.size] = rail
+        return found
 
     @cached_property
     def shapes(self) -> np.ndarray:
