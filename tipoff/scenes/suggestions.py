@@ -30,12 +30,16 @@ def expected(annotation: Any, key: str, words: str) -> str:
 
 
 def _meant(annotation: Any, key: str) -> str:
-    """The keys with the same last part, such as payload.mass for mass; else similar keys."""
+    """The keys with the same last part, such as payload.mass for mass, those of the outer tables if
+    there are many; else similar keys."""
     key = _bare(key)
     known = list(dict.fromkeys(keys(annotation)))
     if key in known:
         return f" in this kind of {key.rpartition('.')[0]}; another kind has it"
     same = [name for name in known if name.rpartition(".")[2] == key.rpartition(".")[2]]
+    if len(same) > MOST_NAMES:
+        outer = min(name.count(".") for name in same)
+        same = [name for name in same if name.count(".") == outer]
     if same and len(same) <= MOST_NAMES:
         return f", did you mean {' or '.join(same)}?"
     return close(key, known)

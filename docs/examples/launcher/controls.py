@@ -58,7 +58,7 @@ def value(scene: Scene, control: Control) -> float | None:
         found = attrgetter(control.key)(scene)
     except AttributeError:  # the table is absent, or of another kind
         return None if head in _NEEDS else 0.0
-    if found is None:  # a pulse that is given by its impulse
+    if found is None or callable(found):  # a pulse that is given by its impulse; springs
         return None
     # as many digits as stand beside a slider; a value that nobody moves is not taken from here
     return float(f"{found / control.si:.4g}")

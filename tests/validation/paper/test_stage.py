@@ -185,7 +185,7 @@ def test_headline_has_our_cost_of_the_present_code_only(quick, monkeypatch):
     write_json(study.path("agreement.json"), {"key": "of other code"} | document(speedup=speed))
     stale = paper.stored(study)
     for text in (page(stale), shown(stale)):
-        assert "tipoff compare --scene reference" in text and "30,000" not in text
+        assert "tipoff compare --scene clamped" in text and "30,000" not in text
     monkeypatch.setattr(compare, "stored", lambda _: table(speedup=speed))
     fresh = paper.stored(study)
     for text in (page(fresh), shown(fresh)):
