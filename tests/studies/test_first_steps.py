@@ -77,7 +77,7 @@ def test_a_bad_element_size(text):
         (["--condition", "phi3"], ["in the options", "--condition", "phi35 or phi0?"]),
         (["--set", "payload.mas=9 kg"], ["in the options", "--set: payload.mas", "payload.mass"]),
         (["--condition", "phi15,phi3"], ["in the options", "'phi3'", "phi35 or phi0?"]),
-        (["--set", "mass=9 kg"], ["did you mean payload.mass or platform.mass or thrust.mass?"]),
+        (["--set", "mass=9 kg"], ["did you mean payload.mass or thrust.mass or platform.mass?"]),
         (["--set", "contact.clearance=9 kg"], ['for example "0.25 mm"']),
         (["--set", "thrust_offset.misalignment.axial=9 kg"], ['for example "0.1 deg"']),
         (["--set", "pads.3.inset=9 kg"], ['for example "10 mm"']),
