@@ -175,4 +175,8 @@ def test_walls_and_modes_of_different_rails_are_refused():
     compliance = reference_compliance()
     with pytest.raises(ValueError, match="^modes: given"):
         replace(compliance, shape=3.0 * compliance.shape).residual(1)
+    unknown = compliance.shape.copy()
+    unknown[0, 0, 0, 0] = np.nan
+    with pytest.raises(ValueError, match="^modes: given"):
+        replace(compliance, shape=unknown).residual(1)
     assert compliance.residual(0) is compliance.flexibility
