@@ -249,4 +249,13 @@ def follow(compliance, face, place, count, state, out):
                 value = c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k]))
                 out[a] += value * workspace.force[other, b]
     for j in range(count):
-        _follow_drag(compliance.dragged, compliance.among, workspace, face, workspace.order[j], station, s, out)
+        _follow_drag(
+            compliance.dragged,
+            compliance.among,
+            workspace,
+            face,
+            workspace.order[j],
+            station,
+            s,
+            out,
+        )

@@ -3,7 +3,8 @@
 The deflection is the mean displacement of the wall under a pad face by a force spread over it, at
 the place along the way where the rail is softest on the finest mesh. At the edge of a rigid mount and
 in a sharp inner corner the stress is singular, so both converge with about the first power of the
-element size; with a fillet on joints, with the second one.
+element size. With a fillet on joints nothing is singular, and the power is the second one on fine
+elements.
 """
 
 from collections.abc import Iterator, Sequence
