@@ -4,9 +4,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 
+from tests.exact.spring import end_of_stroke
 from tipoff.kernels import rotation
+from tipoff.mechanics.trajectory import Trajectory
 
 SPRING = {"kind": "spring", "preload": 2e4, "rate": 2e5, "stroke": 0.02}
 # Preload (N), rate (N/m), stroke (m), y and z (m) of springs at three corners and beside the middle.
@@ -21,6 +24,7 @@ MASSES = (0.3, 0.5, 0.2, 0.4)  # kg, of the pushers of these springs
 # Misalignment (rad) of these springs, and its clock angle (rad).
 TILTS = ((0.02, 0.3), (0.03, 2.0), (0.0, 0.0), (0.025, 4.0))
 ENOUGH = 1e-4  # s, after the last stroke
+PUSHER = 0.5  # kg
 
 
 def springs(numbers: Sequence[tuple] = UNEQUAL) -> dict:
@@ -35,6 +39,21 @@ def heavy_and_tilted() -> dict:
     for spring, mass, (axial, radial) in zip(table["springs"], MASSES, TILTS):
         spring |= {"mass": mass, "misalignment": {"axial": axial, "radial": radial}}
     return table
+
+
+def check_share_of_a_pusher(run: Trajectory, payload: float, platform: float) -> None:
+    """The last sample of ``run`` of ``SPRING`` with a pusher of ``PUSHER``, between bodies of these
+    masses (kg): its kinetic energy is lost to both, the ledger closes and momentum is kept. Control:
+    without the pusher's mass the payload is 2 % faster."""
+    numbers = SPRING["preload"], SPRING["rate"], SPRING["stroke"], (payload, platform)
+    exact, light = end_of_stroke(*numbers, pusher=PUSHER), end_of_stroke(*numbers)
+    energy = SPRING["preload"] * SPRING["stroke"] - 0.5 * SPRING["rate"] * SPRING["stroke"] ** 2
+    assert run.energy[-1, 0] == pytest.approx(energy - exact.kept, rel=1e-6)
+    assert exact.kept > 0.04 * energy
+    assert run.checks["energy_error"] < 1e-7
+    assert run.checks["linear_momentum_error"] < 1e-12
+    # Control:
+    assert light.payload / exact.payload - 1.0 > 0.02
 
 
 class Free(NamedTuple):

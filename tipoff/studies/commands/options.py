@@ -1,7 +1,7 @@
 """Options that many commands share, with their help."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -131,6 +131,18 @@ Surrogate = Annotated[
         "at the pad faces, the method of the paper.",
     ),
 ]
+
+
+def rate_limits(example: str, words: str) -> Any:
+    """The option ``--limit`` of rates, in the form of ``exceedance.limits``; ``words`` say what is
+    done with them."""
+    return typer.Option(
+        "--limit",
+        metavar="[AXIS=]RATE",
+        help=f'Limit of a rate, "x={example}", or of the total rate, "{example}"; repeatable. {words}',
+    )
+
+
 At = Annotated[
     Literal["exit", "settled"] | None,
     typer.Option(

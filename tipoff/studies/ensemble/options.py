@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from tipoff.studies.commands.options import At, CalibrationFile, Modes, Surrogate
+from tipoff.studies.commands.options import At, CalibrationFile, Modes, Surrogate, rate_limits
 
 if TYPE_CHECKING:
     from tipoff.workspace import models
@@ -83,12 +83,7 @@ class Options:
     at: At = None
     limits: Annotated[
         tuple[str, ...],
-        typer.Option(
-            "--limit",
-            metavar="[AXIS=]RATE",
-            help='Limit of a rate, "x=10 deg/s", or of the total rate, "10 deg/s"; repeatable. The result '
-            "is the probability above any of them.",
-        ),
+        rate_limits("10 deg/s", "The result is the probability above any of them."),
     ] = ()
     calibration: CalibrationFile = None
     scheduler: Annotated[

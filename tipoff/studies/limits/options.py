@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from tipoff.studies.commands.options import At, Seed, Surrogate, condition_names
+from tipoff.studies.commands.options import At, Seed, Surrogate, condition_names, rate_limits
 from tipoff.workspace.options import between
 
 
@@ -17,12 +17,7 @@ class Options:
 
     limits: Annotated[
         tuple[str, ...],
-        typer.Option(
-            "--limit",
-            metavar="[AXIS=]RATE",
-            help='Limit of a rate, "x=2 deg/s", or of the total rate, "5 deg/s"; repeatable. All '
-            "limits must be kept. Default: 5 deg/s for the total rate.",
-        ),
+        rate_limits("2 deg/s", "All limits must be kept. Default: 5 deg/s for the total rate."),
     ] = ("5 deg/s",)
     probability: Annotated[
         float,

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import At, Seed, Surrogate
+from tipoff.studies.commands.options import At, Seed, Surrogate, rate_limits
 from tipoff.studies.populations.reading import Reading
 
 FEWEST_FINE = 4  # draws on the finer mesh
@@ -22,11 +22,9 @@ class Cases:
     reading: Reading = Reading()
     limits: Annotated[
         tuple[str, ...],
-        typer.Option(
-            "--limit",
-            metavar="[AXIS=]RATE",
-            help='Limit of a rate, "x=2 deg/s", or of the total rate, "5 deg/s"; repeatable. The '
-            "result is the probability above it. Default: 5 deg/s for each rate and for the total.",
+        rate_limits(
+            "2 deg/s",
+            "The result is the probability above it. Default: 5 deg/s for each rate and for the total.",
         ),
     ] = ("x=5 deg/s", "y=5 deg/s", "z=5 deg/s", "5 deg/s")
     model: Surrogate = None
