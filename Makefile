@@ -111,7 +111,7 @@ rails: $(READY) ## two more rails, calibrated and judged at 4 mm: they stand on 
 	set -e; for rail in $(filter-out $(SCENE),thin titanium); do \
 	  $(TIPOFF) compare --scene $$rail --element-size 4 --out $(OUT); done
 
-full-report: rails ## the report with every study on it, and with two more rails (an hour and a half)
+full-report: rails ## the report with every study on it, and with two more rails (three hours or more)
 	$(EVIDENCE) report --every $(ASKED)
 
 docs: $(DOCUMENTED) ## the documentation site, every warning an error: docs/_build/index.html
