@@ -56,7 +56,7 @@ HEXAHEDRON = Kind(
 )
 TETRAHEDRON = Kind(
     name="10-node tetrahedra",
-    facets="6-node triangle",
+    facets="triangle",
     cell="tetra10",
     facet="triangle6",
     faces=np.array(

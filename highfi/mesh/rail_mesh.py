@@ -1,7 +1,7 @@
 """Rail mesh as plain arrays, read from a file (``highfi.mesh.files``) and checked.
 
-A mesh needs 8-node hexahedra or 10-node tetrahedra, at least one named group of their faces that
-starts with `contact` (the walls pads touch) and one named `mount` (fixed to the platform). Nodes
+A mesh needs hexahedra or tetrahedra (`mesh.file_elements`), at least one named group of their faces
+that starts with `contact` (the walls pads touch) and one named `mount` (fixed to the platform). Nodes
 follow the VTK order. The Jacobian must be positive at the corners of a hexahedron,
 
     J = e1 . (e2 x e3) > 0    with e the three edges that leave a corner,
@@ -17,19 +17,23 @@ from pathlib import Path
 import meshio
 import numpy as np
 
+from tipoff.highfi.mesh import file_elements
 from tipoff.highfi.mesh.cells import (
     HEXAHEDRON,
-    KINDS,
-    Kind,
     edge_lengths,
     jacobians,
     kind,
     thickness,
 )
+from tipoff.highfi.mesh.file_elements import FILE_ELEMENTS
 from tipoff.highfi.mesh.files.opened import opened
-from tipoff.highfi.mesh.files.tables import Unreadable, is_surface
+from tipoff.highfi.mesh.files.tables import Unreadable
+from tipoff.highfi.mesh.named_surfaces import Boundary, named_surfaces
 from tipoff.scenes.faults import InputError
 
+SUPPORTED = "hexahedra of 8, 20 or 27 nodes and tetrahedra of 4 or 10 nodes"
+# last line of every refusal of a file
+DESCRIBED = "what is read: docs/reference/file_formats.md, section 'Meshes of rails'"
 _LISTED = 20  # element numbers printed in one message
 _THIN = 0.25  # of the median; thinner elements set the time step of the whole mesh
 # scaled Jacobian: 1 for a brick, 0.71 for corners of 45 degrees, at which thin layers do not bend
@@ -58,34 +62,43 @@ def read(source) -> RailMesh:
     """Check and convert a meshio mesh, or the path of a file in a format of ``files.opened``.
 
     Unused points are dropped. Raises MeshError for a file that cannot be read. Else the error has
-    one line per fault: no elements of a supported kind, two kinds or others beside them, missing
+    one line per fault: no elements of a supported type, two types or others beside them, missing
     surfaces, facets that are not on the boundary of the solid or appear twice, elements that are
     inverted or appear twice.
     """
     mesh = source if isinstance(source, meshio.Mesh) else _opened(Path(source))
-    found = _kinds(mesh)
-    cells = _elements(mesh, found[0])
-    surfaces = _named_facets(mesh, found[0])
-    faults = _content_faults(mesh, found, len(cells), surfaces)
-    if len(cells):
-        faults += _inverted(mesh.points, cells) + _repeated(cells)
-        boundary = boundary_facets(cells)
-        surfaces, facet_faults = _matched(surfaces, boundary)
-        faults += facet_faults
+    found = [name for name in FILE_ELEMENTS if any(block.type == name for block in mesh.cells)]
+    name = found[0] if found else "hexahedron"
+    _, made, parts = FILE_ELEMENTS[name]
+    blocks = [block.data for block in mesh.cells if block.type == name]
+    given = np.concatenate(blocks).astype(np.int64) if blocks else np.empty((0, 8), dtype=np.int64)
+    boundary = Boundary(given, made)
+    surfaces = named_surfaces(mesh, boundary)
+    faults = _content_faults(mesh, found, surfaces)
+    points, cells = np.asarray(mesh.points, dtype=float), given
+    if len(given):
+        # The products of too large coordinates overflow.
+        with np.errstate(over="ignore", invalid="ignore"):
+            points, cells, astray = file_elements.converted(name, points, given)
+        if len(astray):
+            faults.append(f"middle nodes far from the middles of edges: elements {listed(astray)}")
+        else:
+            faults += _inverted(points, cells, parts)
+        faults += _repeated(given)
+        faults += boundary.faults(surfaces)
     if faults:
-        name = "the mesh" if source is mesh else source
-        raise MeshError(f"{name} cannot be used:\n  " + "\n  ".join(faults))
+        shown, end = ("the mesh", "") if source is mesh else (source, f"\n  {DESCRIBED}")
+        raise MeshError(f"{shown} cannot be used:\n  " + "\n  ".join(faults) + end)
     used, numbered = np.unique(cells, return_inverse=True)
-    renumber = np.full(len(mesh.points), -1)
+    renumber = np.full(len(points), -1)
     renumber[used] = np.arange(len(used))
-    points = np.ascontiguousarray(mesh.points[used], dtype=float)
+    points = np.ascontiguousarray(points[used])
+    facets = {
+        key: renumber[file_elements.facets(name, cells, *boundary.places(corners))]
+        for key, corners in surfaces.items()
+    }
     cells = numbered.reshape(cells.shape)
-    return RailMesh(
-        points,
-        cells,
-        {name: renumber[facets] for name, facets in surfaces.items()},
-        _warnings(points, cells),
-    )
+    return RailMesh(points, cells, facets, (*_of_parts(name), *_warnings(points, cells)))
 
 
 def along_x(mesh: RailMesh) -> RailMesh:
@@ -130,71 +143,38 @@ def _opened(path: Path) -> meshio.Mesh:
     try:
         return opened(path)
     except (Unreadable, OSError) as fault:
-        raise MeshError(f"{path} cannot be used: {fault}") from fault
+        raise MeshError(f"{path} cannot be used: {fault}\n  {DESCRIBED}") from fault
 
 
-def _kinds(mesh: meshio.Mesh) -> list[Kind]:
-    """Kinds of element in a file; hexahedra if there are no elements."""
-    types = {block.type for block in mesh.cells}
-    return [each for each in KINDS.values() if each.cell in types] or [HEXAHEDRON]
-
-
-def _elements(mesh: meshio.Mesh, wanted: Kind) -> np.ndarray:
-    blocks = [block.data for block in mesh.cells if block.type == wanted.cell]
-    return np.concatenate(blocks).astype(np.int64) if blocks else np.empty((0, 8), dtype=np.int64)
-
-
-def _named_facets(mesh: meshio.Mesh, wanted: Kind) -> dict[str, np.ndarray]:
-    """Facets of each contact or mount group: from cell sets, or from physical tags of a mesh made
-    in memory."""
-    blocks = [
-        (index, block.data) for index, block in enumerate(mesh.cells) if block.type == wanted.facet
-    ]
-    physical = mesh.cell_data.get("gmsh:physical")
-    groups: dict[str, list[np.ndarray]] = {}
-    for index, facets in blocks:
-        if physical is not None:
-            for name, (tag, dimension) in mesh.field_data.items():
-                if dimension == 2:
-                    groups.setdefault(name, []).append(facets[physical[index] == tag])
-        for name, members in mesh.cell_sets.items():
-            # If both exist, they give the same group.
-            if is_surface(name) and name not in mesh.field_data and members[index] is not None:
-                groups.setdefault(name, []).append(
-                    facets[np.asarray(members[index], dtype=np.int64)]
-                )
-    merged = {
-        name: np.concatenate(parts).astype(np.int64)
-        for name, parts in groups.items()
-        if is_surface(name)
-    }
-    return {name: facets for name, facets in merged.items() if len(facets)}
+def _of_parts(name: str) -> tuple[str, ...]:
+    """What became of the elements of a file, if their numbers changed."""
+    text, _, parts = FILE_ELEMENTS[name]
+    if parts == 1:
+        return ()
+    return (
+        f"each of the {text} is split into {parts} of 8 nodes between its nodes; element n of the "
+        f"file has the numbers {parts} n - {parts - 1} to {parts} n here",
+    )
 
 
 def _content_faults(
-    mesh: meshio.Mesh, found: list[Kind], elements: int, surfaces: dict[str, np.ndarray]
+    mesh: meshio.Mesh, found: list[str], surfaces: dict[str, np.ndarray]
 ) -> list[str]:
     faults = []
-    supported = {kind.cell for kind in KINDS.values()}
-    names = [kind.name for kind in KINDS.values()]
     other = sorted(
-        {block.type for block in mesh.cells if block.dim == 3 and block.type not in supported}
+        {block.type for block in mesh.cells if block.dim == 3 and block.type not in FILE_ELEMENTS}
     )
     if other:
-        faults.append(f"solid elements other than {' and '.join(names)}: {', '.join(other)}")
-    if "tetra" in other:
-        faults.append(
-            "4-node tetrahedra, which are far too stiff: let the mesh generator write elements of "
-            "second order"
-        )
+        faults.append(f"solid elements of other types: {', '.join(other)}; {SUPPORTED} are read")
     if len(found) > 1:
-        faults.append(f"both {' and '.join(names)}: one kind can be used")
-    if not elements:
-        faults.append(f"no {' or '.join(names)}")
+        names = " and ".join(FILE_ELEMENTS[name].name for name in found)
+        faults.append(f"both {names}: one type can be used")
+    if not found:
+        faults.append(f"no solid elements; {SUPPORTED} are read")
     if not np.isfinite(mesh.points).all():
         faults.append("coordinates that are not finite")
-    named = ", ".join(sorted({*mesh.field_data, *mesh.cell_sets})) or "none"
-    facets = found[0].facets
+    named = ", ".join(sorted({*mesh.field_data, *mesh.cell_sets, *mesh.point_sets})) or "none"
+    facets = FILE_ELEMENTS[found[0]].kind.facets if found else HEXAHEDRON.facets
     if not any(name.startswith("contact") for name in surfaces):
         faults.append(
             f"no {facets} group whose name starts with 'contact' (groups in the mesh: {named})"
@@ -204,13 +184,12 @@ def _content_faults(
     return faults
 
 
-def _inverted(points: np.ndarray, cells: np.ndarray) -> list[str]:
-    # The products of too large coordinates overflow.
+def _inverted(points: np.ndarray, cells: np.ndarray, parts: int) -> list[str]:
     with np.errstate(over="ignore", invalid="ignore"):
         jacobian, scaled = jacobians(points, cells)
     if np.isfinite(points).all() and not (np.isfinite(jacobian) & np.isfinite(scaled)).all():
         return [f"coordinates up to {np.abs(points).max():.3g} m, too large for any element"]
-    inverted = np.flatnonzero(~(jacobian > 0.0).all(axis=1))
+    inverted = np.unique(np.flatnonzero(~(jacobian > 0.0).all(axis=1)) // parts)
     return [f"inverted or flat elements: {listed(inverted)}"] if len(inverted) else []
 
 
@@ -219,27 +198,6 @@ def _repeated(cells: np.ndarray) -> list[str]:
     _, first = np.unique(np.sort(cells, axis=1), axis=0, return_index=True)
     again = np.delete(np.arange(len(cells)), first)
     return [f"elements that appear twice: {listed(again)}"] if len(again) else []
-
-
-def _matched(
-    surfaces: dict[str, np.ndarray], boundary: np.ndarray
-) -> tuple[dict[str, np.ndarray], list[str]]:
-    """Each facet replaced by the face of its element, which has the outward orientation."""
-    face_of = {tuple(key): face for key, face in zip(np.sort(boundary, axis=1).tolist(), boundary)}
-    matched, faults = {}, []
-    for name, facets in surfaces.items():
-        keys = [tuple(key) for key in np.sort(facets, axis=1).tolist()]
-        astray = sum(key not in face_of for key in keys)
-        if astray:
-            faults.append(
-                f"surface '{name}': {astray} of {len(keys)} facets are not on the boundary of the "
-                f"solid"
-            )
-        if len(set(keys)) < len(keys):
-            faults.append(f"surface '{name}': {len(keys) - len(set(keys))} facets appear twice")
-        if not astray:
-            matched[name] = np.array([face_of[key] for key in keys])
-    return matched, faults
 
 
 def _warnings(points: np.ndarray, cells: np.ndarray) -> tuple[str, ...]:

@@ -251,9 +251,9 @@ def test_every_fault_is_reported_at_once(built):
 
 
 def test_solids_without_hexahedra_and_inner_facets_are_faults(built):
-    tetrahedra = meshio.Mesh(np.eye(4, 3), [("tetra", [[0, 1, 2, 3]])])
-    with pytest.raises(MeshError, match="(?s)tetra.*no 8-node hexahedra.*contact.*mount"):
-        read(tetrahedra)
+    wedges = meshio.Mesh(np.eye(6, 3), [("wedge", [[0, 1, 2, 3, 4, 5]])])
+    with pytest.raises(MeshError, match="(?s)wedge.*no solid elements.*contact.*mount"):
+        read(wedges)
     inner = meshio.Mesh(
         built.points,
         [*built.cells, ("quad", built.cells[0].data[:1, [0, 2, 4, 6]])],
