@@ -79,7 +79,7 @@ def read(content: bytes) -> meshio.Mesh:
     nothing = np.array([], dtype=np.int64)
     groups: dict[str, list[np.ndarray]] = {}
     for place, (_, owner) in enumerate(elements):
-        name = names.get(owner, f"property {owner} without a name")
+        name = names.get(owner, f"property {owner}")
         parts = groups.setdefault(any_case(name) or name, [nothing] * len(blocks))
         parts[place] = np.arange(len(blocks[place].nodes))
     return mesh(np.array(labels, dtype=np.int64), np.array(points, dtype=float), blocks, groups)

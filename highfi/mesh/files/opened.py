@@ -5,7 +5,7 @@ from pathlib import Path
 import meshio
 
 from tipoff.files import open_input
-from tipoff.highfi.mesh.files import abaqus, gmsh_msh, nastran
+from tipoff.highfi.mesh.files import abaqus, gmsh_msh, lsdyna, nastran
 from tipoff.highfi.mesh.files.tables import Unreadable
 from tipoff.highfi.mesh.memory_limit import limited
 
@@ -16,6 +16,9 @@ _READERS = {
     ".nas": ("Nastran", nastran.read),
     ".fem": ("Nastran", nastran.read),
     ".dat": ("Nastran", nastran.read),
+    ".k": ("LS-DYNA", lsdyna.read),
+    ".key": ("LS-DYNA", lsdyna.read),
+    ".dyn": ("LS-DYNA", lsdyna.read),
 }
 SUFFIXES = tuple(_READERS)
 # bytes: upper bound of the memory to read a mesh. Per byte of the file (lists of Python hold

@@ -3,7 +3,8 @@ list, and a mesh made of blocks of elements with named groups."""
 
 import codecs
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import NamedTuple
 
 import meshio
@@ -89,9 +90,11 @@ def mesh(
     points: np.ndarray,
     blocks: Sequence[Block],
     groups: dict[str, list[np.ndarray]],
+    nodes: Mapping[str, np.ndarray] = MappingProxyType({}),
 ) -> meshio.Mesh:
     """Mesh of nodes with numbers ``labels`` (n,) at ``points`` (n,3), and of ``blocks``; ``groups``
-    has, for each name, the places of its members in each block.
+    has, for each name, the places of its members in each block, ``nodes`` the numbers of the nodes
+    of further groups.
 
     Raises Unreadable for nodes with two places or without one.
     """
@@ -110,4 +113,5 @@ def mesh(
             missing = np.unique(block.nodes[~known])
             raise Unreadable(f"no coordinates for nodes {shown(missing)}, which elements use")
         cells.append((block.kind, order[place]))
-    return meshio.Mesh(points, cells, cell_sets=groups)
+    sets = {name: np.flatnonzero(np.isin(labels, members)) for name, members in nodes.items()}
+    return meshio.Mesh(points, cells, cell_sets=groups, point_sets=sets)

@@ -274,7 +274,7 @@ def test_continuations_with_marks_belong_to_their_card(tmp_path):
 @pytest.mark.parametrize(
     "before, after, why",
     [
-        ("Femap", "Property", "groups in the mesh: property 1 without a name, property 2"),
+        ("Femap", "Property", "groups in the mesh: property 1, property 2"),
         ("GRID           1        ", "GRID           1       7", "coordinates in system 7"),
         ("BEGIN BULK", "BEGIN BULK\nINCLUDE 'a.bdf'", "INCLUDE is not read"),
         ("+      ", "CROD   ", "CHEXA with 6 nodes"),
