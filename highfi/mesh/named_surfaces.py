@@ -8,6 +8,8 @@ no surface elements have its name.
 import meshio
 import numpy as np
 
+from tipoff.highfi.mesh.asked import AS_DRAWN, Asked
+from tipoff.highfi.mesh.boxes import chosen
 from tipoff.highfi.mesh.cells import Kind
 from tipoff.highfi.mesh.file_elements import corners
 from tipoff.highfi.mesh.files.tables import is_surface
@@ -31,10 +33,7 @@ class Boundary:
         self.width, self._per_element = table.shape[1], len(table)
         alone = count == 1
         self._place = {tuple(key): place for key, place in zip(keys[alone].tolist(), first[alone])}
-
-    def keys(self) -> np.ndarray:
-        """Corners (f,w) of every face in ascending order."""
-        return np.array(list(self._place), dtype=np.int64).reshape(-1, self.width)
+        self.faces = faces[first[alone]]  # (f,w) corners, counter-clockwise seen from outside
 
     def faults(self, surfaces: dict[str, np.ndarray]) -> list[str]:
         """Surfaces with facets that are elsewhere or appear twice."""
@@ -57,32 +56,77 @@ class Boundary:
         return found // self._per_element, found % self._per_element
 
 
-def named_surfaces(mesh: meshio.Mesh, boundary: Boundary) -> dict[str, np.ndarray]:
-    """Corners (m,w) of the facets of each wall and mount: from cell sets, from physical tags of a
-    mesh made in memory, or from sets of points."""
-    groups: dict[str, list[np.ndarray]] = {}
-    physical = mesh.cell_data.get("gmsh:physical")
-    for index, block in enumerate(mesh.cells):
-        if _CORNERS.get(block.type) != boundary.width:
+def named_surfaces(
+    mesh: meshio.Mesh, boundary: Boundary, asked: Asked = AS_DRAWN
+) -> tuple[dict[str, np.ndarray], list[str]]:
+    """Corners (m,w) of the facets of each wall and mount, and what is wrong with their names: from
+    boxes, from the groups that a scene names, or from groups with names of surfaces."""
+    groups = _Groups(mesh, boundary)
+    found, faults = {}, []
+    own = {name: (name,) for name in groups.names() if is_surface(name)}
+    for name, given in {**own, **asked.groups}.items():
+        if name in asked.boxes:
             continue
-        facets = block.data[:, : boundary.width].astype(np.int64)
-        if physical is not None:
-            for name, (tag, dimension) in mesh.field_data.items():
-                if dimension == 2 and is_surface(name):
-                    groups.setdefault(name, []).append(facets[physical[index] == tag])
-        for name, members in mesh.cell_sets.items():
+        if unknown := [each for each in given if not groups.has(each)]:
+            faults.append(f"no group '{unknown[0]}' (groups in the mesh: {groups.shown()})")
+            continue
+        facets = np.concatenate([groups.facets(each) for each in given])
+        if asked.body:  # other bodies may have surfaces of this name too
+            facets = facets[np.isin(facets, boundary.faces).all(axis=1)]
+        if len(facets):
+            found[name] = facets
+    for name, boxes in asked.boxes.items():
+        inside, wrong = chosen(mesh.points, boundary.faces, boxes)
+        faults += [f"surface '{name}': {each}" for each in wrong]
+        if inside.any():
+            found[name] = boundary.faces[inside]
+    return found, faults
+
+
+class _Groups:
+    """Groups of a mesh: cell sets, physical tags of a mesh made in memory, and sets of points."""
+
+    def __init__(self, mesh: meshio.Mesh, boundary: Boundary) -> None:
+        self._mesh, self._boundary = mesh, boundary
+        self._physical = mesh.cell_data.get("gmsh:physical")
+        every = (*mesh.field_data, *mesh.cell_sets, *mesh.point_sets)
+        self._named = {name.lower(): name for name in reversed(every)}
+
+    def names(self) -> list[str]:
+        """All names, in the order of the file."""
+        return list(
+            dict.fromkeys([*self._mesh.field_data, *self._mesh.cell_sets, *self._mesh.point_sets])
+        )
+
+    def shown(self) -> str:
+        """All names, as messages list them."""
+        return ", ".join(sorted(self.names())) or "none"
+
+    def has(self, name: str) -> bool:
+        """Whether there is such a group, in letters of any case."""
+        return name.lower() in self._named
+
+    def facets(self, name: str) -> np.ndarray:
+        """Corners (m,w) of the facets of a group; of a set of points, the faces on the boundary
+        between them."""
+        mesh, width = self._mesh, self._boundary.width
+        if name not in self.names():
+            name = self._named[name.lower()]
+        parts = [np.empty((0, width), dtype=np.int64)]
+        for index, block in enumerate(mesh.cells):
+            if _CORNERS.get(block.type) != width:
+                continue
+            facets = block.data[:, :width].astype(np.int64)
             # If both exist, they give the same group.
-            if is_surface(name) and name not in mesh.field_data and members[index] is not None:
-                groups.setdefault(name, []).append(
-                    facets[np.asarray(members[index], dtype=np.int64)]
-                )
-    merged = {name: np.concatenate(parts) for name, parts in groups.items()}
-    found = {name: facets for name, facets in merged.items() if len(facets)}
-    keys = boundary.keys()
-    for name, nodes in mesh.point_sets.items():
-        if is_surface(name) and name not in found:
+            if name in mesh.field_data and self._physical is not None:
+                tag, dimension = mesh.field_data[name]
+                if dimension == 2:
+                    parts.append(facets[self._physical[index] == tag])
+            elif name in mesh.cell_sets and mesh.cell_sets[name][index] is not None:
+                parts.append(facets[np.asarray(mesh.cell_sets[name][index], dtype=np.int64)])
+        found = np.concatenate(parts)
+        if not len(found) and name in mesh.point_sets:
             inside = np.zeros(len(mesh.points), dtype=bool)
-            inside[np.asarray(nodes, dtype=np.int64)] = True
-            if len(facets := keys[inside[keys].all(axis=1)]):
-                found[name] = facets
-    return found
+            inside[np.asarray(mesh.point_sets[name], dtype=np.int64)] = True
+            found = self._boundary.faces[inside[self._boundary.faces].all(axis=1)]
+        return found

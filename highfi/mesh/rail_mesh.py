@@ -18,6 +18,7 @@ import meshio
 import numpy as np
 
 from tipoff.highfi.mesh import file_elements
+from tipoff.highfi.mesh.asked import AS_DRAWN, Asked
 from tipoff.highfi.mesh.cells import (
     HEXAHEDRON,
     edge_lengths,
@@ -58,8 +59,9 @@ class RailMesh:
     drawn: dict[str, float] | None = None  # m2, areas on the solid, None for a mesh made elsewhere
 
 
-def read(source) -> RailMesh:
-    """Check and convert a meshio mesh, or the path of a file in a format of ``files.opened``.
+def read(source, asked: Asked = AS_DRAWN) -> RailMesh:
+    """Check and convert a meshio mesh, or the path of a file in a format of ``files.opened``;
+    ``asked`` says how the file differs from the scene, and which of its parts are the rail.
 
     Unused points are dropped. Raises MeshError for a file that cannot be read. Else the error has
     one line per fault: no elements of a supported type, two types or others beside them, missing
@@ -67,15 +69,18 @@ def read(source) -> RailMesh:
     inverted or appear twice.
     """
     mesh = source if isinstance(source, meshio.Mesh) else _opened(Path(source))
+    with np.errstate(over="ignore", invalid="ignore"):
+        mesh.points = asked.placed(np.asarray(mesh.points, dtype=float))
+    others = [] if not asked.body else _without_other_bodies(mesh, asked.body)
     found = [name for name in FILE_ELEMENTS if any(block.type == name for block in mesh.cells)]
     name = found[0] if found else "hexahedron"
     _, made, parts = FILE_ELEMENTS[name]
     blocks = [block.data for block in mesh.cells if block.type == name]
     given = np.concatenate(blocks).astype(np.int64) if blocks else np.empty((0, 8), dtype=np.int64)
     boundary = Boundary(given, made)
-    surfaces = named_surfaces(mesh, boundary)
-    faults = _content_faults(mesh, found, surfaces)
-    points, cells = np.asarray(mesh.points, dtype=float), given
+    surfaces, wrong = named_surfaces(mesh, boundary, asked)
+    faults = [*others, *wrong, *_content_faults(mesh, found, surfaces)]
+    points, cells = mesh.points, given
     if len(given):
         # The products of too large coordinates overflow.
         with np.errstate(over="ignore", invalid="ignore"):
@@ -144,6 +149,27 @@ def _opened(path: Path) -> meshio.Mesh:
         return opened(path)
     except (Unreadable, OSError) as fault:
         raise MeshError(f"{path} cannot be used: {fault}\n  {DESCRIBED}") from fault
+
+
+def _without_other_bodies(mesh: meshio.Mesh, body: str) -> list[str]:
+    """Leave only the solids of one group in a mesh; the fault of a group that does not exist."""
+    name = next((each for each in mesh.cell_sets if each.lower() == body.lower()), None)
+    solids = {index: block for index, block in enumerate(mesh.cells) if block.dim == 3}
+    members = {index: mesh.cell_sets[name][index] for index in solids} if name else {}
+    if not sum(map(len, members.values())):
+        named = [
+            each for each, parts in mesh.cell_sets.items() if any(len(parts[one]) for one in solids)
+        ]
+        return [f"no body '{body}' (groups of solids: {', '.join(sorted(named)) or 'none'})"]
+    for index, chosen in members.items():
+        mesh.cells[index] = meshio.CellBlock(
+            solids[index].type, solids[index].data[np.asarray(chosen, dtype=np.int64)]
+        )
+    mesh.cells = [
+        block if len(block.data) else meshio.CellBlock("vertex", np.empty((0, 1), dtype=int))
+        for block in mesh.cells
+    ]
+    return []
 
 
 def _of_parts(name: str) -> tuple[str, ...]:

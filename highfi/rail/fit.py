@@ -11,12 +11,13 @@ edge, which pads strike or fall off, and the contact potential jumps there.
 import numpy as np
 
 from tipoff.highfi.mesh import facets, pieces
+from tipoff.highfi.mesh.asked import axes_along
 from tipoff.highfi.mesh.rail_mesh import MeshError, RailMesh
 from tipoff.highfi.rail import drawn_walls
 from tipoff.highfi.rail.drawn_walls import SAME
 from tipoff.mechanics import scene_model
 from tipoff.scenes.faults import Fault, SceneError
-from tipoff.scenes.rail import GeometryTable, MeshTable, SectionTable
+from tipoff.scenes.rail import MESH_UNITS, GeometryTable, MeshTable, SectionTable
 from tipoff.scenes.scene import Scene
 
 # Degrees. Both solvers measure penetration along an axis of the scene, not along the normal of the
@@ -26,7 +27,7 @@ _WAVE = 0.02  # of the clearance: largest deviation of a wall from a parabola ac
 _GAP = 0.1  # of the length of a face: longest piece of its track without wall
 _LIKE = 1e-3  # relative, for a length equal to the rail's in another unit or along another axis
 _AREA = 0.05  # relative: plane facets lose less of a curved face, a wrong box cuts off more
-_UNITS = {"millimetres": 1e3, "centimetres": 1e2, "inches": 1.0 / 0.0254}  # of them in a metre
+_UNITS = {"m": "metres", "cm": "centimetres", "mm": "millimetres", "in": "inches", "ft": "feet"}
 
 
 def check_frame(scene: Scene, rail: MeshTable | GeometryTable, mesh: RailMesh) -> None:
@@ -38,11 +39,18 @@ def check_frame(scene: Scene, rail: MeshTable | GeometryTable, mesh: RailMesh) -
     key, faults = f"rail.{rail.GIVEN_BY}", []
     if unit:
         given = f"walls {lengths[longest]:.6g} m long in {rail.path().name}"
-        wanted = f"{rail.end - rail.start:.6g} m; the file seems to be in {unit}, not in metres"
+        own = getattr(rail, "unit", None) or "m"
+        wanted = (
+            f"{rail.end - rail.start:.6g} m; the file seems to be in {_UNITS[unit]}, not in "
+            f'{_UNITS[own]}: if so, set rail.unit = "{unit}"'
+        )
         faults.append(Fault(scene.name, key, given, wanted))
     if not along_x:
         given = f"walls along {'xyz'[longest]} in {rail.path().name}"
-        faults.append(Fault(scene.name, key, given, "scene axes, x along the rail to its open end"))
+        wanted = "scene axes, x along the rail to its open end"
+        if isinstance(rail, MeshTable):
+            wanted += f"; rail.axes says which axes of the file they are, such as {axes_along(rail, longest)}"
+        faults.append(Fault(scene.name, key, given, wanted))
     if faults:
         raise SceneError(faults)
 
@@ -51,18 +59,23 @@ def unit_of(rail: MeshTable | GeometryTable, extent: np.ndarray) -> str:
     """Guess of a wrong unit or axis of a file whose solid has this ``extent`` (2,3) m, as the end
     of a message; empty if both are right."""
     unit, along_x = _unit(rail, np.ptp(extent, axis=0))
-    words = [f"the file seems to be in {unit}, not in metres"] if unit else []
+    words = [f"the file seems to be in {_UNITS[unit]}, not in metres"] if unit else []
     if not along_x:
         words.append("its longest axis is not x, along which the scene has the rail")
     return "".join(f"; {each}" for each in words)
 
 
 def _unit(rail: MeshTable | GeometryTable, lengths: np.ndarray) -> tuple[str, bool]:
-    """The unit in which the longest of three ``lengths`` is that of the rail (empty for metres or
-    none), and whether the length that equals the rail's is along X."""
+    """The other unit of a file in which the longest of three ``lengths`` would be that of the rail
+    (empty for none), and whether the length that equals the rail's is along X."""
     longest = int(lengths.argmax())
     ratio = lengths[longest] / (rail.end - rail.start)
-    units = [name for name, count in _UNITS.items() if abs(ratio / count - 1.0) < _LIKE]
+    own = MESH_UNITS[getattr(rail, "unit", None) or "m"]
+    units = [
+        name
+        for name, scale in MESH_UNITS.items()
+        if scale != own and abs(ratio * scale / own - 1.0) < _LIKE
+    ]
     is_known = bool(units) or abs(ratio - 1.0) < _LIKE
     return units[0] if units else "", longest == 0 or not is_known
 

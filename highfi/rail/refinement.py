@@ -7,6 +7,7 @@ same mesh for two element sizes. Other rails are meshed in the requested size.
 from collections.abc import Sequence
 
 from tipoff.highfi.mesh import split
+from tipoff.highfi.mesh.asked import asked
 from tipoff.highfi.mesh.rail_mesh import read
 from tipoff.highfi.rail import memory_estimate, step_cost
 from tipoff.scenes.rail import MeshTable
@@ -15,20 +16,20 @@ from tipoff.scenes.scene import Scene
 LONGEST = 1800.0  # s on one core, for a run that only checks another one
 
 
-def sizes(scene: Scene, asked: Sequence[float]) -> list[float]:
-    """Size (m) of the elements in the mesh of ``scene`` for each requested element size ``asked``
+def sizes(scene: Scene, wanted: Sequence[float]) -> list[float]:
+    """Size (m) of the elements in the mesh of ``scene`` for each requested element size ``wanted``
     (m): equal for equal meshes. Raises MeshError for a file that cannot be used."""
     if not isinstance(scene.rail, MeshTable):
-        return list(asked)
-    mesh = read(scene.rail.path())
+        return list(wanted)
+    mesh = read(scene.rail.path(), asked(scene.rail))
     own = split.shortest(mesh)
-    return [own / split.parts(mesh, size) for size in asked]
+    return [own / split.parts(mesh, size) for size in wanted]
 
 
 def too_fine(scene: Scene, size: float) -> str:
     """Reason why a run in elements of ``size`` (m), split from the file of ``scene``, does not fit
     into memory or takes too long, or ""."""
-    mesh = read(scene.rail.path()) if isinstance(scene.rail, MeshTable) else None
+    mesh = read(scene.rail.path(), asked(scene.rail)) if isinstance(scene.rail, MeshTable) else None
     if mesh is None:
         return ""
     parts = split.parts(mesh, size)

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from tipoff.files import content_hash
 from tipoff.highfi.mesh import split, touching
+from tipoff.highfi.mesh.asked import asked
 from tipoff.highfi.mesh.rail_mesh import MeshError, RailMesh, along_x, read
 from tipoff.highfi.rail import memory_fault, solid_process, step_cost
 from tipoff.highfi.rail.fit import check_areas, check_frame, check_held
@@ -44,7 +45,7 @@ def make_mesh(scene: Scene, element_size: float) -> RailMesh:
         mesh = along_x(mesh)
         mesh = step_cost.with_sliver_steps(mesh, scene.rail.material)
         return step_cost.with_run_time(mesh, scene, element_size)
-    mesh = read(scene.rail.path())
+    mesh = read(scene.rail.path(), asked(scene.rail))
     check_frame(scene, scene.rail, mesh)  # a mesh in millimetres would fill the memory
     check_held(scene.rail, mesh)
     mesh = replace(mesh, warnings=(*mesh.warnings, *touching.warning(mesh)))

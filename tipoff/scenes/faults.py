@@ -43,7 +43,7 @@ NO_SUCH_KEY = "no such key"
 MOST_NAMES = 3  # proposed in a message
 MOST_ALIKE = 3  # faults of one kind listed in a message
 MOST_LINES = 40  # of a message
-_NAMED = re.compile(r"^(conditions|provenance|rail\.surfaces)\.[^.]+")  # by the user
+_NAMED = re.compile(r"^(conditions|provenance|rail\.(?:surfaces|groups))\.[^.]+")  # by the user
 _NUMBERS = re.compile(r"[+-]?\d+(?:\.\d*)?(?:[eE][+-]?\d+)?")
 _ALIKE = 0.7  # of difflib: one or two letters in ten differ
 

@@ -1,7 +1,8 @@
 """``[rail]``: the built-in L section, a mesh of the user, or a solid of the user, meshed here.
 
 The key ``mesh`` or ``geometry`` selects a file. It is in scene axes (m, origin at the nominal mass
-centre at ignition, +X to the open end), with the walls one ``clearance`` off the pads. The
+centre at ignition, +X to the open end), or a mesh says how it differs. Its walls are one ``clearance``
+off the pads. The
 surrogate does not use the file: ``start`` and ``end`` give the ends of the walls, pads and
 clearance their distance. The reference refuses a file that differs from them (``highfi.rail.fit``).
 Any kind of rail may have a ``damping`` (``scenes.effects.structural_damping``), for the reference
@@ -12,6 +13,7 @@ without it the mounts are rigid.
 import hashlib
 import itertools
 import math
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -222,15 +224,6 @@ def _readable(file: str) -> str:
     return file
 
 
-class MeshTable(_FileTable):
-    """``[rail] mesh``: 8-node hexahedra or 10-node tetrahedra in a file of gmsh, Abaqus or
-    Nastran, with named surfaces ``contact...`` and ``mount`` (``highfi.mesh.rail_mesh``)."""
-
-    GIVEN_BY = "mesh"
-    #: Mesh file of gmsh, Abaqus or Nastran, in scene axes and metres.
-    mesh: Annotated[str, AfterValidator(_readable)]
-
-
 class BoxTable(Table):
     """A box between two corners in scene axes (m); it is flat if two coordinates are equal."""
 
@@ -248,6 +241,78 @@ class BoxTable(Table):
 
 
 _Boxes = Annotated[tuple[BoxTable, ...], limited, AfterValidator(at_least_one)]
+_Names = Annotated[tuple[str, ...], limited, AfterValidator(at_least_one)]
+
+
+def _wrong_names(surfaces: Iterable[str]) -> list[str]:
+    """Names that are neither a wall nor the mount."""
+    return [
+        f"a name that starts with 'contact' or is 'mount' instead of {name!r}"
+        for name in surfaces
+        if not name.startswith("contact") and name != "mount"
+    ]
+
+
+# scale to metres of the units of mesh files
+MESH_UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "ft": 0.3048}
+_Axis = Literal["x", "y", "z", "-x", "-y", "-z"]
+
+
+class MeshTable(_FileTable):
+    """``[rail] mesh``: hexahedra or tetrahedra in a file of a mesh generator, with surfaces
+    ``contact...`` and ``mount`` (``highfi.mesh.rail_mesh``): groups of the file with these names,
+    other ``groups``, or boxes in ``surfaces``.
+
+    Without ``unit``, ``axes`` and ``origin`` the file is in metres and in scene axes.
+    """
+
+    GIVEN_BY = "mesh"
+    #: Mesh file of gmsh, Abaqus, CalculiX, Nastran, LS-DYNA, Salome or VTK.
+    mesh: Annotated[str, AfterValidator(_readable)]
+    #: Unit of the lengths in the file: m, cm, mm, in or ft; metres where absent.
+    unit: Literal["m", "cm", "mm", "in", "ft"] | None = Field(None, exclude_if=is_absent)
+    #: Axes of the file that point along X, Y and Z of the scene, such as ["z", "-y", "x"].
+    axes: tuple[_Axis, _Axis, _Axis] | None = Field(None, exclude_if=is_absent)
+    #: Place of the origin of the scene, along the axes of the file.
+    origin: tuple[Length, Length, Length] | None = Field(None, exclude_if=is_absent)
+    #: Group of solids to use, where the file has other bodies too.
+    body: str | None = Field(None, exclude_if=is_absent)
+    #: Groups of the file, by the wall (a name that starts with contact) or mount that they are.
+    groups: Annotated[dict[str, _Names], limited] | None = Field(None, exclude_if=is_absent)
+    #: Boxes in scene axes that contain the walls (names that start with contact) and the clamped
+    #: surface (mount).
+    surfaces: Annotated[dict[str, _Boxes], limited] | None = Field(None, exclude_if=is_absent)
+
+    @field_validator("axes")
+    @classmethod
+    def _right_handed(cls, axes: tuple[str, str, str] | None):
+        if axes is not None and not math.isclose(determinant(axes), 1.0):
+            raise ValueError(
+                'three different axes that are right-handed, such as ["y", "z", "x"]; others '
+                "would give the mirror image of the rail"
+            )
+        return axes
+
+    @field_validator("groups", "surfaces")
+    @classmethod
+    def _walls_or_mount(cls, surfaces):
+        if wrong := _wrong_names(surfaces or ()):
+            raise ValueError("; ".join(wrong))
+        return surfaces
+
+
+def directions(axes: tuple[str, str, str]) -> tuple[tuple[float, ...], ...]:
+    """Unit vectors in the axes of a file along X, Y and Z of the scene."""
+    return tuple(
+        tuple((-1.0 if axis[0] == "-" else 1.0) * (axis[-1] == own) for own in "xyz")
+        for axis in axes
+    )
+
+
+def determinant(axes: tuple[str, str, str]) -> float:
+    """1 for right-handed axes, -1 for left-handed ones, 0 if two of them are parallel."""
+    (a, b, c), (d, e, f), (g, h, i) = directions(axes)
+    return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
 
 
 class GeometryTable(_FileTable):
@@ -277,11 +342,7 @@ class GeometryTable(_FileTable):
     @field_validator("surfaces")
     @classmethod
     def _walls_and_mount(cls, surfaces):
-        wrong = [
-            f"a name that starts with 'contact' or is 'mount' instead of {name!r}"
-            for name in surfaces
-            if not name.startswith("contact") and name != "mount"
-        ]
+        wrong = _wrong_names(surfaces)
         if not any(name.startswith("contact") for name in surfaces):
             wrong.append("a surface whose name starts with 'contact'")
         if "mount" not in surfaces:

@@ -34,8 +34,10 @@ def draw(page: "Page") -> list[Part]:
 
 
 def terminal(content: dict) -> list[Part]:
-    """The named surfaces: their facets, their area, and for a solid the area of its own faces."""
-    surfaces = STAGE.read(content).surfaces
+    """The named surfaces: their facets, their area, and for a solid the area of its own faces; then the
+    extent of the rails."""
+    found: Mesh = STAGE.read(content)
+    surfaces = found.surfaces
     columns: list[tuple[Column | str, Callable]] = [
         ("surface", lambda item: item[0].replace("_", " ")),
         ("facets", lambda item: item[1].facets),
@@ -44,4 +46,8 @@ def terminal(content: dict) -> list[Part]:
     if all(item.drawn_area_m2 is not None for item in surfaces.values()):
         drawn = Column("area in the drawing", "mm²", ".5g", 1e6)
         columns.append((drawn, lambda item: item[1].drawn_area_m2))
-    return [Table.of(surfaces.items(), columns)]
+    spans = ", ".join(
+        f"{axis} {1e3 * low:.6g} to {1e3 * high:.6g} mm"
+        for axis, low, high in zip("xyz", found.low_m, found.high_m)
+    )
+    return [Table.of(surfaces.items(), columns), Caption(f"Rails in scene axes: {spans}.")]

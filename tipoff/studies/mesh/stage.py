@@ -23,7 +23,8 @@ class Surface:
 
 @dataclass(frozen=True, kw_only=True)
 class Mesh:
-    """``surfaces`` by name; ``mesh`` and pictures are files in the folder of the scene."""
+    """``surfaces`` by name; ``low_m`` and ``high_m`` the least and largest coordinates in scene
+    axes; ``mesh`` and pictures are files in the folder of the scene."""
 
     element_size_m: float
     elements: int
@@ -32,6 +33,8 @@ class Mesh:
     shortest_edge_m: float
     longest_edge_m: float
     smallest_scaled_jacobian: float
+    low_m: tuple[float, ...]
+    high_m: tuple[float, ...]
     warnings: tuple[str, ...]
     surfaces: dict[str, Surface]
     mesh: str
@@ -83,6 +86,8 @@ def run(study: Study) -> dict:
             shortest_edge_m=float(lengths.min()),
             longest_edge_m=float(lengths.max()),
             smallest_scaled_jacobian=float(scaled.min()),
+            low_m=tuple(mesh.points.min(axis=0).tolist()),
+            high_m=tuple(mesh.points.max(axis=0).tolist()),
             warnings=tuple(mesh.warnings),
             surfaces=surfaces,
             mesh=study.relative(path),
