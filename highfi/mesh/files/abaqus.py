@@ -1,9 +1,10 @@
-"""Meshes in input files of Abaqus and CalculiX: nodes, elements, element sets and surfaces, in the
-file itself or in parts that instances place.
+"""Meshes in input files of Abaqus and CalculiX: nodes, elements, sets and surfaces, in the file itself
+or in parts that instances place.
 
 A set has all members from any line of the file: elements under its ``*ELEMENT``, and numbers,
-ranges and other sets under ``*ELSET``. Names of sets do not depend on case. A ``*SURFACE`` of
-element faces is a named group as well. See "Keywords reference" of the Abaqus guides.
+ranges and other sets under ``*ELSET``; so has a set of nodes with ``*NODE`` and ``*NSET``. Names of
+sets do not depend on case. A ``*SURFACE`` of element faces or of nodes is a named group as well, and
+so are instances and parts. See "Keywords reference" of the Abaqus guides.
 """
 
 import meshio
@@ -29,11 +30,13 @@ def read(content: bytes) -> meshio.Mesh:
 def _take(model: Model, keyword: Keyword) -> None:
     match keyword.name:
         case "NODE":
-            _nodes(model.current, keyword)
+            _nodes(model, keyword)
         case "ELEMENT":
             _elements(model, keyword)
         case "ELSET":
-            _set(model, keyword)
+            _set(model, keyword, model.current.sets)
+        case "NSET":
+            _set(model, keyword, model.current.node_sets)
         case "SURFACE":
             _surface(model, keyword)
         case "PART":
@@ -45,13 +48,25 @@ def _take(model: Model, keyword: Keyword) -> None:
             model.current, model.scope = model.bodies[ROOT], ROOT
 
 
-def _nodes(body: Body, keyword: Keyword) -> None:
+def _nodes(model: Model, keyword: Keyword) -> None:
+    body = model.current
     if keyword.given.get("SYSTEM", "R").upper() != "R":
         raise Unreadable(f"line {keyword.line}: *NODE in a system that is not rectangular")
+    first = len(body.labels)
     for line, fields in keyword.data:
         body.labels.append(whole(fields[0], line))
         places = [real(field, line) for field in fields[1:4]]
         body.points.append(places + [0.0] * (3 - len(places)))
+    if name := keyword.given.get("NSET"):
+        _add(model, body.node_sets, name, body.labels[first:], keyword.line)
+
+
+def _add(
+    model: Model, sets: dict[str, list[Reference]], name: str, labels: list[int], line: int
+) -> None:
+    """Add elements or nodes to the set that their own keyword names."""
+    lines = [Reference(model.scope, range(one, one + 1), "", line) for one in labels]
+    sets.setdefault(model.named(name), []).extend(lines)
 
 
 def _elements(model: Model, keyword: Keyword) -> None:
@@ -80,12 +95,13 @@ def _elements(model: Model, keyword: Keyword) -> None:
         if row:
             raise Unreadable(f"the last element of *ELEMENT in line {keyword.line} lacks nodes")
     if name := keyword.given.get("ELSET"):
-        lines = [Reference(model.scope, range(one, one + 1), "", keyword.line) for one in labels]
-        body.sets.setdefault(model.named(name), []).extend(lines)
+        _add(model, body.sets, name, labels, keyword.line)
 
 
-def _set(model: Model, keyword: Keyword) -> None:
-    members = model.current.sets.setdefault(model.named(keyword.of("ELSET")), [])
+def _set(model: Model, keyword: Keyword, sets: dict[str, list[Reference]]) -> None:
+    members = sets.setdefault(model.named(keyword.of(keyword.name)), [])
+    if keyword.name == "NSET" and "ELSET" in keyword.given:
+        raise Unreadable(f"line {keyword.line}: *NSET of an element set; write its nodes")
     scope = keyword.given.get("INSTANCE", model.scope).upper()
     for line, fields in keyword.data:
         if "GENERATE" in keyword.given:
@@ -99,7 +115,7 @@ def _set(model: Model, keyword: Keyword) -> None:
 
 
 def _reference(field: str, scope: str, line: int) -> Reference:
-    """An element or a set, with an optional instance in front."""
+    """An element, a node or a set, with an optional instance in front."""
     owner, _, rest = field.strip('"').rpartition(".")
     if rest.isdigit():
         number = whole(rest, line)
@@ -110,7 +126,16 @@ def _reference(field: str, scope: str, line: int) -> Reference:
 
 
 def _surface(model: Model, keyword: Keyword) -> None:
-    if keyword.given.get("TYPE", "ELEMENT").upper() != "ELEMENT" or "COMBINE" in keyword.given:
+    kind = keyword.given.get("TYPE", "ELEMENT").upper()
+    if kind == "NODE":
+        nodes = model.current.node_sets.setdefault(model.named(keyword.of("NAME")), [])
+        name = keyword.of("NAME").upper()
+        found = [
+            _reference(fields[0], model.scope, line) for line, fields in keyword.data if fields
+        ]
+        # a surface may have the name of its only set
+        nodes += [one for one in found if (one.scope, one.name) != (model.scope, name)]
+    if kind != "ELEMENT" or "COMBINE" in keyword.given:
         return
     members = model.current.surfaces.setdefault(model.named(keyword.of("NAME")), [])
     for line, fields in keyword.data:
@@ -123,7 +148,7 @@ def _instance(model: Model, keyword: Keyword) -> None:
     model.scope, part = keyword.of("NAME").upper(), keyword.given.get("PART", "").upper()
     if part and part not in model.parts:
         raise Unreadable(f"line {keyword.line}: no part {part}")
-    model.current = model.bodies[model.scope] = body = Body()
+    model.current = model.bodies[model.scope] = body = Body(part)
     if not part:
         return
     source = model.parts[part]
@@ -133,9 +158,10 @@ def _instance(model: Model, keyword: Keyword) -> None:
     body.elements = {kind: dict(found) for kind, found in source.elements.items()}
     body.others = set(source.others)
     here = model.scope
-    body.sets = {
-        name: [one._replace(scope=here) for one in found] for name, found in source.sets.items()
-    }
+    body.sets, body.node_sets = (
+        {name: [one._replace(scope=here) for one in found] for name, found in sets.items()}
+        for sets in (source.sets, source.node_sets)
+    )
     body.surfaces = {
         name: [(one._replace(scope=here), face) for one, face in found]
         for name, found in source.surfaces.items()

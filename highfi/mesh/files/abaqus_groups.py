@@ -1,9 +1,12 @@
 """Members of the sets and surfaces of an Abaqus input file, and the mesh with these groups."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import meshio
 import numpy as np
 
-from tipoff.highfi.mesh.files.abaqus_model import Model, Reference
+from tipoff.highfi.mesh.files.abaqus_model import Body, Model, Reference
 from tipoff.highfi.mesh.files.abaqus_types import FACES
 from tipoff.highfi.mesh.files.tables import Block, Unreadable, any_case, mesh, shown
 
@@ -11,40 +14,50 @@ _SIDES = ("", "SPOS", "SNEG")  # of a shell
 
 
 class _Members:
-    """Elements of each set by the name of their body, found once for each set."""
+    """Members of each set by the name of their body, found once for each set: ``what`` is element or
+    node."""
 
-    def __init__(self, model: Model) -> None:
-        self._model = model
+    def __init__(self, model: Model, what: str) -> None:
+        self._model, self._what = model, what
         self._found: dict[tuple[str, str], dict[str, set[int]] | None] = {}
         self._labels = {
             name: np.array(
-                sorted({*body.others, *(one for found in body.elements.values() for one in found)}),
+                sorted(
+                    {*body.others, *(one for found in body.elements.values() for one in found)}
+                    if what == "element"
+                    else set(body.labels)
+                ),
                 dtype=np.int64,
             )
             for name, body in model.bodies.items()
         }
 
+    def sets(self, body: Body) -> dict[str, list[Reference]]:
+        """The sets of a body."""
+        return body.sets if self._what == "element" else body.node_sets
+
     def of_set(self, scope: str, name: str, line: int) -> dict[str, set[int]]:
-        """Members of a set of a body. Raises Unreadable for an unknown set or element, and for a
-        set that contains itself."""
+        """Members of a set of a body. Raises Unreadable for an unknown set or member, and for a set
+        that contains itself."""
         body = self._model.bodies.get(scope)
-        if body is None or name not in body.sets:
-            raise Unreadable(f"line {line}: no element set {name} {f'in {scope}' * bool(scope)}")
+        what = self._what
+        if body is None or name not in self.sets(body):
+            raise Unreadable(f"line {line}: no {what} set {name} {f'in {scope}' * bool(scope)}")
         key = (scope, name)
         if key not in self._found:
             self._found[key] = None
             gathered: dict[str, set[int]] = {}
-            for one in body.sets[name]:
+            for one in self.sets(body)[name]:
                 for owner, labels in self.of(one).items():
                     gathered.setdefault(owner, set()).update(labels)
             self._found[key] = gathered
         found = self._found[key]
         if found is None:
-            raise Unreadable(f"line {line}: element set {name} contains itself")
+            raise Unreadable(f"line {line}: {what} set {name} contains itself")
         return found
 
     def of(self, reference: Reference) -> dict[str, set[int]]:
-        """Elements that a line names; of a range, those that exist."""
+        """Members that a line names; of a range, those that exist."""
         scope, numbers, name, line = reference
         if name:
             return self.of_set(scope, name, line)
@@ -54,14 +67,16 @@ class _Members:
         low, high = np.searchsorted(labels, [numbers.start, numbers.stop])
         there = {one for one in labels[low:high].tolist() if one in numbers}
         if len(numbers) == 1 and not there:
-            raise Unreadable(f"line {line}: no element {numbers.start}")
+            raise Unreadable(f"line {line}: no {self._what} {numbers.start}")
         return {scope: there}
 
 
 def gathered(model: Model) -> meshio.Mesh:
-    """The mesh of a model, with the named groups of surfaces. Raises Unreadable."""
-    members, blocks, owners = _Members(model), [], []
-    labels, points, shift = [], [], 0
+    """The mesh of a model, with all its named groups. Raises Unreadable; sets that are no surfaces
+    are left out if they have faults."""
+    blocks, owners = [], []
+    labels, points = [], []
+    shifts, shift = {}, 0
     for name, body in model.bodies.items():
         own = np.array(body.labels, dtype=np.int64)
         labels.append(own + shift)
@@ -76,22 +91,60 @@ def gathered(model: Model) -> meshio.Mesh:
             blocks.append(Block(kind, np.array(list(found), dtype=np.int64), nodes + shift))
             owners.append(name)
         # numbers of nodes belong to a body
+        shifts[name] = shift
         shift += int(np.abs(own).max(initial=0)) + 1
         if shift >= 2**62:
             raise Unreadable("numbers of nodes that are too large")
     groups = _Groups(blocks, owners)
+    _add_elements(model, groups)
+    every, parts = groups.finished()
+    node_groups = _node_groups(model, shifts)
+    return mesh(np.concatenate(labels), np.concatenate(points), every, parts, node_groups)
+
+
+def _add_elements(model: Model, groups: "_Groups") -> None:
+    """Sets and surfaces of elements, parts and instances."""
+    members = _Members(model, "element")
     for scope, body in model.bodies.items():
         for name, given in body.sets.items():
+            line = given[0].line if given else 0
             shown_name = groups.add(model.written[name])
-            if any_case(name):
-                line = given[0].line if given else 0
+            with _refused(name):
                 groups.extend(shown_name, members.of_set(scope, name, line))
         for name, lines in body.surfaces.items():
             shown_name = groups.add(model.written[name])
-            for reference, face in lines if any_case(name) else ():
-                groups.extend_by_faces(shown_name, members.of(reference), face, reference.line)
-    every, parts = groups.finished()
-    return mesh(np.concatenate(labels), np.concatenate(points), every, parts)
+            with _refused(name):
+                for reference, face in lines:
+                    found = members.of(reference)
+                    groups.extend_by_faces(shown_name, found, face, reference.line)
+        if body.part:
+            whole = {scope: {one for found in body.elements.values() for one in found}}
+            for name in {scope, body.part}:
+                groups.extend(groups.add(name), whole)
+
+
+def _node_groups(model: Model, shifts: dict[str, int]) -> dict[str, np.ndarray]:
+    """Numbers of the nodes of each set, with the shift of their body."""
+    members = _Members(model, "node")
+    found: dict[str, set[int]] = {}
+    for scope, body in model.bodies.items():
+        for name, given in body.node_sets.items():
+            with _refused(name):
+                inside = members.of_set(scope, name, given[0].line if given else 0)
+                group = found.setdefault(any_case(name) or model.written[name], set())
+                for owner, nodes in inside.items():
+                    group.update(node + shifts[owner] for node in nodes)
+    return {name: np.array(sorted(nodes), dtype=np.int64) for name, nodes in found.items()}
+
+
+@contextmanager
+def _refused(name: str) -> Iterator[None]:
+    """Let faults of walls and mounts pass, and no others."""
+    try:
+        yield
+    except Unreadable:
+        if any_case(name):
+            raise
 
 
 class _Groups:

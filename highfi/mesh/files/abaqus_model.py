@@ -6,7 +6,8 @@ ROOT = ""  # name of the body of lines outside all parts
 
 
 class Reference(NamedTuple):
-    """Members that a line adds to a set: elements by a range or a number, or another set."""
+    """Members that a line adds to a set: elements or nodes by a range or a number, or another
+    set."""
 
     scope: str  # name of the part or instance
     numbers: range  # empty for a set
@@ -17,13 +18,15 @@ class Reference(NamedTuple):
 class Body:
     """Nodes and elements of a part, of an instance, or of a file without parts."""
 
-    def __init__(self) -> None:
+    def __init__(self, part: str = "") -> None:
+        self.part = part  # name of the part of an instance
         self.labels: list[int] = []
         self.points: list[list[float]] = []
         # elements of one type: their numbers and nodes
         self.elements: dict[str, dict[int, tuple[int, ...]]] = {}
         self.others: set[int] = set()  # numbers of elements of lines and points
         self.sets: dict[str, list[Reference]] = {}
+        self.node_sets: dict[str, list[Reference]] = {}
         self.surfaces: dict[str, list[tuple[Reference, str]]] = {}  # members and their faces
 
     def has(self, label: int) -> bool:

@@ -26,16 +26,15 @@ _OTHER = re.compile(
     r"SAX|HEATCAP|D$|U1$)"
 )
 
-# Nodes of the faces S1, S2, ... of solids, as places in the list of nodes of an element.
+# Corners of the faces S1, S2, ... of solids, as places in the list of nodes of an element.
+_OF_HEXAHEDRON = (
+    "quad",
+    [[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]],
+)
+_OF_TETRAHEDRON = ("triangle", [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]])
 FACES = {
-    "hexahedron": (
-        "quad",
-        [[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]],
-    ),
-    "tetra10": (
-        "triangle6",
-        [[0, 1, 2, 4, 5, 6], [0, 3, 1, 7, 8, 4], [1, 3, 2, 8, 9, 5], [2, 3, 0, 9, 7, 6]],
-    ),
+    **dict.fromkeys(("hexahedron", "hexahedron20", "hexahedron27"), _OF_HEXAHEDRON),
+    **dict.fromkeys(("tetra", "tetra10"), _OF_TETRAHEDRON),
 }
 
 
