@@ -1,7 +1,7 @@
 """Meshes in bulk data files of Nastran and OptiStruct.
 
-The format gives each element a property by its number. Preprocessors write names in comments. A
-named property is a group:
+The format gives each element a property by its number, which is a group: ``property 2``. So are sets
+(``nastran_sets``). Preprocessors write names of properties in comments:
 
     $HMNAME PROP 2"mount" 4                               HyperMesh
     $ANSA_NAME_COMMENT;2;PSHELL;mount;;NO;NO;NO;          ANSA
@@ -14,6 +14,8 @@ import re
 import meshio
 import numpy as np
 
+from tipoff.highfi.mesh.files.nastran_sets import ELEMENTS, GRIDS, Sets
+from tipoff.highfi.mesh.files.nastran_systems import Systems
 from tipoff.highfi.mesh.files.nastran_text import Card, cards
 from tipoff.highfi.mesh.files.tables import Block, Unreadable, any_case, decoded, mesh, real, whole
 
@@ -53,14 +55,20 @@ def read(content: bytes) -> meshio.Mesh:
                 if found:
                     names[int(found[1][:18])] = found[2].strip()
     seen: dict[int, tuple[str, list[int]]] = {}
+    sets, systems = Sets(text), Systems()
+    frames: list[tuple[str, int]] = []  # of each grid: number of its system, and its line
+    usual = ""  # system of grids that give none
     for card in cards(text):
         if card.name == "GRID":
             labels.append(whole(card.fields[0], card.line))
             points.append(_place(card))
-        elif card.name == "GRDSET" and card.fields[1] not in ("", "0"):
-            raise Unreadable(
-                f"line {card.line}: GRDSET with a coordinate system; use the basic one"
-            )
+            frames.append((card.fields[1], card.line))
+        elif card.name == "GRDSET":
+            usual = card.fields[1]
+        elif card.name.startswith(("CORD1", "CORD2", "CORD3")):
+            systems.take(card)
+        elif card.name in ("SET", "SET1"):
+            sets.take(card)
         elif card.name in _TYPES:
             label, owner, kind, nodes = _element(card)
             if seen.setdefault(label, (kind, nodes)) != (kind, nodes):
@@ -82,17 +90,27 @@ def read(content: bytes) -> meshio.Mesh:
         name = names.get(owner, f"property {owner}")
         parts = groups.setdefault(any_case(name) or name, [nothing] * len(blocks))
         parts[place] = np.arange(len(blocks[place].nodes))
-    return mesh(np.array(labels, dtype=np.int64), np.array(points, dtype=float), blocks, groups)
+    for place, block in enumerate(blocks):
+        for name, members in sets.of(ELEMENTS, block.labels).items():
+            parts = groups.setdefault(any_case(name) or name, [nothing] * len(blocks))
+            parts[place] = np.union1d(parts[place], members)
+    numbers = np.array(labels, dtype=np.int64)
+    owners = np.array(
+        [whole(given or usual or "0", line) for given, line in frames], dtype=np.int64
+    )
+    places = systems.in_basic(
+        np.array(points, dtype=float), owners, np.array([line for _, line in frames])
+    )
+    grids = {
+        any_case(name) or name: numbers[members]
+        for name, members in sets.of(GRIDS, numbers).items()
+    }
+    return mesh(numbers, places, blocks, groups, grids)
 
 
 def _place(card: Card) -> list[float]:
     if len(card.fields) < 5:
         raise Unreadable(f"line {card.line}: GRID with too few fields")
-    if card.fields[1] not in ("", "0"):
-        raise Unreadable(
-            f"line {card.line}: coordinates in system {card.fields[1][:20]}; write them in the basic "
-            "one, 0"
-        )
     return [real(field, card.line, is_short=True) for field in card.fields[2:5]]
 
 

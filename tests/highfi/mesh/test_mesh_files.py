@@ -275,7 +275,11 @@ def test_continuations_with_marks_belong_to_their_card(tmp_path):
     "before, after, why",
     [
         ("Femap", "Property", "groups in the mesh: property 1, property 2"),
-        ("GRID           1        ", "GRID           1       7", "coordinates in system 7"),
+        (
+            "GRID           1        ",
+            "GRID           1       7",
+            "coordinates in system 7, which the file lacks",
+        ),
         ("BEGIN BULK", "BEGIN BULK\nINCLUDE 'a.bdf'", "INCLUDE is not read"),
         ("+      ", "CROD   ", "CHEXA with 6 nodes"),
     ],
