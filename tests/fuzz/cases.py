@@ -13,7 +13,7 @@ import numpy as np
 import typer
 
 from tests.fuzz import mutants, results
-from tests.highfi.mesh import seeds
+from tests.highfi.mesh import forms
 from tipoff import scenes
 from tipoff.calibration.curves import Curves
 from tipoff.highfi.compliance import walls
@@ -168,10 +168,10 @@ def _original() -> meshio.Mesh:
 def _mesh_file(rng: random.Random, folder: Path) -> None:
     """A small rail in each format of mesh files; text is edited by lines too, so that keywords and
     sets meet each other in other orders."""
-    form = rng.choice(list(seeds.FORMS))
-    file = seeds.write(form, folder / "rail")
+    form = rng.choice(list(forms.ALL))
+    file = forms.write(form, folder / "rail")
     content = file.read_bytes()
-    if not form.endswith("binary") and rng.random() < 0.7:
+    if form not in forms.BINARY and rng.random() < 0.7:
         text = mutants.of_text(rng, content.decode())
         file.write_bytes(text.encode("utf-8", "surrogatepass"))
     else:

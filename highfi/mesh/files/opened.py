@@ -5,7 +5,7 @@ from pathlib import Path
 import meshio
 
 from tipoff.files import open_input
-from tipoff.highfi.mesh.files import abaqus, gmsh_msh, lsdyna, nastran
+from tipoff.highfi.mesh.files import abaqus, gmsh_msh, lsdyna, med, nastran, universal, vtk
 from tipoff.highfi.mesh.files.tables import Unreadable
 from tipoff.highfi.mesh.memory_limit import limited
 
@@ -19,6 +19,23 @@ _READERS = {
     ".k": ("LS-DYNA", lsdyna.read),
     ".key": ("LS-DYNA", lsdyna.read),
     ".dyn": ("LS-DYNA", lsdyna.read),
+    ".unv": ("I-deas", universal.read),
+    ".med": ("Salome", med.read),
+    ".vtu": ("VTK", vtk.read_xml),
+    ".vtk": ("VTK", vtk.read_legacy),
+}
+# what to do with the files of other tools
+_ADVICE = {
+    **dict.fromkeys(
+        (".step", ".stp", ".iges", ".igs", ".brep"), "a solid: give it as rail.geometry"
+    ),
+    **dict.fromkeys((".stl", ".obj", ".ply", ".off"), "a surface, and a rail needs solid elements"),
+    **dict.fromkeys((".cae", ".odb"), "a data base of Abaqus: write its input file, .inp"),
+    **dict.fromkeys((".hm", ".hmbin"), "a data base of HyperMesh: export .fem, .k or .inp"),
+    **dict.fromkeys((".op2", ".xdb", ".h5"), "results of Nastran: give its bulk data, .bdf"),
+    **dict.fromkeys((".cdb", ".db", ".mechdat"), "a file of Ansys: export .inp, .k or .bdf"),
+    **dict.fromkeys((".hdf", ".fcstd"), "a project: export its mesh as .med, .unv or .inp"),
+    **dict.fromkeys((".gz", ".zip", ".xz", ".bz2"), "a packed file: unpack it"),
 }
 SUFFIXES = tuple(_READERS)
 # bytes: upper bound of the memory to read a mesh. Per byte of the file (lists of Python hold
@@ -30,10 +47,8 @@ def opened(path: Path) -> meshio.Mesh:
     """The mesh in a file. Raises Unreadable, and OSError if it cannot be opened."""
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
-        raise Unreadable(
-            f"a mesh file ends in one of {', '.join(SUFFIXES)}; let the mesh generator write one of "
-            "these, with its groups"
-        )
+        advice = _ADVICE.get(suffix, "let the mesh generator write one of these, with its groups")
+        raise Unreadable(f"a mesh file ends in one of {', '.join(SUFFIXES)}; {advice}")
     name, reader = _READERS[suffix]
     with open_input(path) as stream:
         content = stream.read()
