@@ -17,7 +17,9 @@ def chosen(
     points: np.ndarray, faces: np.ndarray, boxes: np.ndarray
 ) -> tuple[np.ndarray, list[str]]:
     """Which faces (f,4) or (f,3) lie in one of the ``boxes`` (b,2,3) m, and what is wrong with a
-    box."""
+    box. A mesh without faces has other faults."""
+    if not len(faces):
+        return np.zeros(0, dtype=bool), []
     corners = points[faces]
     normals = _normals(corners)
     found, faults = np.zeros(len(faces), dtype=bool), []

@@ -36,6 +36,7 @@ SUPPORTED = "hexahedra of 8, 20 or 27 nodes and tetrahedra of 4 or 10 nodes"
 # last line of every refusal of a file
 DESCRIBED = "what is read: docs/reference/file_formats.md, section 'Meshes of rails'"
 _LISTED = 20  # element numbers printed in one message
+_LARGEST = 1e100  # m; the cube of a larger coordinate overflows
 _THIN = 0.25  # of the median; thinner elements set the time step of the whole mesh
 # scaled Jacobian: 1 for a brick, 0.71 for corners of 45 degrees, at which thin layers do not bend
 # correctly
@@ -69,6 +70,7 @@ def read(source, asked: Asked = AS_DRAWN) -> RailMesh:
     inverted or appear twice.
     """
     mesh = source if isinstance(source, meshio.Mesh) else _opened(Path(source))
+    # The products of too large coordinates overflow.
     with np.errstate(over="ignore", invalid="ignore"):
         mesh.points = asked.placed(np.asarray(mesh.points, dtype=float))
     others = [] if not asked.body else _without_other_bodies(mesh, asked.body)
@@ -78,11 +80,11 @@ def read(source, asked: Asked = AS_DRAWN) -> RailMesh:
     blocks = [block.data for block in mesh.cells if block.type == name]
     given = np.concatenate(blocks).astype(np.int64) if blocks else np.empty((0, 8), dtype=np.int64)
     boundary = Boundary(given, made)
-    surfaces, wrong = named_surfaces(mesh, boundary, asked)
+    with np.errstate(over="ignore", invalid="ignore"):
+        surfaces, wrong = named_surfaces(mesh, boundary, asked)
     faults = [*others, *wrong, *_content_faults(mesh, found, surfaces)]
     points, cells = mesh.points, given
     if len(given):
-        # The products of too large coordinates overflow.
         with np.errstate(over="ignore", invalid="ignore"):
             points, cells, astray = file_elements.converted(name, points, given)
         if len(astray):
@@ -211,11 +213,14 @@ def _content_faults(
 
 
 def _inverted(points: np.ndarray, cells: np.ndarray, parts: int) -> list[str]:
-    with np.errstate(over="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):
         jacobian, scaled = jacobians(points, cells)
-    if np.isfinite(points).all() and not (np.isfinite(jacobian) & np.isfinite(scaled)).all():
+    is_bounded = np.abs(points).max(initial=0.0) < _LARGEST
+    if np.isfinite(points).all() and not (
+        is_bounded and (np.isfinite(jacobian) & np.isfinite(scaled)).all()
+    ):
         return [f"coordinates up to {np.abs(points).max():.3g} m, too large for any element"]
-    inverted = np.unique(np.flatnonzero(~(jacobian > 0.0).all(axis=1)) // parts)
+    inverted = np.unique(np.flatnonzero(~((jacobian > 0.0) & (scaled > 0.0)).all(axis=1)) // parts)
     return [f"inverted or flat elements: {listed(inverted)}"] if len(inverted) else []
 
 

@@ -18,6 +18,7 @@ from tipoff import scenes
 from tipoff.calibration.curves import Curves
 from tipoff.highfi.compliance import walls
 from tipoff.highfi.mesh import touching
+from tipoff.highfi.mesh.asked import AS_DRAWN, Asked
 from tipoff.highfi.mesh.rail_mesh import read
 from tipoff.highfi.rail import fit, solid_process, step_cost
 from tipoff.lowfi.ensemble.table import TableFile
@@ -166,8 +167,8 @@ def _original() -> meshio.Mesh:
 
 
 def _mesh_file(rng: random.Random, folder: Path) -> None:
-    """A small rail in each format of mesh files; text is edited by lines too, so that keywords and
-    sets meet each other in other orders."""
+    """A small rail in each format of mesh files, and what a scene says of it. Text is edited by lines
+    too, so that keywords and sets meet each other in other orders."""
     form = rng.choice(list(forms.ALL))
     file = forms.write(form, folder / "rail")
     content = file.read_bytes()
@@ -176,7 +177,18 @@ def _mesh_file(rng: random.Random, folder: Path) -> None:
         file.write_bytes(text.encode("utf-8", "surrogatepass"))
     else:
         file.write_bytes(mutants.of_bytes(rng, content))
-    touching.warning(read(file))
+    box = np.array([[[rng.choice((0.0, -1.0, 0.015, 1e300)), 0.0, 0.0], [0.04, 0.02, 0.0]]])
+    asked = rng.choice(
+        (
+            AS_DRAWN,
+            AS_DRAWN,
+            Asked(unit="mm", axes=("z", "x", "y"), origin=(1e9, 0.0, -1.0)),
+            Asked(body=rng.choice(("rail", "all", "property 1", "the rail", "part = 3"))),
+            Asked(groups={"mount": ("contact", rng.choice(("mount", "bolts")))}),
+            Asked(boxes={"mount": box}),
+        )
+    )
+    touching.warning(read(file, asked))
 
 
 def _solid(rng: random.Random, folder: Path) -> None:

@@ -1,8 +1,8 @@
 """Meshes in LS-DYNA keyword files: nodes, solids, shells, parts with their titles, and sets.
 
-A surface is a ``*SET_SEGMENT``, a ``*SET_SHELL``, a part of shells or a ``*SET_NODE`` whose title is its
-name. Solids with repeated nodes are tetrahedra, wedges and pyramids. See ``*ELEMENT_SOLID``, ``*PART``
-and ``*SET`` in the LS-DYNA Keyword User's Manual, volume I.
+A surface is a ``*SET_SEGMENT``, a ``*SET_SHELL``, a part of shells or a ``*SET_NODE``. Its name is its
+title, or the comment below its keyword. Solids with repeated nodes are tetrahedra, wedges and pyramids.
+See ``*ELEMENT_SOLID``, ``*PART`` and ``*SET`` in the LS-DYNA Keyword User's Manual, volume I.
 """
 
 from collections.abc import Iterator
@@ -184,6 +184,8 @@ def _set(model: _Model, keyword: Keyword) -> None:
     lines, title = list(keyword.lines), ""
     if "TITLE" in words and lines:
         title = lines.pop(0)[1].strip()
+    elif is_surface(any_case(comment := (keyword.comments or [""])[0])):
+        title = comment  # as gmsh writes it
     lines = [(line, text) for line, text in lines if text]
     if not lines:
         raise Unreadable(f"line {keyword.line}: *{keyword.name} without a number")

@@ -20,12 +20,13 @@ _MAKERS = ("INCLUDE", "NODE_TRANSFORM", "ELEMENT_GENERATE", "DEFINE_TRANSFORMATI
 
 
 class Keyword(NamedTuple):
-    """A keyword with the lines below it, comments left out."""
+    """A keyword with the lines below it."""
 
     name: str  # capitals, without the star
     form: str  # of its fields
     lines: list[tuple[int, str]]  # number and text of each
     line: int
+    comments: list[str]  # without dollars, among its lines
 
     def fields(self, text: str, widths: Sequence[int]) -> list[str]:
         """Fields of a line whose standard format has these ``widths``."""
@@ -49,6 +50,8 @@ def keywords(text: str) -> Iterator[Keyword]:
     form = STANDARD
     for number, line in enumerate(text.splitlines(), start=1):
         if line.startswith("$"):
+            if current is not None:
+                current.comments.append(line.strip("$# "))
             continue
         if not line.startswith("*"):
             if current is not None:
@@ -71,6 +74,6 @@ def keywords(text: str) -> Iterator[Keyword]:
             raise Unreadable(
                 f"line {number}: *{name} is not read; write one file with all nodes and elements"
             )
-        current = Keyword(name, _MARKS.get(found[2], form), [], number)
+        current = Keyword(name, _MARKS.get(found[2], form), [], number, [])
     if current is not None:
         yield current
