@@ -225,8 +225,11 @@ def test_what_is_said_of_them():
     page.modes = 20
     assert ">all 20 modes, as the population<" in html(ladder_page.table(page))
     (drawing,) = ladder_page.figures(page)
-    above, middle = drawing.chart.panels[0].lines
-    assert middle.labels[-2:] == ("calibrated springs", "degree 3, 16 cells, all 20 modes")
+    above, middle, *names = drawing.chart.panels[0].lines
+    assert [name.labels for name in names[-2:]] == [
+        ("calibrated springs",),
+        ("degree 3, 16 cells, all 20 modes",),
+    ]
     np.testing.assert_allclose(middle.x, [2e-3, 9e-3, 4e-3, 1e-3, 9e-2])
     np.testing.assert_allclose(middle.y, [0.02, 0.03, 0.08, 0.98, 0.02])
     assert (np.asarray(above.y) >= middle.y).all()

@@ -91,27 +91,10 @@ def figures(found: Tails) -> list[Figure]:
     if (by := found.ladder) is None:
         return []
     rows = [row for row in by.rows if row.median and row.most_95]
-    names = tuple(setting(row, found).removesuffix(", as the population") for row in rows)
-    times = [row.cpu_s for row in rows]
     lines = [
-        Line(
-            times,
-            [row.most_95 or 0.0 for row in rows],
-            name="95 % of the draws below",
-            colour=VERMILION,
-            dash="",
-            marker="^",
-        ),
-        Line(
-            times,
-            [row.median or 0.0 for row in rows],
-            name="median of the draws",
-            colour=NAVY,
-            dash="",
-            marker="o",
-            labels=names,
-            beside="bottom right",
-        ),
+        _points(rows, "most_95", "95 % of the draws below", VERMILION, "^"),
+        _points(rows, "median", "median of the draws", NAVY, "o"),
+        *(_named(found, row) for row in rows),
     ]
     change = [row.mesh.median for row in found.errors if row.name in _RATES and row.mesh]
     if change:
@@ -139,3 +122,22 @@ def figures(found: Tails) -> list[Figure]:
         count=found.fine,
     )
     return [Figure(Chart("ladder", [panel], height=420), caption)]
+
+
+def _points(rows: list[ByRung], error: str, name: str, colour: str, marker: str) -> Line:
+    """The errors of all settings over their times."""
+    y = [getattr(row, error) for row in rows]
+    return Line([row.cpu_s for row in rows], y, name=name, colour=colour, dash="", marker=marker)
+
+
+def _named(found: Tails, row: ByRung) -> Line:
+    """The name of a setting at its median, in turn above and below, where names may overlap."""
+    return Line(
+        [row.cpu_s],
+        [row.median or 0.0],
+        name="",
+        dash="",
+        legend=False,
+        labels=(setting(row, found).removesuffix(", as the population"),),
+        beside="top right" if row.modes in (0, AUTO) and row.model != SPRINGS else "bottom right",
+    )
