@@ -88,7 +88,7 @@ def _toml(page: str) -> list[str]:
 @pytest.mark.parametrize("page", [page for page in pages.PAGES if _toml(page)])
 def test_every_toml_block_is_a_scene_or_a_file_of_distributions(page, tmp_path):
     (tmp_path / "thrust.csv").write_text("time_s,force_N\n0,0\n0.01,6000\n0.02,0\n")
-    for file in ("channel.msh", "rails.step"):
+    for file in ("channel.msh", "launcher.k", "rails.step"):
         (tmp_path / file).touch()
     scene = tipoff.load("reference")  # distributions are of the scene that stands before them
     for number, text in enumerate(_toml(page)):
