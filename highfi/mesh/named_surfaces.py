@@ -12,7 +12,7 @@ from tipoff.highfi.mesh.asked import AS_DRAWN, Asked
 from tipoff.highfi.mesh.boxes import chosen
 from tipoff.highfi.mesh.cells import Kind
 from tipoff.highfi.mesh.file_elements import corners
-from tipoff.highfi.mesh.files.tables import is_surface
+from tipoff.highfi.mesh.files.tables import any_case, is_surface
 
 # corners of the surface elements of files
 _CORNERS = {
@@ -63,7 +63,10 @@ def named_surfaces(
     boxes, from the groups that a scene names, or from groups with names of surfaces."""
     groups = _Groups(mesh, boundary)
     found, faults = {}, []
-    own = {name: (name,) for name in groups.names() if is_surface(name)}
+    own: dict[str, tuple[str, ...]] = {}
+    for name in groups.names():
+        if key := name if is_surface(name) else any_case(name):
+            own[key] = (*own.get(key, ()), name)
     for name, given in {**own, **asked.groups}.items():
         if name in asked.boxes:
             continue
@@ -71,6 +74,9 @@ def named_surfaces(
             faults.append(f"no group '{unknown[0]}' (groups in the mesh: {groups.shown()})")
             continue
         facets = np.concatenate([groups.facets(each) for each in given])
+        if len(given) > 1:  # a face may be in several groups
+            _, first = np.unique(np.sort(facets, axis=1), axis=0, return_index=True)
+            facets = facets[np.sort(first)]
         if asked.body:  # other bodies may have surfaces of this name too
             facets = facets[np.isin(facets, boundary.faces).all(axis=1)]
         if len(facets):

@@ -9,7 +9,7 @@ from tipoff.highfi.elements import hexahedron
 from tipoff.highfi.mesh import facets, file_elements
 from tipoff.highfi.mesh.cells import HEXAHEDRON, TETRAHEDRON, edge_lengths
 from tipoff.highfi.mesh.rail_mesh import MeshError, read
-from tipoff.meshes import generator
+from tipoff.meshes import generator, msh
 
 ELEMENTS = {"hexahedron20": (2, 1), "hexahedron27": (2, 0), "tetra": (1, 0), "tetra10": (2, 0)}
 
@@ -119,3 +119,21 @@ def test_middle_nodes_elsewhere_are_a_fault():
     mesh.points[8] = mesh.points[9]
     with pytest.raises(MeshError, match="middle nodes far from the middles of edges: elements 1"):
         read(mesh)
+
+
+@pytest.mark.parametrize(
+    "scale, why", [(1e-200, "inverted or flat elements: 1"), (1e200, "too large")]
+)
+def test_elements_whose_volume_no_number_holds_are_a_fault(scale, why):
+    """Control: bricks a millionth as long as usual have one."""
+    points, *rest = seeds.rail()
+    with pytest.raises(MeshError, match=why):
+        read(msh.tagged(scale * points, *rest))
+    assert len(read(msh.tagged(1e-6 * points, *rest)).cells) == seeds.ELEMENTS
+
+
+def test_names_of_surfaces_do_not_depend_on_case():
+    mesh = solid("hexahedron20")
+    mesh.cell_sets = {"MOUNT": mesh.cell_sets["mount"]}
+    mesh.point_sets = {"Contact_A": mesh.point_sets["contact"]}
+    assert set(read(mesh).surfaces) == {"mount", "contact_a"}

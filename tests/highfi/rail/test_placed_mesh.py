@@ -214,6 +214,10 @@ def test_groups_of_other_names_are_walls_and_mounts(tmp_path, own):
     check_same(
         make_mesh(scene.replace({"rail": scene.rail.model_dump() | {"groups": groups}}), SIZE), own
     )
+    groups["mount"] = [names["mount"], names["mount"].lower()]  # a face of two groups counts once
+    check_same(
+        make_mesh(scene.replace({"rail": scene.rail.model_dump() | {"groups": groups}}), SIZE), own
+    )
     groups["mount"] = ["bolts"]
     with pytest.raises(MeshError, match="no group 'bolts' .groups in the mesh: Face of contact"):
         make_mesh(scene.replace({"rail": scene.rail.model_dump() | {"groups": groups}}), SIZE)
