@@ -32,6 +32,9 @@ def values(table_: BaseModel, prefix: str = "") -> Iterator[tuple[str, Any, str,
                 yield from values(item, f"{key}.{index}.")
         elif isinstance(value, dict):
             for name_, items in value.items():
+                if isinstance(items[0], str):
+                    yield f"{key}.{name_}", items, "", True
+                    continue
                 for index, item in enumerate(items):
                     yield from values(item, f"{key}.{name_}.{index}.")
         else:
