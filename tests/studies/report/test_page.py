@@ -64,6 +64,19 @@ def test_every_number_of_the_scene_is_listed_with_unit_and_provenance():
     }
 
 
+def test_what_a_scene_says_of_a_mesh_file_is_listed():
+    """Names of groups, which are no tables, and boxes, which are."""
+    box = [{"low": ["0 m", "0 m", "0 m"], "high": ["1 mm", "2 mm", "0 m"]}]
+    rail = scenes.load("channel").rail.model_dump()
+    keys = {"unit": "mm", "axes": ("y", "z", "x"), "body": "rails"}
+    keys |= {"groups": {"mount": ["bolts", "part 2"]}, "surfaces": {"contact": box}}
+    scene = scenes.load("channel").replace({"rail": rail | keys})
+    found = {key: inputs.readable(value, unit) for key, value, unit, _ in inputs.values(scene)}
+    assert found["rail.groups.mount"] == "bolts, part 2"
+    assert found["rail.surfaces.contact.0.high"] == "1 mm, 2 mm, 0 m"
+    assert (found["rail.unit"], found["rail.axes"]) == ("mm", "y, z, x")
+
+
 def test_text_from_a_scene_is_escaped(tmp_path):
     scene = scenes.load("tiny").replace({"description": "<script>alert(1)</script>"})
     page = Page(scene, tmp_path, {}, Runs({}, {}, {}), {})
