@@ -16,7 +16,7 @@ STANDARD, I10, LONG = "standard", "i10", "long"
 _MARKS = {"+": LONG, "-": STANDARD, "%": I10}
 _HEADER = re.compile(r"^\*\s*([A-Za-z0-9_\-/]*?)\s*([+%-]?)(?:\s.*)?$")
 # Keywords that make or move nodes or elements in ways that are not read here.
-_MAKERS = ("INCLUDE", "NODE_TRANSFORM", "ELEMENT_GENERATE", "DEFINE_TRANSFORMATION")
+_MAKERS = ("INCLUDE", "NODE_TRANSFORM", "ELEMENT_GENERATE")
 
 
 class Keyword(NamedTuple):

@@ -42,6 +42,8 @@ def _read(content: bytes, reader: Callable[[Any], meshio.Mesh]) -> meshio.Mesh:
     if points.ndim != 2 or points.shape[1] != 3:
         raise Unreadable("points that do not have three coordinates")
     for block in found.cells:
+        if block.type.startswith("polyhedron"):
+            raise Unreadable("polyhedra, which are not read; write hexahedra or tetrahedra")
         data = np.asarray(block.data)
         if data.size and not 0 <= data.min() <= data.max() < len(points):
             raise Unreadable(f"elements of type {block.type} with points that do not exist")

@@ -52,6 +52,22 @@ def test_one_keyword_may_have_a_format_of_its_own(tmp_path):
     check_rail(read_text(tmp_path, "\n".join(long), "rail.k"))
 
 
+@pytest.mark.parametrize(
+    "before, after",
+    [
+        ("*ELEMENT_SOLID", "*ELEMENT_SOLID (ten nodes format)"),  # as LS-PrePost writes it
+        ("*ELEMENT_SOLID", "*element_solid"),
+        ("*PART", "*MAT_ELASTIC\n1,2810.,&modulus,.33\n*PARAMETER\nR modulus 72.e9\n*PART"),
+        ("*PART", "*SET_NODE_GENERAL\n9\nALL\n*DEFINE_TRANSFORMATION\n1\nSCALE,2.\n*PART"),
+        ("*PART", "*ELEMENT_BEAM\n       1       9       1       2       3\n*PART"),
+    ],
+)
+def test_what_else_a_deck_may_have(tmp_path, before, after):
+    text = lsdyna_text.text(two_lines=True)
+    assert before in text
+    check_rail(read_text(tmp_path, text.replace(before, after, 1), "rail.k"))
+
+
 @pytest.mark.gmsh
 @pytest.mark.parametrize("kind", ["hexahedron", "hexahedron20", "tetra", "tetra10"])
 def test_a_rail_as_gmsh_writes_it(tmp_path, kind):

@@ -136,6 +136,25 @@ def test_a_file_that_is_none_is_refused_with_a_remedy(tmp_path, name, content, w
     assert len(str(caught.value).splitlines()) == 2
 
 
+POLYHEDRON = """<?xml version="1.0"?>
+<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian"><UnstructuredGrid>
+<Piece NumberOfPoints="4" NumberOfCells="1"><Points>
+<DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 1</DataArray>
+</Points><Cells>
+<DataArray type="Int32" Name="connectivity" format="ascii">0 1 2 3</DataArray>
+<DataArray type="Int32" Name="offsets" format="ascii">4</DataArray>
+<DataArray type="Int32" Name="types" format="ascii">42</DataArray>
+<DataArray type="Int32" Name="faces" format="ascii">4 3 0 1 2 3 0 1 3 3 1 2 3 3 0 2 3</DataArray>
+<DataArray type="Int32" Name="faceoffsets" format="ascii">17</DataArray>
+</Cells></Piece></UnstructuredGrid></VTKFile>
+"""
+
+
+def test_polyhedra_are_refused(tmp_path):
+    with pytest.raises(MeshError, match="polyhedra, which are not read"):
+        read_text(tmp_path, POLYHEDRON, "rail.vtu")
+
+
 def test_hdf5_without_the_parts_of_med_is_refused(tmp_path):
     import h5py
 
