@@ -94,9 +94,11 @@ def _nodes(model: _Model, keyword: Keyword) -> None:
             model.points.append(([real(place, line) for place in places] + [0.0] * 3)[:3])
 
 
-def _numbers(keyword: Keyword, text: str, line: int, widths: list[int]) -> list[int]:
-    """Integers of a line up to the last field that is not empty."""
-    fields = keyword.fields(text, widths)
+def _numbers(
+    keyword: Keyword, text: str, line: int, widths: list[int], most: int | None = None
+) -> list[int]:
+    """Integers of the first ``most`` fields of a line, up to the last one that is not empty."""
+    fields = keyword.fields(text, widths)[:most]
     while fields and not fields[-1]:
         fields.pop()
     return [whole(field or "0", line) for field in fields]
@@ -198,14 +200,16 @@ def _set(model: _Model, keyword: Keyword) -> None:
     number = _first(keyword, lines[0][1], lines[0][0])
     members = model.sets.setdefault((group, number), [])
     model.titles.setdefault((group, number), title)
+    # attributes follow the corners of a segment, and the number in a column
+    count = 4 if group == "SEGMENT" else 1 if options == "COLUMN" else 8
     for line, text in lines[1:]:
-        members += _members(group, options, _numbers(keyword, text, line, _OTHER), line)
+        members += _members(group, options, _numbers(keyword, text, line, _OTHER, count), line)
 
 
 def _members(group: str, options: str, row: list[int], line: int) -> Iterator[tuple[int, ...]]:
     """Members of a set in one line: corners of a facet, one number, or the ends of a range."""
     if group == "SEGMENT":
-        yield tuple(_facet(row[:4], line)[1])
+        yield tuple(_facet(row, line)[1])
     elif "GENERATE" in options:
         for first, last in zip(row[::2], row[1::2]):
             if last < first:
@@ -213,9 +217,7 @@ def _members(group: str, options: str, row: list[int], line: int) -> Iterator[tu
             if first:
                 yield first, last
     else:
-        for number in row[:1] if options == "COLUMN" else row:
-            if number:
-                yield (number,)
+        yield from ((number,) for number in row if number)
 
 
 def _mesh(model: _Model) -> meshio.Mesh:

@@ -37,9 +37,9 @@ def text(form: str = STANDARD, surfaces: str = "segments", two_lines: bool = Fal
         if surfaces in ("segments", "nodes"):
             kind = "SEGMENT" if surfaces == "segments" else "NODE_LIST"
             lines += [f"*SET_{kind}_TITLE", name, line(form, [10] * 8, owner, 0.0, 0.0, 0.0, 0.0)]
-            rows = (facets + 1).tolist()
+            rows = [[*row, 0.0, 0.0, 0.0, 0.0] for row in (facets + 1).tolist()]
             if surfaces == "nodes":
-                every = sorted({node for row in rows for node in row})
+                every = sorted({node for row in rows for node in row[:4]})
                 rows = [every[at : at + 8] for at in range(0, len(every), 8)]
             lines += [line(form, [10] * 8, *row) for row in rows]
             continue

@@ -159,6 +159,13 @@ def test_sides_of_solids_of_all_orders(tmp_path, kind):
         assert np.abs((found - corners[wanted[0]]) @ normal).max() < 1e-12
 
 
+def test_elements_that_appear_twice_are_a_fault(tmp_path):
+    text = seeds.abaqus()
+    first = text.split("C3D8R\n1, ")[1].split("\n")[0]
+    with pytest.raises(MeshError, match="elements that appear twice: 9"):
+        read_text(tmp_path, f"{text}*ELEMENT, TYPE=C3D8\n99, {first}\n")
+
+
 CALCULIX = """*BOUNDARY
 mount, 1, 3
 *MATERIAL, NAME=metal

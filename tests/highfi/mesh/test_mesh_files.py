@@ -344,13 +344,6 @@ def test_coordinates_too_large_to_multiply_are_a_fault(tmp_path):
         read_text(tmp_path, text)
 
 
-def test_elements_that_appear_twice_are_a_fault(tmp_path):
-    text = seeds.abaqus()
-    first = text.split("C3D8R\n1, ")[1].split("\n")[0]
-    with pytest.raises(MeshError, match="elements that appear twice: 9"):
-        read_text(tmp_path, f"{text}*ELEMENT, TYPE=C3D8\n99, {first}\n")
-
-
 def test_what_no_check_foresaw_is_a_refusal(tmp_path):
     """A chain of sets that is longer than Python follows calls."""
     text = seeds.abaqus() + "*ELSET, ELSET=contact_long\na0\n"
