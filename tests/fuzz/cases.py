@@ -15,7 +15,7 @@ import typer
 from tests.fuzz import mutants, results
 from tests.highfi.mesh import seeds
 from tipoff import scenes
-from tipoff.calibration.curves import Curves
+from tipoff.comparison.curves import Curves
 from tipoff.highfi.compliance import walls
 from tipoff.highfi.mesh import touching
 from tipoff.highfi.mesh.rail_mesh import read
@@ -239,7 +239,7 @@ def _curve(rng: random.Random, folder: Path) -> None:
 def _reference_curve(rng: random.Random, folder: Path) -> None:
     file = folder / "reference.csv"
     file.write_bytes(mutants.of_text(rng, _reference()).encode("utf-8", "surrogatepass"))
-    Curves.read_csv(file, rng.choice((None, 0.05)))
+    Curves.read(file, rng.choice((None, 0.05)))
 
 
 @cache

@@ -176,7 +176,7 @@ def from_files(
     parameters: Sequence[str] | None = None,
 ) -> dict:
     """The content of ``Fit`` of a ``model``, of these ``parameters`` or the default ones, from CSV
-    files (condition, path) that ``Curves.read_csv`` reads; writes ``curves/calibration.toml``, on
+    files (condition, path) that ``Curves.read`` reads; writes ``curves/calibration.toml``, on
     compliant contact ``curves/calibration-compliant.toml``.
 
     Raises SceneError listing every fault of every file, CalibrationError for curves that do not fit
@@ -194,7 +194,7 @@ def from_files(
     for name, path in files:
         try:
             study.condition(name)
-            references[name] = calibration.Curves.read_csv(path, settled_from)
+            references[name] = calibration.Curves.read(path, settled_from)
         except SceneError as error:
             faults += error.faults
     if faults:
