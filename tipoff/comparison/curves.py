@@ -82,7 +82,8 @@ class Curves(NamedTuple):
             rate[keep],
             float(start),
             _mean(time, rate, start),
-            f"{path}, SHA-256 {digest}, settled from {1e3 * start:.6g} ms",
+            f"{path}, SHA-256 {digest}, settled from {1e3 * start:.6g} ms"
+            + (f"; {layout.words}" if layout.words else ""),
         )
 
 

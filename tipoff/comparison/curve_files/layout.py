@@ -30,6 +30,19 @@ class Layout(NamedTuple):
     body: str | None = None  # number of a body or node, name of a part
     axes: str | None = None  # of the rates: "body" or "scene"
 
+    @property
+    def words(self) -> str:
+        """What it states as text; empty for the defaults."""
+        pairs = {"columns": self.columns, "units": self.units}
+        said = [
+            f"{name} {', '.join(f'{key}={value}' for key, value in own)}"
+            for name, own in pairs.items()
+            if own
+        ]
+        said += [f"body {self.body}"] if self.body is not None else []
+        said += [f"rates in {self.axes} axes"] if self.axes is not None else []
+        return "; ".join(said)
+
     def unit(self, name: str, is_consistent: bool) -> str | None:
         """The stated unit of a quantity; ``is_consistent``: from those of time and length."""
         units = dict(self.units)
@@ -44,7 +57,7 @@ class Layout(NamedTuple):
 OF_THE_FORMAT = Layout()
 
 
-def layouts(
+def of_options(
     names: Sequence[str],
     columns: Iterable[str] = (),
     units: Iterable[str] = (),
