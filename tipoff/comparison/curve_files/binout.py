@@ -26,7 +26,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.comparison.curve_files.lsdyna import COLUMNS, NODOUT, RBDOUT, table
+from tipoff.comparison.curve_files.lsdyna import NODOUT, RBDOUT, UNITS, table
 from tipoff.comparison.curve_files.table import Table, chosen
 from tipoff.files import open_input
 from tipoff.scenes.faults import Fault, SceneError
@@ -81,7 +81,7 @@ def read(path: str | Path, body: str | None) -> Table:
             raise SceneError([Fault(source, "file", given, words)])
         branch, place = names[chosen(source, body, list(names))]
         states = [
-            _state(source, stream, folders[branch, folder], COLUMNS[branch], place)
+            _state(source, stream, folders[branch, folder], list(UNITS[branch]), place)
             for _, folder in sorted(key for key in folders if key[0] == branch)
             if folder != "metadata"
         ]
@@ -95,9 +95,10 @@ def _records(source: str, stream: io.BufferedReader) -> Iterator[tuple[str, str,
     start = struct.Struct(f"{order}{_SIZES[header[1]]}{_SIZES[header[3]]}")
     types = header[4]
     place, end, folder = header[0], os.fstat(stream.fileno()).st_size, "/"
-    while place + start.size <= end:
+    while place < end:
         stream.seek(place)
-        length, command = start.unpack(stream.read(start.size))
+        head = stream.read(start.size).ljust(start.size, b"\0")
+        length, command = start.unpack(head)
         if length < start.size or place + length > end:
             given = f"a record of {length} bytes at byte {place} of {end}"
             raise SceneError([Fault(source, "file", given, "a whole binout")])

@@ -43,15 +43,17 @@ class Layout(NamedTuple):
         said += [f"rates in {self.axes} axes"] if self.axes is not None else []
         return "; ".join(said)
 
-    def unit(self, name: str, is_consistent: bool) -> str | None:
-        """The stated unit of a quantity; ``is_consistent``: from those of time and length."""
+    def unit(self, name: str) -> str | None:
+        """The stated unit of a quantity."""
         units = dict(self.units)
-        stated = units.get(name) or (units.get(RATE) if name in RATES else None)
-        if stated or not is_consistent or "time" not in units:
-            return stated
-        if name in RATES:
-            return f"rad/{units['time']}"
-        return f"{units[LENGTH]}/{units['time']}" if LENGTH in units else None
+        return units.get(name) or (units.get(RATE) if name in RATES else None)
+
+    def filled(self, pattern: str) -> str | None:
+        """A unit from the stated ones of time and length; None without them."""
+        try:
+            return pattern.format_map(dict(self.units))
+        except KeyError:
+            return None
 
 
 OF_THE_FORMAT = Layout()

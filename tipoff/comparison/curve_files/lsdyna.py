@@ -18,29 +18,34 @@ from tipoff.scenes.faults import Fault, SceneError
 
 NODOUT, RBDOUT = "nodout", "rbdout"
 _XYZ = ("x", "y", "z")
-_NODE = [
-    f"{axis}_{name}"
-    for name in ("displacement", "velocity", "acceleration", "coordinate")
-    for axis in _XYZ
-]
-_NODE_TURN = [
-    f"r{axis}_{name}" for name in ("displacement", "velocity", "acceleration") for axis in _XYZ
-]
-
-
-def _motion(kind: str, name: str) -> list[str]:
-    """Columns of one line of a rigid body: three along, three about the axes."""
-    return [f"{kind}_{turn}{name}{axis}" for turn in ("", "r") for axis in _XYZ]
-
-
-_BODY_LINES = {
-    "coordinates": ["global_x", "global_y", "global_z"],
-    "displacements": _motion("global", "d"),
-    "velocities": _motion("global", "v"),
-    "accelerations": _motion("global", "a"),
+_SPEED, _GAIN = "{length}/{time}", "{length}/{time}**2"
+_RATE, _SPIN = "rad/{time}", "rad/{time}**2"
+# Columns of each line in groups of three, with the pattern of their units.
+_NODE = {"displacement": "{length}", "velocity": _SPEED, "acceleration": _GAIN}
+_NODE |= {"coordinate": "{length}"}
+_NODE_TURN = {"displacement": "rad", "velocity": _RATE, "acceleration": _SPIN}
+_BODY = {
+    "coordinates": {"": "{length}"},
+    "displacements": {"d": "{length}", "rd": "rad"},
+    "velocities": {"v": _SPEED, "rv": _RATE},
+    "accelerations": {"a": _GAIN, "ra": _SPIN},
 }
-_BODY = [column for columns in _BODY_LINES.values() for column in columns]
-COLUMNS = {NODOUT: [*_NODE, *_NODE_TURN], RBDOUT: _BODY}
+
+
+def _columns(groups: dict[str, str], pattern: str) -> dict[str, str]:
+    """The unit of each column of some groups; the ``pattern`` makes the names."""
+    return {
+        pattern.format(axis=axis, name=name): unit for name, unit in groups.items() for axis in _XYZ
+    }
+
+
+_OF_NODE = _columns(_NODE, "{axis}_{name}")
+_OF_NODE_TURN = _columns(_NODE_TURN, "r{axis}_{name}")
+_OF_BODY = {line: _columns(groups, "global_{name}{axis}") for line, groups in _BODY.items()}
+UNITS = {
+    NODOUT: _OF_NODE | _OF_NODE_TURN,
+    RBDOUT: {name: unit for line in _OF_BODY.values() for name, unit in line.items()},
+}
 #: Default columns of the quantities of a curve.
 DEFAULTS = {
     NODOUT: {
@@ -94,7 +99,8 @@ def read(source: str, data: bytes, kind: str, body: str | None) -> Table:
 def table(source: str, kind: str, states: list[dict[str, float]]) -> Table:
     """The table of ``states``, each with values by column. The last one may lack values, if the run
     was stopped. Raises SceneError if another one does."""
-    names = ["time", *(name for name in COLUMNS[kind] if states and name in states[0])]
+    names = [name for name in UNITS[kind] if states and name in states[0]]
+    names = ["time", *names]
     if len(states) > 1 and len(states[-1]) < len(states[0]):
         states = states[:-1]
     for state in states:
@@ -103,7 +109,8 @@ def table(source: str, kind: str, states: list[dict[str, float]]) -> Table:
             raise SceneError([Fault(source, kind, given, "the same values at every time")])
     rows = np.array([[state[name] for name in names] for state in states])
     rows = rows.reshape(len(states), len(names))
-    return Table(names, [None] * len(names), rows, DEFAULTS[kind], is_consistent=True, axes=SCENE)
+    units = ["{time}", *(UNITS[kind][name] for name in names[1:])]
+    return Table(names, units, rows, DEFAULTS[kind], is_consistent=True, axes=SCENE)
 
 
 def _nodes(source: str, text: Iterator[str] | io.TextIOWrapper) -> Iterator[_Block]:
@@ -112,7 +119,7 @@ def _nodes(source: str, text: Iterator[str] | io.TextIOWrapper) -> Iterator[_Blo
         if match := _NODE_TIME.search(line):
             time, columns = _number(source, number, match[1]), None
         elif line.lstrip().startswith("nodal point"):
-            columns = _NODE_TURN if "x-rot" in line else _NODE
+            columns = list(_OF_NODE_TURN if "x-rot" in line else _OF_NODE)
         elif time is not None and columns is not None and line.strip():
             node, *cells = line.split()
             values = [_number(source, number, cell) for cell in cells]
@@ -136,7 +143,7 @@ def _bodies(source: str, text: Iterator[str] | io.TextIOWrapper) -> Iterator[_Bl
         elif line.lstrip().startswith(("principal", "output in")):
             is_global = False
         elif colon and time is not None and body is not None and is_global:
-            columns = _BODY_LINES.get(head.strip(), [])
+            columns = list(_OF_BODY.get(head.strip(), ()))
             values = [_number(source, number, cell) for cell in rest.split()]
             if len(values) < len(columns) and not line.endswith("\n"):
                 return  # the run was stopped in this line

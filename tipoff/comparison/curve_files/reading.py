@@ -46,6 +46,9 @@ def read(path: str | Path, layout: Layout = OF_THE_FORMAT, optional: Collection[
     except SceneError as error:
         return Found({}, error.faults, "")
     values, faults = {}, _misplaced(source, layout, table)
+    if table.is_consistent and not layout.units:
+        words = 'those of the model, such as --units "time=ms, length=mm"'
+        return Found({}, [*faults, Fault(source, "--units", "no units", words)], digest)
     for name, si in QUANTITIES.items():
         column = dict(layout.columns).get(name)
         if (
@@ -105,7 +108,9 @@ def _quantity(
         return np.empty(0), [table.no_column(source, name, column)]
     values, faults = table.numbers(source, name, place)
     unit = table.units[place] if place < len(table.units) else None
-    factor, wrong = _factor(source, name, si, unit, layout.unit(name, table.is_consistent))
+    if table.is_consistent and unit is not None:
+        unit = layout.filled(unit)
+    factor, wrong = _factor(source, name, si, unit, layout.unit(name))
     return sign * factor * values, faults + wrong
 
 
@@ -122,7 +127,7 @@ def _factor(
     factor, faults = factor_to_si(source, name, stated, si)
     in_file, unclear = factor_to_si(source, name, written, si)
     if not faults and not unclear and abs(in_file / factor - 1.0) > 1e-9:
-        faults = [Fault(source, name, f"{stated} in --units", f"{written}, the unit in the header")]
+        faults = [Fault(source, name, f"{stated} in --units", f"{written}, the unit in the file")]
     return factor, faults
 
 

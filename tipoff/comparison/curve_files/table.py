@@ -17,8 +17,8 @@ class Table(NamedTuple):
     """Columns of one body or node.
 
     ``columns`` names the default column of a quantity if it is not that of the quantity.
-    ``is_consistent``: all columns are in one consistent system of units, so that units of time and
-    length determine the others. ``axes`` of the rates are None if the file does not tell them.
+    ``is_consistent``: all columns are in one consistent system, and ``units`` are patterns of its
+    units of time and length, "{length}/{time}". ``axes`` of the rates are None if the file does not tell them.
     """
 
     names: Sequence[str]  # of the columns; empty if the file has none

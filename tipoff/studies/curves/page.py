@@ -1,5 +1,6 @@
 """Curves of other codes on the page and in the terminal."""
 
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from tipoff.studies.render.chart import Chart, Line, Panel
@@ -10,8 +11,6 @@ from tipoff.studies.render.table import Table
 if TYPE_CHECKING:
     from tipoff.studies.curves.stage import Compared, Drawn
 
-# The reference is a broad pale line under the thin lines of the others.
-_REFERENCE = {"colour": NAVY, "width": 5.0, "opacity": 0.35}
 _LOOKS = ((VERMILION, "-"), (AMBER, "--"), (TEAL, "-."), (GREY, ":"))
 _TIME = "time after ignition (ms)"
 _NOTE = (
@@ -25,7 +24,7 @@ _CAPTION = "Curves over the time after ignition. {reference} is the broad line."
 def draw(found: "Compared") -> list[Part]:
     """Figure and tables."""
     (figure,) = figures(found)
-    sources = [(item.curve, item.source) for item in found.drawn]
+    sources = [(name, item.source) for name, item in found.drawn.items()]
     return [figure, *_tables(found), Fold("Files", [Table(("curve", "source"), sources)])]
 
 
@@ -45,32 +44,37 @@ def _tables(found: "Compared") -> list[Part]:
 
 def figures(found: "Compared") -> tuple[Figure]:
     """v_x and the three rates of all curves."""
-    panels = [
-        Panel(
-            f"rate about {axis.upper()}",
-            _TIME,
-            y_label="rate (deg/s)",
-            lines=[
-                _line(place, item, [rate[index] for rate in item.rate_deg_s])
-                for place, item in enumerate(found.drawn)
-            ],
-        )
+    rates = {
+        f"rate about {axis.upper()}": [
+            (name, item, [rate[index] for rate in item.rate_deg_s])
+            for name, item in found.drawn.items()
+        ]
         for index, axis in enumerate("xyz")
-    ]
+    }
     speeds = [
-        _line(place, item, list(item.velocity_m_s))
-        for place, item in enumerate(found.drawn)
+        (name, item, item.velocity_m_s)
+        for name, item in found.drawn.items()
         if item.velocity_m_s is not None
     ]
-    if speeds:
-        panels.insert(0, Panel("velocity along X", _TIME, y_label="v_x (m/s)", lines=speeds))
+    panels = (
+        [Panel("velocity along X", _TIME, "v_x (m/s)", _lines(found, speeds))] if speeds else []
+    )
+    panels += [
+        Panel(title, _TIME, "rate (deg/s)", _lines(found, own)) for title, own in rates.items()
+    ]
     caption = _CAPTION.format(reference=found.reference)
     return (Figure(Chart("curves", panels, columns=2, height=260), caption),)
 
 
-def _line(place: int, item: "Drawn", values: list[float]) -> Line:
-    time = [1e3 * instant for instant in item.time_s]
-    if place == 0:
-        return Line(time, values, name=item.curve, **_REFERENCE)  # type: ignore[arg-type]
-    colour, dash = _LOOKS[(place - 1) % len(_LOOKS)]
-    return Line(time, values, name=item.curve, colour=colour, dash=dash)
+def _lines(found: "Compared", curves: Iterable[tuple[str, "Drawn", Sequence[float]]]) -> list[Line]:
+    """The lines of some curves; each curve has one look in all panels."""
+    others = [name for name in found.drawn if name != found.reference]
+    lines = []
+    for name, item, values in curves:
+        time = [1e3 * instant for instant in item.time_s]
+        if name == found.reference:  # a broad pale line under the thin lines of the others
+            lines.append(Line(time, values, name=name, colour=NAVY, width=5.0, opacity=0.35))
+        else:
+            colour, dash = _LOOKS[others.index(name) % len(_LOOKS)]
+            lines.append(Line(time, values, name=name, colour=colour, dash=dash))
+    return lines

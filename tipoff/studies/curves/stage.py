@@ -69,7 +69,6 @@ class Channel:
 class Drawn:
     """A curve, thinned; ``velocity_m_s`` is None if not known."""
 
-    curve: str
     source: str
     time_s: tuple[float, ...]
     velocity_m_s: tuple[float, ...] | None
@@ -86,7 +85,7 @@ class Compared:
     reference: str
     rows: tuple[Row, ...]
     ratings: tuple[Channel, ...]
-    drawn: tuple[Drawn, ...]
+    drawn: dict[str, Drawn]
     failed: tuple[str, ...] = ()
 
 
@@ -206,7 +205,7 @@ def compared(scene: str, options: Options, found: dict[str, Curves]) -> Compared
         ratings=tuple(
             Channel(curve=name, **item.iso18571_channels) for name, item in differences.items()
         ),
-        drawn=tuple(_drawn(name, item) for name, item in found.items()),
+        drawn={name: _drawn(item) for name, item in found.items()},
     )
 
 
@@ -220,11 +219,10 @@ def _row(name: str, curves: Curves, difference: metrics.Difference | None) -> Ro
     )
 
 
-def _drawn(name: str, curves: Curves) -> Drawn:
+def _drawn(curves: Curves) -> Drawn:
     keep = np.unique(np.linspace(0, curves.time.size - 1, _DRAWN).round().astype(int))
     known = np.isfinite(curves.velocity).all()
     return Drawn(
-        curve=name,
         source=curves.source,
         time_s=tuple(curves.time[keep].tolist()),
         velocity_m_s=tuple(curves.velocity[keep].tolist()) if known else None,
