@@ -142,12 +142,9 @@ def _header(
         for text, (name, _) in zip(texts, chosen)
     ]
     stated = [unit for _, unit in chosen]
-    below = [cell.strip() for cell in before[place + 1][1]] if place + 1 < len(before) else []
-    if units.are_units(below):
-        stated = [
-            unit or (below[column] if column < len(below) else None)
-            for column, unit in enumerate(stated)
-        ]
+    below = [row for _, row in before[place + 1 :] if len(row) == len(chosen)]
+    if below and units.are_units(below[0]):
+        stated = [unit or cell.strip() or None for unit, cell in zip(stated, below[0])]
     return names, stated
 
 

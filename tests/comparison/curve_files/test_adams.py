@@ -1,0 +1,120 @@
+"""Results of Adams in XML."""
+
+import math
+
+import pytest
+
+from tests.comparison.curve_files.dyna_files import written
+from tipoff.comparison.curve_files import reading
+from tipoff.comparison.curve_files.layout import of_options
+
+
+def part(name: str, first: int) -> str:
+    """The entity of a part, as Adams C++ Solver lists it; ``first``: place of its first value."""
+    components = [
+        ("X", "mm"),
+        ("VX", "mm/sec"),
+        ("WX", "deg/sec"),
+        ("WY", "deg/sec"),
+        ("WZ", "deg/sec"),
+    ]
+    lines = [
+        f'<Component name="{component}" unitsValue="{unit}" id="{first + place}" />'
+        for place, (component, unit) in enumerate(components)
+    ]
+    return (
+        f'<Entity name="{name}_XFORM" entity="{name}" entType="Part" objectId="2">\n'
+        + "\n".join(lines)
+        + "\n</Entity>"
+    )
+
+
+RESULTS = f"""<?xml version="1.0" encoding="UTF-8"?>
+<Results xmlns="http://www.mscsoftware.com/:xrf10">
+<Analysis name="Dynamic Analysis" Solver="Adams C++  Adams C++ Solver"  script="-unknown-">
+<Units angle="deg" length="mm" mass="kg" time="sec" />
+<StepMap name="map_001">
+<Entity name="time">
+<Component name="TIME" unitsValue="sec" id="1" />
+</Entity>
+{part("payload", 2)}
+{part("platform", 7)}
+</StepMap>
+<Data name="modelInput_001" id="1">
+<Step type="input">
+0
+77 77 77 77 77
+77 77 77 77 77
+</Step>
+</Data>
+<Data name="initialConditions_001" id="2">
+<Step type="initialConditions">
+0
+0 0 1 2 3
+0 0 0 0 0
+</Step>
+</Data>
+<Data name="dynamic_001" id="3">
+<Step type="dynamic">
+5.0E-004
+0.1 250 1.5 2 -3
+0 0 0 0 0
+</Step>
+</Data>
+</Analysis>
+</Results>
+"""
+REPEATED = RESULTS.replace(
+    '<Step type="dynamic">',
+    '<Step type="dynamic">\n0\n0 0 1 2 3\n0 0 0 0 0\n</Step>\n<Step type="dynamic">',
+    1,
+)
+
+
+def layout(*columns, body=("payload",), axes=("body",)):
+    return of_options(["a"], columns=columns, body=body, axes=axes)["a"]
+
+
+@pytest.mark.parametrize("text", [RESULTS, REPEATED], ids=["once", "first step repeated"])
+def test_a_part_has_its_motion_with_the_units_of_the_file(text, tmp_path):
+    """The model input is left out. Control: the other part rests."""
+    path = written(tmp_path, "run.res", text)
+    found = reading.read(path, layout())
+    assert not found.faults
+    assert found.values["time"] == pytest.approx([0.0, 5e-4])
+    assert found.values["velocity_x"] == pytest.approx([0.0, 0.25])
+    assert found.values["rate_z"] == pytest.approx([math.radians(3), math.radians(-3)])
+    assert not reading.read(path, layout(body=("platform",))).values["rate_z"].any()
+
+
+def test_components_are_columns(tmp_path):
+    names = "time=time.TIME, velocity_x=-payload_XFORM.VX, rate_x=payload_XFORM.WZ"
+    rest = "rate_y=payload_XFORM.WY, rate_z=payload_XFORM.WX"
+    path = written(tmp_path, "run.res", RESULTS)
+    found = reading.read(path, layout(names, rest, body=()))
+    assert not found.faults
+    assert found.values["velocity_x"] == pytest.approx([0.0, -0.25])
+    assert found.values["rate_x"] == pytest.approx([math.radians(3), math.radians(-3)])
+
+
+@pytest.mark.parametrize(
+    "old, new, asked, words",
+    [
+        ("", "", layout(body=()), "--body: given no number, expected one of payload, platform"),
+        ("", "", layout(body=("rail",)), "--body: given 'rail', expected one of payload, platform"),
+        ("", "", layout(axes=()), "rates: given no axes, expected --axes body or --axes scene"),
+        ("", "", layout("rate_x=payload_XFORM.W"), "no such column 'payload_XFORM.W'"),
+        ("deg/sec", "no_units", layout(), "rate_x: given 'no_units'"),
+        ("0.1 250 1.5 2 -3\n0 0 0 0 0", "0.1", layout(), "Step: given a step of 2 values"),
+        ("0.1 250 1.5", "0.1 250 x", layout(), "Step: given could not convert"),
+        ('id="4"', 'id="x"', layout(), "id: given 'x'"),
+        ("</Analysis>", "", layout(), "mismatched tag"),
+        ("<Results", "<!DOCTYPE x>\n<Results", layout(), "file: given a DOCTYPE"),
+        ('encoding="UTF-8"', 'encoding="nothing"', layout(), "expected XML of Adams results"),
+    ],
+)
+def test_a_fault_is_one_line(old, new, asked, words, tmp_path):
+    assert old in RESULTS
+    path = written(tmp_path, "run.res", RESULTS.replace(old, new) if old else RESULTS)
+    said = "\n".join(map(str, reading.read(path, asked).faults))
+    assert words in said, said
