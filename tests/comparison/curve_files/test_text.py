@@ -44,8 +44,9 @@ RPT = (
 )
 # Exudyn: a sensor file has comments without names, and columns between commas.
 EXUDYN = (
-    "#Exudyn 1.8.52 sensor output file\n#sensor type = Body\n#body number = 1\n"
-    "#output variable type = AngularVelocityLocal\n#number of sensor values = 4\n#\n" + rows(",")
+    "#sensor output file\n#Exudyn version = 1.12\n#sensorNumber = 0\n#sensorType = Body\n"
+    "#sensorOutputVariableType = 3\n#number of sensor values = 4\n"
+    "#data is written in the following order: time, values\n" + rows(",")
 )
 # numpy.savetxt of MuJoCo or Chrono arrays: the header in a comment.
 SAVETXT = "# Time VX WX WY WZ\n" + rows(" ")

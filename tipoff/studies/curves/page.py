@@ -7,6 +7,7 @@ from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Fold, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Table
+from tipoff.workspace.words import counted
 
 if TYPE_CHECKING:
     from tipoff.studies.curves.stage import Compared, Drawn
@@ -31,7 +32,10 @@ def draw(found: "Compared") -> list[Part]:
 def terminal(found: "Compared") -> list[Part]:
     """The tables."""
     condition = f" Condition {found.condition} of {found.scene}." if found.condition else ""
-    return [f"{len(found.rows)} curves against {found.reference}.{condition}", *_tables(found)]
+    return [
+        f"{counted(len(found.rows) - 1, 'curve')} against {found.reference}.{condition}",
+        *_tables(found),
+    ]
 
 
 def _tables(found: "Compared") -> list[Part]:

@@ -12,7 +12,7 @@ from tipoff.comparison.curve_files.layout import of_options
 from tipoff.comparison.curves import Curves
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.scenes.calibration import Calibration
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.faults import Fault, SceneError, together
 from tipoff.scenes.scene import NOMINAL
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.commands.running import quantity
@@ -26,7 +26,7 @@ from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study, require_success
 
 NAME = "curves"
-_DRAWN = 600  # samples of a curve in the result
+_DRAWN = 300  # samples of a curve in the result
 _DIFFERENCES = (  # fields of Row that are fields of a Difference
     "settled_rate_error_deg_s",
     "rate_relative_l2",
@@ -91,7 +91,7 @@ class Compared:
 
 def run(study: Study, options: Options = Options()) -> dict:
     """The content of ``Compared``. Raises SceneError listing every fault of every file."""
-    curves = _of_files(options)
+    curves, _ = together(lambda: _of_files(options), lambda: _require(study, options))
     requests = _requests(study, options)
 
     def make() -> tuple[Compared, list[Path]]:
@@ -146,11 +146,14 @@ def _named(text: str) -> tuple[str, str]:
     return (name.strip(), path) if equals else (Path(text).name, text)
 
 
-def _requests(study: Study, options: Options) -> dict[str, Run]:
-    """The runs of tipoff by name. Raises SceneError."""
-    models = tuple(dict.fromkeys(options.model or ()))
+def _require(study: Study, options: Options) -> None:
+    """Raise SceneError for an unknown model or condition, and for options of runs without one."""
+    if options.condition:
+        study.condition(options.condition)
+    for model in options.model or ():
+        known.require(known.Options(model))
     idle = {"--condition": options.condition, "--calibration": options.calibration}
-    if not models and any(idle.values()):
+    if not options.model and any(idle.values()):
         raise SceneError(
             [
                 Fault(option, "option", str(given), "--model for this option")
@@ -158,8 +161,11 @@ def _requests(study: Study, options: Options) -> dict[str, Run]:
                 if given
             ]
         )
-    for model in models:
-        known.require(known.Options(model))
+
+
+def _requests(study: Study, options: Options) -> dict[str, Run]:
+    """The runs of tipoff by name. Raises SceneError."""
+    models = tuple(dict.fromkeys(options.model or ()))
     name = options.condition or NOMINAL
     fitted = _fitted(study, options.calibration, models)
     made = {}
@@ -224,7 +230,7 @@ def _drawn(curves: Curves) -> Drawn:
     known = np.isfinite(curves.velocity).all()
     return Drawn(
         source=curves.source,
-        time_s=tuple(curves.time[keep].tolist()),
-        velocity_m_s=tuple(curves.velocity[keep].tolist()) if known else None,
-        rate_deg_s=tuple(map(tuple, np.degrees(curves.rate[keep]).tolist())),
+        time_s=tuple(curves.time[keep].round(6).tolist()),
+        velocity_m_s=tuple(curves.velocity[keep].round(5).tolist()) if known else None,
+        rate_deg_s=tuple(map(tuple, np.degrees(curves.rate[keep]).round(4).tolist())),
     )
