@@ -4,71 +4,14 @@ import math
 
 import pytest
 
+from tests.comparison.curve_files.adams_files import document, step
 from tests.comparison.curve_files.dyna_files import written
 from tipoff.comparison.curve_files import reading
 from tipoff.comparison.curve_files.layout import of_options
 
-
-def part(name: str, first: int) -> str:
-    """The entity of a part, as Adams C++ Solver lists it; ``first``: place of its first value."""
-    components = [
-        ("X", "mm"),
-        ("VX", "mm/sec"),
-        ("WX", "deg/sec"),
-        ("WY", "deg/sec"),
-        ("WZ", "deg/sec"),
-    ]
-    lines = [
-        f'<Component name="{component}" unitsValue="{unit}" id="{first + place}" />'
-        for place, (component, unit) in enumerate(components)
-    ]
-    return (
-        f'<Entity name="{name}_XFORM" entity="{name}" entType="Part" objectId="2">\n'
-        + "\n".join(lines)
-        + "\n</Entity>"
-    )
-
-
-RESULTS = f"""<?xml version="1.0" encoding="UTF-8"?>
-<Results xmlns="http://www.mscsoftware.com/:xrf10">
-<Analysis name="Dynamic Analysis" Solver="Adams C++  Adams C++ Solver"  script="-unknown-">
-<Units angle="deg" length="mm" mass="kg" time="sec" />
-<StepMap name="map_001">
-<Entity name="time">
-<Component name="TIME" unitsValue="sec" id="1" />
-</Entity>
-{part("payload", 2)}
-{part("platform", 7)}
-</StepMap>
-<Data name="modelInput_001" id="1">
-<Step type="input">
-0
-77 77 77 77 77
-77 77 77 77 77
-</Step>
-</Data>
-<Data name="initialConditions_001" id="2">
-<Step type="initialConditions">
-0
-0 0 1 2 3
-0 0 0 0 0
-</Step>
-</Data>
-<Data name="dynamic_001" id="3">
-<Step type="dynamic">
-5.0E-004
-0.1 250 1.5 2 -3
-0 0 0 0 0
-</Step>
-</Data>
-</Analysis>
-</Results>
-"""
-REPEATED = RESULTS.replace(
-    '<Step type="dynamic">',
-    '<Step type="dynamic">\n0\n0 0 1 2 3\n0 0 0 0 0\n</Step>\n<Step type="dynamic">',
-    1,
-)
+LAST = step("dynamic", "5.0E-004", "0.1 250 1.5 2 -3", "0 0 0 0 0")
+RESULTS = document(LAST)
+REPEATED = document(step("dynamic", "0", "0 0 1 2 3", "0 0 0 0 0"), LAST)
 
 
 def layout(*columns, body=("payload",), axes=("body",)):
