@@ -267,9 +267,8 @@ def _foreign() -> list[tuple[str, str | bytes, dict[str, str]]]:
     names = "time=Time, velocity_x=VX, rate_x=WX, rate_y=-WY, rate_z=5"
     stated = {"columns": names, "units": "time=ms, velocity_x=mm/s, rate=deg/s", "axes": "scene"}
     rows = [f"{step / 4:g} {step} 1,5 {step % 3} -2e-1" for step in range(13)]
-    table = "run\n# made\nTime VX WX WY WZ\n" + "\n".join(rows) + "\n"
-    nodes = dyna_files.NODOUT.replace("5.00000E-01", "2.50000E+00")
-    bodies = dyna_files.RBDOUT.replace("5.000000E-01", "2.500000E+00")
+    table = "run\n# made\nTime VX WX WY WZ\n" + "\n".join(rows).replace(".", ",") + "\n"
+    nodes, bodies = (dyna_files.longer(text, 7) for text in (dyna_files.NODOUT, dyna_files.RBDOUT))
     adams = {"body": "payload", "axes": "body"}
     return [
         ("table.txt", table, stated),

@@ -84,6 +84,17 @@ def two_bodies() -> str:
     return text
 
 
+def longer(text: str, steps: int) -> str:
+    """``NODOUT`` or ``RBDOUT`` with more states like the last one, 0.5 ms apart."""
+    mark = "\n\n\n n o d a l" if text is NODOUT else "1\n\n  r i g i d"
+    parts = text.split(mark)
+    last = [f"{mark}{part}" for part in (parts[-2:] if text is NODOUT else parts[-1:])]
+    for step in range(2, steps):
+        late = f"{0.5 * step:.5E}"
+        text += "".join(last).replace("5.000000E-01", late).replace("5.00000E-01", late)
+    return text
+
+
 HEADER = bytes([8, 8, 8, 1, 1])  # its length; bytes of a length, an offset, a command, a type
 _CD, _DATA, _VARIABLE, _BEGIN, _END, _TABLE = 2, 3, 4, 5, 6, 7
 TYPES = {"i1": 1, "i4": 3, "i8": 4, "f4": 9, "f8": 10}
