@@ -50,9 +50,11 @@ def document(*steps: str) -> str:
 """
 
 
+def of_payload(motion: list[tuple[float, str]]) -> str:
+    """Results with these steps: the time (s), and the values of the payload."""
+    return document(*(step("dynamic", repr(time), row, "0 0 0 0 0") for time, row in motion))
+
+
 def results(steps: int) -> str:
     """A motion with a step every 0.5 ms."""
-    times = range(1, steps + 1)
-    return document(
-        *(step("dynamic", f"{5e-4 * place}", f"0 {place} 1 2 3", "0 0 0 0 0") for place in times)
-    )
+    return of_payload([(5e-4 * place, f"0 {place} 1 2 3") for place in range(1, steps + 1)])

@@ -60,6 +60,18 @@ principal or user defined local coordinate direction vectors
     velocities:    9.0000E+09  9.0000E+09  9.0000E+09  9.0000E+09  9.0000E+09  9.0000E+09
  accelerations:    9.0000E+09  9.0000E+09  9.0000E+09  9.0000E+09  9.0000E+09  9.0000E+09
 """
+
+
+def rbdout(states) -> str:
+    """Text with the motion of body 7: times, velocities (3,) and rates (3,) of each state."""
+    return HEAD + "".join(
+        _BODY.format(
+            time=f"{time:12.6E}", velocities="".join(f"{one:12.4E}" for one in (*speed, *rate))
+        )
+        for time, speed, rate in states
+    )
+
+
 RBDOUT = HEAD + "".join(
     _BODY.format(time=time, velocities=velocities)
     for time, velocities in (
@@ -148,6 +160,21 @@ def binout(order: str = "<", real: str = "f4", whole: str = "i8", steps: int = 2
     file.folder("/glstat/d000001")
     file.data("time", real, 99.0)
     file.symbols()
+    return file
+
+
+def rigid_body(states) -> Lsda:
+    """The motion of ``rbdout`` in the binary file."""
+    file = Lsda()
+    file.folder("/rbdout/metadata")
+    file.data("ids", "i4", 7)
+    file.data("num_nodal", "i4", 0)
+    for place, (time, speed, rate) in enumerate(states, 1):
+        file.folder(f"/rbdout/d{place:06d}")
+        file.data("time", "f8", time)
+        for axis, along, about in zip("xyz", speed, rate):
+            file.data(f"global_v{axis}", "f8", along)
+            file.data(f"global_rv{axis}", "f8", about)
     return file
 
 

@@ -36,17 +36,8 @@ def table(path, factor=1.0, late=0.0):
 
 def binout(path):
     """The same motion in binout, in mm and ms, with a state every 0.05 ms."""
-    file = dyna_files.Lsda()
-    file.folder("/rbdout/metadata")
-    file.data("ids", "i4", 7)
-    file.data("num_nodal", "i4", 0)
-    for place, (time, speed, rate) in enumerate(zip(*motion()), 1):
-        file.folder(f"/rbdout/d{place:06d}")
-        file.data("time", "f8", time)
-        for axis, along, about in zip("xyz", (speed, 0.0, 0.0), rate):
-            file.data(f"global_v{axis}", "f8", along)
-            file.data(f"global_rv{axis}", "f8", 1e-3 * about)
-    path.write_bytes(file.content)
+    states = [(time, (speed, 0.0, 0.0), 1e-3 * rate) for time, speed, rate in zip(*motion())]
+    path.write_bytes(dyna_files.rigid_body(states).content)
     return path
 
 
