@@ -130,7 +130,7 @@ def test_the_window_begins_at_the_given_time(tmp_path):
         ("0.0,0.0", "-0.2,0.0", ["-0.2 ms first", "since ignition"]),
         ("\n".join(["", *LINES[4:]]), "", ["a record of 1.5 ms", "2 ms"]),
         ("\n".join(["", *LINES[1:]]), "", ["1 samples"]),
-        ("\n".join([HEAD, *LINES]), "", ["no line that begins with a number"]),
+        ("\n".join([HEAD, *LINES]), "", ["no line of numbers"]),
         (HEAD, HEAD + '\n"', ["a CSV file of text"]),
     ],
 )

@@ -12,6 +12,7 @@ from tests.comparison.curve_files import dyna_files
 from tipoff.comparison.curves import Curves
 from tipoff.studies.cli import app
 from tipoff.studies.curves import stage
+from tipoff.studies.curves.results import Compared
 
 END = 8.0  # ms
 UNITS = ("--units", "dyna: time=ms, length=mm")
@@ -52,7 +53,7 @@ def call(out, *arguments):
     return CliRunner().invoke(app, asked, catch_exceptions=False)
 
 
-def found(out) -> stage.Compared:
+def found(out) -> Compared:
     return stage.STAGE.read(json.loads((out / "tiny" / "curves.json").read_text()))
 
 

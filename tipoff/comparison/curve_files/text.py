@@ -1,6 +1,6 @@
 """A table of text: any separator, comments, a block of text in front, decimal commas.
 
-The table is from the first line that begins with a number to the last one. Its header is in front of it,
+The table is from the first line of numbers to the last one. Its header is in front of it,
 also in a comment; the unit of a column is in brackets after its name, or in the line below the header.
 """
 
@@ -40,12 +40,15 @@ def read(source: str, data: bytes, wanted: Collection[str]) -> Table:
     except (UnicodeDecodeError, csv.Error) as error:
         raise SceneError([Fault(source, "file", str(error), "a CSV file of text")]) from error
     if not body:
-        given, words = "no line that begins with a number", "a table with times in a column"
+        given, words = "no line of numbers", "a table with times in a column"
         raise SceneError([Fault(source, "file", given, words)])
     if len(body) > MOST_LINES:
         raise SceneError([Fault(source, "file", "more lines", f"{MOST_LINES:,} lines at most")])
     if comma or separator != ",":
-        body = [(number, [_COMMA.sub(".", cell) for cell in row]) for number, row in body]
+        body = [
+            (number, [_COMMA.sub(".", cell) if "," in cell else cell for cell in row])
+            for number, row in body
+        ]
     names, stated = _header(before, len(body[0][1]), wanted)
     return Table(names, stated, body)
 
@@ -93,12 +96,13 @@ def _split(text: str, separator: str | None) -> list[str]:
 
 
 def _parts(cells: list[tuple[Line, bool]], has_blanks: bool) -> tuple[list[Line], list[Line]]:
-    """Lines in front of the table, and those of the table. Between blanks a title may begin with a
-    number, so the first line has as many cells as the last one with a number."""
-    numbered = [row for (_, row), is_comment in cells if not is_comment and _begins(row)]
+    """Lines in front of the table, and those of the table. Between blanks a title may have numbers,
+    so the first line has as many cells as the last one with numbers."""
+    plain = (row for (_, row), is_comment in reversed(cells) if not is_comment)
+    width = len(next(filter(_has_numbers, plain), []))
     first = len(cells)
     for place, ((_, row), is_comment) in enumerate(cells):
-        if not is_comment and _begins(row) and (not has_blanks or len(row) == len(numbered[-1])):
+        if not is_comment and _has_numbers(row) and (not has_blanks or len(row) == width):
             first = place
             break
     body = [line for line, is_comment in cells[first:] if not is_comment]
@@ -107,9 +111,13 @@ def _parts(cells: list[tuple[Line, bool]], has_blanks: bool) -> tuple[list[Line]
     return [line for line, _ in cells[max(0, first - _MOST_BEFORE) : first]], body
 
 
-def _begins(row: list[str]) -> bool:
-    """Whether the first cell that is not empty is a number."""
-    cell = next(filter(str.strip, row), "")
+def _has_numbers(row: list[str]) -> bool:
+    """Whether the first cell that is not empty is a number, or two others are."""
+    texts = list(filter(str.strip, row))
+    return _is_number(texts[0]) or sum(map(_is_number, texts)) > 1
+
+
+def _is_number(cell: str) -> bool:
     try:
         float(_COMMA.sub(".", cell))
     except ValueError:

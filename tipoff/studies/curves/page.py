@@ -1,16 +1,13 @@
 """Curves of other codes on the page and in the terminal."""
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
 
+from tipoff.studies.curves.results import Compared, Drawn
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Fold, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Table
 from tipoff.workspace.words import counted
-
-if TYPE_CHECKING:
-    from tipoff.studies.curves.stage import Compared, Drawn
 
 _LOOKS = ((VERMILION, "-"), (AMBER, "--"), (TEAL, "-."), (GREY, ":"))
 _TIME = "time after ignition (ms)"
@@ -22,14 +19,14 @@ _NOTE = (
 _CAPTION = "Curves over the time after ignition. {reference} is the broad line."
 
 
-def draw(found: "Compared") -> list[Part]:
+def draw(found: Compared) -> list[Part]:
     """Figure and tables."""
     (figure,) = figures(found)
     sources = [(name, item.source) for name, item in found.drawn.items()]
     return [figure, *_tables(found), Fold("Files", [Table(("curve", "source"), sources)])]
 
 
-def terminal(found: "Compared") -> list[Part]:
+def terminal(found: Compared) -> list[Part]:
     """The tables."""
     condition = f" Condition {found.condition} of {found.scene}." if found.condition else ""
     return [
@@ -38,7 +35,7 @@ def terminal(found: "Compared") -> list[Part]:
     ]
 
 
-def _tables(found: "Compared") -> list[Part]:
+def _tables(found: Compared) -> list[Part]:
     note = _NOTE.format(reference=found.reference)
     return [
         Table.of_records(found.rows, notes=(note,)),
@@ -46,7 +43,7 @@ def _tables(found: "Compared") -> list[Part]:
     ]
 
 
-def figures(found: "Compared") -> tuple[Figure]:
+def figures(found: Compared) -> tuple[Figure]:
     """v_x and the three rates of all curves."""
     rates = {
         f"rate about {axis.upper()}": [
@@ -70,7 +67,7 @@ def figures(found: "Compared") -> tuple[Figure]:
     return (Figure(Chart("curves", panels, columns=2, height=260), caption),)
 
 
-def _lines(found: "Compared", curves: Iterable[tuple[str, "Drawn", Sequence[float]]]) -> list[Line]:
+def _lines(found: Compared, curves: Iterable[tuple[str, Drawn, Sequence[float]]]) -> list[Line]:
     """The lines of some curves; each curve has one look in all panels."""
     others = [name for name in found.drawn if name != found.reference]
     lines = []
