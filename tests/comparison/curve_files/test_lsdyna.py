@@ -73,6 +73,28 @@ def test_one_of_several_bodies_is_chosen_by_its_number(body, tmp_path):
     )
 
 
+def test_a_binary_file_goes_on_in_its_next_part(tmp_path):
+    """Control: without the next part only its own states are there."""
+    states = [(0.5 * step, (float(step), 0, 0), (0.0, 0, 0)) for step in range(4)]
+    whole = dyna.rigid_body(states).content
+    path = dyna.written(tmp_path, "binout0000", dyna.rigid_body(states[:2]).content)
+    assert reading.read(path, layout()).values["velocity_x"] == pytest.approx([0.0, 1.0])
+    more = dyna.Lsda()
+    for place, (time, speed, _) in enumerate(states[2:], 3):
+        more.folder(f"/rbdout/d{place:06d}")
+        more.data("time", "f8", time)
+        for axis, one in zip("xyz", speed):
+            more.data(f"global_v{axis}", "f8", one)
+            more.data(f"global_rv{axis}", "f8", 0.0)
+    dyna.written(tmp_path, "binout0000%001", more.content)
+    found = reading.read(path, layout())
+    assert found.values["velocity_x"] == pytest.approx([0.0, 1.0, 2.0, 3.0])
+    one = reading.read(dyna.written(tmp_path, "whole", whole), layout())
+    assert (found.values["velocity_x"] == one.values["velocity_x"]).all()
+    dyna.written(tmp_path, "binout0000%002", "no part")
+    assert "%002: file: given no header of LSDA" in said(reading.read(path, layout()))
+
+
 def test_the_bodies_of_a_binary_file_are_listed(tmp_path):
     path = dyna.written(tmp_path, "binout0000", dyna.binout().content)
     assert "given no number, expected one of rbdout 7, rbdout nodal 9" in said(

@@ -11,16 +11,19 @@ command  content
 others   tables of symbols, which repeat the paths; not read
 =======  ==========================================================================
 
-A branch has the folder ``metadata`` with the numbers ``ids`` of its nodes or bodies, and a folder
-``d000001``, ``d000002`` ... for each time. Source: the description of the LSTC I/O library, lsda-1.1.
+A large file continues in ``binout0000%001`` and so on. A branch has the folder ``metadata`` with the
+numbers ``ids`` of its nodes or bodies, and a folder ``d000001``, ``d000002`` ... for each time. Source:
+the description of the LSTC I/O library, lsda-1.1.
 """
 
+import glob
 import io
 import os
 import posixpath
 import re
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
@@ -37,15 +40,16 @@ _SIZES = {1: "B", 2: "H", 4: "I", 8: "Q"}
 _TYPES = {
     **{1: "i1", 2: "i2", 3: "i4", 4: "i8", 5: "u1", 6: "u2", 7: "u4", 8: "u8", 9: "f4", 10: "f8"}
 }
-_STATE = re.compile(r"/(nodout|rbdout)/(metadata|d\d+)$")
+_STATE = re.compile(r"/(nodout|rbdout)/(metadata|d\d{1,12})$")
 _MOST_STATES = 1_000_000
 _MOST_BODIES = 10_000_000
 _LONGEST_PATH = 4096
 
 
 class _Numbers(NamedTuple):
-    """Numbers of a record: their place in the file, their type and number."""
+    """Numbers of a record: their file, their place in it, their type and number."""
 
+    stream: io.BufferedReader
     place: int
     kind: np.dtype
     size: int
@@ -61,19 +65,28 @@ def is_one(head: bytes) -> bool:
     )
 
 
+def parts(path: str | Path) -> list[Path]:
+    """The file and its continuations ``binout0000%001``, ``binout0000%002`` ..."""
+    path = Path(path)
+    found = path.parent.glob(f"{glob.escape(path.name)}%[0-9]*")
+    return [path, *sorted(found, key=lambda part: (len(part.name), part.name))]
+
+
 def read(path: str | Path, body: str | None) -> Table:
     """The motion of one ``body`` or node. Raises SceneError, and OSError for a file that cannot be
     read."""
     source = str(path)
-    with open_input(path) as stream:
+    with ExitStack() as opened:
         folders: dict[tuple[str, str], dict[str, _Numbers]] = {}
-        for branch, folder, name, numbers in _records(source, stream):
-            folders.setdefault((branch, folder), {})[name] = numbers
+        for part in parts(path):
+            stream = opened.enter_context(open_input(part))
+            for branch, folder, name, numbers in _records(str(part), stream):
+                folders.setdefault((branch, folder), {})[name] = numbers
             if len(folders) > _MOST_STATES:
                 raise SceneError([Fault(source, "file", "more times", f"{_MOST_STATES:,} at most")])
         names: dict[str, tuple[str, int]] = {}
         for branch in (RBDOUT, NODOUT):
-            for place, word in enumerate(_bodies(source, stream, folders, branch)):
+            for place, word in enumerate(_bodies(source, folders, branch)):
                 names.setdefault(f"{branch} {word}", (branch, place))
         if not names:
             given = "no rbdout and no nodout"
@@ -81,9 +94,8 @@ def read(path: str | Path, body: str | None) -> Table:
             raise SceneError([Fault(source, "file", given, words)])
         branch, place = names[chosen(source, body, list(names))]
         states = [
-            _state(source, stream, folders[branch, folder], list(UNITS[branch]), place)
-            for _, folder in sorted(key for key in folders if key[0] == branch)
-            if folder != "metadata"
+            _state(source, folders[branch, folder], list(UNITS[branch]), place)
+            for folder in _in_order(folder for own, folder in folders if own == branch)
         ]
     return table(source, branch, states)
 
@@ -91,6 +103,8 @@ def read(path: str | Path, body: str | None) -> Table:
 def _records(source: str, stream: io.BufferedReader) -> Iterator[tuple[str, str, str, _Numbers]]:
     """Branch, folder, name and numbers of each record of the wanted branches."""
     header = stream.read(_HEADER)
+    if not is_one(header):
+        raise SceneError([Fault(source, "file", "no header of LSDA", "a part of binout")])
     order = "<" if header[5] else ">"
     start = struct.Struct(f"{order}{_SIZES[header[1]]}{_SIZES[header[3]]}")
     types = header[4]
@@ -110,7 +124,8 @@ def _records(source: str, stream: io.BufferedReader) -> Iterator[tuple[str, str,
             size = length - start.size - first
             if kind is not None and size >= 0:
                 count = size // kind.itemsize
-                yield found[1], found[2], name, _Numbers(place + start.size + first, kind, count)
+                begin = place + start.size + first
+                yield found[1], found[2], name, _Numbers(stream, begin, kind, count)
         place += length
 
 
@@ -127,9 +142,13 @@ def _description(
     return found, name, types + 1 + head[types]
 
 
+def _in_order(folders: Iterable[str]) -> list[str]:
+    """The folders of the states; a number may have six or eight digits."""
+    return sorted((name for name in folders if name != "metadata"), key=lambda name: int(name[1:]))
+
+
 def _bodies(
     source: str,
-    stream: io.BufferedReader,
     folders: dict[tuple[str, str], dict[str, _Numbers]],
     branch: str,
 ) -> list[str]:
@@ -142,15 +161,14 @@ def _bodies(
         raise SceneError(
             [Fault(source, branch, f"{ids.size} numbers", f"{_MOST_BODIES:,} at most")]
         )
-    numbers = _values(stream, ids, 0, ids.size).astype(int).tolist()
-    nodal = int(_values(stream, about["num_nodal"], 0, 1)[0]) if "num_nodal" in about else 0
+    numbers = _values(ids, 0, ids.size).astype(int).tolist()
+    nodal = int(_values(about["num_nodal"], 0, 1)[0]) if "num_nodal" in about else 0
     rigid = len(numbers) - nodal if branch == RBDOUT else len(numbers)
     return [f"{'nodal ' if place >= rigid else ''}{one}" for place, one in enumerate(numbers)]
 
 
 def _state(
     source: str,
-    stream: io.BufferedReader,
     folder: dict[str, _Numbers],
     columns: list[str],
     place: int,
@@ -158,17 +176,17 @@ def _state(
     """The values of one body at one time by column."""
     if "time" not in folder:
         raise SceneError([Fault(source, "time", "a state without it", "the time of each state")])
-    found = {"time": _values(stream, folder["time"], 0, 1)}
+    found = {"time": _values(folder["time"], 0, 1)}
     for name in columns:
         if name in folder:
-            found[name] = _values(stream, folder[name], place, 1)
+            found[name] = _values(folder[name], place, 1)
     if short := [name for name, values in found.items() if not values.size]:
         raise SceneError([Fault(source, short[0], "no value", "one for each node or body")])
     return {name: float(values[0]) for name, values in found.items()}
 
 
-def _values(stream: io.BufferedReader, numbers: _Numbers, first: int, count: int) -> np.ndarray:
+def _values(numbers: _Numbers, first: int, count: int) -> np.ndarray:
     """``count`` numbers from the ``first`` on, fewer at the end of the record."""
     count = max(0, min(count, numbers.size - first))
-    stream.seek(numbers.place + first * numbers.kind.itemsize)
-    return np.frombuffer(stream.read(count * numbers.kind.itemsize), numbers.kind)
+    numbers.stream.seek(numbers.place + first * numbers.kind.itemsize)
+    return np.frombuffer(numbers.stream.read(count * numbers.kind.itemsize), numbers.kind)

@@ -6,7 +6,7 @@ Rates in scene axes are turned into body axes, which are parallel to them at the
 """
 
 import hashlib
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -24,6 +24,7 @@ from tipoff.scenes.faults import Fault, SceneError
 MOST_BYTES = 2**27  # of a text file of LS-DYNA or Adams; of these only some columns are kept
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _HEAD = 2**16  # bytes in which the root of XML is
+_BLOCK = 2**20
 
 
 class Found(NamedTuple):
@@ -77,9 +78,7 @@ def _table(path: str | Path, layout: Layout) -> tuple[Table, str]:
             words = "binout of LS-DYNA (LSDA), or a text file: no HDF5"
             raise SceneError([Fault(source, "file", "HDF5", words)])
         if binout.is_one(head):
-            stream.seek(0)
-            digest = hashlib.file_digest(stream, "sha256").hexdigest()
-            return binout.read(path, layout.body), digest
+            return binout.read(path, layout.body), _digest(binout.parts(path))
     data = read_input(path, MOST_BYTES)
     digest = hashlib.sha256(data).hexdigest()
     for kind, mark in lsdyna.MARKS.items():
@@ -94,6 +93,16 @@ def _table(path: str | Path, layout: Layout) -> tuple[Table, str]:
         given = f"more than {MOST_TEXT // 2**20} MiB"
         raise SceneError([Fault(source, "file", given, "a smaller table")])
     return text.read(source, data, {*wanted, *QUANTITIES}), digest
+
+
+def _digest(paths: Iterable[Path]) -> str:
+    """SHA-256 of the files one after another."""
+    found = hashlib.sha256()
+    for path in paths:
+        with open_input(path) as stream:
+            while block := stream.read(_BLOCK):
+                found.update(block)
+    return found.hexdigest()
 
 
 def _quantity(
