@@ -172,6 +172,17 @@ Degree = Annotated[
         "compliant; 2 (default) to 4: slower, and nearer to the reference.",
     ),
 ]
+Cells = Annotated[
+    int | None,
+    typer.Option(
+        "--cells",
+        metavar="N",
+        min=4,
+        max=100,
+        help="Contact cells along each edge of a pad face, with --model compliant; 10 (default) or "
+        "more: slower, and nearer to the reference, which has at least 16.",
+    ),
+]
 CalibrationFile = Annotated[
     Path | None,
     typer.Option(
