@@ -13,12 +13,14 @@ def test_a_text_is_for_all_files_or_for_one_and_that_of_one_wins():
         units=["time=ms", "dyna: length=mm"],
         body=["dyna: nodal 7"],
         axes=["scene", "adams:body"],
+        ignition=["dyna: 100 ms"],
     )
     assert found["dyna"] == Layout(
         columns=(("rate_x", "3"), ("rate_y", "4")),
         units=(("time", "ms"), ("length", "mm")),
         body="nodal 7",
         axes="scene",
+        ignition=0.1,
     )
     assert dict(found["adams"].columns) == {"rate_x": "-WX", "rate_y": "4", "time": "Time"}
     assert found["adams"].axes == "body" and found["adams"].body is None
@@ -26,8 +28,10 @@ def test_a_text_is_for_all_files_or_for_one_and_that_of_one_wins():
 
 def test_a_layout_says_what_it_states():
     assert Layout().words == ""
-    words = Layout((("time", "1"),), (("rate", "deg/s"),), "7", "scene").words
-    assert words == "columns time=1; units rate=deg/s; body 7; rates in scene axes"
+    words = Layout((("time", "1"),), (("rate", "deg/s"),), "7", "scene", 0.1).words
+    assert (
+        words == "columns time=1; units rate=deg/s; body 7; rates in scene axes; ignition at 100 ms"
+    )
 
 
 def test_a_name_of_a_column_may_have_a_colon():
@@ -43,6 +47,7 @@ def test_a_name_of_a_column_may_have_a_colon():
         ({"columns": ["b: time=3"]}, "--columns: quantity: given 'b: time'"),
         ({"columns": ["time=1, time=2"]}, "--columns: time: given twice, expected once"),
         ({"units": ["time="]}, "--units: time: given 'time=', expected QUANTITY=TEXT"),
+        ({"ignition": ["soon"]}, "--ignition: value: given 'soon', expected a quantity in s"),
         ({"axes": ["global"]}, "--axes: value: given 'global', expected body or scene"),
     ],
 )

@@ -118,6 +118,16 @@ def test_a_unit_that_the_file_contradicts_is_refused(tmp_path):
     require_rows(reading.read(path, layout(units="rate_x=deg/s")))
 
 
+def test_times_begin_at_the_ignition(tmp_path):
+    """100 ms of settling under gravity are left out."""
+    late = "\n".join(f"{100.0 + row[0]},{','.join(map(str, row[1:]))}" for row in ROWS)
+    text = f"{','.join(HEADER)}\n0,9,9,9,9\n50,9,9,9,9\n{late}\n"
+    path = written(tmp_path, "a.csv", text)
+    require_rows(reading.read(path, layout(ignition=["100 ms"])))
+    found = reading.read(path, layout(ignition=["1 s"]))
+    assert not found.faults and found.values["time"].size == 0
+
+
 def test_a_sign_turns_an_axis(tmp_path):
     path = written(tmp_path, "a.txt", TAB)
     found = reading.read(path, layout(NAMES.replace("rate_z=WZ", "rate_z=-WX")))

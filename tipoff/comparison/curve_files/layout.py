@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from tipoff.comparison.curve_files.table import BODY, SCENE
 from tipoff.scenes.faults import Fault, SceneError, close
+from tipoff.scenes.units import to_si
 
 QUANTITIES = {
     "time": "s",
@@ -29,6 +30,7 @@ class Layout(NamedTuple):
     units: tuple[tuple[str, str], ...] = ()  # quantity, "rate" or "length", and unit
     body: str | None = None  # number of a body or node, name of a part
     axes: str | None = None  # of the rates: "body" or "scene"
+    ignition: float = 0.0  # s, of the file
 
     @property
     def words(self) -> str:
@@ -41,6 +43,7 @@ class Layout(NamedTuple):
         ]
         said += [f"body {self.body}"] if self.body is not None else []
         said += [f"rates in {self.axes} axes"] if self.axes is not None else []
+        said += [f"ignition at {1e3 * self.ignition:.6g} ms"] if self.ignition else []
         return "; ".join(said)
 
     def unit(self, name: str) -> str | None:
@@ -65,6 +68,7 @@ def of_options(
     units: Iterable[str] = (),
     body: Iterable[str] = (),
     axes: Iterable[str] = (),
+    ignition: Iterable[str] = (),
 ) -> dict[str, Layout]:
     """The layout of each file by name. Each text of an option is for all files, or for one, "NAME:
     ...", whose values replace those for all. Raises SceneError listing every fault."""
@@ -88,14 +92,19 @@ def of_options(
     take("--units", units, lambda text: _pairs("--units", text, (*QUANTITIES, RATE, LENGTH)))
     take("--body", body, str)
     take("--axes", axes, _axes)
+    take("--ignition", ignition, _time)
     if faults:
         raise SceneError(faults)
     return {name: _layout(given) for name, given in found.items()}
 
 
 def _layout(given: dict[str, Any]) -> Layout:
-    pairs = {key: tuple(given.get(key, {}).items()) for key in ("columns", "units")}
-    return Layout(**pairs, body=given.get("body"), axes=given.get("axes"))
+    """The layout of one file; dictionaries become tuples, which cannot change."""
+    fixed = {
+        key: tuple(value.items()) if isinstance(value, dict) else value
+        for key, value in given.items()
+    }
+    return Layout(**fixed)
 
 
 def _of_one(text: str, names: Sequence[str]) -> tuple[str | None, str]:
@@ -122,6 +131,13 @@ def _pairs(option: str, text: str, known: Iterable[str]) -> dict[str, str]:
     if faults:
         raise SceneError(faults)
     return pairs
+
+
+def _time(text: str) -> float:
+    try:
+        return to_si(text, "s")
+    except ValueError as error:
+        raise SceneError([Fault("--ignition", "value", f"{text!r}", str(error))]) from None
 
 
 def _axes(text: str) -> str:

@@ -25,6 +25,7 @@ MOST_BYTES = 2**27  # of a text file of LS-DYNA or Adams; of these only some col
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _HEAD = 2**16  # bytes in which the root of XML is
 _BLOCK = 2**20
+_ROUNDING = 1e-9  # s, of times in a file
 
 
 class Found(NamedTuple):
@@ -63,6 +64,10 @@ def read(path: str | Path, layout: Layout = OF_THE_FORMAT, optional: Collection[
         if not wrong:
             values[name] = found
     faults += _axes_faults(source, layout, table)
+    if layout.ignition and "time" in values:
+        late = values["time"] - layout.ignition
+        keep = late >= -_ROUNDING
+        values = {name: one[keep] for name, one in (values | {"time": late}).items()}
     if (layout.axes or table.axes) == SCENE and {"time", *RATES} <= values.keys():
         turned = in_body_axes(values["time"], np.column_stack([values[name] for name in RATES]))
         values |= dict(zip(RATES, turned.T))

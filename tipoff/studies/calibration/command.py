@@ -38,6 +38,7 @@ def calibrate(
     units: Annotated[list[str] | None, of_files("--units")] = None,
     body: Annotated[list[str] | None, of_files("--body")] = None,
     axes: Annotated[list[str] | None, of_files("--axes")] = None,
+    ignition: Annotated[list[str] | None, of_files("--ignition")] = None,
     settled_from: SettledFrom = None,
     model: Annotated[
         SurrogateName | None,
@@ -94,7 +95,7 @@ def calibrate(
 
     start = quantity("--settled-from", settled_from, "s", "44 ms")
     files = stage.named(reference or [], condition, start)
-    layouts = stage.laid_out(files, columns, units, body, axes)
+    layouts = stage.laid_out(files, columns, units, body, axes, ignition)
     study = request.study()
     chosen = None if fit is None else [name.strip() for one in fit for name in one.split(",")]
     default = SPRINGS if chosen is None else COMPLIANT

@@ -170,22 +170,16 @@ def named(
     ]
 
 
-def laid_out(
-    files: list[tuple[str, str]],
-    columns: Sequence[str] | None,
-    units: Sequence[str] | None,
-    body: Sequence[str] | None,
-    axes: Sequence[str] | None,
-) -> dict[str, Layout]:
-    """The layout of each file by its condition, from the options of a command. Raises SceneError,
-    also for options without a file."""
-    given = {"--columns": columns, "--units": units, "--body": body, "--axes": axes}
-    if not files and (idle := {option: texts[0] for option, texts in given.items() if texts}):
+def laid_out(files: list[tuple[str, str]], *texts: Sequence[str] | None) -> dict[str, Layout]:
+    """The layout of each file by its condition, from the ``texts`` of --columns, --units, --body,
+    --axes and --ignition. Raises SceneError, also for options without a file."""
+    options = ("--columns", "--units", "--body", "--axes", "--ignition")
+    if not files and (idle := {name: own[0] for name, own in zip(options, texts) if own}):
         words = "a file for this option"
         raise SceneError(
             [Fault(option, text, "no --reference", words) for option, text in idle.items()]
         )
-    return of_options([name for name, _ in files], *(texts or () for texts in given.values()))
+    return of_options([name for name, _ in files], *(own or () for own in texts))
 
 
 def from_files(

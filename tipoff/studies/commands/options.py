@@ -222,6 +222,10 @@ _OF_FILES = {
         "Axes of the rates: body (of the payload), or scene (fixed). Default: scene for LS-DYNA, "
         "body for a table.",
     ),
+    "--ignition": (
+        "TIME",
+        "Time of the ignition in a file: earlier samples are left out. Default: zero.",
+    ),
 }
 
 

@@ -27,6 +27,7 @@ class Options:
     units: Annotated[tuple[str, ...] | None, of_files("--units")] = None
     body: Annotated[tuple[str, ...] | None, of_files("--body")] = None
     axes: Annotated[tuple[str, ...] | None, of_files("--axes")] = None
+    ignition: Annotated[tuple[str, ...] | None, of_files("--ignition")] = None
     settled_from: SettledFrom = None
     condition: Annotated[
         str | None,

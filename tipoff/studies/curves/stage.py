@@ -74,7 +74,7 @@ def _of_files(options: Options) -> dict[str, Curves]:
         words = "two files, or one file and --model"
         faults.append(Fault("FILE", "files", ", ".join(names) or "nothing", words))
     start = quantity("--settled-from", options.settled_from, "s", "44 ms")
-    stated = (options.columns, options.units, options.body, options.axes)
+    stated = (options.columns, options.units, options.body, options.axes, options.ignition)
     layouts = of_options(names, *(texts or () for texts in stated))
     found = {}
     for name, path in pairs:
