@@ -229,6 +229,29 @@ def test_command_fits_files_and_names_them(tmp_path, quick):
     assert again["constants"].keys() == found.constants.keys()
 
 
+def test_a_table_of_another_program_has_the_same_fit(tmp_path, quick):
+    """Semicolons, decimal commas, other names, no units, rates with the other sign. Control:
+    without --columns the file is refused."""
+    one = write_curves(tmp_path / "one.csv", lowfi.run(scene().replace(TRUTH), "springs"))
+    rows = [line.split(",") for line in one.read_text().splitlines()[1:]]
+    turned = [
+        [*row[:4], row[4].removeprefix("-") if row[4][0] == "-" else f"-{row[4]}"] for row in rows
+    ]
+    text = "\n".join(";".join(row).replace(".", ",") for row in turned)
+    two = tmp_path / "two.txt"
+    two.write_text(f"made by hand\nT;VX;WX;WY;W3\n{text}\n")
+    first = call("--reference", one, "--json", "--out", tmp_path / "a")
+    names = "time=T, velocity_x=VX, rate_x=WX, rate_y=4, rate_z=-W3"
+    stated = ("--columns", names, "--units", "time=ms, velocity_x=m/s, rate=deg/s")
+    second = call("--reference", two, *stated, "--json", "--out", tmp_path / "b")
+    assert second.exit_code == 0, second.output
+    assert json.loads(first.stdout)["constants"] == json.loads(second.stdout)["constants"]
+    refused = call("--reference", two, *stated[2:], "--out", tmp_path / "c")
+    assert refused.exit_code == 2 and "time: given no such column" in refused.stderr
+    idle = call(*stated, "--out", tmp_path / "c")
+    assert idle.exit_code == 2 and "--columns" in idle.stderr and "--units" in idle.stderr
+
+
 def test_a_file_without_a_name_is_the_scene_itself(tmp_path, quick):
     run = lowfi.run(scene().replace(TRUTH), "springs")
     path = write_curves(tmp_path / "a.csv", run)

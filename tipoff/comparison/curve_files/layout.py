@@ -100,7 +100,7 @@ def of_options(
 
 def _layout(given: dict[str, Any]) -> Layout:
     """The layout of one file; dictionaries become tuples, which cannot change."""
-    fixed = {
+    fixed: dict[str, Any] = {
         key: tuple(value.items()) if isinstance(value, dict) else value
         for key, value in given.items()
     }
