@@ -3,9 +3,9 @@
 The first run has none. Its forces give the effect of each mode on the settled rates
 (``lowfi.contact.compliant.neglected``). If the sum over the modes is above ``THRESHOLD``, the scene
 is run again with the fewest lowest modes of each rail that bring the rest below. The change of the
-rates from run to run shows how much later contacts enlarge such a sum; if the rest is above
-``THRESHOLD`` with this factor, a third run has more modes and is the last. The last run is the
-result, and ``cost`` has the sum of all.
+rates between the two runs shows how much later contacts enlarge such a sum; if the rest is above
+``THRESHOLD`` with this factor, a third run has all modes. The last run is the result, and ``cost``
+has the sum of all.
 
 The effects are always those of the first run. On a vibrating rail a contact breaks up into touches,
 and a pad leaves such a touch too slowly for the estimate: it would be hundreds of times too high.
@@ -25,7 +25,6 @@ import numpy as np
 from tipoff.lowfi.single_run import SingleRun
 
 THRESHOLD = math.radians(0.02)  # rad/s, of the settled rates
-_MOST_RUNS = 3
 
 
 @dataclass(frozen=True)
@@ -57,13 +56,13 @@ def choose(
         every.append(accurate())
     made = [every[-1] if not every[-1].message else first]
     effect, enlarged, failed = made[0].neglected(), 1.0, ""
-    while needed(effect * enlarged) > made[-1].modes and len(made) < _MOST_RUNS:
-        every.append(tried := run(needed(effect * enlarged)))
+    while needed(effect * enlarged) > made[-1].modes:
+        every.append(tried := run(needed(effect) if len(made) == 1 else effect.size))
         if tried.message:  # the last completed run gives the result
             failed = f"a run with {tried.modes} failed: {tried.message}"
             break
         made.append(tried)
-        enlarged = max(enlarged, _enlarged(made[-2:], effect))
+        enlarged = max(1.0, _enlarged(made[-2:], effect))
     result = first if len(made) == 1 else made[-1]
     why = f"{result.modes or 'none'}: {failed}" if failed else _why(made, effect, enlarged)
     return result, Choice(result.modes, why, tuple(each for each in every if each is not result))

@@ -241,12 +241,11 @@ def runs_that_move(*rates: float) -> tuple[list[int], Callable[[int], SimpleName
     [
         ((0.0, 0.05), [0, 1]),
         ((0.0, 0.06), [0, 1]),  # the rest may be 1.2 times larger
-        ((0.0, 0.10, 0.10), [0, 1, 2]),  # twice
-        ((0.0, 0.30, 0.31), [0, 1, 3]),  # six times
+        ((0.0, 0.10, 0.10), [0, 1, 4]),  # twice: all
         ((0.0, 9.00, 9.00), [0, 1, 4]),
     ],
 )
-def test_the_change_of_the_rates_shows_how_many_more_modes_matter(rates, expected):
+def test_the_change_of_the_rates_shows_whether_more_modes_matter(rates, expected):
     """The effects are those of the run without modes: on a vibrating rail a contact breaks up into
     touches, for which the estimate is far too high."""
     made, run = runs_that_move(*rates)
