@@ -79,7 +79,9 @@ def read(path: str | Path) -> tuple[Sheet, Log]:
 
 def _table(path: Path, wanted: list[str]) -> dict[str, np.ndarray]:
     """The wanted columns (n,) by name; an empty cell is NaN."""
-    rows = [(number, [cell.strip() for cell in row]) for number, row in listed(path, comment="#")]
+    rows = [
+        (number, [cell.strip() for cell in row]) for number, row in listed(path, comments=("#",))
+    ]
     where, faults = places(str(path), rows[0][1] if rows else [], wanted)
     found = {}
     for name, place in where.items():
