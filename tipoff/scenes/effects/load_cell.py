@@ -12,6 +12,7 @@ _BURNS = 0.05  # of the peak: above it there is thrust
 _PLATEAU = 0.2  # of the peak: a higher level is thrust that the record cuts
 _AGREE = 0.2  # relative difference of two points on one level
 _CALM = 3.0  # standard deviations of the noise of a sample without thrust
+_EARLY = 0.8  # share of the samples before a clear thrust that show the drift
 _STILL = 1e-6  # of the peak: a smaller level or noise is rounding
 
 
@@ -72,9 +73,11 @@ def _level(curve: MeasuredCurve, peak: float) -> Level | None:
         return None
     level, error = _mean(force[: max(FEWEST, count // 2)])
     quiet = 1.4826 * float(np.median(np.abs(np.diff(force[:count])))) / math.sqrt(2.0)
-    # Thrust begins before it is clearly above the noise.
-    risen = np.flatnonzero(np.abs(force[:count] - level) <= _CALM * max(quiet, _STILL * peak))
-    begun = int(risen[-1]) + 1 if risen.size else count
+    # Thrust begins before it is clearly above the noise about a zero that may drift.
+    place, early = np.arange(count), max(FEWEST, int(_EARLY * count))
+    drift = np.polyval(np.polyfit(place[:early], force[:early], 1), place)
+    still = np.flatnonzero(np.abs(force[:count] - drift) <= _CALM * max(quiet, _STILL * peak))
+    begun = int(still[-1]) + 1 if still.size else count
     return Level(
         level,
         abs(level) > 3.0 * error,

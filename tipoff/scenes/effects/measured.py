@@ -11,7 +11,7 @@ import scipy  # its submodules load at their first use
 
 from tipoff.files import read_input
 from tipoff.scenes.thrust_files import reader
-from tipoff.scenes.thrust_files.record import ANYTHING, Choice
+from tipoff.scenes.thrust_files.record import ANYTHING, SECTION, Choice
 
 FIT_IMPULSE = 0.02  # of the impulse of a curve: largest error of its fit by default
 
@@ -80,7 +80,7 @@ def _parsed(
     if ((steps[1:] == 0.0) & (steps[:-1] == 0.0)).any():
         wrong.append("each time in at most two rows (two are a jump)")
     if wrong:
-        raise ValueError("a curve with " + ", ".join(wrong))
+        raise ValueError(f"a curve with {', '.join(wrong)}; {SECTION}")
     return MeasuredCurve(time, force), words
 
 
@@ -92,7 +92,7 @@ def from_ignition(curve: MeasuredCurve, ignition: float | None) -> MeasuredCurve
     if not curve.time[0] <= ignition < curve.time[-1]:
         raise ValueError(
             f"a curve around thrust.ignition = {ignition:g} s (it is from {curve.time[0]:g} s to "
-            f"{curve.time[-1]:g} s)"
+            f"{curve.time[-1]:g} s); {SECTION}"
         )
     first = int(np.searchsorted(curve.time, ignition, side="right"))
     begun = float(

@@ -8,6 +8,8 @@ A column is chosen by its name where that is unambiguous, otherwise by ``thrust.
 
 from typing import NoReturn
 
+import numpy as np
+
 from tipoff.scenes import instrument_table
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.instrument_table import Written, head, scale, words
@@ -43,8 +45,11 @@ def read(path: str, data: bytes, choice: Choice) -> Record:
     said = "" if table.header == _HOUSE else f"columns {used}"
     if not table.header:
         said = f"columns {used} of a table without a header"
-    time, force = (values * factor for values, factor in zip(columns, factors))
+    with np.errstate(over="ignore"):  # infinite values are refused
+        time, force = (values * factor for values, factor in zip(columns, factors))
     wrong = tuple(f"{f.expected} ({f.key}: {f.given})" for f in faults)
+    if any("," in fault.given for fault in faults):
+        wrong += ("a comma only as decimal comma, which cannot be a mark of thousands",)
     return Record(time, force, said, wrong)
 
 
