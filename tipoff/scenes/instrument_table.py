@@ -24,7 +24,7 @@ from tipoff.scenes.faults import Fault
 PAGE = "docs/reference/file_formats.md"
 _MARKS = ("#", "%", "//", ";")  # of comment lines; a separator is no mark
 _SEPARATORS = ("\t", ";", ",")
-_SEARCHED = 100  # lines in which the header is searched
+_SEARCHED = 1000  # lines in which the header is searched
 _MOST_HEAD = 2**18  # bytes of them
 _SHOWN = 200  # characters of a header in a message
 _BRACKETS = re.compile(r"(.*?)[\s/]*(?:\[([^\[\]]*)\]|\(([^()]*)\))")
@@ -60,7 +60,7 @@ class Written(NamedTuple):
 
     def places(self, name: str, si: str) -> list[int]:
         """Columns with this name, with or without its unit."""
-        cells = self.names()
+        cells, name = self.names(), name.lstrip("#% ")  # a header may be behind a comment mark
         whole = [place for place, cell in enumerate(cells) if cell == name]
         return whole or [place for place, cell in enumerate(cells) if head(cell, si)[0] == name]
 
