@@ -291,6 +291,11 @@ def _log(rng: random.Random, folder: Path) -> None:
     sample = rng.choice(sheet.SAMPLES)
     log = sample.with_suffix(".csv")
     text, table = sample.read_text(encoding="utf-8"), log.read_text(encoding="utf-8")
+    if rng.random() < 0.5:  # as another program writes it
+        units = "#time [s];gx;gy;gz;ax [m s^-2];ay/(m/s^2);az (m/s^2);temperature"
+        rows = table.partition("temperature\n")[2].replace(",", ";").replace(".", ",")
+        table = f"% log\n{units}\n{rows}"
+        text = text.replace('acceleration = "m/s**2"\n', "").replace("channel_class = 60\n", "")
     if rng.random() < 0.5:
         text = mutants.of_text(rng, text)
     else:
