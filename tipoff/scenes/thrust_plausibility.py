@@ -12,7 +12,7 @@ and after burn-out; any other reading adds to the impulse.
 import numpy as np
 
 from tipoff.scenes import ends
-from tipoff.scenes.effects import load_cell, thrust_law
+from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.effects.load_cell import Level
 from tipoff.scenes.effects.measured import FIT_IMPULSE, MeasuredCurve
 from tipoff.scenes.rounding import at_most, below
@@ -93,7 +93,7 @@ def _of_record(table) -> list[str]:
     peak = float(np.abs(curve.force).max())
     if peak == 0.0:
         return []
-    before, after = load_cell.levels(curve)
+    before, after = table.levels()
     return _of_offset(table, before, after) + _of_ends(curve, peak, before, after)
 
 

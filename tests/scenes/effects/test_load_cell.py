@@ -7,6 +7,7 @@ import pytest
 
 from tests.scenes.support import refused, small
 from tipoff.scenes import parse, plausibility
+from tipoff.scenes.shown import facts
 
 TIME = np.arange(0.0, 3.0, 1e-3)
 IGNITION, END, PEAK = 1.2, 2.2, 300.0
@@ -26,8 +27,10 @@ def raw(folder, first, last, noise=NOISE, **keys):
 
 
 def test_the_reading_before_ignition_is_said_and_kept(tmp_path):
-    """Control: the impulse has the 12 N s of the offset."""
-    thrust = parse(raw(tmp_path, 4.0, 4.0)).thrust
+    """Also where the scene is printed. Control: the impulse has the 12 N s of the offset."""
+    scene = parse(raw(tmp_path, 4.0, 4.0))
+    thrust = scene.thrust
+    assert "columns Time [ms] and Thrust [N]; reading before ignition" in facts(scene)["thrust"]
     said = re.search(
         r"reading before ignition at (\S+) s (\S+) N, noise (\S+) N, kept",
         thrust.describe(3.5)["text"],
@@ -63,6 +66,10 @@ def test_an_ignition_shifts_the_log(tmp_path):
     time, force = scene.thrust.curve()
     assert time[0] == 0.0 and time[-1] == pytest.approx(TIME[-1] - 1.2)
     assert scene.thrust.requested() == pytest.approx(IMPULSE, rel=2e-3)
+    kept = parse(raw(tmp_path, 4.0, 4.0, ignition="1.2 s"))
+    (said,) = [words for words in plausibility.warnings(kept) if "thrust.baseline" in words]
+    level = float(said.partition("zero: ")[2].partition(" N")[0])  # of the log before ignition
+    assert level == pytest.approx(4.0, abs=4.0 * 1.2533 * NOISE / np.sqrt(600.0))
     assert force[np.argmin(np.abs(time - 0.5))] == pytest.approx(PEAK, abs=4.0 * NOISE)
 
 

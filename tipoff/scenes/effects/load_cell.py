@@ -27,7 +27,10 @@ class Level(NamedTuple):
     peak: float = 0.0  # N, of the whole record
 
 
-def levels(curve: MeasuredCurve) -> tuple[Level | None, Level | None]:
+Levels = tuple[Level | None, Level | None]
+
+
+def levels(curve: MeasuredCurve) -> Levels:
     """The levels before ignition and after burn-out; None for a record that begins or ends with
     thrust."""
     peak = float(np.abs(curve.force).max())

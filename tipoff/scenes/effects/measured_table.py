@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_validator
 
 from tipoff.scenes.effects import load_cell
+from tipoff.scenes.effects.load_cell import Levels
 from tipoff.scenes.effects.measured import (
     FIT_IMPULSE,
     GaussianFit,
@@ -62,6 +63,7 @@ class MeasuredTable(TimedTable):
     #: before ignition to zero.
     remove_offset: bool = Field(False, exclude_if=is_zero)
     _curve: MeasuredCurve = PrivateAttr()
+    _levels: Levels = PrivateAttr()
     _words: str = PrivateAttr()
     _calm: str = PrivateAttr()
 
@@ -92,6 +94,7 @@ class MeasuredTable(TimedTable):
         if self.remove_offset:
             curve = load_cell.without_offset(curve, before, after)
         curve = without_baseline(curve, self.baseline)
+        self._levels = load_cell.levels(curve)
         self._curve = from_ignition(curve, self.ignition)
         if self.use == "fit":
             fit = fit_gaussian(self._curve)
@@ -118,6 +121,10 @@ class MeasuredTable(TimedTable):
         """Measured times (s) and forces (N), without the baseline."""
         return self._curve
 
+    def levels(self) -> Levels:
+        """Readings before ignition and after burn-out of the whole file, without the baseline."""
+        return self._levels
+
     def contents(self) -> tuple[dict, list[list[float]]]:
         """The table without its path, with times (s) and forces (N) of the curve."""
         points = [self._curve.time.tolist(), self._curve.force.tolist()]
@@ -141,10 +148,15 @@ class MeasuredTable(TimedTable):
         """Impulse (N s) of the measured curve, without the baseline."""
         return float(np.trapezoid(self._curve.force, self._curve.time))
 
+    def notes(self) -> list[str]:
+        """What was read from the file, and the reading before ignition; nothing for a curve in the
+        layout of tipoff that begins at zero."""
+        return [text for text in (self._words, self._calm) if text]
+
     def usage(self) -> str:
         """Whether the points or the fit act, and their agreement."""
         acting = "the points act" if self.use == "curve" else "the Gaussian fit acts"
-        acting += "".join(f"; {text}" for text in (self._words, self._calm) if text)
+        acting = "; ".join([acting, *self.notes()])
         fit = self.fit()
         if fit is None:
             return f"{acting}, no Gaussian fits"
