@@ -6,11 +6,11 @@ import math
 import numpy as np
 
 from tipoff.calibration import information
-from tipoff.calibration.curves import Curves
 from tipoff.calibration.intervals import half_widths, independent
 from tipoff.calibration.objective import Parts, Target
 from tipoff.calibration.parameters import Parameter
 from tipoff.calibration.search import Found, Plan
+from tipoff.comparison.curves import Curves
 from tipoff.scenes.scene import Scene
 
 _ON_BOUND = 1e-3  # share of the bounds; a closer value counts as on the bound

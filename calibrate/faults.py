@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from tipoff.calibration.curves import Curves
+from tipoff.comparison.curves import Curves
 from tipoff.mechanics.model_names import SPRINGS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.effects import thrust

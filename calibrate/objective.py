@@ -24,9 +24,9 @@ import scipy  # its submodules load at their first use
 
 from tipoff import lowfi
 from tipoff.calibration import alignment
-from tipoff.calibration.curves import Curves
 from tipoff.calibration.faults import CalibrationError
 from tipoff.calibration.parameters import Parameter, overrides
+from tipoff.comparison.curves import Curves
 from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory

@@ -17,12 +17,12 @@ from tipoff.calibration import (
     posterior,
     refine,
 )
-from tipoff.calibration.curves import Curves
 from tipoff.calibration.information import jacobian
 from tipoff.calibration.objective import Objective, Parts, targets
 from tipoff.calibration.offset import Offset
 from tipoff.calibration.parameters import Parameter
 from tipoff.calibration.search import Found, Plan, search
+from tipoff.comparison.curves import Curves
 from tipoff.lowfi.models import require
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of

@@ -1,11 +1,14 @@
 """Number of vibrating modes of each rail in a run with ``modes="auto"``.
 
-The first run has none. Its forces give the effect of each neglected mode on the settled rates
-(``lowfi.contact.compliant.neglected``). While the sum over the neglected modes is above
-``THRESHOLD``, the scene is run again with the fewest lowest modes of each rail that bring it below.
-The change of the rates from run to run shows how much later contacts enlarge such a sum; the next
-number is chosen with this factor. The third run has all modes and is the last. The last run is the
-result, and ``cost`` has the sum of all.
+The first run has none. Its forces give the effect of each mode on the settled rates
+(``lowfi.contact.compliant.neglected``). If the sum over the modes is above ``THRESHOLD``, the scene
+is run again with the fewest lowest modes of each rail that bring the rest below. The change of the
+rates between the two runs shows how much later contacts enlarge such a sum; if the rest is above
+``THRESHOLD`` with this factor, a third run has all modes. The last run is the result, and ``cost``
+has the sum of all.
+
+The effects are always those of the first run. On a vibrating rail a contact breaks up into touches,
+and a pad leaves such a touch too slowly for the estimate: it would be hundreds of times too high.
 
 The forces of a coarse integration excite modes that the contact does not, and its error appears as
 a change of the rates. So if the first run, at a tolerance above the default, would choose modes, it
@@ -22,7 +25,6 @@ import numpy as np
 from tipoff.lowfi.single_run import SingleRun
 
 THRESHOLD = math.radians(0.02)  # rad/s, of the settled rates
-_MOST_RUNS = 3
 
 
 @dataclass(frozen=True)
@@ -43,9 +45,9 @@ class Choice:
 def choose(
     run: Callable[[int], SingleRun], accurate: Callable[[], SingleRun] | None = None
 ) -> tuple[SingleRun, Choice]:
-    """The run with the necessary modes, and the choice. ``run`` makes a run with so many modes that
-    watches the others. ``accurate``, for a tolerance above the default, makes the run without modes
-    at the default."""
+    """The run with the necessary modes, and the choice. ``run`` makes a run with so many modes; one
+    without modes watches all. ``accurate``, for a tolerance above the default, makes the run
+    without modes at the default."""
     first = run(0)
     if first.message:
         return first, Choice(0, "none: the run without modes failed")
@@ -53,18 +55,16 @@ def choose(
     if accurate is not None and needed(first.neglected()):
         every.append(accurate())
     made = [every[-1] if not every[-1].message else first]
-    effects, enlarged, failed = [made[0].neglected()], 1.0, ""
-    while needed(effects[-1] * enlarged) > made[-1].modes and len(made) < _MOST_RUNS:
-        last = len(made) == _MOST_RUNS - 1
-        every.append(tried := run(effects[0].size if last else needed(effects[-1] * enlarged)))
+    effect, enlarged, failed = made[0].neglected(), 1.0, ""
+    while needed(effect * enlarged) > made[-1].modes:
+        every.append(tried := run(needed(effect) if len(made) == 1 else effect.size))
         if tried.message:  # the last completed run gives the result
             failed = f"a run with {tried.modes} failed: {tried.message}"
             break
         made.append(tried)
-        effects.append(tried.neglected())
-        enlarged = max(1.0, _enlarged(made[-2:], effects[-2]))
+        enlarged = max(1.0, _enlarged(made[-2:], effect))
     result = first if len(made) == 1 else made[-1]
-    why = f"{result.modes or 'none'}: {failed}" if failed else _why(made, effects, enlarged)
+    why = f"{result.modes or 'none'}: {failed}" if failed else _why(made, effect, enlarged)
     return result, Choice(result.modes, why, tuple(each for each in every if each is not result))
 
 
@@ -85,12 +85,12 @@ def _enlarged(last: list[SingleRun], effect: np.ndarray) -> float:
     return change / stood if change > THRESHOLD else 1.0
 
 
-def _why(made: list[SingleRun], effects: list[np.ndarray], enlarged: float) -> str:
-    held = effects[0].size
+def _why(made: list[SingleRun], effect: np.ndarray, enlarged: float) -> str:
+    held = effect.size
     if held == 0:
         return "none: this rail compliance holds no modes"
-    rest = np.degrees(effects[-1].sum() * enlarged)
-    first = np.degrees(effects[0].sum())
+    first = np.degrees(effect.sum())
+    rest = np.degrees(effect[made[-1].modes :].sum() * enlarged)
     limit = f"{np.degrees(THRESHOLD):g} deg/s"
     if len(made) == 1:
         return (

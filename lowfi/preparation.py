@@ -38,8 +38,8 @@ def prepare(
 ) -> Prepared:
     """The time loop for one case of each of the ``models``, which differ from that of ``scene`` only
     in the values of ``cases.Cases``. Steps are those of ``numerics``, errors of the ledgers those
-    ``promised``. A run that ``watches`` finds the effect of the modes that it neglects. Raises
-    SceneError if ``compliance`` is of another rail or lacks what the scene needs."""
+    ``promised``. A run without modes that ``watches`` them finds their effect. Raises SceneError if
+    ``compliance`` is of another rail or lacks what the scene needs."""
     model, modes = models[0], numerics.count
     thermal_offset.require(scene, compliance)
     found = compliance.of(scene) if compliance and scene.contact else None
@@ -48,7 +48,7 @@ def prepare(
         model,
         compliance=record.under_pads(scene, model, found, modes, numerics.cells),
         thermal_offset=thermal_offset.under_pads(model, found),
-        neglected=neglected.watched(scene, found, modes, watches),
+        neglected=neglected.watched(scene, found, watches),
     )
     steps, every = plan.make(model, scene.time_limit, numerics), cases.of_models(common, models)
     return Prepared(

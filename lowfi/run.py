@@ -59,14 +59,17 @@ def solved(
     )
 
     def made(asked: Numerics, watches: bool = False) -> SingleRun:
-        if watches and asked.count and vibrates:
-            vibrates(asked.count)
         return integrated(SingleRun(scene, asked, compliance, watches=watches), progress, spent)
+
+    def tried(count: int) -> SingleRun:
+        if count and vibrates:
+            vibrates(count)
+        return made(replace(numerics, modes=count), watches=count == 0)
 
     if numerics.modes == AUTO and may_vibrate(scene, compliance):
         accurate = numerics.accurate()
         run_, choice = modes.choose(
-            lambda count: made(replace(numerics, modes=count), True),
+            tried,
             None if accurate == numerics else lambda: made(replace(accurate, modes=0), True),
         )
         result = run_.trajectory()

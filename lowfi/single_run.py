@@ -31,8 +31,8 @@ _RERUNS = 4  # each at a tenth of the tolerance, while that halves the errors of
 class SingleRun:
     """State of a run in progress and its samples; the last has the number ``end``. A ``whole`` run
     continues to the end of the scene even if exit and jam are settled. It keeps the promises of
-    ``numerics``, with the steps of ``finer`` ones if given. A run that ``watches`` finds the effect
-    of the modes that it neglects."""
+    ``numerics``, with the steps of ``finer`` ones if given. A run without modes that ``watches``
+    them finds their effect."""
 
     reruns, discarded = 0, 0  # runs of the scene before this one, and their steps
 
@@ -119,8 +119,8 @@ class SingleRun:
         return float(audit.usage(self.loop.audit, self.tolerance.total, self.tolerance.transverse))
 
     def neglected(self) -> np.ndarray:
-        """Effect (n,) of each mode of all rails on the settled rates (rad/s) if it were not
-        neglected; for a run that watches."""
+        """Effect (n,) on the settled rates (rad/s) of each mode of all rails if it vibrated; for a run
+        that watches."""
         assert self.system.neglected is not None
         return self.system.neglected.effect.copy()
 

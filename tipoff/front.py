@@ -335,12 +335,12 @@ def calibrate(
     )
 
 
-def compare(reference: Trajectory, surrogate: Trajectory) -> "Difference":
+def compare(reference: "Trajectory | Curves", surrogate: "Trajectory | Curves") -> "Difference":
     """Differences of a surrogate from the reference in all metrics of the agreement table.
 
     Args:
-        reference: a run.
-        surrogate: another run of the same condition.
+        reference: a run, or ``calibration.Curves`` of a file.
+        surrogate: another run of the same condition, or curves.
 
     Returns:
         Difference: relative L2 differences, settled differences (deg/s, m/s, deg), ratings.
@@ -354,13 +354,13 @@ def compare(reference: Trajectory, surrogate: Trajectory) -> "Difference":
         True
     """
     from tipoff.comparison import metrics
+    from tipoff.comparison.curves import Curves
 
     for name, given in (("reference", reference), ("surrogate", surrogate)):
-        if not isinstance(given, Trajectory):
+        if not isinstance(given, (Trajectory, Curves)):
             kind = "None" if given is None else f"a {type(given).__name__}"
-            raise SceneError(
-                [Fault("arguments", name, kind, "a Trajectory, which tipoff.run returns")]
-            )
+            expected = "a Trajectory, which tipoff.run returns, or Curves"
+            raise SceneError([Fault("arguments", name, kind, expected)])
     return metrics.compare(reference, surrogate)
 
 

@@ -66,7 +66,7 @@ def _begin(system, first_step, loop):
 
 @kernel
 def _reset_clock(clock, first_step):
-    clock.began = clock.now = clock.dt = clock.rate = clock.limit_used = 0.0
+    clock.began = clock.now = clock.dt = clock.rate = clock.growth = clock.limit_used = 0.0
     clock.wanted, clock.limit, clock.kept = first_step, np.inf, 1.0
     clock.friction_power = clock.damping_power = -np.inf
 

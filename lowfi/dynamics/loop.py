@@ -22,6 +22,7 @@ CLOCK = np.dtype(
         ("kept", "f8"),  # fraction of that step up to the event; 1 without one
         ("wanted", "f8"),  # s, step size that error control proposes
         ("rate", "f8"),  # 1/s, bound of the contact's eigenvalues at the end of the step
+        ("growth", "f8"),  # of that bound in the last step, relative
         ("limit", "f8"),  # s, smallest proven step limit so far
         ("limit_used", "f8"),  # largest ratio of a step to its limit
         ("friction_power", "f8"),  # W, largest so far; friction that dissipates has none above 0

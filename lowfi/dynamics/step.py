@@ -32,6 +32,9 @@ _SPARE = 0.1
 # A change of law in this last share of a step does not cut it: the error is of second order in the
 # share, as in the energy of a pad that springs back freely in one step.
 _NEAR_END = 1e-4
+# While a pad presses on, the bound of its contact grows from step to step. A step at the limit of its
+# start would then be refused at its end. Twice the last growth is expected, up to a tenth.
+_GROWTHS, _MOST_GROWTH = 2.0, 0.1
 _CUTS = 40  # of one step
 # Attempts for one step for the sake of the ledgers; an error that remains does not depend on the
 # step size.
@@ -56,7 +59,7 @@ def step(system, plan, tolerance, loop):
     ceiling = min(
         clock.wanted,
         plan.caps[segment],
-        STABLE_RADIUS / rate,
+        STABLE_RADIUS / (rate * (1.0 + _expected_growth(system.is_compliant, clock))),
         stop - start,
         _longest_at_ends(system.is_compliant, system, loop),
         longest_step(system.compliance, loop.touching, loop.engaged, loop.before, loop.start),
@@ -104,11 +107,22 @@ def step(system, plan, tolerance, loop):
             clock.wanted = 0.5 * span * dt
             continue
         clock.kept = span
+        clock.growth = clock.rate / rate - 1.0 if rate > 0.0 else 0.0
         if span < 1.0:
             _accept_part(loop, dt, start + span * dt, limit)
         else:
             _accept(loop, dt, stop if reaches else start + dt, ratio, limit)
         return audit.record_step(system, tolerance, loop, balances)
+
+
+@kernel
+def _expected_growth(is_compliant, clock):
+    """Relative growth of the bound of compliant contact that the next step allows for. That of springs
+    is found in advance (``_within_predicted_limit``)."""
+    growth = 0.0
+    if is_compliant is not None:
+        growth = min(_GROWTHS * max(clock.growth, 0.0), _MOST_GROWTH)
+    return growth
 
 
 @kernel

@@ -23,7 +23,7 @@ LINES = [f"{0.5 * n},{0.1 * n},1,2,3" for n in range(9)]  # 0 to 4 ms
 
 def files(folder) -> dict[str, Curves]:
     return {
-        name: Curves.read_csv(write_curves(folder / f"{name}.csv", run))
+        name: Curves.read(write_curves(folder / f"{name}.csv", run))
         for name, run in own_curves().items()
     }
 
@@ -71,7 +71,7 @@ def test_any_sampling_has_the_same_minimum(tmp_path):
     for name, run in own_curves().items():
         keep = np.flatnonzero(generator.random(run.time.size) < 1.0 / 3.0)
         path = write_curves(tmp_path / f"{name}.csv", run, np.union1d(keep, [0, run.time.size - 1]))
-        thinned[name] = Curves.read_csv(path)
+        thinned[name] = Curves.read(path)
     truth = distance(thinned, TRUTH)
     assert truth < 1e-4 and distance(thinned, {}) > 30.0 * truth
 
@@ -82,7 +82,7 @@ def test_units_in_the_second_line_and_bare_si_agree(tmp_path):
     names = "rate_z,rate_y,rate_x,velocity_x,time"
     turned = [",".join(reversed(line.split(","))) for line in LINES]
     two.write_text("\n".join([names, "deg/s,deg/s,deg/s,m/s,ms", *turned]))
-    first, second = Curves.read_csv(one), Curves.read_csv(two)
+    first, second = Curves.read(one), Curves.read(two)
     assert (first.rate == second.rate).all() and (first.time == second.time).all()
     assert first.settled == pytest.approx([math.radians(value) for value in (1, 2, 3)])
     assert first.time[-1] == pytest.approx(4e-3) and first.window_start == pytest.approx(2e-3)
@@ -93,7 +93,7 @@ def test_a_quoted_header_cell_may_hold_line_breaks(tmp_path):
     one.write_text("\n".join([HEAD, *LINES]))
     broken = ",".join(f'"{cell.replace(" [", chr(10) + "[")}"' for cell in HEAD.split(","))
     two.write_text("\n".join([broken, *LINES]))
-    first, second = Curves.read_csv(one), Curves.read_csv(two)
+    first, second = Curves.read(one), Curves.read(two)
     assert (first.rate == second.rate).all() and (first.time == second.time).all()
 
 
@@ -102,7 +102,7 @@ def test_the_window_begins_at_the_given_time(tmp_path):
     out."""
     path = tmp_path / "a.csv"
     path.write_text("\n".join([HEAD, *LINES]))
-    read = Curves.read_csv(path, 1e-3)
+    read = Curves.read(path, 1e-3)
     assert read.time[-1] == pytest.approx(3e-3)
 
 
@@ -130,7 +130,7 @@ def test_the_window_begins_at_the_given_time(tmp_path):
         ("0.0,0.0", "-0.2,0.0", ["-0.2 ms first", "since ignition"]),
         ("\n".join(["", *LINES[4:]]), "", ["a record of 1.5 ms", "2 ms"]),
         ("\n".join(["", *LINES[1:]]), "", ["1 samples"]),
-        ("\n".join([HEAD, *LINES]), "", ["time", "rate_z", "no such column", "nothing"]),
+        ("\n".join([HEAD, *LINES]), "", ["no line of numbers"]),
         (HEAD, HEAD + '\n"', ["a CSV file of text"]),
     ],
 )
@@ -140,7 +140,7 @@ def test_every_fault_of_a_file_is_named(tmp_path, old, new, words):
     path = tmp_path / "a.csv"
     path.write_text(text.replace(old, new, 1))
     with pytest.raises(SceneError) as caught:
-        Curves.read_csv(path)
+        Curves.read(path)
     assert all(word in str(caught.value) for word in [*words, "a.csv"]), str(caught.value)
 
 
@@ -156,13 +156,13 @@ def test_faults_are_listed_at_once_and_a_window_must_lie_in_the_record(tmp_path)
         )
     )
     with pytest.raises(SceneError) as caught:
-        Curves.read_csv(path, 6e-3)
+        Curves.read(path, 6e-3)
     assert len(caught.value.faults) == 7  # rate_y; kg; x; no unit; nothing; gap; window
     with pytest.raises(SceneError, match="no such file|No such file"):
-        Curves.read_csv(tmp_path / "b.csv")
+        Curves.read(tmp_path / "b.csv")
     path.write_bytes(b"\xff\xfe")
     with pytest.raises(SceneError, match="a CSV file of text"):
-        Curves.read_csv(path)
+        Curves.read(path)
 
 
 def test_curves_that_end_under_thrust_or_outlast_the_scene_are_refused(tmp_path):
@@ -227,6 +227,29 @@ def test_command_fits_files_and_names_them(tmp_path, quick):
         ).stdout
     )
     assert again["constants"].keys() == found.constants.keys()
+
+
+def test_a_table_of_another_program_has_the_same_fit(tmp_path, quick):
+    """Semicolons, decimal commas, other names, no units, rates with the other sign. Control:
+    without --columns the file is refused."""
+    one = write_curves(tmp_path / "one.csv", lowfi.run(scene().replace(TRUTH), "springs"))
+    rows = [line.split(",") for line in one.read_text().splitlines()[1:]]
+    turned = [
+        [*row[:4], row[4].removeprefix("-") if row[4][0] == "-" else f"-{row[4]}"] for row in rows
+    ]
+    text = "\n".join(";".join(row).replace(".", ",") for row in turned)
+    two = tmp_path / "two.txt"
+    two.write_text(f"made by hand\nT;VX;WX;WY;W3\n{text}\n")
+    first = call("--reference", one, "--json", "--out", tmp_path / "a")
+    names = "time=T, velocity_x=VX, rate_x=WX, rate_y=4, rate_z=-W3"
+    stated = ("--columns", names, "--units", "time=ms, velocity_x=m/s, rate=deg/s")
+    second = call("--reference", two, *stated, "--json", "--out", tmp_path / "b")
+    assert second.exit_code == 0, second.output
+    assert json.loads(first.stdout)["constants"] == json.loads(second.stdout)["constants"]
+    refused = call("--reference", two, *stated[2:], "--out", tmp_path / "c")
+    assert refused.exit_code == 2 and "time: given no such column" in refused.stderr
+    idle = call(*stated, "--out", tmp_path / "c")
+    assert idle.exit_code == 2 and "--columns" in idle.stderr and "--units" in idle.stderr
 
 
 def test_a_file_without_a_name_is_the_scene_itself(tmp_path, quick):

@@ -10,11 +10,14 @@ import sys
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 import tipoff
+from tests.comparison.curve_files import adams_files, dyna_files
 from tests.docs import pages
+from tipoff.kernels.rotation import matrices
 from tipoff.studies import droptest
 from tipoff.studies.cli import app
 
@@ -80,6 +83,7 @@ def folder(tmp_path_factory):
         shutil.copy(logs / f"simulated{number}.csv", place)
         text = (logs / f"simulated{number}.toml").read_text()
         (place / f"test{number + 1}.toml").write_text(text)
+    _write_codes(place)
     for name in ("phi15", "phi60"):
         _write_curve(place / f"test{name.removeprefix('phi')}.csv", name)
     return place
@@ -91,6 +95,28 @@ def _write_curve(file: Path, condition: str) -> None:
     for time, velocity, rate in zip(run.time, run.velocity, run.rate):
         lines.append(",".join(repr(float(value)) for value in (time, velocity[0], *rate)))
     file.write_text("\n".join(lines) + "\n")
+
+
+def _write_codes(place: Path) -> None:
+    """Files of other codes with a run of the small scene."""
+    scene = tipoff.load("tiny").condition("phi15")
+    runs = {"compliant": tipoff.run(scene), "springs": tipoff.run(scene, "springs")}
+    for name, run in runs.items():
+        run.to_csv(place / f"{name}.csv")
+    run = runs["compliant"]
+    rate = np.einsum("nij,nj->ni", matrices(run.quaternion), run.rate)  # in scene axes
+    states = [*zip(1e3 * run.time, run.velocity, 1e-3 * rate)]
+    (place / "rbdout").write_text(dyna_files.rbdout(states))
+    (place / "binout0000").write_bytes(dyna_files.rigid_body(states).content)
+    rows = np.column_stack([run.time, 1e3 * run.velocity[:, 0], np.degrees(run.rate)])
+    lines = [
+        "Plot_1",
+        "Time\tVX\tWX\tWY\tWZ",
+        *("\t".join(map(repr, row)) for row in rows.tolist()),
+    ]
+    (place / "adams.tab").write_text("\n".join(lines))
+    motion = [(row[0], f"0 {' '.join(map(repr, row[1:]))}") for row in rows.tolist()]
+    (place / "run.res").write_text(adams_files.of_payload(motion))
 
 
 def _small(words: tuple[str, ...]) -> list[str]:

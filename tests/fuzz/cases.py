@@ -12,10 +12,12 @@ import meshio
 import numpy as np
 import typer
 
+from tests.comparison.curve_files import adams_files, dyna_files
 from tests.fuzz import mutants, results
 from tests.highfi.mesh import seeds
 from tipoff import scenes
-from tipoff.calibration.curves import Curves
+from tipoff.comparison.curve_files.layout import of_options
+from tipoff.comparison.curves import Curves
 from tipoff.highfi.compliance import walls
 from tipoff.highfi.mesh import touching
 from tipoff.highfi.mesh.rail_mesh import read
@@ -276,7 +278,44 @@ def _thrust_file(rng: random.Random, folder: Path) -> None:
 def _reference_curve(rng: random.Random, folder: Path) -> None:
     file = folder / "reference.csv"
     file.write_bytes(mutants.of_text(rng, _reference()).encode("utf-8", "surrogatepass"))
-    Curves.read_csv(file, rng.choice((None, 0.05)))
+    Curves.read(file, rng.choice((None, 0.05)))
+
+
+def _foreign_curve(rng: random.Random, folder: Path) -> None:
+    """A file of another code, with its options."""
+    name, content, options = rng.choice(_foreign())
+    if isinstance(content, str):
+        content = mutants.of_text(rng, content).encode("utf-8", "surrogatepass")
+    else:
+        content = mutants.of_bytes(rng, content)
+    file = folder / name
+    file.write_bytes(content)
+    texts = {key: [text] for key, text in options.items()}
+    if rng.random() < 0.3:
+        key = rng.choice(list(texts))
+        texts[key] = [mutants.of_text(rng, texts[key][0])]
+    Curves.read(file, None, of_options(["a"], **texts)["a"], ("velocity_x",))
+
+
+@cache
+def _foreign() -> list[tuple[str, str | bytes, dict[str, str]]]:
+    """Name, content and options of files with 3 ms of a motion."""
+    dyna = {"units": "time=ms, length=mm", "body": "7"}
+    names = "time=Time, velocity_x=VX, rate_x=WX, rate_y=-WY, rate_z=5"
+    stated = {"columns": names, "units": "time=ms, velocity_x=mm/s, rate=deg/s", "axes": "scene"}
+    rows = [f"{step / 4:g} {step} 1,5 {step % 3} -2e-1" for step in range(13)]
+    table = "run\n# made\nTime VX WX WY WZ\n" + "\n".join(rows).replace(".", ",") + "\n"
+    nodes, bodies = (dyna_files.longer(text, 7) for text in (dyna_files.NODOUT, dyna_files.RBDOUT))
+    adams = {"body": "payload", "axes": "body"}
+    return [
+        ("table.txt", table, stated),
+        ("table.tab", table.replace(" ", "\t"), stated),
+        ("nodout", nodes, dyna | {"body": "1001"}),
+        ("rbdout", bodies, dyna),
+        ("binout", dyna_files.binout(steps=6).content, dyna),
+        ("binout", dyna_files.binout(">", "f8", "i4", steps=6).content, dyna),
+        ("run.res", adams_files.results(steps=6), adams),
+    ]
 
 
 @cache
@@ -334,6 +373,7 @@ KINDS: dict[str, Callable[[random.Random, Path], None]] = {
     "curve": _curve,
     "thrust file": _thrust_file,
     "reference curve": _reference_curve,
+    "foreign curve": _foreign_curve,
     "log": _log,
     "distributions": _distributions,
     "calibration": _calibration,

@@ -2,6 +2,7 @@
 agrees with the reference on the same mesh, and no mode vibrates where none matters."""
 
 import functools
+from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -217,6 +218,40 @@ def test_the_accurate_run_decides_unless_it_fails(accurate, expected):
     assert accurate in choice.runs and len(choice.runs) == (1 if expected == 0 else 2)
     if not accurate.message and expected:
         assert "they moved them by 0 deg/s" in choice.why
+
+
+def runs_that_move(*rates: float) -> tuple[list[int], Callable[[int], SimpleNamespace]]:
+    """Numbers of modes of the runs made, and the maker of runs that settle at each of the ``rates``
+    (deg/s) in turn. Only the one without modes has effects, of 0.05, 0.01, 0.005 and 0.001 deg/s."""
+    made: list[int] = []
+
+    def run(count: int) -> SimpleNamespace:
+        made.append(count)
+        found = settled(count, 0.0, rate=np.radians(rates[len(made) - 1]))
+        found.neglected = (
+            (lambda: np.radians([0.05, 0.01, 0.005, 0.001])) if count == 0 else pytest.fail
+        )
+        return found
+
+    return made, run
+
+
+@pytest.mark.parametrize(
+    ("rates", "expected"),
+    [
+        ((0.0, 0.05), [0, 1]),
+        ((0.0, 0.06), [0, 1]),  # the rest may be 1.2 times larger
+        ((0.0, 0.10, 0.10), [0, 1, 4]),  # twice: all
+        ((0.0, 9.00, 9.00), [0, 1, 4]),
+    ],
+)
+def test_the_change_of_the_rates_shows_whether_more_modes_matter(rates, expected):
+    """The effects are those of the run without modes: on a vibrating rail a contact breaks up into
+    touches, for which the estimate is far too high."""
+    made, run = runs_that_move(*rates)
+    found, choice = modes.choose(run)
+    assert made == expected
+    assert found.modes == choice.modes == expected[-1] and len(choice.runs) == len(made) - 1
 
 
 def test_an_ensemble_has_one_number_of_modes():

@@ -157,11 +157,11 @@ def test_walls_are_drawn_and_written_with_units(tmp_path):
 
 
 def test_a_table_is_one_that_calibration_reads(run, tmp_path):
-    from tipoff.calibration.curves import Curves
+    from tipoff.comparison.curves import Curves
 
     path = tmp_path / "run.csv"
     run.to_csv(path)
-    found = Curves.read_csv(path, run.outcome.window_start)
+    found = Curves.read(path, run.outcome.window_start)
     kept = found.time.size
     assert kept > 0.9 * run.time.size
     assert found.time == pytest.approx(run.time[:kept], rel=1e-12)

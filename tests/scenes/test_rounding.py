@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from tests.scenes.support import CONTACT, FRICTION, small
 from tipoff import highfi
-from tipoff.calibration.curves import Curves
+from tipoff.comparison.curves import Curves
 from tipoff.scenes import SceneError, load, parse, rounding
 from tipoff.scenes.distributions import Uniform
 from tipoff.studies.commands.options import in_millimetres
@@ -171,9 +171,9 @@ def test_windows_and_steps_of_curves_in_any_unit(tmp_path_factory, count, unit, 
 
     begin = 0.001 * (first > 1)
     for start in (None, begin, begin + 0.001 * (count + 2) - 0.002):
-        assert Curves.read_csv(written(0.001), start).time.size > 1
+        assert Curves.read(written(0.001), start).time.size > 1
     with pytest.raises(SceneError, match="a gap"):
-        Curves.read_csv(written(0.00101))
+        Curves.read(written(0.00101))
 
 
 def test_limits_that_are_computed():

@@ -45,6 +45,7 @@ STAGES = (
     "calibration.stage",
     "convergence.stage",
     "cost.stage",
+    "curves.stage",
     "droptest.stage",
     "flight.stage",
     "limits.stage",

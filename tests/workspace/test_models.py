@@ -87,6 +87,8 @@ def test_the_command_line_has_the_names_of_the_models():
             "--modes: given 4, expected none with --model finite-elements",
         ),
         (["--model", "springs", "--modes", "4"], "option of compliant"),
+        (["--model", "springs", "--cells", "16"], "--cells: given 16, expected none with --model"),
+        (["--modes", "21", "--cells", "16"], "--modes, --cells: value"),
         (["--checkpoint-every", "5 s"], "option of finite-elements"),
         (["--modes", "21"], "a whole number from 0 to 20"),
     ],
@@ -127,6 +129,8 @@ def test_an_answer_names_its_model_and_its_error(tmp_path):
         "model compliant, 1 mode of each rail" in vibrating.stdout
         and "rail compliance" not in vibrating.stderr
     )
+    finer = json.loads(call(*asked, "--cells", "16", "--json").stdout)
+    assert finer["model"] == COMPLIANT and finer["settled"] != again["settled"]
     springs = json.loads(call(*asked, "--model", "springs", "--json").stdout)
     assert springs["model"] == SPRINGS and springs["settled"] != again["settled"]
 

@@ -10,11 +10,13 @@ a shift. Source of the last metric: Sprague and Geers, Commun. Numer. Meth. Eng.
 
 import math
 from dataclasses import asdict, dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from tipoff.cards import Carded
 from tipoff.comparison import iso18571
+from tipoff.comparison.curves import Curves
 from tipoff.mechanics.outcome import SETTLE_WINDOW
 from tipoff.mechanics.trajectory import Trajectory
 
@@ -83,26 +85,47 @@ class Difference(Carded):
         return asdict(self)
 
 
-def compare(reference: Trajectory, surrogate: Trajectory) -> Difference:
-    """Metrics of ``surrogate`` against ``reference``."""
+class _Sampled(NamedTuple):
+    """What is compared of a run or of curves; ``speed`` is (n,1) m/s, or (n,0) if not known."""
+
+    time: np.ndarray  # (n,) s
+    speed: np.ndarray
+    rate: np.ndarray  # (n,3) rad/s
+    settled: np.ndarray | None  # (3,) rad/s
+
+
+def _sampled(run: Trajectory | Curves) -> _Sampled:
+    if isinstance(run, Curves):
+        known = run.velocity[:, None] if np.isfinite(run.velocity).all() else run.rate[:, :0]
+        return _Sampled(run.time, known, run.rate, run.settled)
+    settled = None if run.outcome.rate is None else np.array(run.outcome.rate)
+    return _Sampled(run.time, run.velocity[:, :1], run.rate, settled)
+
+
+def compare(reference: Trajectory | Curves, surrogate: Trajectory | Curves) -> Difference:
+    """Metrics of ``surrogate`` against ``reference``. Curves have no lateral velocity and no
+    direction, and those of a file may lack v_x."""
     time = common_time(reference, surrogate)
-    velocity_r, velocity_s = (
-        _sampled(run.time, run.velocity[:, :1], time) for run in (reference, surrogate)
+    first, second = _sampled(reference), _sampled(surrogate)
+    speed_r, speed_s = (_at(item.time, item.speed, time) for item in (first, second))
+    rate_r, rate_s = (_at(item.time, item.rate, time) for item in (first, second))
+    has_speed = speed_r.size > 0 and speed_s.size > 0
+    curves_r, curves_s = (
+        np.hstack([speed, rate]) if has_speed else rate
+        for speed, rate in ((speed_r, rate_r), (speed_s, rate_s))
     )
-    rate_r, rate_s = (_sampled(run.time, run.rate, time) for run in (reference, surrogate))
-    curves_r, curves_s = np.hstack([velocity_r, rate_r]), np.hstack([velocity_s, rate_s])
+    names = CHANNELS if has_speed else CHANNELS[1:]
     ratings = {
-        name: iso18571.rate(curves_r[:, i], curves_s[:, i]).overall
-        for i, name in enumerate(CHANNELS)
+        name: iso18571.rate(curves_r[:, i], curves_s[:, i]).overall for i, name in enumerate(names)
     }
     together = sprague_geers(time, rate_r, rate_s) or (None, None)
     channels = {
         name: sprague_geers(time, curves_r[:, i : i + 1], curves_s[:, i : i + 1])
-        for i, name in enumerate(CHANNELS)
+        for i, name in enumerate(names)
     }
     errors = settled_rate_errors(reference, surrogate)
     return Difference(
-        velocity_relative_l2=relative_l2(time, velocity_r, velocity_s),
+        velocity_relative_l2=relative_l2(time, speed_r, speed_s) if has_speed else None,
         rate_relative_l2=relative_l2(time, rate_r, rate_s),
         settled_rate_error_deg_s=None if errors is None else max(abs(error) for error in errors),
         settled_rate_error_xyz_deg_s=errors,
@@ -122,10 +145,11 @@ def compare(reference: Trajectory, surrogate: Trajectory) -> Difference:
     )
 
 
-def common_time(reference: Trajectory, surrogate: Trajectory) -> np.ndarray:
+def common_time(reference: Trajectory | Curves, surrogate: Trajectory | Curves) -> np.ndarray:
     """Equidistant times (s) from ignition to the end of the reference's settled window, or to the
     end of the shorter run."""
-    start = reference.outcome.window_start
+    own = reference if isinstance(reference, Curves) else reference.outcome
+    start = own.window_start
     end = math.inf if start is None else start + SETTLE_WINDOW
     end = min(end, float(reference.time[-1]), float(surrogate.time[-1]))
     steps = np.diff(reference.time)
@@ -162,21 +186,27 @@ def sprague_geers(
     return math.sqrt(cc / rr) - 1.0, math.acos(min(1.0, max(-1.0, cosine))) / math.pi
 
 
-def settled_rate_errors(reference: Trajectory, other: Trajectory) -> list[float] | None:
+def settled_rate_errors(
+    reference: Trajectory | Curves, other: Trajectory | Curves
+) -> list[float] | None:
     """Difference of the settled rates per axis (deg/s), or None if one run did not settle."""
-    if reference.outcome.rate is None or other.outcome.rate is None:
+    first, second = _sampled(reference).settled, _sampled(other).settled
+    if first is None or second is None:
         return None
-    return np.degrees(np.subtract(other.outcome.rate, reference.outcome.rate)).tolist()
+    return np.degrees(np.subtract(second, first)).tolist()
 
 
 def _inner(time, a, b) -> float:
     return float(np.trapezoid((a * b).sum(axis=1), time))
 
 
-def _sampled(time, values, at) -> np.ndarray:
-    return np.column_stack([np.interp(at, time, column) for column in values.T])
+def _at(time, values, at) -> np.ndarray:
+    columns = [np.interp(at, time, column) for column in values.T]
+    return np.column_stack(columns) if columns else np.empty((at.size, 0))
 
 
 def _outcome_difference(reference, other, name: str, factor: float = 1.0) -> float | None:
+    if isinstance(reference, Curves) or isinstance(other, Curves):
+        return None
     first, second = getattr(reference.outcome, name), getattr(other.outcome, name)
     return None if first is None or second is None else factor * (second - first)

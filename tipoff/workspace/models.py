@@ -2,7 +2,7 @@
 bad input."""
 
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, MODELS, SURROGATES
@@ -12,6 +12,7 @@ _OWNERS = {
     "--calibration": SURROGATES,
     "--modes": (COMPLIANT,),
     "--degree": (COMPLIANT,),
+    "--cells": (COMPLIANT,),
     "--checkpoint-every": (FINITE_ELEMENTS,),
 }
 
@@ -23,11 +24,17 @@ class Options(NamedTuple):
     calibration: Path | None = None  # file, of a surrogate
     modes: int | str | None = None  # of each rail on compliant contact; None: "auto"
     degree: int | None = None  # of the patterns on a pad face; None: the default
+    cells: int | None = None  # along each edge of a pad face; None: the default
 
     @property
     def asked(self) -> int | str:
         """The modes for the numerics."""
         return AUTO if self.modes is None else self.modes
+
+    @property
+    def numerics(self) -> dict[str, Any]:
+        """Numerics of a run on compliant contact."""
+        return {"modes": self.asked} | ({} if self.cells is None else {"cells": self.cells})
 
     @property
     def model(self) -> str:
@@ -44,6 +51,7 @@ def require(options: Options, **others: object) -> None:
         "--calibration": options.calibration,
         "--modes": options.modes,
         "--degree": options.degree,
+        "--cells": options.cells,
     }
     given |= {f"--{name.replace('_', '-')}": value for name, value in others.items()}
     faults = [

@@ -48,7 +48,7 @@ _TAILS = """# Random errors checked by the reference
 Scene {scene}. Written by `python -m validation.documents.readme` from the file of
 `tipoff montecarlo --cases {cases} --reference {draws} --finer {fine}`. All runs of the surrogate have the
 [number of rail modes](rail_modes.md#one-number-in-a-study) that pilot cases of the population chose. The
-table by rail modes has runs with other numbers too."""
+table by settings has runs with others too."""
 _BEGIN, _END = "<!-- {name}: python -m validation.documents.readme -->", "<!-- end of {name} -->"
 
 
@@ -77,7 +77,8 @@ def tails(found: Tails, folder: Path) -> None:
     )
     text = markdown(tails_page.document(found))
     write_text(_ROOT / "docs" / "tails.md", f"{_TAILS.format(**vars(found))}\n\n{text}\n")
-    shutil.copyfile(folder / "figures" / "tails.png", _ROOT / "docs" / "tails.png")
+    for name in ("tails.png", "ladder.png") if found.ladder else ("tails.png",):
+        shutil.copyfile(folder / "figures" / name, _ROOT / "docs" / name)
 
 
 def _into_readme(name: str, text: str) -> None:

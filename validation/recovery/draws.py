@@ -8,9 +8,9 @@ import numpy as np
 
 from tipoff import calibration, lowfi
 from tipoff.calibration import alignment, choice, parameters
-from tipoff.calibration.curves import Curves
 from tipoff.calibration.run import shares_in
 from tipoff.calibration.search import Plan
+from tipoff.comparison.curves import Curves
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes import changes as added
 from tipoff.scenes.calibration import Calibration

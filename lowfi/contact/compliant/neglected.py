@@ -1,8 +1,8 @@
-"""Estimated change of the rates due to the modes that a run treats as quasi-static, from the forces
-of the run.
+"""Estimated change of the rates due to the modes of the rails, all treated as quasi-static in a run,
+from the forces of the run.
 
-The force of the pads on a neglected mode m, linear between the ends of steps, drives a separate
-oscillator, exactly::
+The force of the pads on a mode m, linear between the ends of steps, drives a separate oscillator,
+exactly::
 
     f_m = sum_ia W_iam P_ia,    q_m'' + d_m q_m' + omega_m^2 q_m = f_m
 
@@ -61,9 +61,8 @@ FACE = np.dtype([("impulse", float), ("leaving", float)])
 
 @by_reference
 class Neglected(NamedTuple):
-    """All n modes of each of r rails under f faces, and the effect of those that a run neglects."""
+    """All n modes of each of r rails under f faces, and their effect."""
 
-    first: int  # number of the lowest neglected mode
     cubic: np.ndarray  # (s-1, f, n, 4, p) 1/kg^0.5, as in ``record.Modes``
     modes: np.ndarray  # (r, n) of MODE
     rails: np.ndarray  # (r,) of RAIL
@@ -71,27 +70,23 @@ class Neglected(NamedTuple):
     effect: np.ndarray  # (n,) rad/s, of the mode of this number on all rails
 
 
-def watched(
-    scene: Scene, found: RailCompliance | None, first: int, watches: bool
-) -> Neglected | None:
-    """Record of the modes of the rail compliance ``found`` of ``scene``; those from number ``first``
-    on are neglected. If no run ``watches`` them, it has no modes, so that the kernels are the same.
-    None for rigid walls."""
+def watched(scene: Scene, found: RailCompliance | None, watches: bool) -> Neglected | None:
+    """Record of the modes of the rail compliance ``found`` of ``scene``. If no run ``watches`` them,
+    it has no modes, so that the kernels are the same. None for rigid walls."""
     if found is None or found.flexibility is None:
         return None
     if not watches:
         none = zeros((0, 0))
-        return build(none, none, zeros((0, 0, 0, 0, 0)), 0)
+        return build(none, none, zeros((0, 0, 0, 0, 0)))
     square = found.frequency**2
-    return build(square, drag_of(square, damping_of(scene)), found.shapes, first)
+    return build(square, drag_of(square, damping_of(scene)), found.shapes)
 
 
-def build(square: np.ndarray, drag: np.ndarray, cubic: np.ndarray, first: int) -> Neglected:
+def build(square: np.ndarray, drag: np.ndarray, cubic: np.ndarray) -> Neglected:
     """Record at rest."""
     modes = np.zeros(square.shape, MODE)
     modes["square"], modes["drag"] = square, drag
     return Neglected(
-        first=first,
         cubic=cubic,
         modes=modes,
         rails=np.zeros(square.shape[0], RAIL),
@@ -117,7 +112,7 @@ def reset(neglected):
 
 @kernel
 def follow(neglected, system, loop):
-    """Drive the neglected modes through the last step."""
+    """Drive the modes through the last step."""
     compliance, clock = system.compliance, loop.clock
     for rail in range(compliance.members.shape[0]):
         if is_pressed(compliance.members, rail, loop.touching):
@@ -133,7 +128,7 @@ def _begin(neglected, members, rail, time):
     """Advance the free modes of a rail to the ``time`` (s) at which a contact begins."""
     record = neglected.rails[rail]
     record.pressed = True
-    for i in range(neglected.first, neglected.effect.size):
+    for i in range(neglected.effect.size):
         mode = neglected.modes[rail, i]
         mode.force = 0.0
         drive(mode, time - record.time, 0.0)
@@ -151,7 +146,7 @@ def _press(neglected, system, loop, rail):
     body = slot.motion(payload, loop.end, slot.PAYLOAD)
     place, _ = relative_pose(system.platform, body, slot.frame(system.platform, loop.end))
     station, way, _ = between_stations(compliance, place[0] + system.faces[0, 0])
-    for i in range(neglected.first, neglected.effect.size):
+    for i in range(neglected.effect.size):
         total = 0.0
         for k in range(compliance.members.shape[1]):
             face = compliance.members[rail, k]
@@ -209,7 +204,7 @@ def _leave(neglected, system, state, rail):
     arm = (point[0] - p[0], point[1] - p[1], point[2] - p[2])
     turned = rotation.angular_velocity(body.turn, payload.inverse_inertia, rotation.cross(arm, n))
     by_impulse = np.sqrt(rotation.dot(turned, turned))
-    for i in range(neglected.first, neglected.effect.size):
+    for i in range(neglected.effect.size):
         mode = neglected.modes[rail, i]
         left = np.sqrt(max(0.0, speed * speed - 2.0 * (energy(mode) - mode.before) / mass))
         neglected.effect[i] += by_impulse * mass * abs(speed - left)

@@ -25,7 +25,7 @@ from tipoff.studies.limits.options import Options as Limits
 from tipoff.studies.montecarlo import page, tails, tails_page
 from tipoff.studies.montecarlo import stage as montecarlo
 from tipoff.studies.montecarlo.options import Cases, Options
-from tipoff.studies.populations import draws, own_modes, population
+from tipoff.studies.populations import draws, population, rungs
 from tipoff.studies.populations.draws import Kept
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render import chart
@@ -166,32 +166,33 @@ def test_pairs_and_their_cost_have_the_modes_of_the_population(study, watch):
     assert runs.single == [3] * 10 and set(runs.modes) == {3}, "pairs, and cases that are timed"
     assert found.modes == 3 and found.modes_why.startswith("3: ")
     assert "with 3 modes of each rail" in " ".join(terminal(tails_page.summary(found)).split())
-    assert found.own_modes is None, "these rails have none"
+    assert found.ladder is None, "these rails have none"
 
 
 def test_each_draw_chooses_its_own_modes_beside_those_of_the_population(study, watch, monkeypatch):
     """Where the rails have modes. Each draw has a run that chooses, one without modes, one with those
-    of the population, one with all, and one with more clearance."""
+    of the population, one with all, one with more clearance, and two with finer settings."""
     monkeypatch.setattr(Study, "rail_compliance", lambda *_, **__: VIBRATING)
-    took = {0: 1e-3, 3: 2e-3, HELD: 3e-3, AUTO: 4e-3}
+    took = {0: 1e-3, 3: 2e-3, HELD: 3e-3, AUTO: 4e-3, 4: 5e-3}
     monkeypatch.setattr(
-        own_modes, "execute", lambda run: SimpleNamespace(cost={"cpu_s": took[run.numerics.modes]})
+        rungs, "execute", lambda run: SimpleNamespace(cost={"cpu_s": took[run.numerics.modes]})
     )
     runs = watch(3)
     montecarlo.run(study, OPTIONS)
     found = read(tails, study, Options(OPTIONS, 10))
-    beside, *further = (runs.single[begin : begin + 10] for begin in range(0, 60, 10))
-    assert beside == [3] * 10 and [set(each) for each in further] == [{AUTO}, {0}, {3}, {5}, {5}]
-    own = found.own_modes
+    beside, *further = (runs.single[begin : begin + 10] for begin in range(0, 80, 10))
+    expected = [{AUTO}, {5}, {0}, {3}, {5}, {4}, {5}]  # the second with more clearance
+    assert beside == [3] * 10 and [set(each) for each in further] == expected
+    own = found.ladder
     assert (own.held, own.choosing, own.choosing_all) == (HELD, 10, 10)
-    assert [row.modes for row in own.rows] == [0, 3, HELD, AUTO]
-    assert [row.cpu_s for row in own.rows] == pytest.approx([1e-3, 2e-3, 3e-3, 4e-3])
-    assert own.rows[-1].case_s is None and all(row.case_s > 0.0 for row in own.rows[:-1])
+    assert [row.modes for row in own.rows] == [0, 3, HELD, AUTO, 4, HELD]
+    assert [row.cpu_s for row in own.rows[:4]] == pytest.approx([1e-3, 2e-3, 3e-3, 4e-3])
+    assert [row.case_s is None for row in own.rows] == [False] * 3 + [True] * 3
     assert {0, 3, HELD} <= set(runs.modes), "timed"
     for shown in (tails_page.summary, tails_page.draw, tails_page.document):
         text = " ".join(html(shown(found)).split())
         assert "10 of 10 draws choose rail modes for themselves" in text
-        assert "case by case" in text and "3, as the population" in text
+        assert "case by case" in text and "3 modes, as the population" in text
 
 
 def test_no_pair_is_made_before_the_modes_are_chosen(study):

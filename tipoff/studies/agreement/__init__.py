@@ -1,5 +1,8 @@
 """Compare the surrogates with the reference on fitted and held-out conditions: agreement, floor,
-speed-up; writes agreement.json."""
+speed-up; writes agreement.json.
+
+tipoff curves compares files of other codes.
+"""
 
 from tipoff.studies.agreement.options import Options
 from tipoff.studies.commands.declared import command

@@ -4,7 +4,12 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import SurrogateName, condition_names
+from tipoff.studies.commands.options import (
+    SettledFrom,
+    SurrogateName,
+    condition_names,
+    of_files,
+)
 from tipoff.studies.commands.request import Request, scene_command
 from tipoff.studies.commands.running import Output, quantity
 
@@ -17,7 +22,7 @@ def calibrate(
         typer.Option(
             "--reference",
             metavar="[NAME=]FILE",
-            help="CSV file with curves of condition NAME, used instead of the reference; repeatable.",
+            help="File with curves of condition NAME, used instead of the reference; repeatable.",
         ),
     ] = None,
     condition: Annotated[
@@ -29,14 +34,12 @@ def calibrate(
             help="Condition of a FILE that is given without NAME; default: the scene itself.",
         ),
     ] = None,
-    settled_from: Annotated[
-        str | None,
-        typer.Option(
-            "--settled-from",
-            metavar="TIME",
-            help="Start of the 2 ms window of the settled values; default: the last 2 ms of a file.",
-        ),
-    ] = None,
+    columns: Annotated[list[str] | None, of_files("--columns")] = None,
+    units: Annotated[list[str] | None, of_files("--units")] = None,
+    body: Annotated[list[str] | None, of_files("--body")] = None,
+    axes: Annotated[list[str] | None, of_files("--axes")] = None,
+    ignition: Annotated[list[str] | None, of_files("--ignition")] = None,
+    settled_from: SettledFrom = None,
     model: Annotated[
         SurrogateName | None,
         typer.Option(
@@ -78,20 +81,26 @@ def calibrate(
     payload.inertia.xy, .xz and .yz. contact.clearance_y and .clearance_z are clearances along one
     axis. tipoff run and tipoff ensemble read calibration.toml with --calibration.
 
-    A CSV file has the columns time (from ignition, at any instants), velocity_x (inertial, along the
-    rail), rate_x, rate_y and rate_z (inertial, in payload body axes). Units are in the header,
-    rate_x \\[deg/s], or in the second line. Other columns are ignored.
+    A file is a table of text (CSV, Adams .tab, Abaqus .rpt, Exudyn), nodout, rbdout or binout of
+    LS-DYNA, or results of Adams (.res). It has time (from ignition, at any instants), velocity_x
+    (inertial, along the rail), rate_x, rate_y and rate_z (inertial, in payload body axes). Units are
+    in the header, rate_x \\[deg/s], in the line below it, or in --units. Other columns are ignored.
+
+      tipoff calibrate --reference phi15=rbdout --body 7 --units "time=ms, length=mm"
+      tipoff calibrate --reference phi15=adams.tab --columns "time=Time, velocity_x=VX, rate_x=WX,
+    rate_y=WY, rate_z=WZ" --units "time=s, velocity_x=mm/s, rate=deg/s"
     """
     from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
     from tipoff.studies.calibration import page, stage
 
     start = quantity("--settled-from", settled_from, "s", "44 ms")
     files = stage.named(reference or [], condition, start)
+    layouts = stage.laid_out(files, columns, units, body, axes, ignition)
     study = request.study()
     chosen = None if fit is None else [name.strip() for one in fit for name in one.split(",")]
     default = SPRINGS if chosen is None else COMPLIANT
     if files:
-        found = stage.from_files(study, files, start, model or default, chosen)
+        found = stage.from_files(study, files, start, model or default, chosen, layouts)
     elif chosen is not None:
         found = stage.on_reference(study, model or default, chosen)
     else:

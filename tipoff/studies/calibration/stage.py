@@ -6,13 +6,15 @@ has a separate folder, because other stages compare with the fit to the referenc
 """
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
+from tipoff.comparison.curve_files.layout import OF_THE_FORMAT, Layout, of_options
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
@@ -168,16 +170,29 @@ def named(
     ]
 
 
+def laid_out(files: list[tuple[str, str]], *texts: Sequence[str] | None) -> dict[str, Layout]:
+    """The layout of each file by its condition, from the ``texts`` of --columns, --units, --body,
+    --axes and --ignition. Raises SceneError, also for options without a file."""
+    options = ("--columns", "--units", "--body", "--axes", "--ignition")
+    if not files and (idle := {name: own[0] for name, own in zip(options, texts) if own}):
+        words = "a file for this option"
+        raise SceneError(
+            [Fault(option, text, "no --reference", words) for option, text in idle.items()]
+        )
+    return of_options([name for name, _ in files], *(own or () for own in texts))
+
+
 def from_files(
     study: Study,
     files: list[tuple[str, str]],
     settled_from: float | None = None,
     model: str = SPRINGS,
     parameters: Sequence[str] | None = None,
+    layouts: Mapping[str, Layout] = MappingProxyType({}),
 ) -> dict:
-    """The content of ``Fit`` of a ``model``, of these ``parameters`` or the default ones, from CSV
-    files (condition, path) that ``Curves.read_csv`` reads; writes ``curves/calibration.toml``, on
-    compliant contact ``curves/calibration-compliant.toml``.
+    """The content of ``Fit`` of a ``model``, of these ``parameters`` or the default ones, from files
+    (condition, path) that ``Curves.read`` reads in their ``layouts``; writes
+    ``curves/calibration.toml``, on compliant contact ``curves/calibration-compliant.toml``.
 
     Raises SceneError listing every fault of every file, CalibrationError for curves that do not fit
     the scene.
@@ -194,7 +209,9 @@ def from_files(
     for name, path in files:
         try:
             study.condition(name)
-            references[name] = calibration.Curves.read_csv(path, settled_from)
+            references[name] = calibration.Curves.read(
+                path, settled_from, layouts.get(name, OF_THE_FORMAT)
+            )
         except SceneError as error:
             faults += error.faults
     if faults:

@@ -172,6 +172,17 @@ Degree = Annotated[
         "compliant; 2 (default) to 4: slower, and nearer to the reference.",
     ),
 ]
+Cells = Annotated[
+    int | None,
+    typer.Option(
+        "--cells",
+        metavar="N",
+        min=4,
+        max=100,
+        help="Contact cells along each edge of a pad face, with --model compliant; 10 (default) or "
+        "more: slower, and nearer to the reference, which has at least 16.",
+    ),
+]
 CalibrationFile = Annotated[
     Path | None,
     typer.Option(
@@ -181,6 +192,50 @@ CalibrationFile = Annotated[
         "of the scene.",
     ),
 ]
+SettledFrom = Annotated[
+    str | None,
+    typer.Option(
+        "--settled-from",
+        metavar="TIME",
+        help="Start of the 2 ms window of the settled values; default: the last 2 ms of a file.",
+    ),
+]
+
+
+_OF_FILES = {
+    "--columns": (
+        "QUANTITY=COLUMN",
+        "Columns of time, velocity_x, rate_x, rate_y and rate_z by header or number: "
+        '"time=Time, rate_x=WX, rate_y=-WZ".',
+    ),
+    "--units": (
+        "QUANTITY=UNIT",
+        'Units that a file does not state: "time=ms, velocity_x=mm/s, rate=deg/s"; of LS-DYNA '
+        '"time=ms, length=mm".',
+    ),
+    "--body": (
+        "NUMBER",
+        "Node or rigid body of a file of LS-DYNA, or part of one of Adams.",
+    ),
+    "--axes": (
+        "AXES",
+        "Axes of the rates: body (of the payload), or scene (fixed). Default: scene for LS-DYNA, "
+        "body for a table.",
+    ),
+    "--ignition": (
+        "TIME",
+        "Time of the ignition in a file: earlier samples are left out. Default: zero.",
+    ),
+}
+
+
+def of_files(flag: str) -> Any:
+    """An option on the layout of files with curves, in the form of ``curve_files.layout``."""
+    metavar, words = _OF_FILES[flag]
+    help_ = f'{words} "NAME: ..." is for that file only. Repeatable.'
+    return typer.Option(flag, metavar=metavar, help=help_)
+
+
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON on standard output.")]
 Strict = Annotated[
     bool,

@@ -11,12 +11,12 @@ from tipoff.studies.montecarlo.results import (
     Agreement,
     Apart,
     ByContacts,
-    ByModes,
+    ByRung,
     CorrectedTail,
     DrawnPairs,
     Errors,
+    Ladder,
     Optimal,
-    OwnModes,
     Statistic,
 )
 from tipoff.studies.populations import (
@@ -24,8 +24,8 @@ from tipoff.studies.populations import (
     answers,
     control_variate,
     exceedance,
-    own_modes,
     poststratified,
+    rungs,
     spread,
 )
 from tipoff.studies.populations.control_variate import Estimate, Pairs
@@ -114,28 +114,35 @@ def _agreement(error: np.ndarray, gate: float) -> Agreement:
     )
 
 
-def by_modes(own: own_modes.OwnModes, drawn: Draws, gate: float) -> OwnModes:
-    """The draws by rail modes, with agreement as in ``by_contacts``."""
-    chose = own.chosen > 0
-    with_modes, without = (_part(series.results, chose) for series in (own.own, own.same[0]))
-    by_choice, by_clearance = (_largest(with_modes, other) for other in (without, own.wider))
-    return OwnModes(
-        held=own.held,
+def ladder(found: rungs.Rungs, drawn: Draws, gate: float) -> Ladder:
+    """The draws by settings of the surrogate, with agreement as in ``by_contacts``."""
+    chose = found.chosen > 0
+    with_modes, without = (_part(rung.results, chose) for rung in (found.own, found.same[0]))
+    by_choice, by_clearance = (_largest(with_modes, other) for other in (without, found.wider))
+    return Ladder(
+        held=found.held,
         choosing=int(chose.sum()),
-        choosing_all=int((own.chosen == own.held).sum()),
+        choosing_all=int((found.chosen == found.held).sum()),
         moved_deg_s=_median(by_choice),
-        clearance_change_m=own.clearance_change,
+        clearance_change_m=found.clearance_change,
         moved_by_clearance_deg_s=_median(by_clearance),
         more_by_clearance=int((by_clearance > by_choice).sum()),
-        rows=tuple(
-            ByModes(
-                **vars(_agreement(_largest(series.results, drawn.reference), gate)),
-                modes=series.modes,
-                cpu_s=series.cpu_s,
-                case_s=series.case_s,
-            )
-            for series in (*own.same, own.own)
-        ),
+        rows=tuple(_by_rung(rung, drawn, gate) for rung in (*found.same, found.own, *found.others)),
+    )
+
+
+def _by_rung(rung: rungs.Rung, drawn: Draws, gate: float) -> ByRung:
+    error, numerics = _largest(rung.results, drawn.reference), rung.numerics
+    settled = error[np.isfinite(error)]
+    return ByRung(
+        **vars(_agreement(error, gate)),
+        most_95=float(np.quantile(settled, 0.95)) if settled.size else None,
+        model=rung.model,
+        modes=numerics.modes,
+        degree=numerics.degree,
+        cells=numerics.cells,
+        cpu_s=rung.cpu_s,
+        case_s=rung.case_s,
     )
 
 

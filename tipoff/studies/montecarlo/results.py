@@ -155,19 +155,22 @@ class ByContacts(Agreement):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ByModes(Agreement):
-    """Agreement of runs with these modes of each rail, and their cost."""
+class ByRung(Agreement):
+    """Agreement of single runs of the surrogate with one choice of its settings, and their cost."""
 
-    modes: int | str
+    most_95: Annotated[float | None, Column("95 % below", "deg/s", ".2g")]  # of the settled draws
+    model: str
+    modes: int | str  # of each rail
+    degree: int | None  # of the patterns; None for that of the rail compliance
+    cells: int  # along each edge of a pad
     cpu_s: Annotated[float, Column("single run", "ms", ".2g", 1e3)]
-    # processor time; None if each draw chooses its modes
+    # processor time; None if each draw chooses its modes, or a population has no such settings
     case_s: Annotated[float | None, Column("case of a population", "ms", ".2g", 1e3)]
 
 
 @dataclass(frozen=True, kw_only=True)
-class OwnModes:
-    """The draws by rail modes: with one number in all draws, and with the number that each draw
-    chooses."""
+class Ladder:
+    """The draws by settings of the surrogate, and what the modes that each draw chooses change."""
 
     held: int  # modes of each rail in the rail compliance
     choosing: int  # how many draws choose some modes
@@ -177,7 +180,7 @@ class OwnModes:
     clearance_change_m: float
     moved_by_clearance_deg_s: float | None  # the same by ``clearance_change_m``
     more_by_clearance: int  # how many of these draws change more by the clearance
-    rows: tuple[ByModes, ...]  # last: the modes that each draw chooses
+    rows: tuple[ByRung, ...]  # by modes, case by case, springs, finer settings
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -251,7 +254,7 @@ class Tails(Answering):
     cost: Cost
     errors: tuple[Errors, ...]
     contacts: tuple[ByContacts, ...]
-    own_modes: OwnModes | None  # None if the rails have no modes
+    ladder: Ladder | None  # None if the rails have no modes
     statistics: tuple[Statistic, ...]
     tails: tuple[CorrectedTail, ...]
     pairs: DrawnPairs

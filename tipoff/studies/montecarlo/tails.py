@@ -19,9 +19,9 @@ from tipoff.studies.populations import (
     answers,
     control_variate,
     exceedance,
-    own_modes,
     population,
     random_factors,
+    rungs,
     spread,
 )
 from tipoff.studies.populations import draws as paired
@@ -63,7 +63,7 @@ def run(study: Study, options: Options) -> dict:
                 f"{control_variate.FEWEST} are needed"
             )
         gate = verdicts.gates(study.scene).settled_rate_error_deg_s
-        own = own_modes.run(study, model, rows)
+        by_settings = rungs.run(study, model, rows)
         made = Tails(
             **population.answering(study, model),
             asked=options,
@@ -86,7 +86,7 @@ def run(study: Study, options: Options) -> dict:
             cost=_cost(drawn, whole, paired.seconds_per_case(model, rows)),
             errors=tuple(paired_statistics.errors(item, drawn, whole) for item in answers.ALL),
             contacts=tuple(paired_statistics.by_contacts(drawn, gate)),
-            own_modes=own and paired_statistics.by_modes(own, drawn, gate),
+            ladder=by_settings and paired_statistics.ladder(by_settings, drawn, gate),
             statistics=tuple(
                 row for item in RATES for row in paired_statistics.of(item, drawn, whole)
             ),
@@ -95,7 +95,7 @@ def run(study: Study, options: Options) -> dict:
             ),
             pairs=paired_statistics.pairs(drawn, whole),
         )
-        return with_figures(made, lambda found: [tails_page.figure(found)], study.path("figures"))
+        return with_figures(made, tails_page.figures, study.path("figures"))
 
     return STAGE.run(study, options, make)
 

@@ -4,14 +4,13 @@ from collections.abc import Sequence
 from operator import attrgetter
 
 from tipoff.highfi.rail.step_cost import in_words
-from tipoff.lowfi.numerics import AUTO
-from tipoff.studies.montecarlo.results import ByModes, Tails
+from tipoff.studies.montecarlo import ladder_page
+from tipoff.studies.montecarlo.results import Tails
 from tipoff.studies.populations import population
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table, bounded, estimate, number, percent, span
-from tipoff.workspace.words import counted
 
 _NAMES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
 _Rate = tuple[str, dict[str, tuple[float, ...]], tuple[int, ...]]  # name, rates by model, contacts
@@ -48,12 +47,12 @@ _TAILS = (
     "A case that did not settle counts as above. Missed: draws above the limit in the reference and "
     "not in the surrogate; false: the other way round."
 )
-_MODES = (
-    "Errors are those of single runs on the mesh of the reference, and the largest of the three "
-    "axes. Times are means over the draws, of one core. Single run: case by case, it includes "
-    "the runs that choose the modes. Case of a population: all its cases have this number of "
-    "modes, and their steps are longer."
-)
+
+
+def figures(found: Tails) -> list[Figure]:
+    """Draws of both models, case by case and as quantiles; error over time where the settings
+    matter."""
+    return [figure(found), *ladder_page.figures(found)]
 
 
 def figure(found: Tails) -> Figure:
@@ -67,7 +66,7 @@ def draw(found: Tails) -> list[Part]:
     lines, *tables = summary(found)
     differences = [_errors(found)]
     fold = Fold("Differences of every quantity, and the finer mesh", differences)
-    return [lines, figure(found), *tables, fold]
+    return [lines, figure(found), *tables, *ladder_page.figures(found), fold]
 
 
 def summary(found: Tails) -> list[Part]:
@@ -75,7 +74,7 @@ def summary(found: Tails) -> list[Part]:
     return [
         Bullets([*sentences(found), *_run(found)]),
         by_contacts(found),
-        *by_modes(found),
+        *ladder_page.table(found),
         statistics(found),
         _tails(found),
     ]
@@ -87,14 +86,15 @@ def document(found: Tails) -> list[Part]:
         Bullets(sentences(found)),
         "![Settled rates of both models, and their quantiles](tails.png)",
         by_contacts(found),
-        *by_modes(found),
+        *(["![Error of the surrogate over its time](ladder.png)"] if found.ladder else []),
+        *ladder_page.table(found),
         Bullets(_run(found)),
     ]
 
 
 def sentences(found: Tails) -> list[str]:
     """Agreement, corrected rates, cost."""
-    return [_agreement(found), _corrected(found), _cost(found)]
+    return [_agreement(found), *ladder_page.best(found), _corrected(found), _cost(found)]
 
 
 def _agreement(found: Tails) -> str:
@@ -153,7 +153,7 @@ def _run(found: Tails) -> list[str]:
         f"{1e3 * found.fine_element_size_m:g} mm",
         *([f"not settled in the reference: {lost}"] if lost else []),
         population.model_line(found),
-        *sentences_of_modes(found),
+        *ladder_page.sentences(found),
         f"random errors: {found.reading}; {found.cases:,} cases",
         *_mesh(found),
         f"a run of the reference takes {cost.reference_cpu_s:.3g} s of one core, on the finer mesh "
@@ -162,22 +162,6 @@ def _run(found: Tails) -> list[str]:
         f"{'no case too many' if cases is None else f'{cases:,.0f} cases'} of the surrogate per run "
         f"of the reference, {number(best.variance_ratio, '.2g')} of the variance of the reference "
         "alone at the same cost",
-    ]
-
-
-def sentences_of_modes(found: Tails) -> list[str]:
-    """How many draws choose modes, and what these change; nothing where the rails have none."""
-    if (own := found.own_modes) is None:
-        return []
-    draws, choosing = counted(found.draws, "draw"), own.choosing
-    if not choosing:
-        return [f"none of {draws} chooses rail modes for itself"]
-    return [
-        f"{choosing} of {draws} choose rail modes for themselves, {own.choosing_all} of them "
-        f"all {own.held}. In the median, these modes change a rate of such a draw by "
-        f"{number(own.moved_deg_s, '.2g')} deg/s, and {1e6 * own.clearance_change_m:g} µm "
-        f"more of every clearance changes it by {number(own.moved_by_clearance_deg_s, '.2g')} "
-        f"deg/s. In {own.more_by_clearance} of the {choosing} the clearance changes it more"
     ]
 
 
@@ -249,28 +233,6 @@ def by_contacts(found: Tails) -> Table:
         ("95 % bounds", lambda row: _percents(row.low, row.high)),
         notes=(_CONTACTS,),
     )
-
-
-def by_modes(found: Tails) -> list[Part]:
-    """Agreement and cost by rail modes; nothing where the rails have none."""
-    if (own := found.own_modes) is None:
-        return []
-
-    def words(row: ByModes) -> str:
-        if row.modes == AUTO:
-            return "case by case"
-        shown = {0: "none", own.held: f"all {own.held}"}.get(int(row.modes), str(row.modes))
-        return f"{shown}, as the population" if row.modes == found.modes else shown
-
-    gate = f"within {found.gate_deg_s:g} deg/s (%)"
-    table = Table.of_records(
-        own.rows,
-        ("modes of each rail", words),
-        (gate, lambda row: percent(row.within_gate, ".1f")),
-        *("median", "most", "cpu_s", "case_s"),
-        notes=(_MODES,),
-    )
-    return [table]
 
 
 def _percents(low: float | None, high: float | None) -> str:

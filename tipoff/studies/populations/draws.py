@@ -100,7 +100,8 @@ def beside(
     reference; ``tag`` distinguishes their labels."""
     under = model.compliance
     if model.name == COMPLIANT and study.scene.contact is not None:
-        under = study.rail_compliance(study.scene, element_size=study.settings.coarse_size)
+        size, degree = study.settings.coarse_size, numerics.needed_degree
+        under = study.rail_compliance(study.scene, element_size=size, degree=degree)
     return [
         Run(
             "lowfi",

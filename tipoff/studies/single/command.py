@@ -6,6 +6,7 @@ import typer
 
 from tipoff.studies.commands.options import (
     CalibrationFile,
+    Cells,
     CheckpointEvery,
     Degree,
     Model,
@@ -35,6 +36,7 @@ def run(
     model: Model = None,
     modes: Modes = None,
     degree: Degree = None,
+    cells: Cells = None,
     calibration: CalibrationFile = None,
     accuracy: Annotated[
         str | None,
@@ -77,6 +79,7 @@ def run(
       tipoff run --condition phi15,phi35,phi60
       tipoff run --condition phi35 --model finite-elements
       tipoff run --condition h4 --accuracy "0.1 deg/s"
+      tipoff run --condition h4 --modes 20 --degree 3 --cells 16
     """
     from tipoff.scenes.faults import Fault, SceneError, together
     from tipoff.studies.runs import page
@@ -86,7 +89,7 @@ def run(
     def shown(found: dict) -> "list[Part]":
         return [page.settled(single.rows(found))] if "conditions" in found else []
 
-    options, quiet = models.Options(model, calibration, modes, degree), request.json_
+    options, quiet = models.Options(model, calibration, modes, degree, cells), request.json_
     study = request.study(
         condition or ["nominal"], checkpoint_every=checkpoint_every, resume=resume
     )
@@ -106,6 +109,7 @@ def run(
         "--calibration": calibration,
         "--modes": modes,
         "--degree": degree,
+        "--cells": cells,
     }
     if wrong := [name for name, value in given.items() if value is not None]:
         expected = "none: --accuracy and --budget choose the model"

@@ -51,12 +51,12 @@ def run(
     if options.model == SPRINGS:
         return result_of(study, condition, study.lowfi(condition, fitted), quiet)
     kept.require_accepted(study, options.name, condition)
-    # checks the number of modes before the rail compliance is computed
-    vibrating = study.lowfi(condition, fitted, modes=options.asked)
+    # checks the numerics before the rail compliance is computed
+    vibrating = study.lowfi(condition, fitted, **options.numerics)
     if scene.contact is None:
         return result_of(study, condition, vibrating, quiet)
     found = study.rail_compliance(scene, degree=options.degree or DEGREE)
-    request = study.lowfi(condition, fitted, compliance=found, modes=options.asked)
+    request = study.lowfi(condition, fitted, compliance=found, **options.numerics)
     return result_of(study, condition, request, quiet)
 
 

@@ -197,6 +197,17 @@ def test_no_step_is_too_long_for_the_highest_mode():
     assert loose.energy[:, strain].max() < 1.2 * fine.energy[:, strain].max()
 
 
+def test_few_steps_are_refused_where_the_limit_alone_bounds_them():
+    """While a pad presses on, the bound grows from step to step, and a step at the limit of its start
+    is too long at its end: each second attempt would be refused."""
+    loose = Numerics(relative_tolerance=1e-2, modes=4)
+    found = lowfi.run(
+        REFERENCE.condition("phi60"), compliance=reference_compliance(), numerics=loose
+    )
+    assert found.cost["limit_used"] > 0.9
+    assert found.cost["rejected"] < 0.25 * found.cost["steps"]
+
+
 def work_of_modes(scene, compliance, run, states) -> float:
     """Most work (J) by any time of the pull along the rail that comes from its modes."""
     model, system = pressed(scene, compliance, VIBRATING.modes)

@@ -30,7 +30,7 @@ def driven(record: neglected.Neglected, forces: np.ndarray, dt: float) -> np.nda
 def mode(drag: float = 0.0) -> neglected.Neglected:
     """One mode of one rail under one face."""
     shape = np.zeros((1, 1, 1, 4, PATTERNS))
-    return neglected.build(np.array([[OMEGA**2]]), np.array([[drag]]), shape, 0)
+    return neglected.build(np.array([[OMEGA**2]]), np.array([[drag]]), shape)
 
 
 @pytest.mark.parametrize("cycles", [0.1, 0.3, 0.8, 1.0, 1.5, 2.2, 6.0])

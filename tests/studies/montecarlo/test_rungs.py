@@ -1,4 +1,5 @@
-"""The draws by rail modes: one number for all draws, beside the modes that each draw chooses."""
+"""The draws by settings of the surrogate: one number of modes for all draws, the modes that each draw
+chooses, springs, and more cells and patterns."""
 
 import math
 from dataclasses import replace
@@ -12,10 +13,10 @@ from tests.studies.shown import html
 from tipoff import lowfi
 from tipoff.lowfi import Numerics
 from tipoff.scenes import load
-from tipoff.studies.montecarlo import paired_statistics, tails_page
-from tipoff.studies.populations import draws, own_modes
-from tipoff.studies.populations.own_modes import OwnModes, Series
+from tipoff.studies.montecarlo import ladder_page, paired_statistics
+from tipoff.studies.populations import draws, rungs
 from tipoff.studies.populations.population import Surrogate
+from tipoff.studies.populations.rungs import FINER, Rung, Rungs
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
 
@@ -39,7 +40,7 @@ def compliance(study):
 
 @pytest.fixture(scope="module")
 def found(study, compliance):
-    return own_modes.run(study, Surrogate(study.scene, None, compliance, 0), ROWS)
+    return rungs.run(study, Surrogate(study.scene, None, compliance, 0), ROWS)
 
 
 @pytest.fixture(scope="module")
@@ -60,10 +61,10 @@ def test_draws_choose_as_single_runs(study, compliance, found, rate):
         lowfi.run(study.scene.replace(row), compliance=compliance).numerics["modes"] for row in ROWS
     ]
     np.testing.assert_array_equal(found.own.results.rate, [rate(row) for row in ROWS])
-    assert [series.modes for series in found.same] == [0, 20] and found.held == 20
-    for series in found.same:
-        same = [rate(row, Numerics(modes=series.modes)) for row in ROWS]
-        np.testing.assert_array_equal(series.results.rate, same)
+    assert [rung.numerics.modes for rung in found.same] == [0, 20] and found.held == 20
+    for rung in found.same:
+        same = [rate(row, Numerics(modes=rung.numerics.modes)) for row in ROWS]
+        np.testing.assert_array_equal(rung.results.rate, same)
     apart = np.abs(found.own.results.rate - found.same[0].results.rate).max(axis=1)
     assert apart[0] == found.chosen[0] == 0 and found.chosen[1] > 0 and apart[1] > 1e-5
 
@@ -88,12 +89,12 @@ def untimed(monkeypatch):
 def test_runs_of_the_population_are_not_made_again(study, compliance, untimed):
     """A number between none and all has a series of its own, whose runs are those beside the
     reference."""
-    untimed.setattr(own_modes, "execute", lambda _: SimpleNamespace(cost={"cpu_s": 1e-3}))
+    untimed.setattr(rungs, "execute", lambda _: SimpleNamespace(cost={"cpu_s": 1e-3}))
     model = Surrogate(study.scene, None, compliance, 7)
     _, _, beside = draws.requests(study, model, ROWS, 1)
     assert not any(study.store.path(run).is_file() for run in beside)
-    filled = own_modes.run(study, model, ROWS)
-    assert [series.modes for series in filled.same] == [0, 7, 20]
+    filled = rungs.run(study, model, ROWS)
+    assert [rung.numerics.modes for rung in filled.same] == [0, 7, 20]
     assert all(study.store.path(run).is_file() for run in beside)
 
 
@@ -105,9 +106,9 @@ def test_rails_without_modes_have_no_such_runs(study, compliance, monkeypatch):
     monkeypatch.setattr(draws, "filled", lambda *_: pytest.fail("run"))
     for kept, under in ((bare, bare), (compliance, None), (compliance, compliance.rigid())):
         monkeypatch.setattr(Study, "rail_compliance", lambda *_, kept=kept, **__: kept)
-        assert own_modes.run(study, Surrogate(study.scene, None, under, 0), ROWS) is None
+        assert rungs.run(study, Surrogate(study.scene, None, under, 0), ROWS) is None
     with pytest.raises(pytest.fail.Exception, match="run"):
-        own_modes.run(study, Surrogate(study.scene, None, compliance, 0), ROWS)
+        rungs.run(study, Surrogate(study.scene, None, compliance, 0), ROWS)
 
 
 def test_the_shorter_of_two_times_counts(study, compliance, untimed):
@@ -119,24 +120,58 @@ def test_the_shorter_of_two_times_counts(study, compliance, untimed):
         first = made.count(run.label) == 1
         return SimpleNamespace(cost={"cpu_s": 9.0 if first else 1e-3 * len(run.label)})
 
-    untimed.setattr(own_modes, "execute", execute)
-    found = own_modes.run(study, Surrogate(study.scene, None, compliance, 0), ROWS)
+    untimed.setattr(rungs, "execute", execute)
+    found = rungs.run(study, Surrogate(study.scene, None, compliance, 0), ROWS)
     labels = [f"nominal-draw{place}-compliant-own-modes" for place in range(2)]
     assert found.own.cpu_s == pytest.approx(1e-3 * len(labels[0]))
     assert [label for label in made if label in labels] == 2 * labels
 
 
-def synthetic() -> OwnModes:
+def test_finer_settings_have_the_rates_of_single_runs(study, found, rate):
+    """On the compliance of the degree that they need. Control: the default settings."""
+    assert tuple(rung.numerics for rung in found.others) == FINER, "not calibrated"
+    for rung in found.others:
+        size, degree = study.settings.coarse_size, rung.numerics.needed_degree
+        under = study.rail_compliance(study.scene, element_size=size, degree=degree)
+        finer = [
+            lowfi.run(study.scene.replace(row), compliance=under, numerics=rung.numerics)
+            for row in ROWS
+        ]
+        np.testing.assert_array_equal(rung.results.rate, [each.outcome.rate for each in finer])
+        assert np.abs(rung.results.rate - [rate(row) for row in ROWS]).max() > 1e-5
+
+
+def test_springs_are_a_rung_of_a_calibrated_study(study, compliance, untimed):
+    """On the constants of the calibration."""
+    untimed.setattr(rungs, "execute", lambda _: SimpleNamespace(cost={"cpu_s": 1e-3}))
+    untimed.setattr(rungs.calibrate, "stored", lambda _: {"key": "of this scene"})
+    untimed.setattr(
+        rungs.population, "surrogate", lambda study, name: Surrogate(study.scene, None, None)
+    )
+    springs, *_ = rungs.run(study, Surrogate(study.scene, None, compliance, 0), ROWS).others
+    assert springs.model == "springs"
+    rates = [lowfi.run(study.scene.replace(row), "springs").outcome.rate for row in ROWS]
+    np.testing.assert_array_equal(springs.results.rate, rates)
+
+
+def synthetic() -> Rungs:
     """Five draws. The third to the fifth choose 2, 20 and 20 modes, which move the largest rate by
     0.1, 0.3 and 0.2 deg/s; the clearance moves it by 0.15, 0.05 and 0.6 deg/s."""
     none = np.zeros((5, 3))
     chosen = np.array([[0, 0, 0], [0, 0, 0], [0.1, 0, 0], [0, -0.3, 0.1], [0, 0, 0.2]])
     wider = np.add(chosen[2:], [[0, 0.15, 0], [0.05, 0, 0], [-0.6, 0, 0.6]])
-    return OwnModes(
+    return Rungs(
         held=20,
         chosen=np.array([0, 0, 2, 20, 20]),
-        same=[Series(0, results(none), 2e-3), Series(20, results(none + 0.05), 9e-3)],
-        own=Series("auto", results(chosen), 4e-3),
+        same=[
+            Rung("compliant", Numerics(modes=0), results(none), 2e-3),
+            Rung("compliant", Numerics(modes=20), results(none + 0.05), 9e-3),
+        ],
+        own=Rung("compliant", Numerics(), results(chosen), 4e-3),
+        others=[
+            Rung("springs", Numerics(modes=0), results(none + 1.0), 1e-3),
+            Rung("compliant", FINER[1], results(none), 9e-2),
+        ],
         wider=results(wider),
         clearance_change=1e-6,
     )
@@ -148,38 +183,58 @@ def test_what_the_modes_of_a_draw_change():
     reference = np.zeros((5, 3))
     reference[3:] = [[0, -0.25, 0], [0, 0, 0.25]]
     none = drawn(reference, np.zeros((5, 3)), np.ones(5))
-    found = paired_statistics.by_modes(synthetic(), none, GATE)
+    found = paired_statistics.ladder(synthetic(), none, GATE)
     assert (found.held, found.choosing, found.choosing_all) == (20, 3, 2)
     assert found.moved_deg_s == pytest.approx(0.2)
     assert found.moved_by_clearance_deg_s == pytest.approx(0.15)
     assert found.more_by_clearance == 2
-    assert [row.modes for row in found.rows] == [0, 20, "auto"]
-    assert [row.within_gate for row in found.rows] == pytest.approx([0.6, 0.6, 1.0])
-    assert [row.most for row in found.rows] == pytest.approx([0.25, 0.3, 0.1])
+    assert [row.modes for row in found.rows] == [0, 20, "auto", 0, 20]
+    assert [row.within_gate for row in found.rows] == pytest.approx([0.6, 0.6, 1.0, 0.0, 0.6])
+    assert [row.most for row in found.rows] == pytest.approx([0.25, 0.3, 0.1, 1.25, 0.25])
     (*_, everything) = paired_statistics.by_contacts(none, GATE)
     assert vars(everything).items() - vars(found.rows[0]).items() == {("contacts", "all")}
 
     lost = synthetic()
     lost.own.results.rate[4] = np.nan
-    found = paired_statistics.by_modes(lost, none, GATE)
-    assert found.choosing == 3 and found.rows[-1].settled == 4
+    found = paired_statistics.ladder(lost, none, GATE)
+    assert found.choosing == 3 and found.rows[2].settled == 4
     assert found.moved_deg_s == pytest.approx(0.2)  # of 0.1 and 0.3
     assert found.moved_by_clearance_deg_s == pytest.approx(0.1)  # of 0.15 and 0.05
 
 
 def test_what_is_said_of_them():
-    reference = drawn(np.zeros((5, 3)), np.zeros((5, 3)), np.ones(5))
-    own = paired_statistics.by_modes(synthetic(), reference, GATE)
-    page = SimpleNamespace(own_modes=own, draws=5, modes=0, gate_deg_s=GATE)
-    (said,) = tails_page.sentences_of_modes(page)
-    assert said.startswith("3 of 5 draws choose rail modes for themselves, 2 of them all 20. In")
-    assert all(
-        f">{cell}<" in html(tails_page.by_modes(page))
-        for cell in ("none, as the population", "all 20", "case by case")
+    reference = drawn(np.full((5, 3), 0.02), np.zeros((5, 3)), np.ones(5))
+    ladder = paired_statistics.ladder(synthetic(), reference, GATE)
+    page = SimpleNamespace(
+        ladder=ladder,
+        draws=5,
+        paired=5,
+        modes=0,
+        gate_deg_s=GATE,
+        errors=[],
+        fine=2,
+        element_size_m=0.004,
+        fine_element_size_m=0.002,
+        cost=SimpleNamespace(reference_cpu_s=1.6),
     )
+    (said,) = ladder_page.sentences(page)
+    assert said.startswith("3 of 5 draws choose rail modes for themselves, 2 of them all 20. In")
+    cells = ("no modes, as the population", "all 20 modes", "modes case by case")
+    cells = (*cells, "calibrated springs", "degree 3, 16 cells, all 20 modes")
+    assert all(f">{cell}<" in html(ladder_page.table(page)) for cell in cells)
     page.modes = 20
-    assert ">all 20, as the population<" in html(tails_page.by_modes(page))
-    page.own_modes = replace(own, choosing=0)
-    assert tails_page.sentences_of_modes(page) == ["none of 5 draws chooses rail modes for itself"]
-    page.own_modes = None
-    assert tails_page.sentences_of_modes(page) == tails_page.by_modes(page) == []
+    assert ">all 20 modes, as the population<" in html(ladder_page.table(page))
+    (drawing,) = ladder_page.figures(page)
+    above, middle, *names = drawing.chart.panels[0].lines
+    assert [name.labels for name in names[-2:]] == [
+        ("calibrated springs",),
+        ("degree 3, 16 cells, all 20 modes",),
+    ]
+    np.testing.assert_allclose(middle.x, [2e-3, 9e-3, 4e-3, 1e-3, 9e-2])
+    np.testing.assert_allclose(middle.y, [0.02, 0.03, 0.08, 0.98, 0.02])
+    assert (np.asarray(above.y) >= middle.y).all()
+    page.ladder = replace(ladder, choosing=0)
+    assert ladder_page.sentences(page) == ["none of 5 draws chooses rail modes for itself"]
+    page.ladder = None
+    assert not [*ladder_page.sentences(page), *ladder_page.table(page), *ladder_page.figures(page)]
+    assert ladder_page.best(page) == []

@@ -1,32 +1,26 @@
-"""Curves of a reference for a fit: v_x and body rates over time, and the settled values, from a run
-or from a CSV file.
+"""Curves of a run, of another code or of a test: v_x and body rates over time, and the settled
+values.
 
 A file has no positions, and so no exit. Its settled window of 2 ms ends with the record, or starts
 at a time given by the user. Settled values are means over the window (``mechanics.outcome``).
 """
 
-import hashlib
+from collections.abc import Collection
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.files import read_input
+from tipoff.comparison.curve_files import reading
+from tipoff.comparison.curve_files.layout import OF_THE_FORMAT, RATES, Layout
 from tipoff.mechanics.outcome import SETTLE_WINDOW
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.scenes import csv_file
 from tipoff.scenes.faults import Fault, SceneError
 
-COLUMNS = {
-    "time": "s",
-    "velocity_x": "m/s",
-    "rate_x": "rad/s",
-    "rate_y": "rad/s",
-    "rate_z": "rad/s",
-}
 # s; a pad contact lasts milliseconds, and the settled window needs several samples
 LONGEST_STEP = 0.5 * SETTLE_WINDOW
 _ROUNDING = 1e-9  # s; times are decimal numbers in a file, in any unit
+_SECTION = "(file formats, Curves)"  # of the documentation, in every refusal
 
 
 class Curves(NamedTuple):
@@ -55,27 +49,31 @@ class Curves(NamedTuple):
         )
 
     @classmethod
-    def read_csv(cls, path: str | Path, settled_from: float | None = None) -> "Curves":
-        """Curves of a table with the columns ``COLUMNS``; the window begins at ``settled_from``
-        (s), or ends with the record.
+    def read(
+        cls,
+        path: str | Path,
+        settled_from: float | None = None,
+        layout: Layout = OF_THE_FORMAT,
+        optional: Collection[str] = (),
+    ) -> "Curves":
+        """Curves of a file of any format that ``curve_files.reading`` knows; the window begins at
+        ``settled_from`` (s), or ends with the record. Without velocity_x, if that is ``optional``,
+        the velocity is NaN.
 
         Raises SceneError with every fault: an unreadable file, columns or units that are missing or
         of another kind, cells without a finite number, times that do not increase from ignition or
         have a gap, a record too short for the window.
         """
-        try:
-            data = read_input(path)
-        except OSError as error:
-            raise SceneError(
-                [Fault(str(path), "file", error.strerror or str(error), "a readable CSV file")]
-            ) from error
-        found, faults = csv_file.quantities(path, COLUMNS, data)
+        found, faults, digest = reading.read(path, layout, optional)
         if "time" in found:
-            faults += _time_faults(str(path), found["time"], settled_from)
+            faults = faults + _time_faults(str(path), found["time"], settled_from)
         if faults:
-            raise SceneError(faults)
-        time, velocity = found["time"], found["velocity_x"]
-        rate = np.column_stack([found[name] for name in ("rate_x", "rate_y", "rate_z")])
+            raise SceneError(
+                [item._replace(expected=f"{item.expected} {_SECTION}") for item in faults]
+            )
+        time = found["time"]
+        velocity = found.get("velocity_x", np.full(time.size, np.nan))
+        rate = np.column_stack([found[name] for name in RATES])
         start = max(time[0], time[-1] - SETTLE_WINDOW) if settled_from is None else settled_from
         keep = _until(time, start)
         return cls(
@@ -84,8 +82,8 @@ class Curves(NamedTuple):
             rate[keep],
             float(start),
             _mean(time, rate, start),
-            f"{path}, SHA-256 {hashlib.sha256(data).hexdigest()}, settled from {1e3 * start:.6g} "
-            f"ms",
+            f"{path}, SHA-256 {digest}, settled from {1e3 * start:.6g} ms"
+            + (f"; {layout.words}" if layout.words else ""),
         )
 
 

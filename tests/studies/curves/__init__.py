@@ -1,0 +1,1 @@
+"""Curves of other codes against each other and against tipoff."""

@@ -1,0 +1,161 @@
+"""The text files nodout and rbdout of LS-DYNA: motion of nodes and of rigid bodies, one block for each
+time.
+
+The layouts are those that the public translator of LSTC, ``l2a``, writes. Columns have the names of the
+binary file. Rates are in global axes. Values are in the consistent units of the model, rates in rad per
+unit of time.
+"""
+
+import io
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.comparison.curve_files.table import SCENE, Table, chosen
+from tipoff.scenes.faults import Fault, SceneError
+
+NODOUT, RBDOUT = "nodout", "rbdout"
+_XYZ = ("x", "y", "z")
+_SPEED, _GAIN = "{length}/{time}", "{length}/{time}**2"
+_RATE, _SPIN = "rad/{time}", "rad/{time}**2"
+# Columns of each line in groups of three, with the pattern of their units.
+_NODE = {"displacement": "{length}", "velocity": _SPEED, "acceleration": _GAIN}
+_NODE |= {"coordinate": "{length}"}
+_NODE_TURN = {"displacement": "rad", "velocity": _RATE, "acceleration": _SPIN}
+_BODY = {
+    "coordinates": {"": "{length}"},
+    "displacements": {"d": "{length}", "rd": "rad"},
+    "velocities": {"v": _SPEED, "rv": _RATE},
+    "accelerations": {"a": _GAIN, "ra": _SPIN},
+}
+
+
+def _columns(groups: dict[str, str], pattern: str) -> dict[str, str]:
+    """The unit of each column of some groups; the ``pattern`` makes the names."""
+    return {
+        pattern.format(axis=axis, name=name): unit for name, unit in groups.items() for axis in _XYZ
+    }
+
+
+_OF_NODE = _columns(_NODE, "{axis}_{name}")
+_OF_NODE_TURN = _columns(_NODE_TURN, "r{axis}_{name}")
+_OF_BODY = {line: _columns(groups, "global_{name}{axis}") for line, groups in _BODY.items()}
+UNITS = {
+    NODOUT: _OF_NODE | _OF_NODE_TURN,
+    RBDOUT: {name: unit for line in _OF_BODY.values() for name, unit in line.items()},
+}
+#: Default columns of the quantities of a curve.
+DEFAULTS = {
+    NODOUT: {
+        "velocity_x": "x_velocity",
+        "rate_x": "rx_velocity",
+        "rate_y": "ry_velocity",
+        "rate_z": "rz_velocity",
+    },
+    RBDOUT: {
+        "velocity_x": "global_vx",
+        "rate_x": "global_rvx",
+        "rate_y": "global_rvy",
+        "rate_z": "global_rvz",
+    },
+}
+MARKS = {NODOUT: b"n o d a l   p r i n t   o u t", RBDOUT: b"r i g i d   b o d y   m o t i o n"}
+_NODE_TIME = re.compile(r"n o d a l   p r i n t   o u t.*\( *at time *(\S+) *\)")
+_BODY_TIME = re.compile(r"r i g i d   b o d y   m o t i o n.*time= *(\S+)")
+_BODY_NUMBER = re.compile(r"\s*(nodal )?rigid body +(\d+)\s*$")
+_SHORT_EXPONENT = re.compile(r"(?<=\d)(?=[+-]\d{3}$)")  # Fortran writes 1.0-100 for 1.0E-100
+_MOST_STATES = 1_000_000
+
+
+class _Block(NamedTuple):
+    """Values of one node or body at one time."""
+
+    time: float
+    body: str
+    columns: list[str]
+    values: list[float]
+
+
+def read(source: str, data: bytes, kind: str, body: str | None) -> Table:
+    """The motion of one ``body`` in a file of a ``kind``. Raises SceneError."""
+    text = io.TextIOWrapper(io.BytesIO(data), encoding="utf-8", errors="replace")
+    blocks = _nodes(source, text) if kind == NODOUT else _bodies(source, text)
+    found: dict[str, dict[float, dict[str, float]]] = {}
+    wanted = body and body.split()[-1]
+    for block in blocks:
+        states = found.setdefault(block.body, {})
+        # numbers of all are collected, for a refusal, and values of one
+        if (body is None and len(found) > 1) or wanted not in (None, block.body.split()[-1]):
+            continue
+        states.setdefault(block.time, {"time": block.time}).update(zip(block.columns, block.values))
+        if len(states) > _MOST_STATES:
+            raise SceneError([Fault(source, "file", "more times", f"{_MOST_STATES:,} at most")])
+    states = found[chosen(source, body, list(found))]
+    return table(source, kind, list(states.values()))
+
+
+def table(source: str, kind: str, states: list[dict[str, float]]) -> Table:
+    """The table of ``states``, each with values by column. The last one may lack values, if the run
+    was stopped. Raises SceneError if another one does."""
+    names = [name for name in UNITS[kind] if states and name in states[0]]
+    names = ["time", *names]
+    if len(states) > 1 and len(states[-1]) < len(states[0]):
+        states = states[:-1]
+    for state in states:
+        if missing := [name for name in names if name not in state]:
+            given = f"no {missing[0]} at time {state['time']:g}"
+            raise SceneError([Fault(source, kind, given, "the same values at every time")])
+    rows = np.array([[state[name] for name in names] for state in states])
+    rows = rows.reshape(len(states), len(names))
+    units = ["{time}", *(UNITS[kind][name] for name in names[1:])]
+    return Table(names, units, rows, DEFAULTS[kind], is_consistent=True, axes=SCENE)
+
+
+def _nodes(source: str, text: Iterator[str] | io.TextIOWrapper) -> Iterator[_Block]:
+    time, columns = None, None
+    for number, line in enumerate(text, 1):
+        if match := _NODE_TIME.search(line):
+            time, columns = _number(source, number, match[1]), None
+        elif line.lstrip().startswith("nodal point"):
+            columns = list(_OF_NODE_TURN if "x-rot" in line else _OF_NODE)
+        elif time is not None and columns is not None and line.strip():
+            node, *cells = line.split()
+            values = [_number(source, number, cell) for cell in cells]
+            if len(values) < len(columns) and not line.endswith("\n"):
+                return  # the run was stopped in this line
+            if not node.isdecimal() or len(values) != len(columns):
+                given = f"{line.strip()[:40]!r} in line {number}"
+                expected = f"a number of a node and {len(columns)} values"
+                raise SceneError([Fault(source, NODOUT, given, expected)])
+            yield _Block(time, node, columns, values)
+
+
+def _bodies(source: str, text: Iterator[str] | io.TextIOWrapper) -> Iterator[_Block]:
+    time, body, is_global = None, None, False
+    for number, line in enumerate(text, 1):
+        head, colon, rest = line.partition(":")
+        if match := _BODY_TIME.search(line):
+            time, body = _number(source, number, match[1]), None
+        elif match := _BODY_NUMBER.match(line):
+            body, is_global = f"{match[1] or ''}{match[2]}", True
+        elif line.lstrip().startswith(("principal", "output in")):
+            is_global = False
+        elif colon and time is not None and body is not None and is_global:
+            columns = list(_OF_BODY.get(head.strip(), ()))
+            values = [_number(source, number, cell) for cell in rest.split()]
+            if len(values) < len(columns) and not line.endswith("\n"):
+                return  # the run was stopped in this line
+            if len(values) != len(columns):
+                given = f"{len(values)} values of {head.strip()[:40]!r} in line {number}"
+                raise SceneError([Fault(source, RBDOUT, given, f"{len(columns)} values")])
+            yield _Block(time, body, columns, values)
+
+
+def _number(source: str, line: int, cell: str) -> float:
+    try:
+        return float(_SHORT_EXPONENT.sub("E", cell))
+    except ValueError:
+        given = f"{cell[:40]!r} in line {line}"
+        raise SceneError([Fault(source, "file", given, "a number")]) from None

@@ -1,0 +1,81 @@
+"""The columns of a file with curves, before their units; and their choice by name or number."""
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.scenes.csv_file import Line, numbers
+from tipoff.scenes.faults import Fault, SceneError, close
+
+_SHOWN = 40  # names or bodies listed in a fault
+BODY, SCENE = "body", "scene"  # axes of rates
+
+
+class Table(NamedTuple):
+    """Columns of one body or node.
+
+    ``columns`` names the default column of a quantity if it is not that of the quantity.
+    ``is_consistent``: all columns are in one consistent system, and ``units`` are patterns of its
+    units of time and length, "{length}/{time}". ``axes`` of the rates are None if the file does not tell them.
+    """
+
+    names: Sequence[str]  # of the columns; empty if the file has none
+    units: Sequence[str | None]
+    rows: list[Line] | np.ndarray  # lines with cells, or numbers (n,k)
+    columns: Mapping[str, str] = MappingProxyType({})
+    is_consistent: bool = False
+    axes: str | None = BODY
+
+    @property
+    def width(self) -> int:
+        """Number of columns."""
+        if isinstance(self.rows, np.ndarray):
+            return self.rows.shape[1]
+        return max([len(self.names), *(len(row) for _, row in self.rows[:1])])
+
+    def place(self, text: str) -> int | None:
+        """Place of the column with a name or a number (from 1); None unless there is one."""
+        if list(self.names).count(text) == 1:
+            return list(self.names).index(text)
+        if text.isdecimal() and len(text) < 6 and text not in self.names:
+            return int(text) - 1 if 1 <= int(text) <= self.width else None
+        return None
+
+    def numbers(self, source: str, name: str, place: int) -> tuple[np.ndarray, list[Fault]]:
+        """The column (n,) at a ``place``, and the faults of its cells."""
+        if not isinstance(self.rows, np.ndarray):
+            return numbers(source, name, place, self.rows)
+        values = self.rows[:, place]
+        if (count := int((~np.isfinite(values)).sum())) == 0:
+            return values, []
+        return values, [Fault(source, name, f"{count} values NaN or inf", "finite numbers")]
+
+    def no_column(self, source: str, name: str, text: str) -> Fault:
+        """The fault of a quantity ``name`` without its one column ``text``."""
+        given = "twice" if list(self.names).count(text) > 1 else "no such column"
+        given += "" if text == name else f" {text!r}"
+        if not self.names:
+            known = f"a number from 1 to {self.width} in --columns: the file has no header"
+        else:
+            known = f"once in the header, which has {listed(self.names)}{close(text, self.names)}"
+        return Fault(source, name, given, known)
+
+
+def listed(names: Sequence[str]) -> str:
+    """The names as text, at most ``_SHOWN`` of them."""
+    shown = [name for name in names if name]
+    more = [f"and {len(shown) - _SHOWN} more"] if len(shown) > _SHOWN else []
+    return ", ".join([*shown[:_SHOWN], *more]) or "nothing"
+
+
+def chosen(source: str, body: str | None, found: Sequence[str]) -> str:
+    """The name of one body or node among those ``found``: "rbdout 7", also by its last word "7".
+    Without ``body`` the file must have one. Raises SceneError."""
+    alike = [name for name in found if body in (None, name)]
+    alike = alike or [name for name in found if body == name.split()[-1]]
+    if len(alike) == 1:
+        return alike[0]
+    given = "no number" if body is None else repr(body)
+    raise SceneError([Fault(source, "--body", given, f"one of {listed(found)}")])
