@@ -125,15 +125,23 @@ def head(cell: str, si: str) -> tuple[str, str | None]:
 
 
 def scale(unit: str, si: str) -> float:
-    """Factor from a unit to ``si``. The unit may have a number, "0.0048 m/s**2" of a count. Raises
-    ValueError."""
-    text = unit if unit[:1].isdigit() or unit[:1] in ("+", "-", ".") else f"1 {unit}"
+    """Factor to ``si`` from a unit in a header. A number is no unit: "Load cell (5 kN)" states a
+    range. Raises ValueError."""
     try:
-        factor = units.to_si(text, si)
+        return units.to_si(f"1 {unit}", si)
     except ValueError:
-        if len(unit) < _SHORTEST or text == text.lower():
-            raise
-        return scale(unit.lower(), si)
+        if len(unit) >= _SHORTEST:
+            with contextlib.suppress(ValueError):
+                return units.to_si(f"1 {unit.lower()}", si)
+        raise
+
+
+def stated(unit: str, si: str) -> float:
+    """Factor to ``si`` from a unit that a user states, which may have a number, as "0.0048 m/s**2"
+    of a count. Raises ValueError."""
+    if not unit[:1].isdigit() and unit[:1] not in ("+", "-", "."):
+        return scale(unit, si)
+    factor = units.to_si(unit, si)
     if factor == 0.0:
         raise ValueError(f"{units.named(si)} (given {unit!r})")
     return factor

@@ -43,6 +43,7 @@ def test_the_reading_before_ignition_is_said_and_kept(tmp_path):
     assert thrust.requested() == pytest.approx(IMPULSE + 12.0, rel=2e-3)
 
 
+@pytest.mark.case("X28")
 @pytest.mark.parametrize("first, last", [(4.0, 4.0), (-6.0, 2.0)])
 def test_an_offset_is_taken_out_on_request(tmp_path, first, last):
     """The impulse of the half sine is left, and nothing acts before ignition. Control: without the

@@ -68,6 +68,7 @@ SECOND = """<engine code="D12" mfg="Estes" Itot="1.">
 TWO_ENGINES = E18.replace("</engine-list>", SECOND)
 
 
+@pytest.mark.case("X28")
 def test_a_rasp_motor_has_its_published_impulse(tmp_path):
     found = thrust(tmp_path, "m1670.eng", M1670)
     assert found.requested() == pytest.approx(6026.35, abs=0.005)
@@ -104,6 +105,7 @@ def test_several_motors_without_a_name_are_listed(tmp_path):
     assert "it is 2 times there" in refusal(tmp_path, "two.eng", TWO + TWO, motor="B6")
 
 
+@pytest.mark.case("X19")
 @pytest.mark.parametrize(
     "text, words",
     [
@@ -123,6 +125,7 @@ def test_rasp_files_that_cannot_be_are_refused(tmp_path, text, words):
     assert words in refusal(tmp_path, "motor.eng", text)
 
 
+@pytest.mark.case("X28")
 def test_a_rocksim_motor_has_the_impulse_that_its_file_states(tmp_path):
     found = thrust(tmp_path, "e18.rse", E18)
     # The file rounds; trapezoids of its eight points, added by hand.
@@ -149,6 +152,7 @@ OUTSIDE = """<!DOCTYPE x [<!ENTITY e SYSTEM "file:///etc/hostname">]>
 """
 
 
+@pytest.mark.case("X19")
 @pytest.mark.parametrize(
     "text, words",
     [

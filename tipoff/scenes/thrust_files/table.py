@@ -12,7 +12,7 @@ import numpy as np
 
 from tipoff.scenes import instrument_table
 from tipoff.scenes.faults import SceneError
-from tipoff.scenes.instrument_table import Written, head, scale, words
+from tipoff.scenes.instrument_table import Written, head, scale, stated, words
 from tipoff.scenes.thrust_files.record import SECTION, Choice, Record
 
 _HOUSE = ["time_s", "force_N"]
@@ -37,8 +37,8 @@ def read(path: str, data: bytes, choice: Choice) -> Record:
     places = [_place(table, kind, named[kind]) for kind in _NAMES]
     if places[0] == places[1]:
         _refuse(table, "one column is both")
-    stated = {"time": choice.time_unit, "thrust": choice.thrust_unit}
-    factors = [_factor(table, place, kind, stated[kind]) for place, kind in zip(places, _NAMES)]
+    keys = {"time": choice.time_unit, "thrust": choice.thrust_unit}
+    factors = [_factor(table, place, kind, keys[kind]) for place, kind in zip(places, _NAMES)]
     _require_rows(table, max(places))
     columns, faults = table.numbers(path, places)
     used = " and ".join(table.names()[place] for place in places)
@@ -69,7 +69,7 @@ def _candidates(table: Written, kind: str, name: str | None) -> list[int]:
 
 def _is_in(unit: str | None, si: str) -> bool:
     try:
-        return unit is None or bool(scale(unit, si))
+        return unit is None or scale(unit, si) > 0.0
     except ValueError:
         return False
 
@@ -93,7 +93,7 @@ def _factor(table: Written, place: int, kind: str, key: str | None) -> float:
     if unit is None and key is None:
         _refuse(table, f"no unit of the {kind}: state it in {name}")
     try:
-        given = None if key is None else scale(key, si)
+        given = None if key is None else stated(key, si)
     except ValueError as error:
         raise ValueError(f"{name} with {error}") from error
     if unit is None or (given is not None and not _is_in(unit, si)):

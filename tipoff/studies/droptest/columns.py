@@ -108,7 +108,7 @@ def _units(
     for place in places:
         name, unit = table.names()[place], table.unit(place, si)
         try:
-            found = None if unit is None else line(unit, si)
+            found = None if unit is None else line(unit, si, True)
         except ValueError as error:
             found = None
             if given is None:

@@ -28,7 +28,7 @@ from pydantic import (
 
 from tipoff.scenes import reading
 from tipoff.scenes.faults import SceneError, faults_of
-from tipoff.scenes.instrument_table import scale
+from tipoff.scenes.instrument_table import scale, stated
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import (
     Acceleration,
@@ -77,11 +77,11 @@ def _unit_of(si: str) -> AfterValidator:
     return AfterValidator(check)
 
 
-def line(unit: str, si: str) -> tuple[float, float]:
-    """Zero and one of a column in ``si``; a unit may have a number (``instrument_table.scale``).
-    Raises ValueError."""
+def line(unit: str, si: str, is_header: bool = False) -> tuple[float, float]:
+    """Zero and one of a column in ``si``; a unit that is not in a header may have a number
+    (``instrument_table.stated``). Raises ValueError."""
     if si != "K":
-        return 0.0, scale(unit, si)
+        return 0.0, scale(unit, si) if is_header else stated(unit, si)
     # degC has an offset
     return to_si(f"0 {unit}", si, absolute=True), to_si(f"1 {unit}", si, absolute=True)
 
