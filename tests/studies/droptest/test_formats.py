@@ -4,14 +4,17 @@ rate is known. Least sampling rates for each purpose, with controls just below t
 import numpy as np
 import pytest
 
-from tests.studies.droptest.synthetic import EXIT, motion
+from tests.studies.droptest.synthetic import EXIT, motion, sheet, spans
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.instrument_table import PAGE
 from tipoff.studies.droptest import analysis
+from tipoff.studies.droptest.log import Calibrated
+from tipoff.studies.droptest.reduction import reduced
 
 BEFORE, AFTER = np.array([0.002, -0.001, 0.003]), np.array([0.15, -0.05, -0.10])  # rad/s
 NOISE, SHAKEN = 1e-4, 0.03  # rad/s, m/s2
 G = 9.80665
+START = 1403636579758555392  # ns, of the clock in EuRoC's first log
 SHEET = f"""
 file = "log.csv"
 axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
@@ -54,7 +57,7 @@ def euroc(rate=200):
     ]
     for t, w, a in zip(*samples(rate)):
         row = ",".join(f"{value:.9f}" for value in (*w, *a))
-        lines.append(f"{1403636579758555392 + round(1e9 * t):d},{row}")
+        lines.append(f"{START + round(1e9 * t):d},{row}")
     return "\n".join(lines) + "\n"
 
 
@@ -138,10 +141,8 @@ def written(folder, name, text=None, top="", units=None, columns=None):
     """Sheet and log of a format; what is given replaces its parts."""
     make, named, stated = LOGS[name]
     (folder / "log.csv").write_text(make() if text is None else text)
-    sheet = SHEET.format(
-        top=top, columns=columns or named, units=stated if units is None else units
-    )
-    (folder / "test.toml").write_text(sheet.replace("[units]\n\n", ""))
+    text = SHEET.format(top=top, columns=columns or named, units=stated if units is None else units)
+    (folder / "test.toml").write_text(text.replace("[units]\n\n", ""))
     return folder / "test.toml"
 
 
@@ -268,3 +269,42 @@ def test_accelerations_may_be_slower_than_rates(tmp_path):
 def test_logs_that_are_not_clear_are_refused(tmp_path, name, change, words):
     said = refused(written(tmp_path, name, **change))
     assert words in said and (PAGE in said or "units.rate" in said)
+
+
+@pytest.mark.parametrize("rate", [100, 200])
+def test_stated_intervals_cover_at_the_least_rate(rate):
+    """95 % of 3 x 250 changes within U, up to what they can tell (99.9 %, binomial), for ten and for
+    twenty samples after the exit. Control: half of U holds 67 %."""
+    ask, (time, turning, _), ratios = sheet(channel_class=None), motion(BEFORE, AFTER), []
+    for seed in range(250):
+        rng = np.random.default_rng([rate, seed])
+        at = (np.arange(int(rate * time[-1])) + rng.uniform()) / rate
+        exact = np.column_stack([np.interp(at, time, column) for column in turning.T])
+        noisy = exact + 1e-3 * rng.standard_normal(exact.shape)
+        found = reduced(ask, Calibrated(at, noisy, None, None), spans(), "test")
+        ratios.append(np.abs(found.change - (AFTER - BEFORE)) / (found.factor * found.combined))
+    spread = 3.3 * np.sqrt(0.95 * 0.05 / 750)
+    assert np.mean(np.array(ratios) <= 1.0) == pytest.approx(0.95, abs=spread)
+    assert np.mean(np.array(ratios) <= 0.5) < 0.75
+
+
+def test_gaps_and_clipping_of_a_slow_log_are_found(tmp_path):
+    """Two missing lines of a log at 200 Hz are bridged, three in a window are refused; a rate at the
+    range is refused there too."""
+    head, *rows = euroc().splitlines()
+    place = next(k for k, row in enumerate(rows) if int(row.split(",")[0]) > START + 1_560_000_000)
+
+    def log(first, count, row=None):
+        middle = [] if row is None else [row(each) for each in rows[first : first + count]]
+        return "\n".join([head, *rows[:first], *middle, *rows[first + count :]]) + "\n"
+
+    found = analysis.analyse(written(tmp_path, "EuRoC", log(place, 2)))
+    assert any("rate: 1 gap of one or two samples bridged" in note for note in found.notes)
+    assert "settled window: given 3 of" in refused(written(tmp_path, "EuRoC", log(place, 3)))
+
+    def clipped(row):
+        cells = row.split(",")
+        return ",".join([cells[0], "34.906585040", *cells[2:]])
+
+    said = refused(written(tmp_path, "EuRoC", log(place, 4, clipped)))
+    assert "settled window: given 4 of" in said

@@ -10,8 +10,9 @@
 
 The change of rate is a difference of a mean and a line, and both use samples that are not filtered.
 So only the filter needs the rate of its class. Ten samples about a line have eight degrees of
-freedom, and their noise is known to 25 %. Five samples tell a fall or a push from a knock, and miss
-at most a fifth of its impulse. With ``[events]`` in the sheet nothing is searched in accelerations.
+freedom, and their noise is known to 25 %: enough to tell a blow after the exit from noise. Five
+samples tell a fall or a push from a knock, and miss at most a fifth of its impulse. With ``[events]``
+in the sheet nothing is searched in accelerations.
 """
 
 import numpy as np
