@@ -88,6 +88,11 @@ def _toml(page: str) -> list[str]:
 @pytest.mark.parametrize("page", [page for page in pages.PAGES if _toml(page)])
 def test_every_toml_block_is_a_scene_or_a_file_of_distributions(page, tmp_path):
     (tmp_path / "thrust.csv").write_text("time_s,force_N\n0,0\n0.01,6000\n0.02,0\n")
+    motor = "M1670-BS 75 757 0 3.101 5.231 CTI\n0.1 2000\n0.5 1950\n3.9 0\n"
+    (tmp_path / "Cesaroni.eng").write_text(motor + motor.replace("M1670", "M1400"))
+    (tmp_path / "rocketpy.csv").write_text("0,0\n0.01,6000\n0.02,0\n")
+    rows = "".join(f"{0.1 * k:.1f};{4 + 500 * (32 <= k < 40)}\n" for k in range(60))
+    (tmp_path / "firing.csv").write_text("Time [s];Force [N]\n" + rows)
     for file in ("channel.msh", "launcher.k", "rails.step"):
         (tmp_path / file).touch()
     scene = tipoff.load("reference")  # distributions are of the scene that stands before them

@@ -41,6 +41,25 @@ TABLE = (
     "payload.mass,thrust.peak,thrust_offset.misalignment.axial\n"
     "kg,kN,deg\n9.9,6,0.1\n10,6.1,\n9.8,5.9,0.3\n"
 )
+# keys of [thrust] and content of its file, by the suffix of its name
+THRUSTS = {
+    "eng": (
+        {"motor": "B"},
+        "; two\nA 18 70 0 1 2 X\n 0.1 9\n 0.3 0\n;\nB 18 70 P 1 2 Y\n 0.2 8\n 0.9 0\n",
+    ),
+    "rse": (
+        {},
+        '<engine-database>\n<engine-list>\n<engine code="C6" mfg="X" Itot="2">\n<data>\n'
+        '<eng-data t="0." f="0."/>\n<eng-data t="0.2" f="8."/>\n<eng-data t="0.9" f="0."/>\n'
+        "</data>\n</engine>\n</engine-list>\n</engine-database>\n",
+    ),
+    "txt": (
+        {"remove_offset": True, "ignition": "2 ms"},
+        "# stand 2\nTest;4\nTime [ms];P/bar;Thrust (lbf)\n"
+        + "".join(f"{t},5;9;{4 + 90 * (9 < t < 20)},1\n" for t in range(-2, 30)),
+    ),
+    "csv": ({"time_unit": "ms", "thrust_unit": "N"}, "0,0\n1,2000\n4,6000\n10,5000\n20,0\n"),
+}
 CURVE = "time_s,force_N\n0,0\n0.001,2000\n0.004,6000\n0.010,5000\n0.02,0\n"
 CALIBRATION = """
 parameters = ["force"]
@@ -250,6 +269,24 @@ def _curve(rng: random.Random, folder: Path) -> None:
     found.thrust.describe(found.duration)
 
 
+def _thrust_file(rng: random.Random, folder: Path) -> None:
+    suffix = rng.choice(list(THRUSTS))
+    keys, text = THRUSTS[suffix]
+    file = folder / f"motor.{suffix}"
+    if rng.random() < 0.5:
+        file.write_bytes(mutants.of_bytes(rng, text.encode()))
+    else:
+        file.write_bytes(mutants.of_text(rng, text).encode("utf-8", "surrogatepass"))
+    raw, _ = reading.read("reference")
+    raw.pop("provenance")
+    thrust = {"kind": "measured", "file": str(file)} | keys
+    if rng.random() < 0.3:
+        thrust = mutants.of_plain(rng, thrust)
+    found = scenes.parse(raw | {"thrust": thrust})
+    found.thrust.describe(found.duration)
+    plausibility.of_all_conditions(found)
+
+
 def _reference_curve(rng: random.Random, folder: Path) -> None:
     file = folder / "reference.csv"
     file.write_bytes(mutants.of_text(rng, _reference()).encode("utf-8", "surrogatepass"))
@@ -305,6 +342,11 @@ def _log(rng: random.Random, folder: Path) -> None:
     sample = rng.choice(sheet.SAMPLES)
     log = sample.with_suffix(".csv")
     text, table = sample.read_text(encoding="utf-8"), log.read_text(encoding="utf-8")
+    if rng.random() < 0.5:  # as another program writes it
+        units = "#time [s];gx;gy;gz;ax [m s^-2];ay/(m/s^2);az (m/s^2);temperature"
+        rows = table.partition("temperature\n")[2].replace(",", ";").replace(".", ",")
+        table = f"% log\n{units}\n{rows}"
+        text = text.replace('acceleration = "m/s**2"\n', "").replace("channel_class = 60\n", "")
     if rng.random() < 0.5:
         text = mutants.of_text(rng, text)
     else:
@@ -341,6 +383,7 @@ KINDS: dict[str, Callable[[random.Random, Path], None]] = {
     "solid": _solid,
     "table": _table,
     "curve": _curve,
+    "thrust file": _thrust_file,
     "reference curve": _reference_curve,
     "foreign curve": _foreign_curve,
     "log": _log,

@@ -30,10 +30,13 @@ _CELL = 80  # characters of a cell that a fault shows
 
 
 def lines(
-    path: str | Path, data: bytes | None = None, comment: str | None = None
+    path: str | Path,
+    data: bytes | None = None,
+    comments: tuple[str, ...] = (),
+    separator: str = ",",
 ) -> Iterator[Line]:
-    """Lines of a CSV file that are not blank and do not begin with ``comment``, one after another.
-    ``data`` is the content of the file if the caller has read it.
+    """Lines of a CSV file that are not blank and do not begin with one of the ``comments``, one
+    after another. ``data`` is the content of the file if the caller has read it.
 
     Raises SceneError for a file that cannot be read, is not text, or is not CSV.
     """
@@ -43,7 +46,7 @@ def lines(
             open_input(path) if data is None else io.BytesIO(data) as content,
             io.TextIOWrapper(content, encoding="utf-8-sig", newline="") as stream,
         ):
-            reader = csv.reader(_text(stream, comment), strict=True)
+            reader = csv.reader(_text(stream, comments), strict=True, delimiter=separator)
             for row in reader:
                 if len(row) > _MOST_COLUMNS:
                     raise csv.Error(f"{len(row)} columns, {_MOST_COLUMNS} at most")
@@ -56,21 +59,25 @@ def lines(
         raise SceneError([Fault(str(path), "file", str(error), "a CSV file of text")]) from error
 
 
-def listed(path: str | Path, data: bytes | None = None, comment: str | None = None) -> list[Line]:
+def listed(
+    path: str | Path,
+    data: bytes | None = None,
+    comments: tuple[str, ...] = (),
+    separator: str = ",",
+) -> list[Line]:
     """``lines`` as a list. Raises SceneError also for more than ``MOST_LINES`` lines."""
-    found = list(itertools.islice(lines(path, data, comment), MOST_LINES + 1))
+    found = list(itertools.islice(lines(path, data, comments, separator), MOST_LINES + 1))
     if len(found) > MOST_LINES:
         raise SceneError([Fault(str(path), "file", "more lines", f"{MOST_LINES:,} lines at most")])
     return found
 
 
-def _text(stream: TextIO, comment: str | None) -> Iterator[str]:
-    """Lines of text. A line that begins with ``comment`` becomes empty, so that the others keep
-    their numbers."""
+def _text(stream: TextIO, comments: tuple[str, ...]) -> Iterator[str]:
+    """Lines of text. A comment line becomes empty, so that the others keep their numbers."""
     while line := stream.readline(_LONGEST):
         if len(line) == _LONGEST:
             raise csv.Error(f"a line of {_LONGEST:,} characters or more")
-        yield "\n" if comment is not None and line.startswith(comment) else line
+        yield "\n" if line.startswith(comments) else line
 
 
 def quantities(

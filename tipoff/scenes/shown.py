@@ -7,6 +7,7 @@ import numpy as np
 from tipoff.cards import Carded
 from tipoff.scenes import ends
 from tipoff.scenes.effects import thrust_law
+from tipoff.scenes.effects.measured_table import MeasuredTable
 from tipoff.scenes.effects.spring import PushedTable
 
 if TYPE_CHECKING:
@@ -86,7 +87,9 @@ def _thrust(scene: "Scene") -> str:
         return scene.thrust.words()
     record = scene.thrust.record()
     peak, whole = (law(record, scene.time_limit) for law in (thrust_law.peak, thrust_law.impulse))
-    return f"{scene.thrust.kind}, peak {peak:.4g} N, impulse {whole:.4g} N*s within the duration"
+    said = f"{scene.thrust.kind}, peak {peak:.4g} N, impulse {whole:.4g} N*s within the duration"
+    notes = scene.thrust.notes() if isinstance(scene.thrust, MeasuredTable) else []
+    return "; ".join([said, *notes])
 
 
 def _duration(scene: "Scene") -> str:

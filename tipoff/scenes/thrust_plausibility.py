@@ -9,13 +9,11 @@ exit a rocket gains much more speed, so its v is not judged. A load cell reads z
 and after burn-out; any other reading adds to the impulse.
 """
 
-import math
-from typing import NamedTuple
-
 import numpy as np
 
 from tipoff.scenes import ends
 from tipoff.scenes.effects import thrust_law
+from tipoff.scenes.effects.load_cell import Level
 from tipoff.scenes.effects.measured import FIT_IMPULSE, MeasuredCurve
 from tipoff.scenes.rounding import at_most, below
 
@@ -31,10 +29,6 @@ _UNITS = (
     (1e3, "kN"),
 )
 _SAID = 0.005  # of the impulse: offset that is reported
-_BURNS = 0.05  # of the peak: above it there is thrust
-_PLATEAU = 0.2  # of the peak: a higher level is thrust that the record cuts
-_FEWEST = 5  # samples of a level
-_AGREE = 0.2  # relative difference of two points on one level
 _CUT = 0.01  # of the peak: largest value at the ends of a record
 _RESIDUAL = 0.1  # of a fit that is used
 
@@ -94,69 +88,16 @@ def _meant(scene, speed: float, strongest: float, weaker: bool) -> str:
     return found
 
 
-class _Level(NamedTuple):
-    """Reading (N) at one end of a record."""
-
-    value: float
-    is_seen: bool  # above its scatter
-
-
 def _of_record(table) -> list[str]:
     curve = table.curve()
     peak = float(np.abs(curve.force).max())
     if peak == 0.0:
         return []
-    before, after = _level(curve, peak), _level(MeasuredCurve(*(c[::-1] for c in curve)), peak)
-    if before is None and after is None:
-        before = after = _of_few_points(curve, peak)
+    before, after = table.levels()
     return _of_offset(table, before, after) + _of_ends(curve, peak, before, after)
 
 
-def _level(curve: MeasuredCurve, peak: float) -> _Level | None:
-    """The level of the first samples, if they are no thrust: at least ``_FEWEST`` within 5 % of the
-    ``peak`` about their median. None for a record that begins with thrust."""
-    force = curve.force
-    noise = 1.4826 * float(np.median(np.abs(np.diff(force)))) / math.sqrt(2.0)
-    begun = float(np.median(force[: max(_FEWEST, force.size // 100)]))
-    burning = np.flatnonzero(
-        np.abs(force - begun) > np.clip(6.0 * noise, _BURNS * peak, _PLATEAU * peak)
-    )
-    count = int(burning[0]) if burning.size else force.size
-    if count < _FEWEST or abs(begun) > _PLATEAU * peak:
-        return None
-    level, error = _mean(force[: max(_FEWEST, count // 2)])
-    return _Level(level, abs(level) > 3.0 * error)
-
-
-def _mean(calm: np.ndarray) -> tuple[float, float]:
-    """Level (N) at the beginning of samples (n,) without thrust, and its standard error. A zero
-    that drifts along a straight line gives the start of the line, else it is the median. Thrust
-    that begins or fades slowly has no straight line; the first samples are then used."""
-    place = np.linspace(0.0, 1.0, calm.size)
-    slope, end = np.polyfit(place, calm, 1)
-    left = float(np.std(calm - slope * place - end))
-    scatter = 1.4826 * float(np.median(np.abs(np.diff(calm, 2)))) / math.sqrt(6.0)
-    error = 1.2533 * scatter / math.sqrt(calm.size)
-    if left > 2.0 * scatter + 1e-9 * abs(end):
-        few = calm[: max(_FEWEST, calm.size // 5)]
-        return float(np.median(few)), 1.2533 * float(np.std(few)) / math.sqrt(few.size)
-    # The end of the line has twice the error of the mean.
-    if abs(slope) > 4.0 * math.sqrt(12.0) * error:
-        return float(end), 2.0 * error
-    return float(np.median(calm)), error
-
-
-def _of_few_points(curve: MeasuredCurve, peak: float) -> _Level | None:
-    """The level of a record with too few points for a level at each end, if its first and last
-    point agree and are no thrust."""
-    first, last = float(curve.force[0]), float(curve.force[-1])
-    agree = first * last > 0.0 and abs(first - last) <= _AGREE * abs(last)
-    if not agree or abs(last) > _PLATEAU * peak:
-        return None
-    return _Level(0.5 * (first + last), True)
-
-
-def _of_offset(table, before: _Level | None, after: _Level | None) -> list[str]:
+def _of_offset(table, before: Level | None, after: Level | None) -> list[str]:
     """Readings before ignition and after burn-out that are not zero, and their impulse."""
     seen = [item for item in (before, after) if item is not None and item.is_seen]
     if not seen:
@@ -181,11 +122,12 @@ def _of_offset(table, before: _Level | None, after: _Level | None) -> list[str]:
         f"thrust.baseline: the force does not return to zero: {words}; over the {lasting:.4g} s of the "
         f"record this adds {added:.4g} N s{share}; plausible below {100.0 * _SAID:g} %. "
         f"thrust.baseline = [{pair}] subtracts it"
+        + ("" if table.remove_offset or table.baseline else ", or thrust.remove_offset = true")
     ]
 
 
 def _of_ends(
-    curve: MeasuredCurve, peak: float, before: _Level | None, after: _Level | None
+    curve: MeasuredCurve, peak: float, before: Level | None, after: Level | None
 ) -> list[str]:
     """A record that begins or ends with thrust."""
     found = []

@@ -21,7 +21,7 @@ CURVES = {
     "three columns": ("time_s,force_N\n0,1,2\n1,5,2\n", "two numbers"),
     "no header": ("0,1\n1,5\n", "header"),
     "empty": ("", "header"),
-    "wrong units": ("time_ms,force_N\n0,1\n1,5\n", "header"),
+    "wrong units": ("time_kg,force_N\n0,1\n1,5\n", "header"),
 }
 
 

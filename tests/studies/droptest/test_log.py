@@ -207,7 +207,7 @@ def test_what_is_wrong_with_a_table_is_listed(tmp_path):
         ('exit = "44.4 ms"', 'exit = "25 ms"', "deg/s of scatter"),
         ('rest = "1 s"', 'rest = "2 s"', "rest window"),
         ("[units]\n", '[units]\npressure = "Pa"\n', "units.pressure"),
-        ('temperature = "degC"\n', "", "temperature both in"),
+        ('temperature = "degC"\n', "", "units.temperature: given no unit"),
     ],
 )
 def test_sheets_that_cannot_be_are_refused(tmp_path, old, new, words):

@@ -78,7 +78,7 @@ def test_a_scene_refers_to_the_curve_of_its_thrust(tmp_path, monkeypatch):
     "curve, others, words",
     [
         ("time_s,force_N\n0,0\n1,x\n0.5,1 N\n", [], ["force_N: 'x' in line 3", "'1 N' in line 4"]),
-        ("t,F\n0,0\n", [], ["a CSV whose header is time_s,force_N"]),
+        ("t,F\n0,0\n", [], ["as in time_s,force_N", "header 't, F'"]),
         ("time_s,force_N\n0,0\n1,-5\n", [], ["an impulse above zero", "-2.5 N s"]),
         (
             None,

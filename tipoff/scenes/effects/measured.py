@@ -10,10 +10,9 @@ import numpy as np
 import scipy  # its submodules load at their first use
 
 from tipoff.files import read_input
-from tipoff.scenes import csv_file
-from tipoff.scenes.faults import SceneError
+from tipoff.scenes.thrust_files import reader
+from tipoff.scenes.thrust_files.record import ANYTHING, SECTION, Choice
 
-_HEADER = ["time_s", "force_N"]
 FIT_IMPULSE = 0.02  # of the impulse of a curve: largest error of its fit by default
 
 
@@ -43,43 +42,66 @@ class GaussianFit(NamedTuple):
         return self.impulse * (1.0 - before) / self.curve_impulse - 1.0
 
 
-def read_curve(path: str | Path) -> MeasuredCurve:
-    """Read a CSV with header ``time_s,force_N``. A time in two rows is a jump. Raises ValueError
-    with every fault of the table."""
+def read_curve(path: str | Path, choice: Choice = ANYTHING) -> MeasuredCurve:
+    """Read a thrust over time (``read_record``)."""
+    return read_record(path, choice)[0]
+
+
+def read_record(
+    path: str | Path, choice: Choice = ANYTHING, may_begin_early: bool = False
+) -> tuple[MeasuredCurve, str]:
+    """The thrust over time in a file of a format in ``tipoff.scenes.thrust_files``, and what was
+    read in words. A time in two points is a jump; times are negative only if the curve
+    ``may_begin_early``. Raises ValueError with what is wrong."""
     try:
         data = read_input(path)
     except OSError as error:
         raise ValueError(f"a readable CSV file ({error.strerror or error})") from error
-    return MeasuredCurve(*(values.copy() for values in _parsed(str(path), data)))
+    curve, words = _parsed(str(path), data, choice, may_begin_early)
+    return MeasuredCurve(*(values.copy() for values in curve)), words
 
 
 # Each condition and each variation of a scene reads its curve. Equal bytes give an equal curve.
 @lru_cache(maxsize=4)
-def _parsed(path: str, data: bytes) -> MeasuredCurve:
-    try:
-        table = csv_file.listed(path, data)
-    except SceneError as error:
-        raise ValueError(f"{error.faults[0].expected} ({error.faults[0].given})") from error
-    if not table or [cell.strip() for cell in table[0][1]] != _HEADER:
-        raise ValueError(f"a CSV whose header is {','.join(_HEADER)}")
-    if long := [number for number, row in table[1:] if len(row) != 2]:
-        raise ValueError(f"two numbers in every row (line {long[0]} has another count)")
-    (time, wrong_times), (force, wrong_forces) = (
-        csv_file.numbers(path, name, place, table[1:]) for place, name in enumerate(_HEADER)
-    )
-    wrong = [f"{f.expected} ({f.key}: {f.given})" for f in wrong_times + wrong_forces]
+def _parsed(
+    path: str, data: bytes, choice: Choice, may_begin_early: bool
+) -> tuple[MeasuredCurve, str]:
+    time, force, words, faults = reader.read(path, data, choice)
+    wrong = list(faults)
+    if not wrong and not (np.isfinite(time).all() and np.isfinite(force).all()):
+        wrong.append("finite numbers")
     if np.unique(time).size < 2:
         wrong.append("at least two different times")
-    if (time < 0.0).any():
-        wrong.append("times that are not negative")
+    if (time < 0.0).any() and not may_begin_early:
+        wrong.append("times that are not negative, or thrust.ignition, where a scene begins")
     steps = np.diff(time[np.isfinite(time)])
     if (steps < 0.0).any():
         wrong.append("times in increasing order")
     if ((steps[1:] == 0.0) & (steps[:-1] == 0.0)).any():
         wrong.append("each time in at most two rows (two are a jump)")
     if wrong:
-        raise ValueError("a curve with " + ", ".join(wrong))
-    return MeasuredCurve(time, force)
+        raise ValueError(f"a curve with {', '.join(wrong)}; {SECTION}")
+    return MeasuredCurve(time, force), words
+
+
+def from_ignition(curve: MeasuredCurve, ignition: float | None) -> MeasuredCurve:
+    """The curve from the instant ``ignition`` (s) on, which becomes zero. Raises ValueError for an
+    instant outside the curve."""
+    if ignition is None:
+        return curve
+    if not curve.time[0] <= ignition < curve.time[-1]:
+        raise ValueError(
+            f"a curve around thrust.ignition = {ignition:g} s (it is from {curve.time[0]:g} s to "
+            f"{curve.time[-1]:g} s); {SECTION}"
+        )
+    first = int(np.searchsorted(curve.time, ignition, side="right"))
+    begun = float(
+        np.interp(ignition, curve.time[first - 1 : first + 1], curve.force[first - 1 : first + 1])
+    )
+    return MeasuredCurve(
+        np.concatenate([[0.0], curve.time[first:] - ignition]),
+        np.concatenate([[begun], curve.force[first:]]),
+    )
 
 
 def without_baseline(curve: MeasuredCurve, baseline: tuple[float, float] | None) -> MeasuredCurve:

@@ -4,32 +4,23 @@ travel is in ``spring``.
     F(t) = sum_i P_i exp(-(t - t_i)^2 / (2 s_i^2))   begin <= t <= end,        impulse of one pulse J = P s sqrt(2 pi)
 
 A pulse cut at ``n`` widths keeps erf(n / sqrt 2) of its impulse; ``rescale`` restores it. A
-measured curve is used point by point, or through its least-squares Gaussian fit; ``describe``
-states which, with the fit, its residual and both impulses. The law is in ``thrust_law``; its names
+measured curve is in ``measured_table``. The law is in ``thrust_law``; its names
 are exported here too.
 """
 
 import math
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import (
     AfterValidator,
     Field,
-    PrivateAttr,
     ValidationInfo,
     field_validator,
     model_validator,
 )
 
-from tipoff.scenes.effects.measured import (
-    FIT_IMPULSE,
-    GaussianFit,
-    MeasuredCurve,
-    fit_gaussian,
-    read_curve,
-    without_baseline,
-)
+from tipoff.scenes.effects.measured_table import MeasuredTable
 from tipoff.scenes.effects.spring import SpringsTable, SpringTable
 from tipoff.scenes.effects.thrust_law import (
     ROOT_TWO_PI,
@@ -46,15 +37,12 @@ from tipoff.scenes.effects.thrust_law import (
     sample,
     shortest_feature,
 )
-from tipoff.scenes.faults import within
-from tipoff.scenes.rounding import below
-from tipoff.scenes.table import Table, at_least_one, is_absent, limited
+from tipoff.scenes.effects.timed import TimedTable
+from tipoff.scenes.table import Table, at_least_one, limited
 from tipoff.scenes.units import (
     Force,
     Impulse,
-    NonNegativeNumber,
     NonNegativeTime,
-    PositiveLength,
     PositiveNumber,
     PositiveTime,
     Time,
@@ -104,64 +92,7 @@ class Pulse(Table):
         return self.height() * self.width * ROOT_TWO_PI
 
 
-class _ThrustTable(Table):
-    """Keys of every kind: ``arm`` (m), distance of the point of application behind the nominal mass
-    centre; ``reaction``."""
-
-    #: Distance of the point of application behind the nominal mass centre.
-    arm: PositiveLength = 0.1
-    #: "platform": the reaction acts on the platform; "exhaust": it leaves with the gas.
-    reaction: Literal["platform", "exhaust"] = "platform"
-    if TYPE_CHECKING:
-        kind: str  # a literal in each kind, at the place of its key
-
-    def record(self) -> Thrust:
-        """Kernel record."""
-        raise NotImplementedError
-
-    def contents(self) -> tuple[dict, list[list[float]]]:
-        """The table without paths, and the points of its file, for the hash of a scene."""
-        return self.model_dump(mode="json"), []
-
-    def middle(self) -> tuple[float, float]:
-        """Place (m) of the line of action along Y and Z, without errors."""
-        return (0.0, 0.0)
-
-    def requested(self) -> float:
-        """Impulse (N s) of the table."""
-        raise NotImplementedError
-
-    def describe(self, duration: float) -> dict[str, float | str]:
-        """The thrust for results and report: numbers in SI by name, and a sentence, ``text``.
-
-        ``impulse_requested_Ns`` is the impulse of the table, ``impulse_delivered_Ns`` the one within
-        0..``duration`` (s).
-        """
-        record = self.record()
-        requested, delivered = self.requested(), impulse(record, duration)
-        text = (
-            f"{self.kind}, {self.usage()}; impulse requested {requested:.7g} N s, delivered in the "
-            f"scene {delivered:.7g} N s"
-        )
-        return {
-            "kind": self.kind,
-            "peak_N": peak(record, duration),
-            "impulse_requested_Ns": requested,
-            "impulse_delivered_Ns": delivered,
-            **self.details(),
-            "text": text,
-        }
-
-    def usage(self) -> str:
-        """Text on how the table becomes F(t)."""
-        return "used as given"
-
-    def details(self) -> dict[str, float | str]:
-        """Additions of this kind to ``describe``."""
-        return {}
-
-
-class _PulsedTable(_ThrustTable):
+class _PulsedTable(TimedTable):
     """Gaussians, cut at ``cutoff`` widths before the first begins and after the last ends (absent:
     not cut).
 
@@ -242,7 +173,7 @@ class GaussiansTable(_PulsedTable):
         return self.components
 
 
-class ConstantTable(_ThrustTable):
+class ConstantTable(TimedTable):
     """``[thrust] kind = "constant"``: force (N) from ``start`` for ``duration`` (s)."""
 
     #: A constant push.
@@ -264,109 +195,6 @@ class ConstantTable(_ThrustTable):
     def requested(self) -> float:
         """Impulse (N s) of the whole push."""
         return self.force * self.duration
-
-
-class MeasuredTable(_ThrustTable):
-    """``[thrust] kind = "measured"``: CSV with columns ``time_s,force_N``; ``use`` the curve itself
-    or its Gaussian fit."""
-
-    #: A measured curve.
-    kind: Literal["measured"]
-    #: CSV file with the columns time_s,force_N; relative to the scene file.
-    file: str
-    #: "curve": the points act; "fit": their Gaussian fit acts.
-    use: Literal["curve", "fit"] = "curve"
-    #: Largest relative error of the impulse of the fit, with use = "fit".
-    fit_impulse_tolerance: NonNegativeNumber = FIT_IMPULSE
-    #: Readings of the load cell without thrust, at the first and at the last point. The straight
-    #: line between them is subtracted.
-    baseline: tuple[Force, Force] | None = Field(None, exclude_if=is_absent)
-    _curve: MeasuredCurve = PrivateAttr()
-
-    @field_validator("file")
-    @classmethod
-    def _readable(cls, file: str):
-        read_curve(file)
-        return file
-
-    @model_validator(mode="after")
-    def _usable(self):
-        self._curve = without_baseline(read_curve(self.file), self.baseline)
-        if self.use == "fit":
-            fit = fit_gaussian(self._curve)
-            if below(self.fit_impulse_tolerance, abs(fit.impulse_error)):
-                raise within(
-                    "use",
-                    f"'fit', whose impulse after ignition differs by {100.0 * fit.impulse_error:+.3g} % from "
-                    f"the {fit.curve_impulse:.5g} N s of the curve, relative residual "
-                    f"{100.0 * fit.relative_residual:.3g} %",
-                    f"a difference of at most {100.0 * self.fit_impulse_tolerance:g} %: "
-                    f'use = "curve", or a larger thrust.fit_impulse_tolerance',
-                )
-        return self
-
-    def fit(self) -> GaussianFit | None:
-        """Least-squares Gaussian of the curve, with residual and impulses; None if there is
-        none."""
-        try:
-            return fit_gaussian(self._curve)
-        except ValueError:
-            return None
-
-    def curve(self) -> MeasuredCurve:
-        """Measured times (s) and forces (N), without the baseline."""
-        return self._curve
-
-    def contents(self) -> tuple[dict, list[list[float]]]:
-        """The table without its path, with times (s) and forces (N) of the curve."""
-        points = [self._curve.time.tolist(), self._curve.force.tolist()]
-        return self.model_dump(mode="json", exclude={"file"}), points
-
-    def record(self) -> Thrust:
-        """Kernel record: the curve, or one pulse."""
-        if self.use == "fit":
-            fit = fit_gaussian(self._curve)
-            pulses = Pulses(
-                peaks=np.array([fit.peak]),
-                centres=np.array([fit.centre]),
-                widths=np.array([fit.width]),
-                begin=-math.inf,
-                end=math.inf,
-            )
-            return Thrust(pulses=pulses, curve=None)
-        return Thrust(None, Curve(self._curve.time, self._curve.force))
-
-    def requested(self) -> float:
-        """Impulse (N s) of the measured curve, without the baseline."""
-        return float(np.trapezoid(self._curve.force, self._curve.time))
-
-    def usage(self) -> str:
-        """Whether the points or the fit act, and their agreement."""
-        acting = "the points act" if self.use == "curve" else "the Gaussian fit acts"
-        fit = self.fit()
-        if fit is None:
-            return f"{acting}, no Gaussian fits"
-        return (
-            f"{acting}; fit peak {fit.peak:.6g} N, centre {fit.centre:.6g} s, width "
-            f"{fit.width:.6g} s, relative residual "
-            f"{fit.relative_residual:.3g}, impulse {fit.impulse:.7g} N s against "
-            f"{fit.curve_impulse:.7g} N s of the curve"
-        )
-
-    def details(self) -> dict[str, float | str]:
-        """Which of curve and fit is used, and the fit."""
-        used: dict[str, float | str] = {"use": self.use}
-        fit = self.fit()
-        if fit is None:
-            return used
-        return used | {
-            "fit_peak_N": fit.peak,
-            "fit_centre_s": fit.centre,
-            "fit_width_s": fit.width,
-            "fit_relative_residual": fit.relative_residual,
-            "fit_impulse_Ns": fit.impulse,
-            "curve_impulse_Ns": fit.curve_impulse,
-        }
 
 
 ThrustTable = Annotated[

@@ -81,6 +81,8 @@ def _require_whole(log: Log, spans: Spans, source: str) -> None:
 
 def _notes(sheet: Sheet, log: Log, events: Events, unrest: float) -> list[str]:
     notes = [*log.notes, *missing_information(sheet, log)]
+    if sheet.channel_class is None:
+        notes.append(f"no channel class: {1.0 / log.interval:.4g} Hz, nothing is filtered")
     if events.given:
         notes.append("release and ignition from the sheet")
     if events.later:

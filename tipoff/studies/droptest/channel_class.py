@@ -18,6 +18,7 @@ import scipy  # scipy loads a part at its first use
 
 DESIGN = 2.0775  # frequency of one pass over the class
 SAMPLES_PER_CLASS = 10.0  # least sampling rate over the class
+_UNKNOWN = 60.0  # class in place of an unknown filter
 _DECAYS = 10.0  # time constants after which 5e-5 of a jump is left
 
 
@@ -39,14 +40,19 @@ def coefficients(channel_class: float, rate: float) -> tuple[np.ndarray, np.ndar
     )
 
 
-def filtered(values: np.ndarray, channel_class: float, interval: float) -> np.ndarray:
-    """``values`` (n, ...) sampled every ``interval`` (s), filtered without phase shift. The signal
-    is continued by point reflection at both ends, so a straight line does not change."""
+def filtered(values: np.ndarray, channel_class: float | None, interval: float) -> np.ndarray:
+    """``values`` (n, ...) sampled every ``interval`` (s), filtered without phase shift; unchanged
+    without a class. The signal is continued by point reflection at both ends, so a straight line
+    does not change."""
+    if channel_class is None:
+        return values
     top, bottom = coefficients(channel_class, 1.0 / interval)
     pad = min(math.ceil(reach(channel_class) / interval), len(values) - 1)
     return scipy.signal.filtfilt(top, bottom, values, axis=0, padtype="odd", padlen=pad)
 
 
-def reach(channel_class: float) -> float:
-    """How far (s) the filter carries a jump to either side: its poles decay with w_d / sqrt(2)."""
+def reach(channel_class: float | None) -> float:
+    """How far (s) the filter carries a jump to either side: its poles decay with w_d / sqrt(2).
+    Without a class it is that of CFC 60, for the filter of a sensor that is not known."""
+    channel_class = channel_class or _UNKNOWN
     return _DECAYS / (2.0 * math.pi * DESIGN * channel_class / math.sqrt(2.0))

@@ -18,17 +18,18 @@ import numpy as np
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.droptest.channel_class import filtered, reach
 from tipoff.studies.droptest.log import Calibrated, runs
+from tipoff.studies.droptest.sampling import FALL
 from tipoff.studies.droptest.sheet import Sheet
 
 GRAVITY = 9.80665
 WINDOWS = ("rest", "reference", "settled")
-_FALL = 0.05  # s; a knock is shorter
 _NOISE_FROM, _NOISE_TO = 0.01, 0.05  # s after release, where the noise of the force is judged
 _SIGMAS, _LEAST = 6.0, 1.0  # a sample that belongs to the burn: standard deviations, and m/s2
 _JOINED = 0.002  # s between samples of one burn
 _IMPULSE = 0.3  # m/s, the smallest impulse per mass of an ejection
 _AT_REST = 0.05  # relative error of g while hanging, beyond which units or scale are wrong
 _SHORTEST = 0.03  # s of a window
+_GUARDED = 2.0  # samples between an event and a window, at least
 _ROUNDING = 1e-6  # of an interval: rounding of instants, which are sums of decimal times
 
 
@@ -94,10 +95,10 @@ def _force(found: Calibrated) -> np.ndarray:
 def _release(sheet: Sheet, found: Calibrated, interval: float, source: str) -> int:
     force = _force(found)
     smooth = np.linalg.norm(filtered(force, sheet.channel_class, interval), axis=1)
-    falls = [run for run in runs(smooth < 0.5 * GRAVITY) if run[1] - run[0] >= _FALL / interval]
+    falls = [run for run in runs(smooth < 0.5 * GRAVITY) if run[1] - run[0] >= FALL / interval]
     if not falls or falls[0][0] == 0:
         given = "a log that begins in free fall" if falls else "no free fall"
-        expected = f"a force that falls from g to zero for at least {1e3 * _FALL:g} ms"
+        expected = f"a force that falls from g to zero for at least {1e3 * FALL:g} ms"
         raise SceneError([Fault(source, "release", given, expected)])
     crossing = falls[0][0]
     span = max(3, int(np.ceil(reach(sheet.channel_class) / interval)))
@@ -118,7 +119,7 @@ def _pushes(found: Calibrated, interval: float, release: int, source: str) -> li
     level = np.median(calm)
     limit = max(_SIGMAS * 1.4826 * np.median(np.abs(calm - level)), _LEAST)
     pushed = np.flatnonzero(ahead[begin:] - level > limit) + begin
-    burns = np.split(pushed, np.flatnonzero(np.diff(pushed) > _JOINED / interval) + 1)
+    burns = np.split(pushed, np.flatnonzero(np.diff(pushed) > max(_JOINED / interval, 1.0)) + 1)
     strong = [
         int(burn[0])
         for burn in burns
@@ -136,7 +137,8 @@ def spans(sheet: Sheet, found: Calibrated, events: Events, source: str) -> Spans
     """The windows. Raises SceneError if the log does not contain them, or if they are too short."""
     from tipoff.mechanics.outcome import SETTLE_DELAY, SETTLE_WINDOW
 
-    ask, guard = sheet.windows, reach(sheet.channel_class)
+    interval = float(found.time[1] - found.time[0])
+    ask, guard = sheet.windows, max(reach(sheet.channel_class), _GUARDED * interval)
     left = events.ignition + ask.exit
     settled = left + SETTLE_DELAY + 2.0 * ask.exit_uncertainty
     spans_ = Spans(
@@ -147,7 +149,7 @@ def spans(sheet: Sheet, found: Calibrated, events: Events, source: str) -> Spans
     )
     faults = []
     # A window that ends less than half an interval outside the log has the same samples.
-    slack = 0.5 * float(found.time[1] - found.time[0])
+    slack = 0.5 * interval
     first, last = found.time[0] - slack, found.time[-1] + slack
     for name in WINDOWS:
         begin, end = getattr(spans_, name)

@@ -19,11 +19,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.scenes.csv_file import listed, numbers, places
 from tipoff.scenes.faults import Fault, SceneError
-from tipoff.scenes.units import to_si
+from tipoff.studies.droptest import columns, sampling
 from tipoff.studies.droptest import sheet as sheets
-from tipoff.studies.droptest.channel_class import SAMPLES_PER_CLASS
 from tipoff.studies.droptest.saturation import saturated
 from tipoff.studies.droptest.sheet import Sheet
 from tipoff.workspace.words import counted
@@ -31,7 +29,6 @@ from tipoff.workspace.words import counted
 _BRIDGED = 2  # missing samples that a straight line may replace
 _JITTER = 0.01  # of an interval: a smaller jitter is rounding of the clock and stays
 _UNEVEN = 0.45  # of an interval: with more jitter the instant of a sample is not clear
-_FEWEST = 100
 _MOST_MISSING = 10.0  # instants of the even grid per sample; a wrong time would make billions
 
 
@@ -58,49 +55,17 @@ def read(path: str | Path) -> tuple[Sheet, Log]:
     """A sheet and its log. Raises SceneError listing every fault of either."""
     sheet = sheets.load(path)
     source = Path(path).parent / sheet.file
-    names = sheet.columns
-    groups = {
-        "time": (names.time,),
-        "rate": names.rate,
-        "acceleration": names.acceleration or (),
-        "temperature": (names.temperature,) if names.temperature else (),
-    }
-    table = _table(source, [name for group in groups.values() for name in group])
-    values = {}
-    for group, columns in groups.items():
-        if columns:
-            si = {"time": "s", "rate": "rad/s", "acceleration": "m/s**2", "temperature": "K"}[group]
-            unit = getattr(sheet.units, group)
-            # degC has an offset
-            zero, one = to_si(f"0 {unit}", si, absolute=True), to_si(f"1 {unit}", si, absolute=True)
-            values[group] = zero + (one - zero) * np.column_stack([table[name] for name in columns])
-    return sheet, _even(sheet, str(source), values)
+    values, notes = columns.read(source, sheet)
+    return sheet, _even(sheet, str(source), values, notes)
 
 
-def _table(path: Path, wanted: list[str]) -> dict[str, np.ndarray]:
-    """The wanted columns (n,) by name; an empty cell is NaN."""
-    rows = [(number, [cell.strip() for cell in row]) for number, row in listed(path, comment="#")]
-    where, faults = places(str(path), rows[0][1] if rows else [], wanted)
-    found = {}
-    for name, place in where.items():
-        found[name], wrong = numbers(str(path), name, place, rows[1:], gaps=True)
-        faults += wrong
-    if faults:
-        raise SceneError(faults)
-    if len(rows) - 1 < _FEWEST:
-        given = counted(len(rows) - 1, "sample")
-        raise SceneError([Fault(str(path), "file", given, f"at least {_FEWEST}")])
-    return found
-
-
-def _even(sheet: Sheet, source: str, values: dict[str, np.ndarray]) -> Log:
+def _even(sheet: Sheet, source: str, values: dict[str, np.ndarray], notes: list[str]) -> Log:
     time = values["time"][:, 0]
-    place, start, interval = _places(sheet, source, time)
+    place, start, interval = _places(sheet, source, values)
     off = np.abs(time - start - interval * place).max() / interval
     if off > _UNEVEN or (np.diff(place) == 0).any():
         given = f"samples up to {off:.2g} of an interval off an even grid"
         raise _fault(source, given, f"less than {_UNEVEN}")
-    notes: list[str] = []
     grid = start + interval * np.arange(place[-1] + 1)
     if off > _JITTER:
         notes.append(
@@ -109,18 +74,22 @@ def _even(sheet: Sheet, source: str, values: dict[str, np.ndarray]) -> Log:
     else:
         time = grid[place]
     filled, doubtful = {"time": grid}, np.zeros(grid.size, dtype=bool)
-    for name, columns in values.items():
+    for name, found in values.items():
         if name == "temperature":
-            filled[name] = _drifting(values["time"][:, 0], columns[:, 0], grid, source, notes)
+            filled[name] = _drifting(values["time"][:, 0], found[:, 0], grid, source, notes)
         elif name != "time":
-            filled[name], gone = _bridged(time, columns, grid, place, name, notes)
+            every = sampling.every(found, place) if name == "acceleration" else 1
+            filled[name], gone = _bridged((time, place), found, grid, name, every, notes)
             doubtful |= gone
     return _marked(sheet, filled, doubtful, notes)
 
 
-def _places(sheet: Sheet, source: str, time: np.ndarray) -> tuple[np.ndarray, float, float]:
+def _places(
+    sheet: Sheet, source: str, values: dict[str, np.ndarray]
+) -> tuple[np.ndarray, float, float]:
     """Instant (n,) of an even grid that each sample belongs to, and the grid's start and interval
     (s). Raises SceneError."""
+    time = values["time"][:, 0]
     finite = np.isfinite(time)
     if not finite.all():
         given = f"{counted((~finite).sum(), 'sample')} without a time"
@@ -142,10 +111,8 @@ def _places(sheet: Sheet, source: str, time: np.ndarray) -> tuple[np.ndarray, fl
     interval, start = (
         float(value) for value in np.polynomial.Polynomial.fit(place, time, 1).convert().coef[::-1]
     )
-    least = SAMPLES_PER_CLASS * sheet.channel_class
-    if interval * least > 1.0 + 1e-6:
-        expected = f"at least {least:g} Hz for CFC {sheet.channel_class} (SAE J211)"
-        raise _fault(source, f"{1.0 / interval:.4g} Hz", expected)
+    every = sampling.every(values["acceleration"], place) if "acceleration" in values else 1
+    sampling.require(sheet, interval, every, source)
     return place, start, interval
 
 
@@ -154,15 +121,25 @@ def _fault(source: str, given: str, expected: str, column: str = "time") -> Scen
 
 
 def _bridged(
-    time, columns, grid, place, name: str, notes: list[str]
+    when: tuple[np.ndarray, np.ndarray],
+    columns: np.ndarray,
+    grid: np.ndarray,
+    name: str,
+    every: int,
+    notes: list[str],
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Values (n,k) on the grid, and the samples (n,) of gaps too long to bridge; adds ``notes``."""
+    """Values (n,k) on the grid from samples at ``when``, times and instants of the grid, of which
+    one in ``every`` has a value; and the samples (n,) of gaps too long to bridge; adds ``notes``."""
+    time, place = when
     good = np.isfinite(columns).all(axis=1)
     missing = np.ones(grid.size, dtype=bool)
     missing[place[good]] = False
-    gaps = runs(missing)
-    short = [gap for gap in gaps if gap[1] - gap[0] <= _BRIDGED]
-    long = [gap for gap in gaps if gap[1] - gap[0] > _BRIDGED]
+    if every > 1:
+        notes.append(f"{name}: given in one of {every} samples, interpolated between")
+    # Between two of its own samples a slow channel has nothing to miss.
+    gaps = [gap for gap in runs(missing) if gap[1] - gap[0] >= every]
+    short = [gap for gap in gaps if gap[1] - gap[0] < (_BRIDGED + 1) * every]
+    long = [gap for gap in gaps if gap[1] - gap[0] >= (_BRIDGED + 1) * every]
     if short:
         notes.append(
             f"{name}: {counted(len(short), 'gap')} of one or two samples bridged by a straight line, the "

@@ -16,7 +16,7 @@
 | temperature | u(c) times the change of temperature between the windows | B |
 | quantisation | q sqrt(tau sum w^2 / 12); q sqrt(2/12) where noise does not spread it | B |
 | bent line | a free tumble bends: w'' = 2 w'^2 / w for equations quadratic in w; rectangular | B |
-| instant | slope times u(exit) | B |
+| instant | slope times u(exit); without a channel class also one interval, rectangular | B |
 
 The noise of d = sum_i w_i x_i, which is linear in the samples:
 
@@ -90,7 +90,7 @@ def reduced(sheet: Sheet, found: Calibrated, spans: Spans, source: str) -> Reduc
     )
     parts["quantisation"] = _quantised(sheet.gyro.resolution, sigma, tau * (weights**2).sum())
     parts["bent line"] = 0.5 * bend * abs(lever**2 - length**2 / 12.0) / np.sqrt(3.0)
-    parts["instant"] = np.abs(slope) * sheet.windows.exit_uncertainty
+    parts["instant"] = np.abs(slope) * _uncertain_instant(sheet, found)
     combined = np.sqrt(sum(part**2 for part in parts.values()))
     # All other parts have infinite degrees of freedom. With little noise the factor is that of a
     # normal distribution.
@@ -128,6 +128,13 @@ def _systematic(
         "g-sensitivity": np.full(3, sure.g_sensitivity * np.linalg.norm(moved(found.force))),
         "temperature": np.full(3, sure.temperature * np.abs(moved(found.temperature))),
     }
+
+
+def _uncertain_instant(sheet: Sheet, found: Calibrated) -> float:
+    """Of the exit (s). A log without a channel class may be slow: the ignition is then known to one
+    interval (rectangular)."""
+    interval = 0.0 if sheet.channel_class else float(found.time[1] - found.time[0])
+    return float(np.hypot(sheet.windows.exit_uncertainty, interval / np.sqrt(12.0)))
 
 
 def _quantised(resolution: float, sigma: np.ndarray, factor: float) -> np.ndarray:

@@ -53,7 +53,7 @@ class Measured:
     simulated: bool
     description: str
     notes: tuple[str, ...]
-    channel_class: Annotated[int, Column("CFC", "Hz", "g")]
+    channel_class: Annotated[int | None, Column("CFC", "Hz", "g")]
     interval_s: float
     release_s: Annotated[float, Column("release", "s", ".4f")]
     ignition_s: Annotated[float, Column("ignition", "s", ".4f")]

@@ -2,7 +2,7 @@
 uncertainty of the sensor::
 
     file = "drop1.csv"
-    channel_class = 60                         # CFC of SAE J211 and ISO 6487
+    channel_class = 60                         # CFC of SAE J211 and ISO 6487; absent: not filtered
     axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]   # columns: the sensor's axes in payload body axes
 
     [columns]  [units]                         # names in the CSV and their units
@@ -28,6 +28,7 @@ from pydantic import (
 
 from tipoff.scenes import reading
 from tipoff.scenes.faults import SceneError, faults_of
+from tipoff.scenes.instrument_table import scale, stated
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import (
     Acceleration,
@@ -70,10 +71,19 @@ DriftError = Annotated[float, *_in("rad/s/K", ge=0.0)]
 
 def _unit_of(si: str) -> AfterValidator:
     def check(text: str) -> str:
-        to_si(f"1 {text}", si, absolute=True)
+        line(text, si)
         return text
 
     return AfterValidator(check)
+
+
+def line(unit: str, si: str, is_header: bool = False) -> tuple[float, float]:
+    """Zero and one of a column in ``si``; a unit that is not in a header may have a number
+    (``instrument_table.stated``). Raises ValueError."""
+    if si != "K":
+        return 0.0, scale(unit, si) if is_header else stated(unit, si)
+    # degC has an offset
+    return to_si(f"0 {unit}", si, absolute=True), to_si(f"1 {unit}", si, absolute=True)
 
 
 def _temperature(value: Any, info: ValidationInfo) -> float:
@@ -83,19 +93,21 @@ def _temperature(value: Any, info: ValidationInfo) -> float:
 
 
 class Columns(Table):
-    """Names of columns in the CSV file."""
+    """Names of columns in the CSV file, with or without their units. An absent ``time`` is the only
+    column whose name says that it is a time."""
 
-    time: str
+    time: str | None = None
     rate: _Triple[str]
     acceleration: _Triple[str] | None = None
     temperature: str | None = None
 
 
 class Units(Table):
-    """Units of the columns."""
+    """Units of the columns. They may be absent if the header of the CSV file states them. A unit of
+    counts has a number, such as "0.0048 m/s**2"."""
 
-    time: Annotated[str, _unit_of("s")]
-    rate: Annotated[str, _unit_of("rad/s")]
+    time: Annotated[str, _unit_of("s")] | None = None
+    rate: Annotated[str, _unit_of("rad/s")] | None = None
     acceleration: Annotated[str, _unit_of("m/s**2")] | None = None
     temperature: Annotated[str, _unit_of("K")] | None = None
 
@@ -157,13 +169,14 @@ class Windows(Table):
 
 
 class Sheet(Table):
-    """A sheet: columns, units, calibration, windows."""
+    """A sheet: columns, units, calibration, windows. Without a ``channel_class`` nothing is
+    filtered."""
 
     file: str
-    channel_class: Literal[60, 180, 600, 1000]
+    channel_class: Literal[60, 180, 600, 1000] | None = None
     axes: _Matrix[Number]
     columns: Columns
-    units: Units
+    units: Units = Units()
     gyro: Gyro
     windows: Windows
     accelerometer: Accelerometer | None = None
@@ -175,9 +188,9 @@ class Sheet(Table):
     @model_validator(mode="after")
     def _whole(self) -> "Sheet":
         wrong = [
-            f"{name} both in [columns] and in [units], or in neither"
+            f"{name} in [columns] too, not only in [units]"
             for name in ("acceleration", "temperature")
-            if (getattr(self.columns, name) is None) != (getattr(self.units, name) is None)
+            if getattr(self.columns, name) is None and getattr(self.units, name) is not None
         ]
         if self.columns.acceleration is None and self.events is None:
             wrong.append(

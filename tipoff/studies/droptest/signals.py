@@ -65,7 +65,7 @@ def dataset(drop: Drop) -> "xarray.Dataset":
             "test": drop.name,
             "simulated": int(sheet.simulated),
             "description": sheet.description,
-            "channel_class": sheet.channel_class,
+            "channel_class": sheet.channel_class or "none",
             "release_s": drop.events.release,
             "ignition_s": drop.events.ignition,
             "instant_s": drop.spans.instant,

@@ -43,9 +43,9 @@ def new(
     thrust_curve: Annotated[
         Path | None,
         typer.Option(
-            metavar="FILE.csv",
-            help="CSV file of a thrust curve, instead of --thrust and --burn-time. Its header is "
-            "time_s,force_N. The scene refers to the file.",
+            metavar="FILE",
+            help="File of a thrust curve, instead of --thrust and --burn-time: a CSV with a header "
+            "such as time_s,force_N, or a motor (.eng, .rse). The scene refers to the file.",
         ),
     ] = None,
     pads: Annotated[

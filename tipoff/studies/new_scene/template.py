@@ -21,8 +21,8 @@ _RAILS = 4  # one along each edge of the payload, with one pad at each station
 
 class Numbers(NamedTuple):
     """Mass (kg) and outer sizes (m) of the payload, travel along the rail (m), clearance (m), peak
-    of the thrust (N), time in which it rises and falls (s); a CSV file with the curve of the thrust
-    in place of both; number of pads."""
+    of the thrust (N), time in which it rises and falls (s); a file with the curve of the thrust in
+    place of both; number of pads."""
 
     mass: float = 9.9
     size: tuple[float, float, float] = (0.35, 0.20, 0.20)
@@ -161,7 +161,7 @@ def _thrust(numbers: Numbers, folder: Path) -> str:
         return (
             "[thrust]  # other kinds: gaussian (a pulse), gaussians (a sum), constant\n"
             'kind = "measured"\n'
-            f"file = {file}  # columns time_s,force_N; relative to this file\n"
+            f"file = {file}  # relative to this file\n"
             'use = "curve"  # "fit": use the Gaussian that is fitted to the points'
         )
     return (

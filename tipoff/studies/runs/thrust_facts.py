@@ -39,6 +39,7 @@ def thrust_facts(scene: Scene) -> Table:
             cut = f"{scene.thrust.cutoff:g} widths, {kept}"
         rows.append(("cutoff", cut))
     if scene.thrust.kind == "measured":
+        rows += [("file", "; ".join(notes))] if (notes := scene.thrust.notes()) else []
         rows.append(("Gaussian fit of the measured curve", _fit(scene.thrust.fit())))
     return Table(("thrust", ""), rows)
 

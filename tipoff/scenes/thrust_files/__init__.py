@@ -1,0 +1,1 @@
+"""Files with a thrust over time: tables, RASP (``.eng``) and RockSim (``.rse``)."""

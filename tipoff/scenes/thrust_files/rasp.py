@@ -1,0 +1,70 @@
+"""RASP motor files, ``.eng`` (thrustcurve.org, "RASP File Format"). Times are in s, forces in N.
+
+A motor has a header of seven words, ``name diameter length delays propellant_mass total_mass
+maker``, and points of two numbers. Text after a semicolon is a comment. The first point (0, 0) is
+not written; the last one has no thrust. Several motors may follow each other.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.scenes.thrust_files.record import SECTION, Choice, Record, chosen
+
+_WORDS = 7  # of a header; a maker may have several words
+_LAYOUT = "'name diameter length delays propellant_mass total_mass maker'"
+
+
+class _Motor(NamedTuple):
+    header: list[str]
+    time: list[float]
+    force: list[float]
+
+
+def read(data: bytes, choice: Choice) -> Record:
+    """The chosen motor. Raises ValueError."""
+    choice.require_only(("motor",), "a RASP file")
+    motors = _motors(data)
+    motor = motors[chosen([(m.header[0], m.header[6]) for m in motors], choice.motor)]
+    name, maker, propellant = motor.header[0], " ".join(motor.header[6:]), motor.header[4]
+    time, force = np.array(motor.time), np.array(motor.force)
+    if time.size and time[0] > 0.0:
+        time, force = np.insert(time, 0, 0.0), np.insert(force, 0, 0.0)
+    return Record(time, force, f"RASP, motor {name} of {maker}, propellant {propellant} kg")
+
+
+def _motors(data: bytes) -> list[_Motor]:
+    found: list[_Motor] = []
+    for number, line in enumerate(_text(data).splitlines(), start=1):
+        words = line.partition(";")[0].split()
+        if not words:
+            continue
+        point = _numbers(words)
+        if len(words) >= _WORDS and (len(words) > len(point) or not found):
+            found.append(_Motor(words, [], []))
+        elif len(words) == len(point) == 2 and found:
+            found[-1].time.append(point[0])
+            found[-1].force.append(point[1])
+        else:
+            wanted = f"a point 'time thrust' or a header {_LAYOUT}" if found else f"{_LAYOUT} first"
+            raise ValueError(f"a RASP file with {wanted} (line {number}: {line[:80]!r}); {SECTION}")
+    return found
+
+
+def _numbers(words: list[str]) -> list[float]:
+    """The words as numbers, up to the first that is none."""
+    found: list[float] = []
+    for word in words:
+        try:
+            found.append(float(word))
+        except ValueError:
+            break
+    return found
+
+
+def _text(data: bytes) -> str:
+    """Old files have comments in the code page of their maker."""
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
