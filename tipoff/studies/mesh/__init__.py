@@ -7,7 +7,11 @@ from tipoff.studies.question import Contents, Entry, Result, Section
 
 @scene_command(without=["workers"])
 def mesh(request: Request) -> Output:
-    """Mesh the rails for the reference; writes mesh.json (size, surfaces, quality) and mesh.vtu."""
+    """Mesh the rails for the reference; writes mesh.json (size, surfaces, quality) and mesh.vtu.
+
+    rail.inp is the first rail for CalculiX and Abaqus, with a load and the answers of tipoff in its
+    head: ccx rail.
+    """
     from tipoff.studies.mesh import page, stage
 
     return Output(stage.run(request.study()), page.terminal, request.out)

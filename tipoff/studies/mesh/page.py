@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from tipoff.studies.mesh.stage import STAGE, Mesh
+from tipoff.studies.mesh.stage import STAGE, Deck, Mesh
 from tipoff.studies.render.document import Caption, Image, Notice, Part
 from tipoff.studies.render.table import Column, Table
 
@@ -50,4 +50,17 @@ def terminal(content: dict) -> list[Part]:
         f"{axis} {1e3 * low:.6g} to {1e3 * high:.6g} mm"
         for axis, low, high in zip("xyz", found.low_m, found.high_m)
     )
-    return [Table.of(surfaces.items(), columns), Caption(f"Rails in scene axes: {spans}.")]
+    return [
+        Table.of(surfaces.items(), columns),
+        Caption(f"Rails in scene axes: {spans}."),
+        *([Caption(_deck(found.deck))] if found.deck else []),
+    ]
+
+
+def _deck(deck: Deck) -> str:
+    """What the file for other codes has, and the answers to expect."""
+    frequencies = ", ".join(f"{value:.5g}" for value in deck.frequencies_hz)
+    return (
+        f"{deck.file}: the first rail for CalculiX and Abaqus, with {deck.force_n:g} N under the first "
+        f"pad. Deflection here {1e6 * deck.deflection_m:.5g} µm, lowest frequencies {frequencies} Hz."
+    )

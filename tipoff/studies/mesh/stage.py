@@ -22,6 +22,17 @@ class Surface:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Deck:
+    """The first rail as a ``file`` of CalculiX and Abaqus, and the answers of the reference: mean
+    deflection of the wall under ``force_n`` on the first pad, and lowest frequencies."""
+
+    file: str
+    force_n: float
+    deflection_m: float
+    frequencies_hz: tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
 class Mesh:
     """``surfaces`` by name; ``low_m`` and ``high_m`` the least and largest coordinates in scene
     axes; ``mesh`` and pictures are files in the folder of the scene."""
@@ -38,6 +49,7 @@ class Mesh:
     warnings: tuple[str, ...]
     surfaces: dict[str, Surface]
     mesh: str
+    deck: Deck | None  # None if no pad is on the first rail
     picture: str
     dark_picture: str
 
@@ -50,7 +62,7 @@ STAGE = Stage("mesh", __name__, inputs=lambda study, _: _request(study).key, res
 
 
 def run(study: Study) -> dict:
-    """The content of ``Mesh``; writes ``mesh.vtu`` and pictures."""
+    """The content of ``Mesh``; writes ``mesh.vtu``, ``rail.inp`` and pictures."""
     request = _request(study)
 
     def make() -> tuple[Mesh, list[Path]]:
@@ -91,12 +103,29 @@ def run(study: Study) -> dict:
             warnings=tuple(mesh.warnings),
             surfaces=surfaces,
             mesh=study.relative(path),
+            deck=_deck(study, request),
             picture=study.relative(pictures[0]),
             dark_picture=study.relative(pictures[1]),
         )
-        return found, [path, *pictures]
+        decks = [study.path(found.deck.file)] if found.deck else []
+        return found, [path, *decks, *pictures]
 
     return STAGE.run(study, None, make)
+
+
+def _deck(study: Study, request: Run) -> Deck | None:
+    from tipoff.studies.mesh import deck
+
+    path = study.path("rail.inp")
+    found = deck.write(request.scene, request.numerics.element_size, path)
+    if found is None:
+        return None
+    return Deck(
+        file=study.relative(path),
+        force_n=deck.FORCE,
+        deflection_m=found.deflection,
+        frequencies_hz=found.frequencies,
+    )
 
 
 def _save(mesh, path: Path) -> None:
