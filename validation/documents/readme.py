@@ -76,7 +76,8 @@ def tails(found: Tails, folder: Path) -> None:
         ),
     )
     text = markdown(tails_page.document(found))
-    write_text(_ROOT / "docs" / "tails.md", f"{_TAILS.format(**vars(found))}\n\n{text}\n")
+    head = _TAILS.format(scene=f"`{folder.name}`", **vars(found))
+    write_text(_ROOT / "docs" / "tails.md", f"{head}\n\n{text}\n")
     for name in ("tails.png", "ladder.png") if found.ladder else ("tails.png",):
         shutil.copyfile(folder / "figures" / name, _ROOT / "docs" / name)
 

@@ -31,7 +31,7 @@ def best(found: Tails) -> list[str]:
         return []
     row = max(rows, key=lambda each: (each.within_gate or 0.0, -each.cpu_s))
     return [
-        f"at the surrogate's best settings ({setting(row, found)}) "
+        f"At the surrogate's best settings ({setting(row, found)}) "
         f"{percent(row.within_gate, '.0f')} % of the draws agree. The median difference is then "
         f"{number(row.median, '.2g')} deg/s, and a run takes {1e3 * row.cpu_s:.2g} ms"
     ]

@@ -94,7 +94,8 @@ def document(found: Tails) -> list[Part]:
 
 def sentences(found: Tails) -> list[str]:
     """Agreement, corrected rates, cost."""
-    return [_agreement(found), *ladder_page.best(found), _corrected(found), _cost(found)]
+    agreement = ". ".join([_agreement(found), *ladder_page.best(found)])
+    return [agreement, _corrected(found), _cost(found)]
 
 
 def _agreement(found: Tails) -> str:
