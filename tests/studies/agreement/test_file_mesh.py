@@ -19,7 +19,13 @@ from tipoff.workspace.study import Study
 
 # The walls of the catalogue's channel are 4 mm thick, in one element.
 FILE_SIZE, SLOPE = 0.004, 50.0  # m; deg/s per m: error of a rate by the mesh
-READ_ONCE = functools.cache(refinement.read)  # one file for all conditions
+READ = refinement.read
+
+
+@functools.cache
+def read_once(path):
+    """The file of all conditions, as the catalogue says it."""
+    return READ(path, refinement.asked(load("channel").rail))
 
 
 @pytest.fixture
@@ -39,7 +45,7 @@ def study(monkeypatch):
         return found
 
     monkeypatch.setattr(type(made.store), "fill", fill)
-    monkeypatch.setattr(refinement, "read", READ_ONCE)
+    monkeypatch.setattr(refinement, "read", lambda path, _: read_once(path))
     return made
 
 
