@@ -8,7 +8,7 @@ rates between the two runs shows how much later contacts enlarge such a sum; if 
 has the sum of all.
 
 The effects are always those of the first run. On a vibrating rail a contact breaks up into touches,
-and a pad leaves such a touch too slowly for the estimate: it would be hundreds of times too high.
+and a pad leaves each of them slowly: the estimate would be far too high.
 
 The forces of a coarse integration excite modes that the contact does not, and its error appears as
 a change of the rates. So if the first run, at a tolerance above the default, would choose modes, it

@@ -1,10 +1,10 @@
 """``[rail]``: the built-in L section, a mesh of the user, or a solid of the user, meshed here.
 
-The key ``mesh`` or ``geometry`` selects a file. It is in scene axes (m, origin at the nominal mass
-centre at ignition, +X to the open end), or a mesh says how it differs. Its walls are one ``clearance``
-off the pads. The
-surrogate does not use the file: ``start`` and ``end`` give the ends of the walls, pads and
-clearance their distance. The reference refuses a file that differs from them (``highfi.rail.fit``).
+The key ``mesh`` or ``geometry`` selects a file. A file is in scene axes (m, origin at the nominal
+mass centre at ignition, +X to the open end); keys say how a mesh differs from that. Its walls are one
+``clearance`` off the pads. The surrogate does not use the file: ``start`` and ``end`` give the ends
+of the walls, pads and clearance their distance. The reference refuses a file that differs from them
+(``highfi.rail.fit``).
 Any kind of rail may have a ``damping`` (``scenes.effects.structural_damping``), for the reference
 and the modes of compliant contact, and a ``mount_stiffness`` (``scenes.effects.mount_stiffness``);
 without it the mounts are rigid.

@@ -13,6 +13,7 @@ from typing import Any
 from tipoff import front
 from tipoff.comparison.metrics import compare
 from tipoff.files import write_json
+from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.mechanics.rail_compliance import MODES, RailCompliance
 from tipoff.scenes.scene import load
@@ -21,7 +22,14 @@ from tipoff.workspace import machine
 from tipoff.workspace.progress import say
 
 # degree of the patterns, cells along an edge of a pad face, modes of each rail
-RUNGS = ((2, 10, 0), (2, 16, MODES), (4, 16, MODES))
+RUNGS: tuple[tuple[int, int, int | str], ...] = (
+    (2, 10, 0),
+    (2, 10, AUTO),
+    (2, 10, MODES),
+    (2, 16, MODES),
+    (3, 16, MODES),
+    (4, 16, MODES),
+)
 _REPEATS = 5
 
 
@@ -32,7 +40,7 @@ class Step:
     condition: str
     degree: int
     cells: int
-    modes: int
+    modes: str  # of each rail; with the number that the run chose, if it chose
     settled_error_deg_s: float | None  # largest of a settled rate
     rate_l2: float | None  # relative
     wall_ms: float
@@ -63,7 +71,7 @@ def run(out: Path, scene: str, conditions: tuple[str, ...], element_size: float)
                     condition=name,
                     degree=degree,
                     cells=cells,
-                    modes=modes,
+                    modes=f"auto, {found.cost['modes']}" if modes == AUTO else str(modes),
                     settled_error_deg_s=difference.settled_rate_error_deg_s,
                     rate_l2=difference.rate_relative_l2,
                     wall_ms=1e3 * statistics.median(times),
