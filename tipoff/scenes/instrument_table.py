@@ -128,7 +128,7 @@ def read(
         len(rows),
     )
     width = len(rows[first][1]) if first < len(rows) else None
-    above = [_Head(number, True, cells) for number, cells in rows[:first]]
+    above = [_Head(number, True, cells) for number, cells in rows[:first] if not _is_data(cells)]
     end = rows[first][0] if width else len(lines) + 1
     for number, line in enumerate(lines[: end - 1], 1):
         if (text := line.strip()).startswith(marks):
@@ -207,12 +207,15 @@ def _header(
 
 
 def _units_below(header: _Head, above: list[_Head]) -> _Head | None:
-    """The line of units below the header, which has as many cells."""
-    for head in above:
-        if head.number > header.number and len(head.cells) == len(header.cells):
-            are_units = units.are_units(head.cells) and any(map(is_unit, head.cells))
-            if are_units or head.is_plain:
-                return head if are_units else None
+    """The line of units below the header, which has as many cells; a comment only if it is the only
+    such line."""
+    below = [head for head in above if head.number > header.number]
+    alike = [head for head in below if len(head.cells) == len(header.cells)]
+    plain = [head for head in alike if head.is_plain]
+    for head in plain[:1] or alike:
+        count = sum(map(is_unit, head.cells))
+        if units.are_units(head.cells) and 2 * count > (0 if head.is_plain else len(head.cells)):
+            return head
     return None
 
 

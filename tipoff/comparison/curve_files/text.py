@@ -17,9 +17,10 @@ _COMMA = re.compile(r"(?<=\d),(?=\d)")
 def read(source: str, data: bytes, wanted: set[str]) -> Table:
     """The table in ``data``. Of the lines that may be the header, the one with most of the
     ``wanted`` names is taken. Raises SceneError for what is no table of text."""
+    asked = {name for name in wanted if not name.isdecimal()}  # a title may have numbers
 
     def likeness(cells: list[str]) -> float:
-        known = sum(not wanted.isdisjoint(_spellings(cell)) for cell in cells)
+        known = sum(not asked.isdisjoint(_spellings(cell)) for cell in cells)
         return known or 0.5 * (not any(map(instrument_table.is_unit, filter(None, cells))))
 
     table = instrument_table.read(source, data, likeness, is_loose=True)
