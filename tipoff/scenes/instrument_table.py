@@ -132,7 +132,8 @@ def read(
     end = rows[first][0] if width else len(lines) + 1
     for number, line in enumerate(lines[: end - 1], 1):
         if (text := line.strip()).startswith(marks):
-            above.append(_Head(number, False, _cells(text.lstrip("".join(marks)), separator)))
+            cells = _cells(text.lstrip("".join(marks)), separator)
+            above += [] if _is_data(cells) else [_Head(number, False, cells)]
     above = sorted(above)[-_SEARCHED:]
     chosen = _header(above, width, likeness)
     if chosen is None:
