@@ -134,7 +134,7 @@ def read(
         if (text := line.strip()).startswith(marks):
             cells = _cells(text.lstrip("".join(marks)), separator)
             above += [] if _is_data(cells) else [_Head(number, False, cells)]
-    above = sorted(above)[-_SEARCHED:]
+    above = sorted(above)[-_SEARCHED:] if width else sorted(above)[:_SEARCHED]
     chosen = _header(above, width, likeness)
     if chosen is None:
         return Written([], [], rows[first:] if is_loose else rows, separator)
