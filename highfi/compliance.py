@@ -42,7 +42,6 @@ from tipoff.mechanics.rail_compliance import patterns as of_degree
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 from tipoff.mechanics.rail_compliance.patterns import DRAGGED
 from tipoff.scenes.effects.thermal import FIELDS
-from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
 
 _SPACING = 2e-3  # m between stations; over an end, compliance changes within a quarter of a pad
@@ -136,7 +135,7 @@ def _stations(scene: Scene, spacing: float) -> np.ndarray:
 def _drawn(scene: Scene, element_size: float) -> np.ndarray | None:
     """Offset (n,f,3) m of the walls of a file from straight walls, None if they are straight.
     Raises SceneError or MeshError."""
-    if isinstance(scene.rail, SectionTable):
+    if scene.rail.IS_STRAIGHT:
         return None
     own = inputs.of(scene)
     mesh = prepare(scene, Numerics(element_size=element_size))
@@ -146,10 +145,10 @@ def _drawn(scene: Scene, element_size: float) -> np.ndarray | None:
 
 def walls(scene: Scene, element_size: float, spacing: float = _SPACING) -> RailCompliance | None:
     """Rigid walls of ``scene`` with their offset as drawn, without temperatures, at stations about
-    ``spacing`` (m) apart; None for the built-in section and for straight walls. Statics are not
+    ``spacing`` (m) apart; None for sections and for straight walls. Statics are not
     solved. The element size (m) matters only for a solid with curved walls. Raises SceneError or
     MeshError."""
-    if isinstance(scene.rail, SectionTable):
+    if scene.rail.IS_STRAIGHT:
         return None
     drawn = _drawn(scene, element_size)
     stations, nominal = _stations(scene, spacing), scene_model.built(scene).nominal
