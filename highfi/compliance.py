@@ -74,13 +74,13 @@ class Compliance(NamedTuple):
 def condense(
     scene: Scene,
     element_size: float,
-    spacing: float = _SPACING,
+    spacing: float | None = None,
     modes: int = MODES,
     held: Sequence[HeldRail] | None = None,
     degree: int = DEGREE,
 ) -> RailCompliance:
     """Flexibility and lowest ``modes`` of the rails of ``scene`` in elements of about
-    ``element_size`` (m), at stations about ``spacing`` (m) apart, from half a pad before ignition
+    ``element_size`` (m), at stations about ``spacing`` (m) apart (None: ``spacing_of``), from half a pad before ignition
     until the last pad has left by half a pad, for patterns of this ``degree``. The result is valid
     for any factor on the stiffness of the mounts. With ``rails(scene, element_size)`` as ``held``,
     their factors can be used again.
@@ -88,7 +88,7 @@ def condense(
     Raises SceneError or MeshError.
     """
     scene = nominal(scene)
-    stations = _stations(scene, spacing)
+    stations = _stations(scene, spacing or spacing_of(scene))
     own = inputs.of(scene)
     held = held or rails(scene, element_size)
     found = of_rails(held, own.faces, own.reach, stations, of_degree.count(degree), modes, DRAGGED)
@@ -125,6 +125,13 @@ def condense(
     )
 
 
+def spacing_of(scene: Scene) -> float:
+    """Distance (m) of stations: in proportion to elements that are stretched along the rail, up to half
+    of the shortest pad, over which the compliance changes at an end."""
+    most = 0.5 * min(pad.length for pad in scene.pads)
+    return max(_SPACING, min(_SPACING * getattr(scene.rail, "stretch", 1.0), most))
+
+
 def _stations(scene: Scene, spacing: float) -> np.ndarray:
     own = inputs.of(scene)
     half, middle = own.faces.half_length, own.faces.centre[:, 0]
@@ -143,7 +150,7 @@ def _drawn(scene: Scene, element_size: float) -> np.ndarray | None:
     return drawn_walls.offsets(mesh, own.faces, half, own.reach)
 
 
-def walls(scene: Scene, element_size: float, spacing: float = _SPACING) -> RailCompliance | None:
+def walls(scene: Scene, element_size: float, spacing: float | None = None) -> RailCompliance | None:
     """Rigid walls of ``scene`` with their offset as drawn, without temperatures, at stations about
     ``spacing`` (m) apart; None for sections and for straight walls. Statics are not
     solved. The element size (m) matters only for a solid with curved walls. Raises SceneError or
@@ -151,7 +158,8 @@ def walls(scene: Scene, element_size: float, spacing: float = _SPACING) -> RailC
     if scene.rail.IS_STRAIGHT:
         return None
     drawn = _drawn(scene, element_size)
-    stations, nominal = _stations(scene, spacing), scene_model.built(scene).nominal
+    stations = _stations(scene, spacing or spacing_of(scene))
+    nominal = scene_model.built(scene).nominal
     faces = nominal.axis.size
     return RailCompliance(
         travel=stations,

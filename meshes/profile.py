@@ -23,6 +23,7 @@ class Profile(NamedTuple):
     """A rail of one section."""
 
     loops: tuple[tuple[tuple[float, float], ...], ...]  # m, y and z of corners, metal on the left
+    blocks: quadrilaterals.Blocks  # m, four corners of each; none to mesh the loops
     area: float  # m2
     walls: tuple[int, ...]  # numbers of the sides that pads touch
     mounted: tuple[int, ...]  # numbers of the sides that the platform holds
@@ -38,7 +39,7 @@ def build(profile: Profile, element_size: float) -> meshio.Mesh:
 
     Raises GmshUnavailable, and ValueError if gmsh cannot fill the section.
     """
-    section, quads = quadrilaterals.of_outline(profile.loops, element_size)
+    section, quads = quadrilaterals.of_outline(profile.loops, element_size, profile.blocks)
     stations = _stations(profile, element_size)
     points, hexes = layers.extruded(section, quads, stations)
     facets, side, layer = _facets(profile, section, quads, len(stations))

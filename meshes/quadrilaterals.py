@@ -1,4 +1,5 @@
-"""Quadrilaterals that fill the outline of a section: a grid if every side is along Y or Z, else by gmsh.
+"""Quadrilaterals that fill the outline of a section: in its blocks if these are known, in a grid if every
+side is along Y or Z, else by gmsh.
 
 gmsh makes two or more across every side; their shapes are good from elements of half a wall on.
 """
@@ -7,20 +8,26 @@ import itertools
 
 import numpy as np
 
-from tipoff.meshes import bricks, generator, layers
+from tipoff.meshes import blocks, bricks, generator, layers
 
 Loops = tuple[tuple[tuple[float, float], ...], ...]
+Blocks = Loops
 
 _ON = 1e-9  # m: corners closer than this are on one line
 _THIN = 0.25  # of the element size: a grid with thinner cells is left to gmsh
 
 
-def of_outline(loops: Loops, element_size: float) -> tuple[np.ndarray, np.ndarray]:
+def of_outline(
+    loops: Loops, element_size: float, known: Blocks = ()
+) -> tuple[np.ndarray, np.ndarray]:
     """Points (s,2) m, Y and Z, and anticlockwise corners (q,4) of quadrilaterals about
     ``element_size`` (m); each side is between nodes. ``loops`` have metal on the left.
+    ``known`` blocks of four anticlockwise corners each fill them.
 
     Raises GmshUnavailable, and ValueError if gmsh cannot fill the outline.
     """
+    if known:
+        return blocks.divided(np.array(known), element_size)
     lines = _grid_lines(loops)
     if lines and min(np.diff(line).min() for line in lines) >= _THIN * element_size:
         return _grid(loops, lines, element_size)

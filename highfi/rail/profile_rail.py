@@ -33,6 +33,7 @@ def profile(scene: Scene, rail: ProfileTable) -> Profile:
     mounted = (rail.outline().side_at(point) for point in rail.mounted)
     return Profile(
         loops=outline.loops,
+        blocks=rail.blocks(),
         area=outline.moments().area,
         walls=tuple(sorted(walls)),
         mounted=tuple(sorted(set(mounted))),

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from tests.scenes.sections.support import SHAPES
-from tests.scenes.sections.test_outline import shape
+from tests.scenes.sections.test_outline import shape, table
 from tipoff.highfi.extruded import mesh as extruded
 from tipoff.highfi.mesh import facets
 from tipoff.highfi.mesh.cells import jacobians
@@ -22,6 +22,7 @@ def of(outline, **changes):
     """A rail of an outline whose first side is a wall, and whose third side is held."""
     found = profile.Profile(
         loops=outline.loops,
+        blocks=(),
         area=outline.moments().area,
         walls=(0,),
         mounted=(2,),
@@ -66,6 +67,29 @@ def test_a_wall_thinner_than_two_elements_keeps_good_shapes():
     built = profile.build(of(shape(**SHAPES["t_slot"])), 0.002)
     _, scaled = jacobians(built.points, built.cells[0].data)
     assert scaled.min() > 0.6 and scaled.min(axis=1).mean() > 0.9
+
+
+@pytest.mark.parametrize("size", [0.006, 0.002])
+@pytest.mark.parametrize("web", [0.002, 0.003])
+def test_the_blocks_of_a_t_slot_fill_it_and_meet_node_to_node(size, web):
+    """Area and second moments are those of the outline, and the free edges have its length. The mesh has
+    one element through a lip; gmsh makes more than twice as many."""
+    rail = table(**SHAPES["t_slot"] | {"web": web})
+    outline, exact = rail.outline(), rail.outline().moments()
+    points, quads = quadrilaterals.of_outline(outline.loops, size, rail.blocks())
+    expected = (exact.area, exact.yy, exact.zz)
+    assert section_moments(points, quads) == pytest.approx(expected, rel=1e-10)
+    edges = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    pairs, count = np.unique(edges, axis=0, return_counts=True)
+    free = np.linalg.norm(np.diff(points[pairs[count == 1]], axis=1), axis=2).sum()
+    whole = sum(np.hypot(*np.subtract(side.end, side.start)) for side in outline.sides())
+    assert count.max() == 2 and free == pytest.approx(whole, rel=1e-10)
+    built = profile.build(of(outline, blocks=rail.blocks()), size)
+    _, scaled = jacobians(built.points, built.cells[0].data)
+    assert scaled.min() > 0.7 and scaled.min(axis=1).mean() > 0.9
+    if size == 0.006:
+        assert len(quads) == 52
+        assert len(quadrilaterals.of_outline(outline.loops, size)[1]) > 2 * 52
 
 
 @pytest.mark.parametrize("name", ["t_slot", "box"])

@@ -15,7 +15,7 @@ from tipoff.files import content_hash
 from tipoff.scenes.faults import close, within
 from tipoff.scenes.rail_base import DrawnTable, HeldBySpans
 from tipoff.scenes.sections import dxf
-from tipoff.scenes.sections.outline import Outline, outline
+from tipoff.scenes.sections.outline import Loop, Outline, outline
 from tipoff.scenes.sections.shapes import SHAPES, ShapeTable
 from tipoff.scenes.table import at_least_one, is_absent, limited
 from tipoff.scenes.units import Length, quantity
@@ -96,6 +96,12 @@ class ProfileTable(HeldBySpans, DrawnTable):
     def outline(self) -> Outline:
         """The outline of the section in its own axes."""
         return self._outline
+
+    def blocks(self) -> tuple[Loop, ...]:
+        """Four corners (m) of each block that fills the section, in scene axes; none if they are not
+        known."""
+        found = () if isinstance(self.section, (str, tuple)) else self.section.blocks()
+        return Outline(found).at(self.at).loops
 
     def signs(self) -> tuple[tuple[int, int], ...]:
         """Signs of Y and Z of each rail: the one drawn, and its mirror images."""

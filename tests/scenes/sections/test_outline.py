@@ -13,10 +13,14 @@ SQUARE = [(0.0, 0.0), (0.02, 0.0), (0.02, 0.02), (0.0, 0.02)]
 HOLE = [(0.005, 0.005), (0.015, 0.005), (0.015, 0.015), (0.005, 0.015)]
 
 
+def table(**numbers):
+    """The table of a shape with SI values."""
+    return TypeAdapter(ShapeTable).validate_python(numbers, context={"bare_numbers_are_si": True})
+
+
 def shape(**numbers):
     """The outline of a shape with SI values."""
-    table = TypeAdapter(ShapeTable).validate_python(numbers, context={"bare_numbers_are_si": True})
-    return table.outline()
+    return table(**numbers).outline()
 
 
 def rectangles(*parts):

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, model_validator
 
-from tipoff.scenes.sections.outline import Corner, Outline, outline
+from tipoff.scenes.sections.outline import Corner, Loop, Outline, outline
 from tipoff.scenes.table import Table, is_absent
 from tipoff.scenes.units import Dimension
 
@@ -22,6 +22,10 @@ class _ShapeTable(Table):
     def loops(self) -> list[list[Corner]]:
         """Corners (m) of its borders."""
         raise NotImplementedError
+
+    def blocks(self) -> tuple[Loop, ...]:
+        """Blocks of four anticlockwise corners (m) that fill it; none if they are not known."""
+        return ()
 
     @model_validator(mode="after")
     def _fits(self):
@@ -55,6 +59,31 @@ class TSlotTable(_ShapeTable):
     web: Dimension
     #: Diameter of the bore through the core; none where absent.
     bore: Dimension | None = Field(None, exclude_if=is_absent)
+
+    def blocks(self) -> tuple[Loop, ...]:
+        if self.bore is not None:
+            return ()
+        half, slot, inner = 0.5 * self.width, 0.5 * self.slot, 0.5 * self.width - self.lip
+        cavity, floor, away = 0.5 * self.cavity, half - self.depth, self.web / math.sqrt(2.0)
+        taper, foot = cavity + away, floor - away
+        # both ends of the web on the diagonal, moved outwards so that no corner is straight
+        end, top = floor - 0.25 * away, taper - 0.25 * away
+        # one of the two halves of a quadrant; the other one is its mirror image
+        lip = [(cavity, half), (slot, half), (slot, inner), (cavity, inner)]
+        beside = [(inner, half), (cavity, half), (cavity, inner), (inner, inner)]
+        under = [(inner, inner), (cavity, inner), (cavity, taper), (top, top)]
+        web = [(top, top), (cavity, taper), (foot, floor), (end, end)]
+        core = [(foot, foot), (foot, floor), (0.0, floor), (0.0, foot)]
+        middle = [[(half, half), (inner, half), (inner, inner), (half, inner)]]
+        middle += [[(end, end), (foot, floor), (foot, foot), (floor, foot)]]
+        middle += [[(0.0, 0.0), (foot, 0.0), (foot, foot), (0.0, foot)]]
+        found = [*middle, *(each for each in (lip, beside, under, web, core))]
+        found += [[(z, y) for y, z in each[::-1]] for each in (lip, beside, under, web, core)]
+        every = []
+        for _ in range(4):
+            every += found
+            found = [[(-z, y) for y, z in each] for each in found]
+        return tuple(map(tuple, every))
 
     def loops(self) -> list[list[Corner]]:
         half, cavity, floor = 0.5 * self.width, 0.5 * self.cavity, 0.5 * self.width - self.depth
