@@ -80,8 +80,8 @@ def condense(
     degree: int = DEGREE,
 ) -> RailCompliance:
     """Flexibility and lowest ``modes`` of the rails of ``scene`` in elements of about
-    ``element_size`` (m), at stations about ``spacing`` (m) apart (None: ``spacing_of``), from half a pad before ignition
-    until the last pad has left by half a pad, for patterns of this ``degree``. The result is valid
+    ``element_size`` (m), at stations about ``spacing`` (m) apart (None: ``spacing_of``), from half a
+    pad before ignition until the last pad has left by half a pad, for patterns of this ``degree``. The result is valid
     for any factor on the stiffness of the mounts. With ``rails(scene, element_size)`` as ``held``,
     their factors can be used again.
 
