@@ -9,7 +9,6 @@ from scipy.integrate import solve_ivp
 
 from tests.exact import pivot
 from tipoff import highfi, lowfi
-from tipoff.calibration import rail_compliance
 from tipoff.mechanics import scene_model
 from tipoff.mechanics.outcome import EXIT_WINDOW
 from tipoff.scenes import load, uncertainty
@@ -20,6 +19,7 @@ SCENE = load("rocket_rail")
 LOAD, SPAN, YOUNG, DEFLECTION = 222.40, 0.762, 70_326.5e6, 0.21e-3  # N, m, Pa, m
 CURVE = {0.017: 561.0, 0.058: 287.0, 0.167: 328.0}  # s: N, thrustcurve.org, Cesaroni J360
 REAR, FRONT = -0.65, 0.0  # m, buttons
+ELEMENTS = 0.008  # m
 STRAIGHT = {"thrust_offset": None}
 # buttons that are points without play, on walls that do not give way
 PINNED = {
@@ -144,21 +144,34 @@ def test_the_errors_are_inputs_of_the_scene():
 
 
 @pytest.mark.slow
-def test_both_models_have_like_launches(tmp_path):
-    """Speed and the rates about y and z at the exit, on the elements of 5 mm of the scene. Roll is chaotic:
-    its inertia is small, and 1 um of play moves it by several deg/s. Control: rails that do not give way
-    have another rate."""
-    element = SCENE.studies.element_size
-    compliance = rail_compliance.kept(SCENE, tmp_path, element, lambda _: None)
-    near = lowfi.run(
-        SCENE,
-        "compliant",
-        compliance=compliance,
-        numerics=lowfi.Numerics(modes=compliance.frequency.shape[1]),
-    ).outcome
-    found = highfi.run(SCENE, highfi.Numerics(element_size=element)).outcome
-    assert near.exit_velocity[0] == pytest.approx(found.exit_velocity[0], rel=1e-3)
-    difference = np.degrees(np.subtract(near.exit_rate, found.exit_rate))[1:]
-    assert np.abs(difference).max() < 0.25
+def test_both_models_have_like_launches():
+    """One run of the reference among twelve neighbours of the surrogate within 1 um, on the same elements of
+    8 by 30 mm: speed and rates at the exit lie among them, with a margin of half their spread. Roll is
+    chaotic and moves the other rates a little. Control: on rails that do not give way the pitch rate is
+    outside."""
+    scene = SCENE.replace({"rail.stretch": 3.75})
+    compliance = highfi.condense(scene, ELEMENTS)
+    numerics = lowfi.Numerics(relative_tolerance=1e-2, modes=compliance.frequency.shape[1])
+
+    def values(run) -> np.ndarray:
+        return np.array([run.outcome.exit_velocity[0], *np.degrees(run.outcome.exit_rate)])
+
+    near = np.array(
+        [
+            values(
+                lowfi.run(
+                    scene.replace(scene.contact.widened(change)),
+                    "compliant",
+                    compliance=compliance,
+                    numerics=numerics,
+                )
+            )
+            for change in np.random.default_rng(1).uniform(-1e-6, 1e-6, 12)
+        ]
+    )
+    found = values(highfi.run(scene, highfi.Numerics(element_size=ELEMENTS)))
+    low, high = near.min(axis=0), near.max(axis=0)
+    margin = 0.5 * (high - low)
+    assert (low - margin < found).all() and (found < high + margin).all()
     # Control:
-    assert abs(tip_off(SCENE)[1] - math.degrees(found.exit_rate[1])) > 0.5
+    assert tip_off(SCENE)[1] < low[2] - margin[2]
