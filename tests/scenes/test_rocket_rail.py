@@ -105,6 +105,7 @@ def test_the_speed_follows_from_the_motion_along_the_rail():
     assert held.exit_velocity[0] < speed * (1.0 - 6e-4)
 
 
+@pytest.mark.case("O81")
 def test_stiff_buttons_without_play_turn_as_the_rocket_on_a_pin():
     """Between the leaving of the front button and that of the rear one; the other axes stay at rest.
     Control: without the share of the thrust, which acts along the rocket, the rate is 2.7 % lower."""
@@ -119,6 +120,7 @@ def test_stiff_buttons_without_play_turn_as_the_rocket_on_a_pin():
     assert abs(math.degrees(start) / y - 1.0) > 0.02
 
 
+@pytest.mark.case("O81")
 @pytest.mark.parametrize("angle", [2.0, 10.0])
 def test_the_pin_holds_for_other_angles_of_the_rail(angle):
     gravity = {

@@ -69,6 +69,7 @@ def deflection(name, size, length, stretch):
     return np.diag(load_.T @ held.solve(load_))
 
 
+@pytest.mark.case("O82")
 @pytest.mark.parametrize("name", ["t_slot", "tee", "box"])
 def test_a_slender_cantilever_bends_as_a_beam_does(name):
     """F l^3 / 3 E J: shear adds 3 E J / (kappa G A l^2), below 0.6 % here, and a mesh of elements with
