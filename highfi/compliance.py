@@ -42,7 +42,6 @@ from tipoff.mechanics.rail_compliance import patterns as of_degree
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 from tipoff.mechanics.rail_compliance.patterns import DRAGGED
 from tipoff.scenes.effects.thermal import FIELDS
-from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
 
 _SPACING = 2e-3  # m between stations; over an end, compliance changes within a quarter of a pad
@@ -75,21 +74,21 @@ class Compliance(NamedTuple):
 def condense(
     scene: Scene,
     element_size: float,
-    spacing: float = _SPACING,
+    spacing: float | None = None,
     modes: int = MODES,
     held: Sequence[HeldRail] | None = None,
     degree: int = DEGREE,
 ) -> RailCompliance:
     """Flexibility and lowest ``modes`` of the rails of ``scene`` in elements of about
-    ``element_size`` (m), at stations about ``spacing`` (m) apart, from half a pad before ignition
-    until the last pad has left by half a pad, for patterns of this ``degree``. The result is valid
+    ``element_size`` (m), at stations about ``spacing`` (m) apart (None: ``spacing_of``), from half a
+    pad before ignition until the last pad has left by half a pad, for patterns of this ``degree``. The result is valid
     for any factor on the stiffness of the mounts. With ``rails(scene, element_size)`` as ``held``,
     their factors can be used again.
 
     Raises SceneError or MeshError.
     """
     scene = nominal(scene)
-    stations = _stations(scene, spacing)
+    stations = _stations(scene, spacing or spacing_of(scene))
     own = inputs.of(scene)
     held = held or rails(scene, element_size)
     found = of_rails(held, own.faces, own.reach, stations, of_degree.count(degree), modes, DRAGGED)
@@ -126,6 +125,13 @@ def condense(
     )
 
 
+def spacing_of(scene: Scene) -> float:
+    """Distance (m) of stations: in proportion to elements that are stretched along the rail, up to half
+    of the shortest pad, over which the compliance changes at an end."""
+    most = 0.5 * min(pad.length for pad in scene.pads)
+    return max(_SPACING, min(_SPACING * getattr(scene.rail, "stretch", 1.0), most))
+
+
 def _stations(scene: Scene, spacing: float) -> np.ndarray:
     own = inputs.of(scene)
     half, middle = own.faces.half_length, own.faces.centre[:, 0]
@@ -136,7 +142,7 @@ def _stations(scene: Scene, spacing: float) -> np.ndarray:
 def _drawn(scene: Scene, element_size: float) -> np.ndarray | None:
     """Offset (n,f,3) m of the walls of a file from straight walls, None if they are straight.
     Raises SceneError or MeshError."""
-    if isinstance(scene.rail, SectionTable):
+    if scene.rail.IS_STRAIGHT:
         return None
     own = inputs.of(scene)
     mesh = prepare(scene, Numerics(element_size=element_size))
@@ -144,15 +150,16 @@ def _drawn(scene: Scene, element_size: float) -> np.ndarray | None:
     return drawn_walls.offsets(mesh, own.faces, half, own.reach)
 
 
-def walls(scene: Scene, element_size: float, spacing: float = _SPACING) -> RailCompliance | None:
+def walls(scene: Scene, element_size: float, spacing: float | None = None) -> RailCompliance | None:
     """Rigid walls of ``scene`` with their offset as drawn, without temperatures, at stations about
-    ``spacing`` (m) apart; None for the built-in section and for straight walls. Statics are not
+    ``spacing`` (m) apart; None for sections and for straight walls. Statics are not
     solved. The element size (m) matters only for a solid with curved walls. Raises SceneError or
     MeshError."""
-    if isinstance(scene.rail, SectionTable):
+    if scene.rail.IS_STRAIGHT:
         return None
     drawn = _drawn(scene, element_size)
-    stations, nominal = _stations(scene, spacing), scene_model.built(scene).nominal
+    stations = _stations(scene, spacing or spacing_of(scene))
+    nominal = scene_model.built(scene).nominal
     faces = nominal.axis.size
     return RailCompliance(
         travel=stations,

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.meshes import bricks, generator, iges, imprint
+from tipoff.meshes import bricks, generator, iges, imprint, layers
 from tipoff.meshes.tetrahedra import Cost, filled
 
 _SAME = 1e-9  # m; planes closer than this are one
@@ -173,24 +173,10 @@ def _extruded(gmsh, element_size: float, boxes: list[np.ndarray]) -> tuple[np.nd
     stations = _divided(x, element_size)
     _draw_on_section(gmsh, boxes, x[[0, -1]])
     ends = _faces_at(gmsh, x[0])
-    _set_size(gmsh, 2.0 * element_size)
-    gmsh.option.setNumber("Mesh.RecombineAll", 1)
     # halves every side, so that no triangle remains
     gmsh.option.setNumber("Mesh.SubdivisionAlgorithm", 1)
-    gmsh.model.mesh.generate(2)
-    places, quads = _quadrilaterals(gmsh, ends)
-    used, number = np.unique(quads, return_inverse=True)
-    section, quads = places[used, 1:], number.reshape(-1, 4)
-    a, b, c = (section[quads[:, i]] for i in range(3))
-    clockwise = (b[:, 0] - a[:, 0]) * (c[:, 1] - b[:, 1]) < (b[:, 1] - a[:, 1]) * (
-        c[:, 0] - b[:, 0]
-    )
-    quads[clockwise] = quads[clockwise][:, ::-1]
-    layer = len(section) * np.arange(len(stations))[:, None, None] + quads
-    points = np.column_stack(
-        [np.repeat(stations, len(section)), np.tile(section, (len(stations), 1))]
-    )
-    return points, np.concatenate([layer[:-1], layer[1:]], axis=2).reshape(-1, 8)
+    section, quads = layers.quadrilaterals(gmsh, 2.0 * element_size, ends)
+    return layers.extruded(section, quads, stations)
 
 
 def _draw_on_section(gmsh, boxes: list[np.ndarray], ends: np.ndarray) -> None:
@@ -217,18 +203,3 @@ def _faces_at(gmsh, x: float) -> list[int]:
         for _, tag in gmsh.model.getEntities(2)
         if np.abs(_vertices(gmsh, 2, tag)[:, 0] - x).max() < _SAME
     ]
-
-
-def _set_size(gmsh, size: float) -> None:
-    gmsh.option.setNumber("Mesh.MeshSizeMin", size)
-    gmsh.option.setNumber("Mesh.MeshSizeMax", size)
-
-
-def _quadrilaterals(gmsh, faces: list[int]) -> tuple[np.ndarray, np.ndarray]:
-    """All points (n,3) m of the mesh and the corners (e,4) of the quadrilaterals on some faces."""
-    tags, places, _ = gmsh.model.mesh.getNodes()
-    number = np.zeros(int(tags.max()) + 1, dtype=np.int64)
-    number[tags.astype(np.int64)] = np.arange(len(tags))
-    kind = gmsh.model.mesh.getElementType("Quadrangle", 1)
-    nodes = [gmsh.model.mesh.getElementsByType(kind, face)[1] for face in faces]
-    return places.reshape(-1, 3), number[np.concatenate(nodes).astype(np.int64)].reshape(-1, 4)

@@ -13,7 +13,14 @@ from tipoff.scenes.table import Table
 
 _BOUNDS = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
 _BOUNDS |= {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
-_CHOICES = ("kind", "law", "mesh", "geometry")  # the key that tells the tables of one name apart
+_CHOICES = (
+    "kind",
+    "law",
+    "shape",
+    "mesh",
+    "geometry",
+    "section",
+)  # the key that tells the tables of one name apart
 
 
 def markdown() -> str:
@@ -106,7 +113,9 @@ def _value(entry: dict) -> str:
     """Unit and bounds, or the kind of value."""
     if "anyOf" in entry:
         return " or ".join(_value(each) for each in entry["anyOf"] if each.get("type") != "null")
-    if "oneOf" in entry or "$ref" in entry:
+    if "oneOf" in entry:
+        return " or ".join(dict.fromkeys(map(_value, entry["oneOf"])))
+    if "$ref" in entry:
         return "table"
     if "const" in entry:
         return f"`{json.dumps(entry['const'])}`"

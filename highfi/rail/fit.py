@@ -17,6 +17,7 @@ from tipoff.highfi.rail import drawn_walls
 from tipoff.highfi.rail.drawn_walls import SAME
 from tipoff.mechanics import scene_model
 from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.rail import MESH_UNITS, GeometryTable, MeshTable, SectionTable
 from tipoff.scenes.scene import Scene
 
@@ -123,7 +124,7 @@ def _reach(points: np.ndarray) -> str:
 def check_fit(scene: Scene, mesh: RailMesh) -> None:
     """Raise SceneError with every difference between the walls of a mesh or CAD file and the
     scene."""
-    if isinstance(scene.rail, SectionTable) or scene.contact is None:
+    if isinstance(scene.rail, (SectionTable, ProfileTable)) or scene.contact is None:
         return
     corners = drawn_walls.corners(mesh)
     rail, clearance = scene.rail, scene.contact.clearance

@@ -1,29 +1,35 @@
-"""Mesh of a scene's rails: of the built-in L section, from a mesh file, or from a solid in a CAD
-file."""
+"""Mesh of a scene's rails: of the built-in L section, of another section, from a mesh file, or from a
+solid in a CAD file."""
 
 from dataclasses import replace
+
+import meshio
 
 from tipoff.files import content_hash
 from tipoff.highfi.mesh import split, touching
 from tipoff.highfi.mesh.asked import asked
 from tipoff.highfi.mesh.rail_mesh import MeshError, RailMesh, along_x, read
-from tipoff.highfi.rail import memory_fault, solid_process, step_cost
+from tipoff.highfi.rail import memory_fault, profile_rail, solid_process, step_cost
 from tipoff.highfi.rail.fit import check_areas, check_frame, check_held
-from tipoff.meshes import l_rail
+from tipoff.meshes import l_rail, profile
+from tipoff.meshes.profile import Profile
 from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.rail import GeometryTable, SectionTable
 from tipoff.scenes.rounding import at_most
 from tipoff.scenes.scene import Scene
 
 
-def geometry(scene: Scene) -> l_rail.LRailGeometry | str:
-    """Key of the mesh of a scene: dimensions of the L section, or the digest of the table and of
-    its file.
+def geometry(scene: Scene) -> l_rail.LRailGeometry | Profile | str:
+    """Key of the mesh of a scene: dimensions of a section, or the digest of the table and of its
+    file.
 
-    Raises SceneError if pads do not fit the built-in section or nothing holds it.
+    Raises SceneError if pads do not fit the section or nothing holds it.
     """
     if isinstance(scene.rail, SectionTable):
         return _l_section(scene, scene.rail)
+    if isinstance(scene.rail, ProfileTable):
+        return profile_rail.profile(scene, scene.rail)
     return content_hash(
         scene.rail.model_dump(mode="json", exclude={"damping", "mount_stiffness"})
         | scene.rail.contents()
@@ -35,6 +41,9 @@ def make_mesh(scene: Scene, element_size: float) -> RailMesh:
     SceneError, MeshError or, for a solid, GmshUnavailable."""
     if isinstance(scene.rail, SectionTable):
         return read(l_rail.build(_l_section(scene, scene.rail), element_size))
+    if isinstance(scene.rail, ProfileTable):
+        mesh = read(_profile(scene, scene.rail, element_size))
+        return step_cost.with_run_time(mesh, scene, element_size)
     if not scene.rail.is_as_found():
         raise MeshError(f"{scene.rail.path()} has changed since the scene was read")
     if isinstance(scene.rail, GeometryTable):
@@ -54,6 +63,23 @@ def make_mesh(scene: Scene, element_size: float) -> RailMesh:
     memory_fault.require_split(scene, element_size, mesh)
     mesh = along_x(split.to_size(mesh, element_size))
     return step_cost.with_run_time(mesh, scene, min(element_size, step_cost.spacing(mesh)))
+
+
+def _profile(scene: Scene, rail: ProfileTable, element_size: float) -> meshio.Mesh:
+    try:
+        return profile.build(profile_rail.profile(scene, rail), element_size)
+    except SceneError:
+        raise
+    except ValueError as fault:
+        raise MeshError(f"rail.section cannot be used: {fault}") from fault
+
+
+def elements(scene: Scene, element_size: float) -> int | None:
+    """Number of elements of the rails, about for a section of their own; None for rails from a file."""
+    found = geometry(scene)
+    if isinstance(found, l_rail.LRailGeometry):
+        return l_rail.elements(found, element_size)
+    return profile.elements(found, element_size) if isinstance(found, Profile) else None
 
 
 def _l_section(scene: Scene, rail: SectionTable) -> l_rail.LRailGeometry:

@@ -22,7 +22,8 @@ from tipoff.scenes import ends
 from tipoff.scenes.effects import thrust
 from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from tipoff.scenes.faults import Fault, SceneError
-from tipoff.scenes.rail import MaterialTable, MeshTable, SectionTable
+from tipoff.scenes.rail import MeshTable, SectionTable
+from tipoff.scenes.rail_base import MaterialTable
 from tipoff.scenes.scene import Scene
 
 MOST = 0.01  # (W / w)^2

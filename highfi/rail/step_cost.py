@@ -17,7 +17,7 @@ from tipoff.highfi.mesh.rail_mesh import RailMesh, listed, slivers
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.statics import assembly
 from tipoff.meshes.bricks import CUBE
-from tipoff.scenes.rail import MaterialTable
+from tipoff.scenes.rail_base import MaterialTable
 from tipoff.scenes.scene import Scene
 
 MOST = 6.0  # times the steps of hexahedra of the same size; above it there is a warning

@@ -9,9 +9,8 @@ from tipoff.files import content_hash
 from tipoff.highfi.rail.scene_mesh import geometry
 from tipoff.mechanics import scene_model
 from tipoff.mechanics.scene_model import Faces
-from tipoff.meshes.l_rail import LRailGeometry
 from tipoff.scenes.effects.mount_stiffness import MountStiffness
-from tipoff.scenes.rail import MaterialTable
+from tipoff.scenes.rail_base import MaterialTable
 from tipoff.scenes.scene import Scene
 
 _DIGITS = 12  # decimals of a place in m: the last bit of a wall depends on the platform's frame
@@ -52,9 +51,9 @@ def of(scene: Scene) -> Inputs:
 
 
 def _shape(scene: Scene) -> dict:
-    if isinstance(section := geometry(scene), LRailGeometry):
+    if not isinstance(section := geometry(scene), str):
         shape = section._asdict()
-        if section.fillet == 0.0:  # results of sharp sections are stored without this key
+        if shape.get("fillet") == 0.0:  # results of sharp sections are stored without this key
             del shape["fillet"]
         return shape
     # the content of the file identifies it, not its path

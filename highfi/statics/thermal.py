@@ -23,7 +23,7 @@ from tipoff.highfi.statics import assembly
 from tipoff.highfi.statics.solve import Clamped
 from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from tipoff.scenes.effects.thermal import FIELDS, Thermal, fields
-from tipoff.scenes.rail import MaterialTable
+from tipoff.scenes.rail_base import MaterialTable
 
 
 def displacement(

@@ -21,7 +21,7 @@ from tipoff.highfi.stress import gauge as patch
 from tipoff.highfi.stress import peaks
 from tipoff.highfi.stress.peak import ROTATION, STRAIN, STRESS, Peak
 from tipoff.scenes.effects.thermal import Thermal, fields
-from tipoff.scenes.rail import MaterialTable
+from tipoff.scenes.rail_base import MaterialTable
 
 _SHARE = 0.05  # largest share of scans in the run
 # strain: its neglected square is then 0.5 % of it; most metals yield before

@@ -23,7 +23,7 @@ from tipoff.mechanics import drawn_walls
 from tipoff.mechanics.rail_compliance import RailCompliance, cubic
 from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.faults import Fault, SceneError
-from tipoff.scenes.rail import SectionTable
+from tipoff.scenes.rail import GeometryTable, MeshTable
 from tipoff.scenes.scene import Scene
 
 
@@ -85,7 +85,7 @@ def lacking(scene: Scene, compliance: RailCompliance | None) -> list[Fault]:
             "a rail compliance (tipoff.compliance(scene)), or its rigid() for contact springs"
         )
         faults.append(Fault(scene.name, "thermal", "no rail compliance", expected))
-    elif not isinstance(scene.rail, SectionTable):
+    elif isinstance(scene.rail, (MeshTable, GeometryTable)):
         expected = (
             "tipoff.calibration.rail_compliance.walls(scene), the walls as the file draws them, or "
             "tipoff.run, which finds them"

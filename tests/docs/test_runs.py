@@ -64,11 +64,12 @@ def folder(tmp_path_factory):
     small = 'extends = "tiny"\nname = "tiny"\n'
     (place / "my_launcher.toml").write_text(small + conditions)
     (place / "my_deployer.toml").write_text(small)
+    (place / "my_rocket.toml").write_text(small)
     errors = next(
         text for text in pages.of_language("docs/tutorials/tolerances.md", "toml") if "vary" in text
     )
     # The balance of a deployer is that of a spring, which the small scene has not.
-    for name in ("my_errors.toml", "my_tolerances.toml", "my_balance.toml"):
+    for name in ("my_errors.toml", "my_tolerances.toml", "my_balance.toml", "my_launch.toml"):
         (place / name).write_text(errors)
     key = "thrust_offset.misalignment.axial"
     (place / "cases.csv").write_text(f"{key}\ndeg\n0.1\n0.2\n")

@@ -6,7 +6,7 @@ import numpy as np
 from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
 from tipoff.mechanics.scene_model import Faces
 from tipoff.meshes import bricks
-from tipoff.scenes.rail import MaterialTable
+from tipoff.scenes.rail_base import MaterialTable
 
 LENGTH = 0.22  # m
 MOUNTS = ((0.008, 0.028), (0.1, 0.12), (0.192, 0.212))  # m along X

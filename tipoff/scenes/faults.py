@@ -133,7 +133,8 @@ def within(key: str, given: str, expected: str) -> PydanticCustomError:
 # thrust.width.
 _VARIANTS = ("thrust", "contact", "friction", "rail")
 # variants that are chosen by the presence of a key
-_FILED = (("rail", "mesh"), ("rail", "geometry"))
+_FILED = (("rail", "mesh"), ("rail", "geometry"), ("rail", "section"))
+_KINDS = {"file": 1, "points": 1, "shape": 2}  # of rail.section: parts of the location to drop
 _RENAMED = {"contact.penalty": "contact.interface_stiffness"}
 _WORDS = {
     "extra_forbidden": NO_SUCH_KEY,
@@ -159,6 +160,8 @@ def _key(error: ErrorDetails) -> str:
     location = list(error["loc"])
     if location and location[0] in _VARIANTS and len(location) > 1:
         del location[1]
+        if location[:2] == ["rail", "section"] and len(location) > 2:
+            del location[2 : 2 + _KINDS.get(str(location[2]), 0)]
     if error["type"].startswith("union_tag"):
         location.append(error["ctx"]["discriminator"].strip("'"))
     if error["type"] == "within":

@@ -8,7 +8,7 @@ import numpy as np
 
 from tipoff.scenes import plausible_ranges, sinking, thrust_plausibility
 from tipoff.scenes.effects.thermal import fields
-from tipoff.scenes.rail import SectionTable
+from tipoff.scenes.rail_base import HeldBySpans
 
 _WAVE_SPEED = (100.0, 10_000.0)
 _DENSITY = (10.0, 20_000.0)
@@ -99,13 +99,13 @@ def _of_inertia(scene) -> list[str]:
 
 
 def _of_mounts(rail) -> list[str]:
-    """A free end of a built-in rail that is far more compliant than the rail between two mounts.
+    """A free end of a rail of one section that is far more compliant than the rail between two mounts.
 
     The deflection is F a^3 / (3 E I) at the tip of a cantilever of length a, and F g^3 / (192 E I)
     in the middle of a span g clamped at both ends: a ratio of 64 (a / g)^3. Without such a span all
     mounts together count as one.
     """
-    if not isinstance(rail, SectionTable) or not rail.mounts:
+    if not isinstance(rail, HeldBySpans) or not rail.mounts:
         return []
     mounts = sorted(rail.mounts, key=lambda span: span.start)
     gaps = [after.start - before.end for before, after in itertools.pairwise(mounts)]

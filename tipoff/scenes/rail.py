@@ -1,4 +1,5 @@
-"""``[rail]``: the built-in L section, a mesh of the user, or a solid of the user, meshed here.
+"""``[rail]``: the built-in L section, any other section, a mesh of the user, or a solid of the user,
+meshed here.
 
 The key ``mesh`` or ``geometry`` selects a file. A file is in scene axes (m, origin at the nominal
 mass centre at ignition, +X to the open end); keys say how a mesh differs from that. Its walls are one
@@ -10,11 +11,10 @@ and the modes of compliant contact, and a ``mount_stiffness`` (``scenes.effects.
 without it the mounts are rigid.
 """
 
-import itertools
 import math
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
@@ -29,102 +29,22 @@ from pydantic import (
 
 from tipoff.files import open_input
 from tipoff.scenes import keyword_files
-from tipoff.scenes.effects.mount_stiffness import MountStiffness, MountStiffnessTable
-from tipoff.scenes.effects.structural_damping import DampingTable
+from tipoff.scenes.profile_rail import ProfileTable
+from tipoff.scenes.rail_base import DrawnTable, HeldBySpans
 from tipoff.scenes.rounding import at_most, below
 from tipoff.scenes.table import Table, at_least_one, is_absent, limited
-from tipoff.scenes.units import (
-    SMALLEST_DIMENSION,
-    Density,
-    Dimension,
-    Expansion,
-    Length,
-    NonNegativeLength,
-    PoissonRatio,
-    PositiveLength,
-    Pressure,
-)
+from tipoff.scenes.units import SMALLEST_DIMENSION, Dimension, Length
 
 LARGEST_FILLET = 1.25  # of the thickness: the mesh has no good elements around a larger one
-FILES = ("mesh", "geometry")  # keys that give the rail as a file
+FILES = ("mesh", "geometry", "section")  # keys that give the rail as a file or a drawing
 SOLIDS = (".step", ".stp", ".iges", ".igs", ".brep")
 
 
-def _beyond_start(end: float, info: ValidationInfo) -> float:
-    start = info.data.get("start", -math.inf)
-    if below(end, start + SMALLEST_DIMENSION, start if math.isfinite(start) else 0.0):
-        raise ValueError(f"an end beyond start, by {SMALLEST_DIMENSION:g} m or more")
-    return end
-
-
-class Span(Table):
-    """A stretch along the rail measured from its rear end (m)."""
-
-    #: Rear end of the mount, from the rear end of the rail.
-    start: NonNegativeLength
-    #: Front end of the mount, from the rear end of the rail.
-    end: PositiveLength
-
-    _forward = field_validator("end")(_beyond_start)
-
-
-class MaterialTable(Table):
-    """``[rail.material]``: isotropic linear elasticity; only ``[thermal]`` needs ``expansion``
-    (1/K)."""
-
-    #: Density.
-    density: Density
-    #: Young's modulus.
-    youngs_modulus: Pressure
-    #: Poisson's ratio.
-    poisson_ratio: PoissonRatio
-    #: Yield strength, beside which the peak stress is reported.
-    yield_strength: Pressure | None = None
-    #: Coefficient of thermal expansion; [thermal] needs it.
-    expansion: Expansion | None = Field(None, exclude_if=is_absent)
-
-
-class _RailTable(Table):
-    """Keys of every rail: start and end of its walls along X (m), material, damping, stiffness of
-    its mounts."""
-
-    GIVEN_BY: ClassVar[str]
-    #: Rear end of the walls along X.
-    start: Length
-    #: Open end of the walls along X.
-    end: Length
-    #: Linear elastic material of the rails.
-    material: MaterialTable
-    #: Structural damping of the rails.
-    damping: DampingTable | None = None
-    #: Stiffness of the bolted joints; rigid mounts where absent.
-    mount_stiffness: MountStiffnessTable | None = Field(None, exclude_if=is_absent)
-
-    _forward = field_validator("end")(_beyond_start)
-
-    def contents(self) -> dict[str, str]:
-        """The keys that name files, each with the digest of the content of its file."""
-        return {}
-
-    def libraries(self) -> tuple[str, ...]:
-        """Names of the libraries, in addition to ``sources.LIBRARIES``, that its mesh depends
-        on."""
-        return ()
-
-    def joint(self) -> MountStiffness | None:
-        """Plain record of the joints under the mounts; None if these are rigid."""
-        return self.mount_stiffness.record() if self.mount_stiffness else None
-
-    def gap(self, clearance: float) -> float:
-        """Distance (m) of the walls from the pads in a scene with this clearance (m)."""
-        return clearance
-
-
-class SectionTable(_RailTable):
+class SectionTable(HeldBySpans):
     """Built-in L sections from ``start`` to ``end`` along X, held by the platform at
     ``mounts``."""
 
-    GIVEN_BY = "section"
+    GIVEN_BY = "l_section"
     #: Outer width of a leg of the L.
     leg: Dimension = 0.024
     #: Thickness of a leg.
@@ -134,8 +54,6 @@ class SectionTable(_RailTable):
     #: Radius of the fillet between the inner walls, at most 1.25 times the thickness; a sharp
     #: corner where absent. The walls end where the fillet begins.
     fillet: Dimension | None = Field(None, exclude_if=is_absent)
-    #: Stretches along the rail that the platform holds.
-    mounts: Annotated[tuple[Span, ...], limited] = ()
 
     @field_validator("thickness", "mount_width")
     @classmethod
@@ -158,35 +76,10 @@ class SectionTable(_RailTable):
             raise ValueError(f"less than the inside of the leg, {leg - thickness:g} m")
         return value
 
-    @field_validator("mounts")
-    @classmethod
-    def _apart_on_the_rail(cls, mounts: tuple[Span, ...], info: ValidationInfo):
-        start, end = info.data.get("start", 0.0), info.data.get("end", math.inf)
-        length, scale = end - start, max(abs(start), abs(end)) if math.isfinite(end) else 0.0
-        if any(below(length, span.end, scale) for span in mounts):
-            raise ValueError(f"spans that lie on the rail, which is {length:g} m long")
-        inward = sorted(mounts, key=lambda span: span.start)
-        if any(below(after.start, before.end) for before, after in itertools.pairwise(inward)):
-            raise ValueError("spans that do not overlap")
-        return mounts
 
+class _FileTable(DrawnTable):
+    """A rail given by a file."""
 
-class _FileTable(_RailTable):
-    """A rail given by a file.
-
-    ``clearance`` (m) is that of the file; a scene with another one has shims of the difference
-    under its pads. ``thickness`` (m) of the walls and ``leg`` (m), their unsupported width, scale
-    the bounds of a calibration. They also bound the walls for a pad that comes from behind or from
-    the side (``mechanics.scene_model.Plate``).
-    """
-
-    #: Clearance for which the file is drawn; a scene with another one has shims of the
-    #: difference under its pads.
-    clearance: NonNegativeLength | None = None
-    #: Unsupported width of a wall.
-    leg: Dimension | None = None
-    #: Thickness of a wall.
-    thickness: Dimension | None = None
     _digest: str = PrivateAttr()
 
     @model_validator(mode="after")
@@ -208,10 +101,6 @@ class _FileTable(_RailTable):
     def contents(self) -> dict[str, str]:
         """The digest of the file, with those that it includes, at the time the scene was read."""
         return {self.GIVEN_BY: self._digest}
-
-    def gap(self, clearance: float) -> float:
-        """Distance (m) of the walls from the pads in the file, for any clearance of the scene."""
-        return clearance if self.clearance is None else self.clearance
 
 
 def _readable(file: str) -> str:
@@ -355,12 +244,13 @@ class GeometryTable(_FileTable):
 
 def _given_by(rail: Any) -> str:
     if isinstance(rail, dict):
-        return next((key for key in FILES if key in rail), "section")
-    return getattr(rail, "GIVEN_BY", "section")
+        return next((key for key in FILES if key in rail), SectionTable.GIVEN_BY)
+    return getattr(rail, "GIVEN_BY", SectionTable.GIVEN_BY)
 
 
 RailTable = Annotated[
-    Annotated[SectionTable, Tag("section")]
+    Annotated[SectionTable, Tag("l_section")]
+    | Annotated[ProfileTable, Tag("section")]
     | Annotated[MeshTable, Tag("mesh")]
     | Annotated[GeometryTable, Tag("geometry")],
     Discriminator(_given_by),

@@ -17,7 +17,7 @@ from tipoff.scenes import overrides, provenance, rail
 from tipoff.scenes.faults import Fault, SceneError, close, kind_of
 
 CATALOG = Path(__file__).resolve().parent / "catalog"
-_CHOICE = {"thrust": "kind", "contact": "law"}
+_CHOICE = {"thrust": "kind", "contact": "law", "section": "shape"}
 # relative to the scene file; with a suffix if the value may also be a name of the catalogue
 _FILES = (
     ("thrust", "file"),

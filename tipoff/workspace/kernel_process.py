@@ -19,7 +19,6 @@ from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance, digest, patterns
 from tipoff.scenes import parse
 from tipoff.scenes.effects.thermal import FIELDS
-from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
 from tipoff.workspace import kernel_marks, machine
 from tipoff.workspace.compiling import warm_up
@@ -34,7 +33,7 @@ def compiled_beside(scene: Scene, workers: int, degree: int = DEGREE) -> Iterato
     Does nothing if the kernels are there, with one of ``workers``, on one core, and for a rail from
     a file: whether its walls are straight is not known before it is meshed.
     """
-    if min(workers, machine.cores()) < 2 or not isinstance(scene.rail, SectionTable):
+    if min(workers, machine.cores()) < 2 or not scene.rail.IS_STRAIGHT:
         yield
         return
     run = request(scene, degree)

@@ -21,7 +21,6 @@ from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import plausibility
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
-from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import NOMINAL, Scene
 from tipoff.workspace import words
 from tipoff.workspace.errors import StudyError as StudyError
@@ -180,7 +179,7 @@ class Study:
     def rigid_rails(self, scene: Scene) -> RailCompliance | None:
         """The rails of springs in ``scene``: rigid, with their offset if they are warm or from a file,
         else None."""
-        straight = isinstance(scene.rail, SectionTable) and scene.thermal is None
+        straight = scene.rail.IS_STRAIGHT and scene.thermal is None
         if scene.contact is None or straight:
             return None
         from tipoff.calibration import rail_compliance  # slow to load

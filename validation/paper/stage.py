@@ -16,6 +16,7 @@ import numpy as np
 from tipoff import cache, sources
 from tipoff.files import content_hash, write_text
 from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene, load
 from tipoff.studies import published
 from tipoff.studies.agreement import stage as compare
@@ -109,7 +110,7 @@ def require(scene: Scene) -> None:
         Fault(scene.name, key, given, expected)
         for holds, key, given, expected in (
             (
-                scene.rail.GIVEN_BY == "section",
+                isinstance(scene.rail, SectionTable),
                 "rail",
                 f"a {scene.rail.GIVEN_BY}",
                 "the built-in section, because its ends are searched",

@@ -19,7 +19,7 @@ from tipoff.highfi.elements import hexahedron
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.statics import assembly, vibration
 from tipoff.highfi.statics.solve import Clamped
-from tipoff.scenes.rail import MaterialTable
+from tipoff.scenes.rail_base import MaterialTable
 from validation.peers import calculix
 from validation.peers.calculix import LINEAR, QUADRATIC
 from validation.peers.calculix_rail import (

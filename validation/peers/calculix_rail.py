@@ -18,7 +18,7 @@ from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.statics import assembly, thermal
 from tipoff.highfi.statics.pressure import Wall
 from tipoff.highfi.statics.solve import Clamped
-from tipoff.scenes.rail import MaterialTable
+from tipoff.scenes.rail_base import MaterialTable
 from tipoff.scenes.scene import Scene, load
 from validation.peers import calculix
 from validation.peers.calculix import LINEAR, QUADRATIC

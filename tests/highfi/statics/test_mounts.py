@@ -16,7 +16,7 @@ from tipoff.highfi.statics import assembly, mounts, thermal
 from tipoff.highfi.statics.solve import Clamped
 from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from tipoff.scenes.effects.thermal import FIELDS, Thermal
-from tipoff.scenes.rail import MaterialTable
+from tipoff.scenes.rail_base import MaterialTable
 
 SIZE = (0.06, 0.02, 0.01)  # m
 SOFT = MountStiffness(normal=2e11, shear=1e11)

@@ -17,7 +17,7 @@ from tipoff.highfi.statics import assembly, thermal
 from tipoff.highfi.statics.solve import Clamped
 from tipoff.meshes import l_rail
 from tipoff.scenes.effects.thermal import Thermal
-from tipoff.scenes.rail import MaterialTable
+from tipoff.scenes.rail_base import MaterialTable
 
 MATERIAL = MaterialTable.model_validate(ALUMINIUM, context={"bare_numbers_are_si": True})
 EXPANSION, LENGTH, WIDTH, HEIGHT = 23.6e-6, 0.2, 0.012, 0.016

@@ -12,7 +12,7 @@ from tipoff.highfi import compliance
 from tipoff.highfi.mesh.rail_mesh import MeshError
 from tipoff.highfi.statics import assembly, vibration
 from tipoff.highfi.statics.held import distinct
-from tipoff.scenes.rail import MaterialTable
+from tipoff.scenes.rail_base import MaterialTable
 
 DENSITY = 2700.0
 # At a Poisson ratio of zero the clamp of a solid is that of beam theory.

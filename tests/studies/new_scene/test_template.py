@@ -190,6 +190,38 @@ def test_a_deployer_has_the_given_numbers_and_the_rest_of_the_catalogue(tmp_path
     assert scenes.load("same.toml").hash == own.hash
 
 
+def test_a_rocket_has_the_given_numbers_and_the_motor_of_the_catalogue_beside_it(
+    tmp_path, monkeypatch
+):
+    """Mass and play are those given, and the buttons rest on the rail; all other values are those of
+    ``rocket_rail``. Control: without numbers it is that scene."""
+    monkeypatch.chdir(tmp_path)
+    made = call("new", "own.toml", "--rocket", "--mass", "6 kg", "--clearance", "0.3 mm")
+    assert made.exit_code == 0, made.output
+    scene, own = scenes.load("own.toml"), scenes.load("rocket_rail")
+    assert scene.payload.mass == 6.0 and scene.payload.inertia.yy == pytest.approx(1.284)
+    assert scene.contact.clearance == -scene.initial.position.z == pytest.approx(0.3e-3)
+    assert scene.provenance["contact.clearance"] == "given to tipoff new"
+    assert (tmp_path / "j360_start.csv").exists() and scene.warnings == []
+    for name in ("pads", "rail", "friction", "gravity", "conditions"):
+        assert getattr(scene, name) == getattr(own, name)
+    # Control:
+    assert call("new", "same.toml", "--rocket").exit_code == 0
+    assert scenes.load("same.toml").hash == own.hash
+
+
+def test_a_rocket_takes_a_motor_of_its_own(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "motor.csv").write_text("time_s,force_N\n0,0\n0.05,400\n2.5,380\n2.6,0\n")
+    made = call("new", "own.toml", "--rocket", "--thrust-curve", "motor.csv")
+    assert made.exit_code == 0, made.output
+    assert scenes.load("own.toml").thrust.file == str(tmp_path / "motor.csv")
+    assert not (tmp_path / "j360_start.csv").exists()
+    for wrong in (("--thrust", "3 N"), ("--deployer", "3u"), ("--pads", "8")):
+        made = call("new", "other.toml", "--rocket", *wrong)
+        assert made.exit_code == 2 and "expected none beside --" in made.stderr
+
+
 def test_numbers_that_a_deployer_has_not_are_refused(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     made = call("new", "own.toml", "--deployer", "3u", "--pads", "4", "--mass", "-1 kg")

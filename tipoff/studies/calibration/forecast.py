@@ -22,7 +22,6 @@ from typing import NamedTuple
 from tipoff import sources
 from tipoff.files import read_json, require_whole
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
-from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
 from tipoff.workspace.run import Run
 from tipoff.workspace.study import Study
@@ -182,13 +181,10 @@ def reference_seconds(run: Run, speed: Pace) -> tuple[float, str] | None:
 
 
 def _elements(scene: Scene, size: float, speed: Pace) -> float | None:
-    if isinstance(scene.rail, SectionTable):
-        from tipoff.highfi.rail.scene_mesh import geometry
-        from tipoff.meshes import l_rail
+    if scene.rail.IS_STRAIGHT:
+        from tipoff.highfi.rail.scene_mesh import elements  # slow to load
 
-        section = geometry(scene)
-        assert isinstance(section, l_rail.LRailGeometry)
-        return l_rail.elements(section, size)
+        return elements(scene, size)
     if speed.elements is None or speed.element_size is None:
         return None
     return speed.elements * (speed.element_size / size) ** 3

@@ -17,7 +17,7 @@ from tipoff.lowfi.ensemble.threads import PIECE, completed
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes.faults import SceneError
-from tipoff.scenes.rail import SectionTable
+from tipoff.scenes.rail_base import HeldBySpans
 from tipoff.scenes.scene import Scene
 from tipoff.studies.cost.results import Trend
 from tipoff.studies.cost.scaling import coarse_walls, power_law
@@ -47,7 +47,7 @@ def lengthened(scene: Scene, factor: int) -> Scene | None:
     """``scene`` with rails ``factor`` times as long, and the mounts of that many rails; None for
     rails from a file, and for mounts that would overlap."""
     rail = scene.rail
-    if not isinstance(rail, SectionTable):
+    if not isinstance(rail, HeldBySpans):
         return None
     length = rail.end - rail.start
     mounts = [

@@ -90,7 +90,7 @@ def unknown_size(scene: Scene) -> str:
     return (
         ""
         if _boxes(scene)
-        else "flight.envelope lists no box of the platform, and its rails are given by a file"
+        else "flight.envelope lists no box of the platform, and its rails are not the built-in L sections"
     )
 
 

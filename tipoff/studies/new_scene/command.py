@@ -1,6 +1,7 @@
 """``tipoff new`` and ``tipoff schema``."""
 
 import json
+import os
 import sys
 from pathlib import Path
 from typing import Annotated, Literal
@@ -64,6 +65,14 @@ def new(
             "--mass, --clearance, and --thrust for the force of the spring at zero travel.",
         ),
     ] = None,
+    rocket: Annotated[
+        bool,
+        typer.Option(
+            "--rocket",
+            help="Write a rocket with two buttons in the slot of a T-slot rail, instead of a launcher. Takes "
+            "--mass, --clearance and --thrust-curve for its motor.",
+        ),
+    ] = False,
     json_: Json = False,
 ) -> None:
     """Write a commented scene of your own launcher from a few numbers; it runs as it is.
@@ -73,6 +82,7 @@ def new(
 
       tipoff new my_launcher.toml --mass "12 kg" --thrust "4 kN"
       tipoff new my_deployer.toml --deployer 3u --mass "4.5 kg"
+      tipoff new my_rocket.toml --rocket --mass "6 kg"
       tipoff new measured.toml --thrust-curve firing.csv
       tipoff run --scene my_launcher.toml
     """
@@ -84,12 +94,15 @@ def new(
         "thrust": thrust,
         "burn_time": burn_time,
     }
-    nothing = all(value is None for value in (*given.values(), thrust_curve, pads, deployer))
+    kind = deployer or ("rocket" if rocket else None)
+    nothing = all(value is None for value in (*given.values(), thrust_curve, pads, kind))
     if nothing and sys.stdin.isatty():
         given = {
             name: typer.prompt(question, default=default)
             for name, (_, question, default) in _ASKED.items()
         }
+
+    both = bool(deployer and rocket)
 
     def work() -> Output:
         from tipoff.files import write_text
@@ -99,10 +112,10 @@ def new(
         _, text = together(
             lambda: _require_new(file),
             lambda: (
-                _of_deployer(
-                    file.stem, deployer, given, {"thrust_curve": thrust_curve, "pads": pads}
+                _from_catalogue(
+                    file, kind, given, thrust_curve, {"pads": pads, "rocket": both or None}
                 )
-                if deployer
+                if kind
                 else template.text(file.stem, _numbers(given, thrust_curve, pads), file.parent)
             ),
         )
@@ -113,19 +126,40 @@ def new(
     guarded(work, json_)
 
 
-def _of_deployer(
-    name: str, kind: str, given: dict[str, str | None], others: dict[str, object]
+def _from_catalogue(
+    file: Path,
+    kind: str,
+    given: dict[str, str | None],
+    thrust_curve: Path | None,
+    others: dict[str, object],
 ) -> str:
-    """The scene of a deployer. Raises SceneError, every fault listed."""
-    from tipoff.studies.new_scene import deployer
+    """The scene of a ``kind`` of the catalogue; the file that it names is written beside ``file``. Raises
+    SceneError, every fault listed."""
+    from tipoff.files import write_text
+    from tipoff.scenes.faults import SceneError
+    from tipoff.studies.new_scene import from_catalogue, template
 
+    like = from_catalogue.KINDS[kind]
     beside = [option for option, value in (given | others).items() if value is not None]
     numbers = {
         option: quantity(_option_name(option), given[option], _ASKED[option][0], _ASKED[option][2])
         for option in beside
-        if option in deployer.KEYS
+        if option in like.quantities
     }
-    return deployer.text(name, kind, numbers, [one for one in beside if one not in numbers])
+    wrong = [one for one in beside if one not in numbers]
+    curve = None
+    if thrust_curve is not None and not like.takes_curve:
+        wrong.append("thrust_curve")
+    elif thrust_curve is not None:
+        if faults := template.curve_faults(thrust_curve):
+            raise SceneError(faults)
+        curve = os.path.relpath(thrust_curve.resolve(), file.parent.resolve())
+    text = from_catalogue.text(file.stem, like, numbers, curve, wrong)
+    if curve is None and not file.exists():
+        for name, content in from_catalogue.files(like).items():
+            if not (file.parent / name).exists():
+                write_text(file.parent / name, content)
+    return text
 
 
 def _require_scene(text: str, file: Path) -> None:

@@ -33,6 +33,14 @@ class View:
             f'height="{bottom - top:.1f}"/>'
         )
 
+    def outline(self, kind: str, loops: Iterable[Iterable[tuple[float, float]]]) -> None:
+        """The area of the first of some ``loops`` of corners (m) without the others."""
+        path = " ".join(
+            f"M {' L '.join('{:.1f} {:.1f}'.format(*self.point(*each)) for each in loop)} z"
+            for loop in loops
+        )
+        self.shapes.append(f'<path class="{kind}" fill-rule="evenodd" d="{path}"/>')
+
     def corner(
         self,
         kind: str,

@@ -9,7 +9,9 @@ import math
 
 from markupsafe import Markup
 
+from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.rail import SectionTable
+from tipoff.scenes.rail_base import HeldBySpans
 from tipoff.scenes.scene import Scene
 from tipoff.studies.render.sketch import HEIGHT, WIDTH, View, svg
 
@@ -46,11 +48,10 @@ def side_view(scene: Scene) -> View:
     )
     view = View((0.5 * WIDTH + 20.0, 0.5 * HEIGHT - 8.0), scale, (0.5 * (low + high), 0.0))
     view.box("payload", (-a, -b), (a, b))
-    for side in (-1.0, 1.0):
-        near, far = sorted((side * b, side * (b + wall)))
+    for near, far in _across(scene):
         view.box("rail", (scene.rail.start, near), (scene.rail.end, far))
         for begin, end in _mounts(scene):
-            outside = sorted((side * (b + wall), side * (b + 2.2 * wall)))
+            outside = (near - 1.2 * wall, near) if near + far < 0.0 else (far, far + 1.2 * wall)
             view.box("mount", (begin, outside[0]), (end, outside[1]))
     for x, y, length in dict.fromkeys(
         (pad.position[0], pad.position[1], pad.length) for pad in scene.pads
@@ -96,9 +97,13 @@ def end_view(scene: Scene) -> View:
     """Payload, rails and pads to scale, seen from the open end: Y to the right and Z upwards."""
     _, b, c = halves(scene)
     wall, leg = thickness(scene), _leg(scene)
-    scale = (HEIGHT - 110.0) / (2.0 * max(b, c) + 4.0 * wall)
+    reach = max([b, c, *(abs(place) for corner in _corners(scene) for place in corner)])
+    scale = (HEIGHT - 110.0) / (2.0 * reach + 4.0 * wall)
     view = View((0.32 * WIDTH, 0.5 * HEIGHT), scale, (0.0, 0.0))
     view.box("payload", (-b, -c), (b, c))
+    if isinstance(scene.rail, ProfileTable):
+        for image in scene.rail.images():
+            view.outline("rail", image.loops)
     for y in (-1.0, 1.0):
         for z in (-1.0, 1.0):
             if isinstance(scene.rail, SectionTable):
@@ -194,13 +199,29 @@ def thickness(scene: Scene) -> float:
     return own or 0.05 * halves(scene)[1]
 
 
+def _corners(scene: Scene) -> list[tuple[float, float]]:
+    """Corners (m) of rails that have a section of their own."""
+    rails = scene.rail.images() if isinstance(scene.rail, ProfileTable) else []
+    return [corner for rail in rails for corner in rail.loops[0]]
+
+
+def _across(scene: Scene) -> list[tuple[float, float]]:
+    """From and to (m) along Y of the rails as seen from the side."""
+    if isinstance(scene.rail, ProfileTable):
+        places = [[y for y, _ in rail.loops[0]] for rail in scene.rail.images()]
+        return [(min(each), max(each)) for each in places]
+    _, b, _ = halves(scene)
+    wall = thickness(scene)
+    return [(-b - wall, -b), (b, b + wall)]
+
+
 def _leg(scene: Scene) -> float:
     return scene.rail.leg if isinstance(scene.rail, SectionTable) else 0.0
 
 
 def _mounts(scene: Scene) -> list[tuple[float, float]]:
-    """Intervals (m) along X at which a built-in rail is held."""
-    if not isinstance(scene.rail, SectionTable):
+    """Intervals (m) along X at which a rail of one section is held."""
+    if not isinstance(scene.rail, HeldBySpans):
         return []
     start = scene.rail.start
     return [(start + span.start, start + span.end) for span in scene.rail.mounts]

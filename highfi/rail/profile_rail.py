@@ -1,0 +1,87 @@
+"""The rail of a scene that has a section of its own, as it is meshed: its walls are the sides that face
+the pads."""
+
+from tipoff.mechanics import scene_model
+from tipoff.meshes.profile import Profile
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.profile_rail import ProfileTable
+from tipoff.scenes.scene import Scene
+from tipoff.scenes.sections.outline import SAME, Side
+
+_FACING = 1e-6  # of a unit normal: sides that are turned less face along an axis
+
+
+def profile(scene: Scene, rail: ProfileTable) -> Profile:
+    """The rail as meshed. Raises SceneError if nothing holds it, or a pad has no wall."""
+    outline = rail.outline().at(rail.at)
+    faults: list[Fault] = []
+    walls: set[int] = set()
+    if not rail.mounts:
+        faults.append(
+            Fault(
+                scene.name,
+                "rail.mounts",
+                "none",
+                "at least one, since nothing else holds a rail that gives way",
+            )
+        )
+    if scene.contact is not None:
+        walls, missing = _walls(scene, outline.sides(), rail.signs())
+        faults += missing
+    if faults:
+        raise SceneError(faults)
+    mounted = (rail.outline().side_at(point) for point in rail.mounted)
+    return Profile(
+        loops=outline.loops,
+        blocks=rail.blocks(),
+        area=outline.moments().area,
+        walls=tuple(sorted(walls)),
+        mounted=tuple(sorted(set(mounted))),
+        ends=(rail.start, rail.end),
+        spans=tuple(sorted((span.start, span.end) for span in rail.mounts)),
+        stretch=rail.stretch,
+        images=rail.signs(),
+    )
+
+
+def _walls(
+    scene: Scene, sides: list[Side], images: tuple[tuple[int, int], ...]
+) -> tuple[set[int], list[Fault]]:
+    """Numbers of the sides that face the pads, and the faults of pads that face none."""
+    faces = scene_model.in_scene_axes(scene, scene_model.built(scene).nominal)
+    walls: set[int] = set()
+    faults: list[Fault] = []
+    for face in range(faces.axis.size):
+        axis, sign = int(faces.axis[face]), float(faces.sign[face])
+        wall, middle = float(faces.wall[face]), float(faces.centre[face, 3 - axis])
+        found, apart = set(), []
+        for image in images:
+            own = axis - 1
+            for number, side in enumerate(sides):
+                if abs(image[own] * side.normal[own] + sign) > _FACING:
+                    continue
+                ends = sorted(image[1 - own] * end[1 - own] for end in side)
+                if not ends[0] < middle < ends[1]:
+                    continue
+                place = image[own] * side.start[own]
+                apart.append(place)
+                if abs(place - wall) < SAME:
+                    found.add(number)
+        walls |= found
+        if not found:
+            name = f"{'+' if sign > 0.0 else '-'}{'xyz'[axis]}"
+            nearest = min(apart, key=lambda place: abs(place - wall), default=None)
+            faults.append(
+                Fault(
+                    scene.name,
+                    f"pads.{faces.pad[face]}",
+                    f"a face {name} without a wall at {name[1]} = {wall:.9g} m",
+                    "a side of the section that faces it there, one clearance off the pad; "
+                    + (
+                        "no side faces it"
+                        if nearest is None
+                        else f"the nearest one that faces it is at {nearest:.9g} m"
+                    ),
+                )
+            )
+    return walls, faults

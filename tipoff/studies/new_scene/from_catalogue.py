@@ -1,0 +1,140 @@
+"""A commented scene file that is a scene of the catalogue with its comments, and with the given numbers
+in place of its own: a CubeSat in a deployer, or a rocket on a rail.
+
+A given mass of a CubeSat is that of a homogeneous box; the inertia of a rocket is in proportion to it.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import tomlkit
+
+from tipoff.files import read_input
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.scene import CATALOG
+
+GIVEN = "given to tipoff new"
+
+
+class Quantity(NamedTuple):
+    """What an option changes."""
+
+    keys: tuple[str, ...]  # of the scene; with "-" in front for the negative value
+    unit: str
+    size: float  # of the unit in SI
+
+
+class Kind(NamedTuple):
+    """A kind of scene."""
+
+    option: str  # of the command
+    scene: str  # of the catalogue
+    quantities: dict[str, Quantity]  # by name of the option
+    takes_curve: bool  # whether --thrust-curve replaces the thrust
+    # moments of inertia (kg m2) of a mass (kg), from the table of the payload
+    inertia: Callable[[float, Any], dict[str, float]]
+
+
+def _box(mass: float, payload) -> dict[str, float]:
+    """Those of a homogeneous box with the sides of the table, in text with mm."""
+    a, b, c = (1e-3 * float(side.removesuffix(" mm")) for side in payload["size"])
+    return {
+        "xx": mass * (b**2 + c**2) / 12.0,
+        "yy": mass * (a**2 + c**2) / 12.0,
+        "zz": mass * (a**2 + b**2) / 12.0,
+    }
+
+
+def _in_proportion(mass: float, payload) -> dict[str, float]:
+    """Those of the table, in proportion to its mass."""
+    share = mass / float(payload["mass"].removesuffix(" kg"))
+    return {
+        axis: share * float(moment.removesuffix(" kg*m**2"))
+        for axis, moment in payload["inertia"].items()
+    }
+
+
+_MASS = Quantity(("payload.mass",), "kg", 1.0)
+KINDS = {
+    "3u": Kind(
+        "--deployer 3u",
+        "cubesat_3u",
+        {
+            "mass": _MASS,
+            "clearance": Quantity(("contact.clearance",), "mm", 1e-3),
+            "thrust": Quantity(("thrust.springs.0.preload",), "N", 1.0),
+        },
+        takes_curve=False,
+        inertia=_box,
+    ),
+    "rocket": Kind(
+        "--rocket",
+        "rocket_rail",
+        {
+            "mass": _MASS,
+            "clearance": Quantity(("contact.clearance", "-initial.position.z"), "mm", 1e-3),
+        },
+        takes_curve=True,
+        inertia=_in_proportion,
+    ),
+}
+
+
+def text(
+    name: str,
+    kind: Kind,
+    given: Mapping[str, float | None],
+    thrust_curve: str | None = None,
+    others: Sequence[str] = (),
+) -> str:
+    """The scene as TOML for a ``kind``, with the ``given`` numbers (SI) by name of the option and the file
+    of its ``thrust_curve``; the others are those of the catalogue. Raises SceneError for names of
+    ``others`` that are given, and for a number that is not above zero."""
+    document = tomlkit.parse((CATALOG / f"{kind.scene}.toml").read_text(encoding="utf-8"))
+    document["name"] = name
+    document["description"] = f"Made by tipoff new {kind.option}."
+    stated = {option: value for option, value in given.items() if value is not None}
+    if faults := [*_of_others(kind, others), *_of_numbers(stated)]:
+        raise SceneError(faults)
+    if "mass" in stated:
+        for axis, moment in kind.inertia(stated["mass"], document["payload"]).items():
+            _put(document, f"payload.inertia.{axis}", f"{moment:.6g} kg*m**2")
+    for option, value in stated.items():
+        keys, unit, size = kind.quantities[option]
+        for key in keys:
+            sign = "-" if key.startswith("-") else ""
+            _put(document, key.removeprefix("-"), f"{sign}{value / size:.6g} {unit}")
+        document["provenance"][keys[0]] = GIVEN
+    if thrust_curve is not None:
+        _put(document, "thrust.file", thrust_curve)
+        document["provenance"]["thrust"] = GIVEN
+    return tomlkit.dumps(document).replace(f"--scene {kind.scene} ", f"--scene {name}.toml ")
+
+
+def files(kind: Kind) -> dict[str, str]:
+    """Texts of the files of the catalogue that the scene of a ``kind`` names, by their names."""
+    document = tomlkit.parse((CATALOG / f"{kind.scene}.toml").read_text(encoding="utf-8"))
+    named = document["thrust"].get("file")
+    return {named: read_input(CATALOG / Path(named)).decode("utf-8")} if named else {}
+
+
+def _of_others(kind: Kind, names: Sequence[str]) -> list[Fault]:
+    taken = [*kind.quantities, *(["thrust-curve"] if kind.takes_curve else [])]
+    expected = f"none beside {kind.option}, which takes --{', --'.join(taken)}"
+    return [Fault(f"--{name.replace('_', '-')}", "option", "a value", expected) for name in names]
+
+
+def _of_numbers(stated: Mapping[str, float]) -> list[Fault]:
+    return [
+        Fault(f"--{option}", "value", f"{value:g}", "above zero")
+        for option, value in stated.items()
+        if not value > 0.0
+    ]
+
+
+def _put(document, key: str, value: str) -> None:
+    *path, last = key.split(".")
+    for part in path:
+        document = document[int(part) if part.isdecimal() else part]
+    document[last] = value
