@@ -209,6 +209,7 @@ PositiveLength = quantity("m", gt=0.0)
 SMALLEST_DIMENSION = 1e-6  # m, of a rail: above the rounding of its place, below any real one
 Dimension = quantity("m", ge=SMALLEST_DIMENSION)
 Angle = quantity("rad")
+Inclination = quantity("rad", ge=-0.5 * math.pi, le=0.5 * math.pi)
 Time = quantity("s")
 NonNegativeMass = quantity("kg", ge=0.0)
 NonNegativeTime = quantity("s", ge=0.0)
