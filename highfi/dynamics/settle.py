@@ -51,7 +51,9 @@ def _alone(setup: Setup) -> Setup:
         curve=law.curve and law.curve._replace(forces=0.0 * law.curve.forces),
     )
     still = model._replace(thrust=silent, friction=friction)
-    return replace(setup, system=setup.system._replace(model=still))
+    latch = setup.system.hold_down
+    held = latch and latch._replace(release=np.inf)
+    return replace(setup, system=setup.system._replace(model=still, hold_down=held))
 
 
 def _relax(stepper: Stepper, name: str) -> None:

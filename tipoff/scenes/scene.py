@@ -38,6 +38,7 @@ from tipoff.scenes.effects.flight import FlightTable
 from tipoff.scenes.effects.friction import FrictionTable
 from tipoff.scenes.effects.gravity import GravityTable
 from tipoff.scenes.effects.hand_over import HandOverTable
+from tipoff.scenes.effects.hold_down import HoldDownTable
 from tipoff.scenes.effects.initial import InitialTable
 from tipoff.scenes.effects.mass_offset import MassOffsetTable
 from tipoff.scenes.effects.platform import PlatformTable
@@ -88,6 +89,8 @@ class Scene(shown.Shown, ends.Timed, Table):
     mass_offset: MassOffsetTable | None = None
     #: State of payload and platform at ignition.
     initial: InitialTable | None = None
+    #: Latch that holds the travel until the thrust reaches a value.
+    hold_down: HoldDownTable | None = Field(None, exclude_if=is_absent)
     #: Clearance, contact law and interface stiffness.
     contact: ContactTable | None = None
     #: Friction between pads and walls.
