@@ -11,6 +11,7 @@ from tipoff.scenes.effects.hold_down import release_time
 from tipoff.scenes.effects.thrust_law import sample
 
 
+@pytest.mark.case("O91")
 @pytest.mark.slow
 @pytest.mark.parametrize("platform", [True, False])
 def test_the_speed_at_the_exit_is_the_impulse_after_the_release(platform):

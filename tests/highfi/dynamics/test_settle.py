@@ -16,6 +16,7 @@ CHANGED = {
 }
 
 
+@pytest.mark.case("O90")
 @pytest.mark.slow
 def test_a_payload_on_flexible_rails_stays_at_rest():
     """Control: without the option it
@@ -33,3 +34,18 @@ def test_a_payload_on_flexible_rails_stays_at_rest():
     falling = highfi.run(tiny(**CHANGED), COARSE)
     assert np.abs(falling.velocity[before, 2]).max() > 0.01
     assert not falling.pad_force[before].any()
+
+
+@pytest.mark.slow
+def test_a_payload_rests_on_an_inclined_rail_that_holds_it():
+    """The latch acts beside the mass centre, so its moment tilts the payload."""
+    steep = {"gravity": {"x": -0.9 * G, "y": -0.1 * G, "z": -0.4 * G}}
+    offset = {"eccentricity": {"axial": 0.002, "radial": 0.0}}
+    held = {"hold_down": {"release": 2000.0}, "mass_offset": offset}
+    asked = tiny(**CHANGED | steep | held, initial={"settled": True})
+    run = highfi.run(asked, COARSE)
+    before = run.time < START
+    assert np.abs(run.velocity[before]).max() < 1e-6
+    assert np.degrees(np.abs(run.rate[before]).max()) < 1e-3
+    force = run.pad_force.sum(axis=1)[before] / asked.payload.mass
+    np.testing.assert_allclose(force[:, 1:], [[0.1 * G, 0.4 * G]] * before.sum(), rtol=1e-3)

@@ -29,6 +29,7 @@ def held(level: float, **tables):
     return scene(0.014, 1e-4, mass=MASS, **OPEN | {"hold_down": {"release": level}} | tables)
 
 
+@pytest.mark.case("O91")
 @pytest.mark.parametrize("level", [1000.0, 3999.0])
 def test_the_speed_is_the_impulse_after_the_release(level):
     """Control: without a hold-down the payload has the whole impulse."""
@@ -72,6 +73,7 @@ def test_a_payload_on_an_upright_rail_does_not_fall():
     assert free.velocity[before][-1, 0] < -0.04
 
 
+@pytest.mark.case("O91")
 @pytest.mark.parametrize("level", [0.0, 20.0])
 def test_a_release_at_ignition_has_the_same_bits_as_none(level):
     """The pulse begins with 44 N."""

@@ -31,6 +31,7 @@ def sums(run, asked) -> np.ndarray:
     return run.pad_force.sum(axis=1)[before_thrust(run)] / asked.payload.mass
 
 
+@pytest.mark.case("O90")
 def test_a_payload_on_springs_stays_at_rest():
     """It sinks as the law of the paper's pad demands. Control: a payload that begins in the middle
     falls, and its pads bounce."""
@@ -62,6 +63,21 @@ def test_a_mass_centre_beside_the_middle_is_balanced():
     assert np.abs(moment).max() < 1e-3 * MASS * G * 0.02
     loads = run.pad_force[0][:, 2]
     assert np.ptp(loads[loads > 0.0]) > 0.05 * MASS * G  # control: they are not equal
+
+
+def test_a_payload_rests_on_an_inclined_rail_that_holds_it():
+    """The latch carries the weight along the rail, and its moment about a mass centre beside the
+    line. Control: without the latch the payload slides back."""
+    offset = {"eccentricity": {"axial": 0.02, "radial": 2.0}}
+    steep = {"gravity": {"x": -0.9 * G, "y": 0.0, "z": -0.4 * G}, "mass_offset": offset}
+    asked = on_springs(hold_down={"release": 400.0}, **SETTLED, **steep)
+    run = lowfi.run(asked, "springs")
+    before = before_thrust(run)
+    assert np.abs(run.velocity[before]).max() < 1e-11
+    assert np.abs(run.rate[before]).max() < 1e-10
+    np.testing.assert_allclose(sums(run, asked)[:, 2], 0.4 * G, rtol=1e-8)
+    sliding = lowfi.run(asked.replace({"hold_down": None}), "springs")
+    assert sliding.velocity[before][-1, 0] < -0.02
 
 
 @pytest.mark.parametrize(
