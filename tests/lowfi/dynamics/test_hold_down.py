@@ -32,7 +32,6 @@ def held(level: float, **tables):
 @pytest.mark.case("O91")
 @pytest.mark.parametrize("level", [1000.0, 3999.0])
 def test_the_speed_is_the_impulse_after_the_release(level):
-    """Control: without a hold-down the payload has the whole impulse."""
     asked = held(level, platform=PLATFORM, thrust_offset=CENTRED)
     run, at = lowfi.run(asked, "springs"), released(level)
     assert release_time(asked) == pytest.approx(at, rel=1e-12)
@@ -43,6 +42,7 @@ def test_the_speed_is_the_impulse_after_the_release(level):
     impulse = quad(pulse, at, run.time[-1], points=[CENTRE], epsabs=1e-12)[0]
     assert speed[-1] == pytest.approx(gain * impulse, rel=1e-7)
     assert run.checks["linear_momentum_error"] < 1e-12
+    # Control: without a hold-down the payload has the whole impulse.
     free = lowfi.run(asked.replace({"hold_down": None}), "springs")
     assert free.to_xarray().relative_velocity.values[-1, 0] > 1.02 * speed[-1]
 

@@ -33,8 +33,7 @@ def sums(run, asked) -> np.ndarray:
 
 @pytest.mark.case("O90")
 def test_a_payload_on_springs_stays_at_rest():
-    """It sinks as the law of the paper's pad demands. Control: a payload that begins in the middle
-    falls, and its pads bounce."""
+    """It sinks as the law of the paper's pad demands."""
     asked = on_springs(**SETTLED)
     run = lowfi.run(asked, "springs")
     before = before_thrust(run)
@@ -45,6 +44,7 @@ def test_a_payload_on_springs_stays_at_rest():
         sink = (MASS * pull / 4.0 / PAPER_PAD["stiffness"]) ** (1.0 / 1.5)
         place = -PAPER_PAD["clearance"] - sink
         assert run.position[0, axis] == pytest.approx(place, rel=1e-9)
+    # Control: a payload that begins in the middle falls, and its pads bounce.
     falling = lowfi.run(on_springs(), "springs")
     assert np.abs(falling.velocity[before][:, 2]).max() > 5e-3
     assert sums(falling, asked)[:, 2].max() > 2.0 * G
