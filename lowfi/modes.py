@@ -25,6 +25,7 @@ import numpy as np
 from tipoff.lowfi.single_run import SingleRun
 
 THRESHOLD = math.radians(0.02)  # rad/s, of the settled rates
+FEWEST = 4  # if any are needed
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,8 @@ def needed(effect: np.ndarray) -> int:
     """The fewest lowest modes for which the sum of the ``effect`` (n,) rad/s of the others is at
     most ``THRESHOLD``."""
     rest = np.append(np.cumsum(effect[::-1])[::-1], 0.0)
-    return int(np.argmax(rest <= THRESHOLD))
+    found = int(np.argmax(rest <= THRESHOLD))
+    return min(max(found, FEWEST), effect.size) if found else 0
 
 
 def _enlarged(last: list[SingleRun], effect: np.ndarray) -> float:

@@ -10,6 +10,8 @@ from tipoff.scenes.units import is_number, single
 
 AUTO = "auto"
 _LEAST_CELLS, _MOST_CELLS = 4, 100
+CELLS, _FEW_CELLS = 16, 10  # up to the default tolerance, and above it
+_TOLERANCE = 2e-7
 # A relative error of 0.1 % per step gives no solution; below 1e-13 there is only rounding.
 _COARSEST, _FINEST = 1e-2, 1e-13
 
@@ -24,7 +26,7 @@ class Numerics:
     """
 
     #: Local error of a step, relative to the speeds of the body.
-    relative_tolerance: float = 2e-7
+    relative_tolerance: float = _TOLERANCE
     #: Lower speeds (m/s) count as this value, the absolute tolerance over the relative one.
     speed_floor: float = 1e-3
     #: A run that needs more steps fails.
@@ -35,8 +37,9 @@ class Numerics:
     #: Degree of the patterns of pressure and displacement on a pad face. None means that of the rail
     #: compliance, which may have a higher one: ``tipoff.compliance(scene, degree=4)``.
     degree: int | None = None
-    #: Contact cells along each edge of a pad face on compliant contact.
-    cells: int = 10
+    #: Contact cells along each edge of a pad face on compliant contact. None means 16, as in the
+    #: reference, or 10 at a tolerance above the default, whose error is as large as theirs.
+    cells: int | None = None
 
     def __post_init__(self):
         for name, value in vars(self).items():  # scalars of numpy, as Python has them
@@ -69,7 +72,9 @@ class Numerics:
             faults.append(
                 f"degree: given {self.degree!r}, expected a whole number from 1 to {MOST_DEGREE}"
             )
-        if not (type(self.cells) is int and _LEAST_CELLS <= self.cells <= _MOST_CELLS):
+        if self.cells is not None and not (
+            type(self.cells) is int and _LEAST_CELLS <= self.cells <= _MOST_CELLS
+        ):
             faults.append(
                 f"cells: given {self.cells!r}, expected {_LEAST_CELLS} to {_MOST_CELLS} along each "
                 f"edge of a pad"
@@ -87,20 +92,27 @@ class Numerics:
         """The number of ``modes``; 0 if they are not chosen yet."""
         return self.modes if isinstance(self.modes, int) else 0
 
+    @property
+    def cell_count(self) -> int:
+        """The number of ``cells``, chosen by the tolerance if it is None."""
+        if self.cells is not None:
+            return self.cells
+        return CELLS if self.relative_tolerance <= _TOLERANCE else _FEW_CELLS
+
     def tightened(self) -> "Numerics":
         """The same with a tenth of the tolerance, or the finest tolerance."""
         return replace(self, relative_tolerance=max(0.1 * self.relative_tolerance, _FINEST))
 
     def accurate(self) -> "Numerics":
         """The same at the default tolerance, or at its own if that is tighter."""
-        tolerance = min(self.relative_tolerance, Numerics().relative_tolerance)
+        tolerance = min(self.relative_tolerance, _TOLERANCE)
         return replace(self, relative_tolerance=tolerance)
 
     def as_dict(self) -> dict:
         """Plain values, as written into results."""
-        return dict(vars(self))
+        return vars(self) | {"cells": self.cell_count}
 
 
 def promises_of(numerics: Numerics) -> Promises:
     """Promises of a run with these ``numerics``."""
-    return RIGID.loosened(numerics.relative_tolerance / Numerics().relative_tolerance)
+    return RIGID.loosened(numerics.relative_tolerance / _TOLERANCE)

@@ -21,14 +21,14 @@ from tipoff.studies.render.table import Column, Table
 from tipoff.workspace import machine
 from tipoff.workspace.progress import say
 
-# degree of the patterns, cells along an edge of a pad face, modes of each rail
-RUNGS: tuple[tuple[int, int, int | str], ...] = (
-    (2, 10, 0),
-    (2, 10, AUTO),
-    (2, 10, MODES),
-    (2, 16, MODES),
-    (3, 16, MODES),
-    (4, 16, MODES),
+# degree of the patterns, modes of each rail
+RUNGS: tuple[tuple[int, int | str], ...] = (
+    (2, 0),
+    (2, AUTO),
+    (2, MODES),
+    (3, AUTO),
+    (3, MODES),
+    (4, MODES),
 )
 _REPEATS = 5
 
@@ -39,7 +39,6 @@ class Step:
 
     condition: str
     degree: int
-    cells: int
     modes: str  # of each rail; with the number that the run chose, if it chose
     settled_error_deg_s: float | None  # largest of a settled rate
     rate_l2: float | None  # relative
@@ -56,10 +55,10 @@ def run(out: Path, scene: str, conditions: tuple[str, ...], element_size: float)
     for name in conditions or tuple(every.conditions):
         asked = every.condition(name)
         reference = front.run(asked, FINITE_ELEMENTS, element_size=element_size)
-        for degree, cells, modes in RUNGS:
+        for degree, modes in RUNGS:
             if degree not in walls:
                 walls[degree] = front.compliance(every, element_size, degree)
-            numerics: dict[str, Any] = {"compliance": walls[degree], "cells": cells, "modes": modes}
+            numerics: dict[str, Any] = {"compliance": walls[degree], "modes": modes}
             found, times = front.run(asked, **numerics), []
             for _ in range(_REPEATS):
                 began = time.perf_counter()
@@ -70,7 +69,6 @@ def run(out: Path, scene: str, conditions: tuple[str, ...], element_size: float)
                 Step(
                     condition=name,
                     degree=degree,
-                    cells=cells,
                     modes=f"auto, {found.cost['modes']}" if modes == AUTO else str(modes),
                     settled_error_deg_s=difference.settled_rate_error_deg_s,
                     rate_l2=difference.rate_relative_l2,
@@ -92,7 +90,7 @@ def run(out: Path, scene: str, conditions: tuple[str, ...], element_size: float)
 def table(found: dict) -> Table:
     """All rows."""
     columns = (
-        *(("condition", "condition"), ("degree", "degree"), ("cells", "cells"), ("modes", "modes")),
+        *(("condition", "condition"), ("degree", "degree"), ("modes", "modes")),
         (Column("settled error", "deg/s", ".3f"), "settled_error_deg_s"),
         (Column("rate L2", "%", ".2f", 100.0), "rate_l2"),
         (Column("wall time", "ms", ".3g"), "wall_ms"),

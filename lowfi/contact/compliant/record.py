@@ -6,6 +6,7 @@ import numpy as np
 
 from tipoff.kernels.memory import zeros
 from tipoff.kernels.reference import by_reference
+from tipoff.lowfi.numerics import CELLS
 from tipoff.mechanics import drawn_walls
 from tipoff.mechanics import rail_compliance as data
 from tipoff.mechanics.rail_compliance.patterns import count
@@ -14,7 +15,6 @@ from tipoff.scenes.effects.friction import require_two_step
 from tipoff.scenes.effects.structural_damping import Damping
 from tipoff.scenes.scene import Scene
 
-CELLS = 10  # along each edge of a pad face
 # Columns of a face's lever: penetration (m) of its flat face at the middle, and its change per xi
 # and eta; distance of xi on the wall ahead of xi on the pad; middle and half length, in xi, of the part
 # over the wall; X (m) of the middle; distance of eta on the wall beyond eta on the pad.

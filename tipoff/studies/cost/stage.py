@@ -41,8 +41,7 @@ from tipoff.workspace.timing import timed
 from tipoff.workspace.words import counted
 
 MODES = (0, 1, 2, 8)  # modes of each rail, in addition to those of the agreement study
-CELLS_BY_DEFAULT = Numerics().cells
-DEGREES, CELLS = (2, 4), 16  # of the patterns, with all modes and the cells of the reference
+DEGREES = 3, 4  # of the patterns, with all modes
 STIFFNESS_ALONG = f"{COMPLIANT}, mean pressure of each face by itself"
 NAME, POINTS = "cost_study", "cost.json"
 
@@ -176,17 +175,17 @@ def points_by_modes(
 def points_by_patterns(
     study: Study, name: str, candidate: Candidate, finest: Trajectory
 ) -> list[Point]:
-    """Points with patterns of other degrees, all modes of the rail compliance and the cells of the
-    reference: the most accurate that the surrogate is; errors against the ``finest`` mesh."""
+    """Points with patterns of other degrees and all modes of the rail compliance: the most accurate
+    that the surrogate is; errors against the ``finest`` mesh."""
     scene, found = study.condition(name), []
     for degree in DEGREES if scene.contact is not None else ():
         walls = study.rail_compliance(scene, degree=degree)
         better = candidate._replace(modes=ALL_MODES, compliance={name: walls})
-        numerics = f"degree {degree}, {CELLS} cells, {ALL_MODES} modes"
+        numerics = f"degree {degree}, {ALL_MODES} modes"
         tolerance = [Numerics().relative_tolerance]
         found += [
             replace(point, model=BY_PATTERNS, numerics=numerics, modes=ALL_MODES)
-            for point in surrogate_points(study, name, better, finest, tolerance, cells=CELLS)
+            for point in surrogate_points(study, name, better, finest, tolerance)
         ]
     return found
 
@@ -197,14 +196,12 @@ def surrogate_points(
     candidate: Candidate,
     finest: Trajectory,
     tolerances: Iterable[float],
-    cells: int = CELLS_BY_DEFAULT,
 ) -> list[Point]:
     """Points of one surrogate, the loosest of the ``tolerances`` first; errors against the ``finest``
     mesh."""
     tolerances = sorted(tolerances)
     wanted = [
-        candidate.request(study, name, relative_tolerance=tolerance, cells=cells)
-        for tolerance in tolerances
+        candidate.request(study, name, relative_tolerance=tolerance) for tolerance in tolerances
     ]
     warm_up(wanted[0])
     measured = [[timed(run) for _ in range(study.settings.lowfi_repeats)] for run in wanted]

@@ -3,7 +3,7 @@ in time over many random ejections.
 
 A population has one number of rail modes, which pilot cases choose (``lowfi.ensemble.pilot``). Here
 the surrogate runs all draws without modes, with the modes of the population, with those that each
-draw chooses, and with all; then with more contact cells and patterns too (``FINER``); and once as
+draw chooses, and with all; then with more patterns too (``FINER``); and once as
 calibrated springs if the study has a calibration. If a draw chooses modes, a run with a little more
 clearance shows how sensitive the draw is.
 """
@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.lowfi.ensemble.columns import Columns
+from tipoff.lowfi.modes import FEWEST
 from tipoff.lowfi.numerics import AUTO, Numerics
 from tipoff.mechanics.model_names import SPRINGS
 from tipoff.mechanics.rail_compliance import MODES, may_vibrate
@@ -25,7 +26,7 @@ from tipoff.studies.populations.population import Surrogate
 from tipoff.workspace.run import Run, execute
 from tipoff.workspace.study import Study
 
-FINER = Numerics(modes=4, cells=16), Numerics(modes=MODES, cells=16, degree=3)
+FINER = Numerics(modes=FEWEST, degree=3), Numerics(modes=MODES, degree=3)
 _REPEATS = 2  # timed runs
 
 
