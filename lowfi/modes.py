@@ -2,7 +2,8 @@
 
 The first run has none. Its forces give the effect of each mode on the settled rates
 (``lowfi.contact.compliant.neglected``). If the sum over the modes is above ``THRESHOLD``, the scene
-is run again with the fewest lowest modes of each rail that bring the rest below. The change of the
+is run again with the fewest lowest modes of each rail, at least ``FEWEST``, that bring the rest
+below. The change of the
 rates between the two runs shows how much later contacts enlarge such a sum; if the rest is above
 ``THRESHOLD`` with this factor, a third run has all modes. The last run is the result, and ``cost``
 has the sum of all.
@@ -25,7 +26,7 @@ import numpy as np
 from tipoff.lowfi.single_run import SingleRun
 
 THRESHOLD = math.radians(0.02)  # rad/s, of the settled rates
-FEWEST = 4  # if any are needed
+FEWEST = 4  # if any are needed: the first bending modes have neighbouring frequencies
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,8 @@ def choose(
     made = [every[-1] if not every[-1].message else first]
     effect, enlarged, failed = made[0].neglected(), 1.0, ""
     while needed(effect * enlarged) > made[-1].modes:
-        every.append(tried := run(needed(effect) if len(made) == 1 else effect.size))
+        fewest = min(max(needed(effect), FEWEST), effect.size)
+        every.append(tried := run(fewest if len(made) == 1 else effect.size))
         if tried.message:  # the last completed run gives the result
             failed = f"a run with {tried.modes} failed: {tried.message}"
             break
@@ -73,8 +75,7 @@ def needed(effect: np.ndarray) -> int:
     """The fewest lowest modes for which the sum of the ``effect`` (n,) rad/s of the others is at
     most ``THRESHOLD``."""
     rest = np.append(np.cumsum(effect[::-1])[::-1], 0.0)
-    found = int(np.argmax(rest <= THRESHOLD))
-    return min(max(found, FEWEST), effect.size) if found else 0
+    return int(np.argmax(rest <= THRESHOLD))
 
 
 def _enlarged(last: list[SingleRun], effect: np.ndarray) -> float:

@@ -10,7 +10,7 @@ from tipoff.scenes.units import is_number, single
 
 AUTO = "auto"
 _LEAST_CELLS, _MOST_CELLS = 4, 100
-CELLS, _FEW_CELLS = 16, 10  # up to the default tolerance, and above it
+_CELLS, _FEW_CELLS = 16, 10  # up to the default tolerance, and above it
 _TOLERANCE = 2e-7
 # A relative error of 0.1 % per step gives no solution; below 1e-13 there is only rounding.
 _COARSEST, _FINEST = 1e-2, 1e-13
@@ -97,7 +97,7 @@ class Numerics:
         """The number of ``cells``, chosen by the tolerance if it is None."""
         if self.cells is not None:
             return self.cells
-        return CELLS if self.relative_tolerance <= _TOLERANCE else _FEW_CELLS
+        return _CELLS if self.relative_tolerance <= _TOLERANCE else _FEW_CELLS
 
     def tightened(self) -> "Numerics":
         """The same with a tenth of the tolerance, or the finest tolerance."""

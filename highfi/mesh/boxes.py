@@ -29,7 +29,8 @@ def chosen(
         if not inside.any():
             low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)
             faults.append(
-                f"box {number} contains no face of an element; the mesh has {reach(low, high)}"
+                f"box {number} contains no face of an element; the mesh has {reach(low, high)}; "
+                "rail.unit, rail.axes and rail.origin place it"
             )
             continue
         alike = (normals @ np.unique(normals[inside].round(2), axis=0).T > _LIKE).any(axis=1)

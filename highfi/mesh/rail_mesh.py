@@ -33,6 +33,10 @@ from tipoff.highfi.mesh.named_surfaces import Boundary, named_surfaces
 from tipoff.scenes.faults import InputError
 
 SUPPORTED = "hexahedra of 8, 20 or 27 nodes and tetrahedra of 4 or 10 nodes"
+_ONE_TYPE = (
+    "mesh the rail with one of them, such as tetrahedra alone; if the others are of another part, name "
+    "the group of the rail in rail.body"
+)
 # last line of every refusal of a file
 DESCRIBED = "what is read: docs/reference/file_formats.md, section 'Meshes of rails'"
 _LISTED = 20  # element numbers printed in one message
@@ -193,10 +197,12 @@ def _content_faults(
         {block.type for block in mesh.cells if block.dim == 3 and block.type not in FILE_ELEMENTS}
     )
     if other:
-        faults.append(f"solid elements of other types: {', '.join(other)}; {SUPPORTED} are read")
+        faults.append(
+            f"solid elements of other types: {', '.join(other)}; {SUPPORTED} are read: {_ONE_TYPE}"
+        )
     if len(found) > 1:
         names = " and ".join(FILE_ELEMENTS[name].name for name in found)
-        faults.append(f"both {names}: one type can be used")
+        faults.append(f"both {names}: one type can be used: {_ONE_TYPE}")
     if not found:
         faults.append(f"no solid elements; {SUPPORTED} are read")
     if not np.isfinite(mesh.points).all():

@@ -53,6 +53,9 @@ def handmade(scene: Scene, entries: dict, rail=None) -> RailCompliance:
     )
 
 
+CELLS = 10  # along each edge of a pad face
+
+
 def in_one_cell(monkeypatch) -> None:
     """From now on runs use compliant contact with one cell on each pad face."""
     build = record.build
@@ -150,7 +153,7 @@ def pressed(scene: Scene, compliance: RailCompliance, modes: int = 0):
     model = scene_model.build(scene)
     damping = scene.rail.damping and scene.rail.damping.record()
     return model, systems.build(
-        model, compliance=record.build(compliance, model, modes=modes, damping=damping)
+        model, compliance=record.build(compliance, model, CELLS, modes, damping)
     )
 
 

@@ -62,6 +62,13 @@ def test_refused(text, unit):
         to_si(text, unit)
 
 
+def test_a_long_text_is_refused_at_once():
+    """Control: a pattern that tries all divisions of a word takes 10 s for 24 letters, twice as long
+    for each further one, and would not end here."""
+    with pytest.raises(ValueError, match="is no unit"):
+        to_si("1 " + "sensor" * 15 + " = 3", "s")
+
+
 @pytest.mark.parametrize("value", [True, None, [], {}, b"1 m", 1j])
 def test_only_text_and_numbers(value):
     with pytest.raises(ValueError, match="a quantity in m"):

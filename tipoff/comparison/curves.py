@@ -34,17 +34,20 @@ class Curves(NamedTuple):
     source: str  # text on the source of the curves
 
     @classmethod
-    def from_trajectory(cls, run: Trajectory) -> "Curves":
-        """Curves of a run that exited and settled."""
-        start = run.outcome.window_start
+    def from_trajectory(cls, run: Trajectory, settled_from: float | None = None) -> "Curves":
+        """Curves of a run that exited and settled. Its window begins at ``settled_from`` (s) if the
+        run has this window."""
+        start, settled = run.outcome.window_start, np.array(run.outcome.rate)
         assert start is not None  # true for every settled run
+        if settled_from is not None and settled_from <= run.time[-1] - SETTLE_WINDOW:
+            start, settled = settled_from, _mean(run.time, run.rate, settled_from)
         keep = _until(run.time, start)
         return cls(
             run.time[keep],
             run.velocity[keep, 0],
             run.rate[keep],
             start,
-            np.array(run.outcome.rate),
+            settled,
             f"{run.model} {run.numerics}",
         )
 

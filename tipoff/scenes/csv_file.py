@@ -21,7 +21,8 @@ from tipoff.scenes import units
 from tipoff.scenes.faults import MOST_ALIKE, Fault, SceneError
 
 Line = tuple[int, list[str]]  # its number in the file, and its cells
-_HEAD = re.compile(r"\s*(.*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
+_HEAD = re.compile(r"(.*?)[\s/]*(?:\[([^\[\]]*)\]|\(((?:[^()]|\([^()]*\))*)\))")
+_WORD = re.compile(r"\S+(?:[ \t]+[\[(][^\])\s]*[\])])?")  # between blanks, with its unit
 _LONGEST = 2**20  # characters of a line
 _MOST_COLUMNS = 1000
 MOST_LINES = 1_000_000  # of a curve or a log, which is kept in memory as text
@@ -33,10 +34,11 @@ def lines(
     path: str | Path,
     data: bytes | None = None,
     comments: tuple[str, ...] = (),
-    separator: str = ",",
+    separator: str | None = ",",
 ) -> Iterator[Line]:
     """Lines of a CSV file that are not blank and do not begin with one of the ``comments``, one
-    after another. ``data`` is the content of the file if the caller has read it.
+    after another. ``data`` is the content of the file if the caller has read it. Without a
+    ``separator`` cells are between blanks.
 
     Raises SceneError for a file that cannot be read, is not text, or is not CSV.
     """
@@ -46,12 +48,11 @@ def lines(
             open_input(path) if data is None else io.BytesIO(data) as content,
             io.TextIOWrapper(content, encoding="utf-8-sig", newline="") as stream,
         ):
-            reader = csv.reader(_text(stream, comments), strict=True, delimiter=separator)
-            for row in reader:
+            for number, row in _rows(_text(stream, comments), separator):
                 if len(row) > _MOST_COLUMNS:
                     raise csv.Error(f"{len(row)} columns, {_MOST_COLUMNS} at most")
                 if len(row) > 1 or (row and row[0].strip()):
-                    yield reader.line_num, row
+                    yield number, row
     except OSError as error:
         given = error.strerror or str(error)
         raise SceneError([Fault(str(path), "file", given, "a readable CSV file")]) from error
@@ -63,7 +64,7 @@ def listed(
     path: str | Path,
     data: bytes | None = None,
     comments: tuple[str, ...] = (),
-    separator: str = ",",
+    separator: str | None = ",",
 ) -> list[Line]:
     """``lines`` as a list. Raises SceneError also for more than ``MOST_LINES`` lines."""
     found = list(itertools.islice(lines(path, data, comments, separator), MOST_LINES + 1))
@@ -77,7 +78,21 @@ def _text(stream: TextIO, comments: tuple[str, ...]) -> Iterator[str]:
     while line := stream.readline(_LONGEST):
         if len(line) == _LONGEST:
             raise csv.Error(f"a line of {_LONGEST:,} characters or more")
-        yield "\n" if line.startswith(comments) else line
+        yield "\n" if line.lstrip().startswith(comments) else line
+
+
+def _rows(text: Iterator[str], separator: str | None) -> Iterator[Line]:
+    if separator is None:
+        yield from ((number, between_blanks(line)) for number, line in enumerate(text, 1))
+        return
+    reader = csv.reader(text, strict=True, delimiter=separator)
+    for row in reader:
+        yield reader.line_num, row
+
+
+def between_blanks(line: str) -> list[str]:
+    """The cells of a line between blanks; a unit in brackets belongs to the cell before it."""
+    return _WORD.findall(line)
 
 
 def quantities(
@@ -89,7 +104,7 @@ def quantities(
         table = [line for line in listed(path, data) if any(map(str.strip, line[1]))]
     except SceneError as error:
         return {}, error.faults
-    heads = [_head(cell) for cell in table[0][1]] if table else []
+    heads = [head(cell) for cell in table[0][1]] if table else []
     second = [cell.strip() for cell in table[1][1]] if len(table) > 1 else []
     body = table[2 if units.are_units(second) else 1 :]
     found, faults = places(str(path), [name for name, _ in heads], wanted)
@@ -104,6 +119,14 @@ def quantities(
             arrays[name] = values * factor
         faults += problems + wrong
     return arrays, faults
+
+
+def head(cell: str) -> tuple[str, str | None]:
+    """Name and unit of a column from its cell in a header: ``Time [ms]`` or ``Time (ms)``."""
+    text = " ".join(cell.split())  # a quoted cell may hold line breaks
+    if (found := _HEAD.fullmatch(text)) is None:
+        return text, None
+    return found[1], (found[2] if found[2] is not None else found[3]).strip()
 
 
 def places(
@@ -164,13 +187,6 @@ def factor_to_si(
         return units.to_si(f"1 {unit or ''}", wanted), []
     except ValueError as error:
         return np.nan, [Fault(source, name, repr(unit), str(error))]
-
-
-def _head(cell: str) -> tuple[str, str | None]:
-    """Name and unit of a column."""
-    found = _HEAD.fullmatch(" ".join(cell.split()))  # a quoted cell may hold line breaks
-    assert found is not None
-    return found[1], found[2]
 
 
 def _cell(row: list[str], place: int) -> str:

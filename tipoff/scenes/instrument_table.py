@@ -9,6 +9,7 @@ guessed.
 
 import contextlib
 import csv
+import io
 import itertools
 import re
 from collections.abc import Callable, Iterable
@@ -22,24 +23,38 @@ from tipoff.scenes.csv_file import Line
 from tipoff.scenes.faults import Fault
 
 PAGE = "docs/reference/file_formats.md"
-_MARKS = ("#", "%", "//", ";")  # of comment lines; a separator is no mark
+_MARKS = ("#", "%", "!", "//", ";")  # of comment lines; a separator is no mark
 _SEPARATORS = ("\t", ";", ",")
-_SEARCHED = 1000  # lines in which the header is searched
-_MOST_HEAD = 2**18  # bytes of them
+_SEARCHED = 1000  # lines in front of the numbers in which the header is searched
+_SAMPLE = 100  # lines in which the separator is searched
+_COLUMNS = ("s", "N", "m/s", "rad/s", "m/s**2")  # units of which a line of units has one
+_SUMMARY = ("minimum", "maximum", "total")  # last lines of a report of Abaqus
 _SHOWN = 200  # characters of a header in a message
-_BRACKETS = re.compile(r"(.*?)[\s/]*(?:\[([^\[\]]*)\]|\(([^()]*)\))")
+_NUMBER = re.compile(r'\s*"?\s*[+-]?(\d|[.,]\d|nan\b|inf\b)', re.I)
+_DECIMAL_COMMAS = re.compile(
+    r"\s*[+-]?\d+(,\d+)?([eE][+-]?\d+)?( +[+-]?\d+(,\d+)?([eE][+-]?\d+)?)+\s*"
+)
 _GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")  # "1,234" may be 1234 or 1.234
 _TIME = {"time", "t", "timestamp", "zeit"}
 _SHORTEST = 3  # letters of a unit that may have another case, "Newtons"; "mN" and "MN" differ
 
 
+class _Head(NamedTuple):
+    """A line in front of the numbers."""
+
+    number: int
+    is_plain: bool  # no comment
+    cells: list[str]
+
+
 class Written(NamedTuple):
     """Cells of the ``header``, none without one; cells of a line of units below it; lines of
-    numbers."""
+    numbers; what is between cells, None for blanks."""
 
     header: list[str]
     units: list[str]
     rows: list[Line]
+    separator: str | None = ","
 
     def shown(self) -> str:
         """The header, or the first line, for a message."""
@@ -80,42 +95,66 @@ class Written(NamedTuple):
         return [values for values, _ in found], [fault for _, wrong in found for fault in wrong]
 
 
-def read(path: str | Path, data: bytes, is_header: Callable[[list[str]], bool]) -> Written:
-    """The table in ``data``, the content of a file. The header is the first line that
-    ``is_header`` accepts, above all numbers; otherwise the first line, if it has no numbers.
+def read(
+    path: str | Path, data: bytes, likeness: Callable[[list[str]], float], is_loose: bool = False
+) -> Written:
+    """The table in ``data``, the content of a file. The header is the line above the numbers, also
+    in a comment, that has the greatest ``likeness``; below 1 it must have as many cells as the
+    numbers. If none has, it is the first such line that is no comment. Lines at the end with a
+    summary are left out.
 
-    Raises SceneError as ``csv_file.lines`` does.
+    With ``is_loose`` cells may be between blanks, and lines between the header and the numbers are
+    left out. Raises SceneError as ``csv_file.lines`` does.
     """
     data = _utf_8(data)
-    top = data[:_MOST_HEAD].decode("utf-8-sig", "ignore").splitlines()[:_SEARCHED]
-    separator = _separator(top)
+    lines = list(io.StringIO(data.decode("utf-8-sig", "ignore"), newline=""))
+    separator = _separator(lines, is_loose)
     marks = tuple(mark for mark in _MARKS if mark != separator)
     rows = [
         (number, cells)
         for number, row in csv_file.listed(path, data, marks, separator)
         if any(cells := [cell.strip() for cell in row])
     ]
-    first = next((k for k, (_, row) in enumerate(rows[:_SEARCHED]) if _is_data(row)), len(rows))
-    above = [row for _, row in rows[: min(first, _SEARCHED)]]
-    place = next((k for k, row in enumerate(above) if is_header(row)), None)
-    if place is not None:
-        return _written(_without_end(above[place]), rows[place + 1 :])
-    for line in reversed(_above(top, separator)):
-        cells = _cells(line.lstrip("".join(marks)), separator)
-        if line.startswith(marks) and is_header(cells):
-            return _written(_without_end(cells), rows)
-    if above:
-        return _written(_without_end(above[0]), rows[1:])
-    return Written([], [], rows)
+    while rows and rows[-1][1][0].lower() in _SUMMARY:
+        rows.pop()
+    # between blanks a title may have numbers
+    width = next((len(row) for _, row in reversed(rows) if _is_data(row)), None)
+    first = next(
+        (
+            k
+            for k, (_, row) in enumerate(rows)
+            if _is_data(row) and (separator or len(row) == width)
+        ),
+        len(rows),
+    )
+    width = len(rows[first][1]) if first < len(rows) else None
+    above = [_Head(number, True, cells) for number, cells in rows[:first] if not _is_data(cells)]
+    end = rows[first][0] if width else len(lines) + 1
+    for number, line in enumerate(lines[: end - 1], 1):
+        if (text := line.strip()).startswith(marks):
+            cells = _cells(text.lstrip("".join(marks)), separator)
+            above += [] if _is_data(cells) else [_Head(number, False, cells)]
+    above = sorted(above)[-_SEARCHED:] if width else sorted(above)[:_SEARCHED]
+    chosen = _header(above, width, likeness)
+    if chosen is None:
+        return Written([], [], rows[first:] if is_loose else rows, separator)
+    below = _units_below(chosen, above)
+    used = {chosen.number, below.number} if below else {chosen.number}
+    body = [row for row in rows if row[0] > chosen.number and row[0] not in used]
+    return Written(
+        _without_end(chosen.cells),
+        below.cells if below else [],
+        rows[first:] if is_loose else body,
+        separator,
+    )
 
 
 def head(cell: str, si: str) -> tuple[str, str | None]:
     """Name and unit of a column of dimension ``si`` from its cell in a header."""
-    text = " ".join(cell.split())  # a quoted cell may hold line breaks
-    found = _BRACKETS.fullmatch(text)
-    unit = found and (found[2] if found[2] is not None else found[3]).strip()
-    if found and unit and not unit.isdigit():  # a number counts the parts of a vector
-        return found[1], unit
+    text, unit = csv_file.head(cell)
+    if unit and not unit.isdigit():  # a number counts the parts of a vector
+        return text, unit
+    text = " ".join(cell.split())
     for name, mark, after in (text.partition("/"), text.rpartition("_")):
         if name and mark:
             with contextlib.suppress(ValueError):
@@ -152,19 +191,41 @@ def words(name: str) -> set[str]:
     return set(re.findall(r"[^\W\d_]+", name.lower()))
 
 
-def _written(header: list[str], rows: list[Line]) -> Written:
-    """A line without numbers below the header has the units, if one is a unit of time."""
-    below = rows[0][1] if rows else []
-    if units.are_units(below) and not any(map(_is_number, below)) and any(map(_is_time, below)):
-        return Written(header, below, rows[1:])
-    return Written(header, [], rows)
+def _header(
+    above: list[_Head], width: int | None, likeness: Callable[[list[str]], float]
+) -> _Head | None:
+    """The line that is most alike; of equal ones the last, and no comment before a comment."""
+    alike = []
+    for head in above:
+        degree, fits = likeness(head.cells), width in (None, len(head.cells))
+        if degree >= 1.0 or (degree and fits):
+            alike.append((degree, fits, head.is_plain, head))
+    if alike:
+        return max(alike)[-1]
+    return next(
+        (head for head in above if head.is_plain and width in (None, len(head.cells))), None
+    )
 
 
-def _is_time(unit: str) -> bool:
-    try:
-        return bool(unit) and scale(unit, "s") > 0.0
-    except ValueError:
-        return False
+def _units_below(header: _Head, above: list[_Head]) -> _Head | None:
+    """The line of units below the header, which has as many cells; a comment only if it is the only
+    such line."""
+    below = [head for head in above if head.number > header.number]
+    alike = [head for head in below if len(head.cells) == len(header.cells)]
+    plain = [head for head in alike if head.is_plain]
+    for head in plain[:1] or alike:
+        count = sum(map(is_unit, head.cells))
+        if units.are_units(head.cells) and 2 * count > (0 if head.is_plain else len(head.cells)):
+            return head
+    return None
+
+
+def is_unit(cell: str) -> bool:
+    """Whether a cell is a unit of a quantity that tables have."""
+    for si in _COLUMNS:
+        with contextlib.suppress(ValueError):
+            return scale(cell.strip("[]() "), si) > 0.0
+    return False
 
 
 def _utf_8(data: bytes) -> bytes:
@@ -181,22 +242,25 @@ def _utf_8(data: bytes) -> bytes:
     return data
 
 
-def _separator(top: list[str]) -> str:
-    """The separator with which a line has two numbers; without such a line, the one that occurs."""
-    for line in top:
+def _separator(lines: list[str], is_loose: bool) -> str | None:
+    """The separator with which a line has two numbers, first of lines that begin with one; without
+    such a line None for blanks, if ``is_loose``, or the separator that occurs."""
+    plain = [line for line in lines if not line.lstrip().startswith(_MARKS[:-1])]
+    begun = list(itertools.islice(filter(_NUMBER.match, plain), _SAMPLE))
+    if is_loose and begun and all(map(_DECIMAL_COMMAS.fullmatch, begun)):
+        return None
+    for line in itertools.chain(begun, plain[:_SEARCHED]):
         for separator in _SEPARATORS:
             if separator in line and _is_data(_cells(line, separator)):
                 return separator
-    text = "\n".join(line for line in top if not line.startswith(_MARKS))
-    return next((separator for separator in _SEPARATORS if separator in text), ",")
+    text = "".join(plain[:_SEARCHED])
+    occurring = next((separator for separator in _SEPARATORS if separator in text), ",")
+    return None if is_loose else occurring
 
 
-def _above(top: list[str], separator: str) -> list[str]:
-    """The lines above the first one with numbers."""
-    return list(itertools.takewhile(lambda line: not _is_data(_cells(line, separator)), top))
-
-
-def _cells(line: str, separator: str) -> list[str]:
+def _cells(line: str, separator: str | None) -> list[str]:
+    if separator is None:
+        return csv_file.between_blanks(line)
     try:
         return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
     except csv.Error:

@@ -10,7 +10,6 @@ and the modes of compliant contact, and a ``mount_stiffness`` (``scenes.effects.
 without it the mounts are rigid.
 """
 
-import hashlib
 import itertools
 import math
 from collections.abc import Iterable
@@ -29,6 +28,7 @@ from pydantic import (
 )
 
 from tipoff.files import open_input
+from tipoff.scenes import keyword_files
 from tipoff.scenes.effects.mount_stiffness import MountStiffness, MountStiffnessTable
 from tipoff.scenes.effects.structural_damping import DampingTable
 from tipoff.scenes.rounding import at_most, below
@@ -195,11 +195,10 @@ class _FileTable(_RailTable):
         return self
 
     def _digest_now(self) -> str:
-        with open_input(self.path()) as stream:
-            return hashlib.file_digest(stream, "sha256").hexdigest()
+        return keyword_files.digest(self.path())
 
     def is_as_found(self) -> bool:
-        """Whether the file has not changed since the scene was read."""
+        """Whether the file and those that it includes have not changed since the scene was read."""
         return self._digest_now() == self._digest
 
     def path(self) -> Path:
@@ -207,7 +206,7 @@ class _FileTable(_RailTable):
         return Path(getattr(self, self.GIVEN_BY))
 
     def contents(self) -> dict[str, str]:
-        """The digest of the file at the time the scene was read."""
+        """The digest of the file, with those that it includes, at the time the scene was read."""
         return {self.GIVEN_BY: self._digest}
 
     def gap(self, clearance: float) -> float:
@@ -217,6 +216,8 @@ class _FileTable(_RailTable):
 
 def _readable(file: str) -> str:
     try:
+        if Path(file).suffix.lower() in keyword_files.SUFFIXES:
+            keyword_files.pieces(Path(file))
         with open_input(file) as stream:
             stream.read(1)
     except OSError as error:

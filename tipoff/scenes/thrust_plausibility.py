@@ -71,7 +71,13 @@ def _of_size(scene) -> list[str]:
 
 
 def _meant(scene, speed: float, strongest: float, weaker: bool) -> str:
-    """Units of the forces that the user may have meant, as the end of a message."""
+    """Units of the forces that the user may have meant, as the end of a message; those of a motor
+    are known."""
+    thrust = scene.thrust
+    is_rocket = weaker and thrust.reaction == "platform" and strongest <= HARDEST_ROCKET
+    rocket = 'a rocket, which burns on after the exit, has thrust.reaction = "exhaust"'
+    if is_rocket and thrust.kind == "measured" and thrust.file.lower().endswith((".eng", ".rse")):
+        return f"; {rocket}"
     units = [
         (factor, name)
         for factor, name in _UNITS
@@ -81,11 +87,9 @@ def _meant(scene, speed: float, strongest: float, weaker: bool) -> str:
         return "; is the mass, or the unit of the force or of the time, wrong?"
     words = " or ".join(f"{factor * speed:.4g} m/s if it is in {name}" for factor, name in units)
     found = f"; likely cause: the force is in another unit than N ({words})"
-    if weaker and scene.thrust.kind == "measured":
+    if weaker and thrust.kind == "measured":
         found += ", or times are in ms"
-    if weaker and scene.thrust.reaction == "platform" and strongest <= HARDEST_ROCKET:
-        found += '; a rocket, which burns on after the exit, has thrust.reaction = "exhaust"'
-    return found
+    return f"{found}; {rocket}" if is_rocket else found
 
 
 def _of_record(table) -> list[str]:

@@ -29,7 +29,7 @@ _QUANTITY = re.compile(
 _LONGEST = 100  # characters of a unit
 _NUMBER = r"[+-]?\d{1,2}(?:[./]\d{1,12})?"
 _POWER = rf"(?:\*\*|\^)\s*(?:{_NUMBER}(?![\w.])|\(\s*{_NUMBER}\s*\))"
-_UNIT = re.compile(rf"(?:{_POWER}(?!\s*(?:\*\*|\^))|[^\W\d]\w*|1(?![\w.])|[%°()/·⁻]|\*(?!\*)|\s)*")
+_UNIT = re.compile(rf"(?:{_POWER}(?!\s*(?:\*\*|\^))|[^\W\d]\w*+|1(?![\w.])|[%°()/·⁻]|\*(?!\*)|\s)*")
 # Magnitudes (SI) beyond these are typing errors. Products of quantities would overflow, and the
 # place of a rail would be lost in rounding.
 _LARGEST, _LARGEST_LENGTH = 1e200, 1e9

@@ -5,22 +5,22 @@ title, or the comment below its keyword. Solids with repeated nodes are tetrahed
 See ``*ELEMENT_SOLID``, ``*PART`` and ``*SET`` in the LS-DYNA Keyword User's Manual, volume I.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import meshio
 import numpy as np
 
-from tipoff.highfi.mesh.files.lsdyna_text import Keyword, keywords
+from tipoff.highfi.mesh.files.lsdyna_text import Keyword, keywords, named
 from tipoff.highfi.mesh.files.tables import (
     Block,
     Unreadable,
     any_case,
-    decoded,
     is_surface,
     mesh,
     real,
     whole,
 )
+from tipoff.scenes.keyword_files import Piece
 
 _NODE, _ELEMENT, _OTHER = [8, 16, 16, 16], [8] * 10, [10] * 8
 # lines of nodes below a line with the number and the part
@@ -66,24 +66,29 @@ class _Model:
         self.elements.setdefault((group, kind, part), {})[label] = nodes
 
 
-def read(content: bytes) -> meshio.Mesh:
-    """The mesh in the ``content`` of a file. Raises Unreadable."""
+def read(pieces: Sequence[Piece]) -> meshio.Mesh:
+    """The mesh in the ``pieces`` of a file and its includes. Raises Unreadable."""
     model = _Model()
-    for keyword in keywords(decoded(content)):
-        name = keyword.name
-        if name == "NODE":
-            _nodes(model, keyword)
-        elif name.startswith("ELEMENT_SOLID"):
-            _solids(model, keyword)
-        elif name.startswith("ELEMENT_SHELL"):
-            _shells(model, keyword)
-        elif name == "PART" or name.startswith("PART_"):
-            _parts(model, keyword)
-        elif name.startswith("SET_"):
-            _set(model, keyword)
+    for keyword in keywords(pieces):
+        with named(keyword.file):
+            _add(model, keyword)
     if not model.labels:
         raise Unreadable("no *NODE, which a keyword file of LS-DYNA has")
     return _mesh(model)
+
+
+def _add(model: _Model, keyword: Keyword) -> None:
+    name = keyword.name
+    if name == "NODE":
+        _nodes(model, keyword)
+    elif name.startswith("ELEMENT_SOLID"):
+        _solids(model, keyword)
+    elif name.startswith("ELEMENT_SHELL"):
+        _shells(model, keyword)
+    elif name == "PART" or name.startswith("PART_"):
+        _parts(model, keyword)
+    elif name.startswith("SET_"):
+        _set(model, keyword)
 
 
 def _nodes(model: _Model, keyword: Keyword) -> None:

@@ -8,9 +8,12 @@ volume I.
 
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
 from typing import NamedTuple
 
-from tipoff.highfi.mesh.files.tables import Unreadable
+from tipoff.highfi.mesh.files.tables import Unreadable, decoded
+from tipoff.scenes.keyword_files import Piece
 
 STANDARD, I10, LONG = "standard", "i10", "long"
 _MARKS = {"+": LONG, "-": STANDARD, "%": I10}
@@ -27,6 +30,7 @@ class Keyword(NamedTuple):
     lines: list[tuple[int, str]]  # number and text of each
     line: int
     comments: list[str]  # without dollars, among its lines
+    file: str = ""  # name of an included file
 
     def fields(self, text: str, widths: Sequence[int]) -> list[str]:
         """Fields of a line whose standard format has these ``widths``."""
@@ -43,12 +47,33 @@ class Keyword(NamedTuple):
         return found
 
 
-def keywords(text: str) -> Iterator[Keyword]:
-    """The keywords of a file in their order. Raises Unreadable for data before the first keyword and
-    for keywords that make or move nodes and elements."""
-    current: Keyword | None = None
+def keywords(pieces: Sequence[Piece]) -> Iterator[Keyword]:
+    """The keywords of all pieces in their order. Raises Unreadable for data before the first keyword
+    of a piece and for keywords that make or move nodes and elements."""
+    forms: dict[Path, str] = {}
     form = STANDARD
-    for number, line in enumerate(text.splitlines(), start=1):
+    for piece in pieces:
+        form = forms.setdefault(piece.path, form)  # at first that of the file that includes it
+        file = "" if piece.path == pieces[0].path else piece.path.name
+        with named(file):
+            for keyword in _of_piece(piece, form):
+                if keyword.name == "KEYWORD":
+                    form = forms[piece.path] = keyword.form
+                yield keyword._replace(file=file)
+
+
+@contextmanager
+def named(file: str) -> Iterator[None]:
+    """Put the name of an included file in front of a fault in it."""
+    try:
+        yield
+    except Unreadable as fault:
+        raise Unreadable(f"{file}, {fault}" if file else str(fault)) from fault
+
+
+def _of_piece(piece: Piece, form: str) -> Iterator[Keyword]:
+    current: Keyword | None = None
+    for number, line in enumerate(decoded(piece.content).splitlines(), start=piece.first):
         if line.startswith("$"):
             if current is not None:
                 current.comments.append(line.strip("$# "))

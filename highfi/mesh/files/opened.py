@@ -1,5 +1,6 @@
 """Read a mesh file; the end of its name gives its format."""
 
+from functools import partial
 from pathlib import Path
 
 import meshio
@@ -8,6 +9,7 @@ from tipoff.files import open_input
 from tipoff.highfi.mesh.files import abaqus, gmsh_msh, lsdyna, med, nastran, universal, vtk
 from tipoff.highfi.mesh.files.tables import Unreadable
 from tipoff.highfi.mesh.memory_limit import limited
+from tipoff.scenes import keyword_files
 
 _READERS = {
     ".msh": ("gmsh", gmsh_msh.read),
@@ -16,9 +18,6 @@ _READERS = {
     ".nas": ("Nastran", nastran.read),
     ".fem": ("Nastran", nastran.read),
     ".dat": ("Nastran", nastran.read),
-    ".k": ("LS-DYNA", lsdyna.read),
-    ".key": ("LS-DYNA", lsdyna.read),
-    ".dyn": ("LS-DYNA", lsdyna.read),
     ".unv": ("I-deas", universal.read),
     ".med": ("Salome", med.read),
     ".vtu": ("VTK", vtk.read_xml),
@@ -37,7 +36,7 @@ _ADVICE = {
     **dict.fromkeys((".hdf", ".fcstd"), "a project: export its mesh as .med, .unv or .inp"),
     **dict.fromkeys((".gz", ".zip", ".xz", ".bz2"), "a packed file: unpack it"),
 }
-SUFFIXES = tuple(_READERS)
+SUFFIXES = (*_READERS, *keyword_files.SUFFIXES)
 # bytes: upper bound of the memory to read a mesh. Per byte of the file (lists of Python hold
 # numbers as text), and a constant part
 _PER_BYTE, _BESIDE = 100, 2**29
@@ -49,12 +48,17 @@ def opened(path: Path) -> meshio.Mesh:
     if suffix not in SUFFIXES:
         advice = _ADVICE.get(suffix, "let the mesh generator write one of these, with its groups")
         raise Unreadable(f"a mesh file ends in one of {', '.join(SUFFIXES)}; {advice}")
-    name, reader = _READERS[suffix]
-    with open_input(path) as stream:
-        content = stream.read()
+    name, reader = _READERS.get(suffix, ("LS-DYNA", None))
+    if reader is None:
+        pieces = keyword_files.pieces(path)
+        size, made = sum(len(piece.content) for piece in pieces), partial(lsdyna.read, pieces)
+    else:
+        with open_input(path) as stream:
+            content = stream.read()
+        size, made = len(content), partial(reader, content)
     try:
-        with limited(_PER_BYTE * len(content) + _BESIDE):
-            return reader(content)
+        with limited(_PER_BYTE * size + _BESIDE):
+            return made()
     except Unreadable as fault:
         raise Unreadable(f"as a file of {name}: {fault}") from fault
     except Exception as fault:  # no check foresaw it

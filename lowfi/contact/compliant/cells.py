@@ -242,19 +242,23 @@ def deepest(compliance, face, displacement):
 
 
 @kernel
-def deepest_at_rest(compliance, face):
-    """As ``deepest`` for a wall without displacement: p is then a sum of a part along and a part
-    across the pad."""
+def deepest_at_rest(compliance, face, displacement):
+    """As ``deepest`` for a wall whose ``displacement`` is zero: p is then a sum of a part along and
+    a part across the pad. The value has the bits of ``deepest``."""
     lever, relief = compliance.workspace.lever[face], compliance.relief[face]
-    along, across, by_xi, by_eta = 0.0, 0.0, -np.inf, -np.inf
+    along, across, by_xi, by_eta, crown = 0.0, 0.0, -np.inf, -np.inf, 0.0
+    column = 0
     for i in range(compliance.node.size):
         xi, _, row_crown = row_place(compliance, face, i)
         if lever[BY_XI] * xi - relief * row_crown > by_xi:
-            along, by_xi = xi, lever[BY_XI] * xi - relief * row_crown
-        place, crown = compliance.node[i], relief * compliance.crown[i]
-        if lever[BY_ETA] * place - crown > by_eta:
-            across, by_eta = place, lever[BY_ETA] * place - crown
-    return lever[DEPTH] + by_xi + by_eta, along, across
+            along, crown, by_xi = xi, row_crown, lever[BY_XI] * xi - relief * row_crown
+        place = compliance.node[i]
+        if lever[BY_ETA] * place - relief * compliance.crown[i] > by_eta:
+            across, column = place, i
+            by_eta = lever[BY_ETA] * place - relief * compliance.crown[i]
+    fill_row(compliance, face, along, displacement)
+    p = along_row(compliance.workspace, across + lever[ASIDE])
+    return p - relief * (crown + compliance.crown[column]), along, across
 
 
 @kernel

@@ -6,7 +6,6 @@ import numpy as np
 
 from tipoff.kernels.memory import zeros
 from tipoff.kernels.reference import by_reference
-from tipoff.lowfi.numerics import CELLS
 from tipoff.mechanics import drawn_walls
 from tipoff.mechanics import rail_compliance as data
 from tipoff.mechanics.rail_compliance.patterns import count
@@ -120,8 +119,8 @@ def under_pads(
     scene: Scene,
     model: Model,
     found: data.RailCompliance | None,
-    modes: int = 0,
-    cells: int = CELLS,
+    modes: int,
+    cells: int,
 ) -> Compliance | None:
     """Record of the compliance ``found`` of ``scene``, with so many vibrating ``modes`` of each
     rail and ``cells`` along each edge of a face; None for rigid walls. Raises SceneError for a
@@ -147,7 +146,7 @@ def drag_of(square: np.ndarray, damping: Damping | None) -> np.ndarray:
 def build(
     found: data.RailCompliance,
     model: Model,
-    cells: int = CELLS,
+    cells: int,
     modes: int = 0,
     damping: Damping | None = None,
 ) -> Compliance:

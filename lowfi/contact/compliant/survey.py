@@ -62,7 +62,7 @@ def _deepest(compliance, faces, face, count, touching, place, turn, state):
         if count == 0 and compliance.modes is None and compliance.thermal_offset is None:
             displacement[:] = 0.0
             if compliance.drawn is None:
-                return deepest_at_rest(compliance, face)
+                return deepest_at_rest(compliance, face, displacement)
             return deepest(compliance, face, displacement)
         follow(compliance, face, place[0] + faces[0, 0], count, state, displacement)
     return deepest(compliance, face, displacement)

@@ -61,3 +61,8 @@ def test_a_fault_is_one_line(old, new, asked, words, tmp_path):
     path = written(tmp_path, "run.res", RESULTS.replace(old, new) if old else RESULTS)
     said = "\n".join(map(str, reading.read(path, asked).faults))
     assert words in said, said
+
+
+def test_a_request_file_is_refused_with_the_way_out(tmp_path):
+    (fault,) = reading.read(written(tmp_path, "run.REQ", "1 2 3 4 5\n")).faults
+    assert fault.given == "a request file" and "Adams in XML (.res), or a table" in fault.expected

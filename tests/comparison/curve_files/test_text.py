@@ -82,6 +82,12 @@ def test_a_table_is_read_by_its_numbers(text, tmp_path):
     require_rows(reading.read(written(tmp_path, "a.txt", text), layout(NUMBERS)))
 
 
+@pytest.mark.parametrize("title", ["! run 1\n", "3 rails\n", "# 2 1 3 of 5\n", "run 3 of 5\n"])
+def test_numbers_in_a_title_are_no_columns(title, tmp_path):
+    """Column 3 is the third, although a word of the title is "3"."""
+    require_rows(reading.read(written(tmp_path, "a.txt", title + rows(" ")), layout(NUMBERS)))
+
+
 @pytest.mark.parametrize(
     "header",
     [

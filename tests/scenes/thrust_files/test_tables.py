@@ -46,6 +46,9 @@ READ = {
         [[0, 2], [1, 3]],
     ),
     "line of units": ("Time,Force\nms,N\n0,0\n4,5\n", {}, [[0, 4e-3], [0, 5]]),
+    "units without the time": ("Time [ms],Force\n,kN\n0,0\n4,5\n", {}, [[0, 4e-3], [0, 5000]]),
+    "summary": ("! cold\nTime [s],Force [N]\n0,0\n4,5\nMaximum,5\n", {}, [[0, 4], [0, 5]]),
+    "remark of one letter": ("Time,Force\n# a,b\n0,0\n4,5\n", SI, [[0, 4], [0, 5]]),
     "further columns": (
         "n,Time [s],P [bar],Thrust [N],Load cell [mV],note\n1,0,9,0,1,\n2,2,9,7,1,go\n",
         {},

@@ -112,6 +112,29 @@ def test_a_run_of_tipoff_is_one_more_curve(tmp_path):
     assert "curves: tiny" not in again.stderr  # stored
 
 
+def test_one_start_is_for_files_and_runs(tmp_path):
+    """Rates that change all the time have equal settled values in one window. Control: a file that ends
+    in mid-run has a window of its own, and the note says so."""
+    scene = tipoff.load("tiny").condition("phi15")
+    run = tipoff.run(scene, "springs")
+    run.to_csv(tmp_path / "run.csv")
+    head, *lines = (tmp_path / "run.csv").read_text().splitlines()
+    short = [line for line in lines if float(line.partition(",")[0]) <= 7e-3]
+    (tmp_path / "short.csv").write_text("\n".join([head, *short]))
+    asked = (f"file={tmp_path / 'short.csv'}", "--condition", "phi15", "--model", "springs")
+    said = call(tmp_path, *asked, "--settled-from", "4 ms")
+    assert said.exit_code == 0, said.output
+    file, own = found(tmp_path).rows
+    assert file.settled_from_s == own.settled_from_s == 4e-3
+    assert own.settled_rate_error_deg_s < 0.01 and "different times" not in said.stdout
+    said = call(tmp_path, *asked)
+    file, own = found(tmp_path).rows
+    assert file.settled_from_s == pytest.approx(5e-3) and own.settled_rate_error_deg_s > 0.1
+    assert own.settled_from_s == pytest.approx(run.outcome.window_start)
+    assert "begin at different times" in said.stdout
+    assert '--settled-from "5 ms"' in said.stdout
+
+
 def test_curves_and_runs_are_compared_from_python(tmp_path):
     run = tipoff.run(tipoff.load("tiny").condition("phi15"), "springs")
     run.to_csv(tmp_path / "run.csv")

@@ -80,8 +80,11 @@ def _table(path: str | Path, layout: Layout) -> tuple[Table, str]:
     with open_input(path) as stream:
         head = stream.read(_HEAD)
         if head.startswith(_HDF5):
-            words = "binout of LS-DYNA (LSDA), or a text file: no HDF5"
+            words = "binout of LS-DYNA as LSDA, or rbdout or nodout as text"
             raise SceneError([Fault(source, "file", "HDF5", words)])
+        if Path(path).suffix.lower() == ".req":
+            words = "results of Adams in XML (.res), or a table of Adams/PostProcessor (.tab)"
+            raise SceneError([Fault(source, "file", "a request file", words)])
         if binout.is_one(head):
             return binout.read(path, layout.body), _digest(binout.parts(path))
     data = read_input(path, MOST_BYTES)

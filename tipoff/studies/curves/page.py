@@ -16,6 +16,11 @@ _NOTE = (
     "and magnitude are relative to it. ISO 18571: 1 is equal, above 0.94 excellent, below 0.58 poor. "
     "Settled rates are means over 2 ms."
 )
+_APART = 0.01  # s
+_APART_NOTE = (
+    "The settled windows begin at different times. If the thrust goes on after the exit, their rates "
+    'differ for this reason: --settled-from "{first}" takes one window of all.'
+)
 _CAPTION = "Curves over the time after ignition. {reference} is the broad line."
 
 
@@ -36,9 +41,12 @@ def terminal(found: Compared) -> list[Part]:
 
 
 def _tables(found: Compared) -> list[Part]:
-    note = _NOTE.format(reference=found.reference)
+    notes = [_NOTE.format(reference=found.reference)]
+    starts = [row.settled_from_s for row in found.rows]
+    if max(starts) - min(starts) > _APART:
+        notes.append(_APART_NOTE.format(first=f"{1e3 * min(starts):.4g} ms"))
     return [
-        Table.of_records(found.rows, notes=(note,)),
+        Table.of_records(found.rows, notes=tuple(notes)),
         Table.of_records(found.ratings, title="ISO 18571 of each channel:"),
     ]
 

@@ -44,7 +44,8 @@ def run(study: Study, options: Options = Options()) -> dict:
     def make() -> tuple[Compared, list[Path]]:
         runs = dict(zip(requests, study.store.fill(NAME, list(requests.values()))))
         require_success(runs, "compare curves")
-        found = curves | {name: Curves.from_trajectory(one) for name, one in runs.items()}
+        start = _settled_from(options)
+        found = curves | {name: Curves.from_trajectory(one, start) for name, one in runs.items()}
         return with_figures(
             compared(study.scene.name, options, found), page.figures, study.path("figures")
         )
@@ -73,7 +74,7 @@ def _of_files(options: Options) -> dict[str, Curves]:
     if len(pairs) + len(models) < 2 or not pairs:
         words = "two files, or one file and --model"
         faults.append(Fault("FILE", "files", ", ".join(names) or "nothing", words))
-    start = quantity("--settled-from", options.settled_from, "s", "44 ms")
+    start = _settled_from(options)
     stated = (options.columns, options.units, options.body, options.axes, options.ignition)
     layouts = of_options(names, *(texts or () for texts in stated))
     found = {}
@@ -85,6 +86,10 @@ def _of_files(options: Options) -> dict[str, Curves]:
     if faults:
         raise SceneError(faults)
     return found
+
+
+def _settled_from(options: Options) -> float | None:
+    return quantity("--settled-from", options.settled_from, "s", "44 ms")
 
 
 def _named(text: str) -> tuple[str, str]:

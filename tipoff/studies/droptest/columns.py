@@ -57,16 +57,16 @@ def _table(path: Path, groups: dict[str, tuple[str, ...]]) -> Written:
     """The header is the line that has most of the wanted columns."""
     wanted = [(name, _SI[group]) for group, names in groups.items() for name in names]
 
-    def is_header(cells: list[str]) -> bool:
+    def likeness(cells: list[str]) -> float:
         table = Written(cells, [], [])
-        return 2 * sum(bool(table.places(*each)) for each in wanted) >= len(wanted)
+        return sum(bool(table.places(*each)) for each in wanted)
 
     try:
         data = read_input(path)
     except OSError as error:
         given = error.strerror or str(error)
         raise SceneError([Fault(str(path), "file", given, "a readable CSV file")]) from error
-    return instrument_table.read(path, data, is_header)
+    return instrument_table.read(path, data, likeness)
 
 
 def _places(

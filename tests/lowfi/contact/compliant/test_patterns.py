@@ -6,6 +6,7 @@ import pytest
 
 from tests.lowfi.compliance import (
     BASES,
+    CELLS,
     REFERENCE,
     SMOOTH,
     derivative,
@@ -17,7 +18,6 @@ from tests.lowfi.compliance import (
     solved,
 )
 from tipoff import highfi, lowfi, scenes
-from tipoff.lowfi.contact.compliant import record
 from tipoff.mechanics.rail_compliance import patterns
 from tipoff.scenes import SceneError
 
@@ -74,8 +74,7 @@ def test_pressures_are_those_of_the_plain_equations(fourth, degree):
         faces = workspace.order[: solved(system, model, pose, rail)].copy()
         wall, force = workspace.displacement[faces], workspace.force[faces]
         expected = [
-            forces_of(compliance, model, record.CELLS, face, pose, each)
-            for face, each in zip(faces, wall)
+            forces_of(compliance, model, CELLS, face, pose, each) for face, each in zip(faces, wall)
         ]
         assert force == pytest.approx(np.array(expected), rel=1e-9, abs=1e-9 * np.abs(force).max())
 

@@ -7,6 +7,7 @@ from scipy.sparse.linalg import splu
 
 from tests.lowfi.compliance import (
     BASES,
+    CELLS,
     CLEARANCE,
     POSES,
     REFERENCE,
@@ -31,7 +32,7 @@ from tipoff.highfi.run import prepare
 from tipoff.highfi.statics import assembly
 from tipoff.kernels import rotation
 from tipoff.lowfi import state as slot
-from tipoff.lowfi.contact.compliant import cells, record, solution, step_limit
+from tipoff.lowfi.contact.compliant import cells, solution, step_limit
 from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import PATTERNS
 
@@ -136,7 +137,7 @@ def test_one_solution_whatever_the_first_guess(reference, name):
         assert all(np.abs(each - found[0]).max() < 1e-16 for each in found)
         if "over" not in name:
             expected = [
-                forces_of(compliance, model, record.CELLS, face, pose, each)
+                forces_of(compliance, model, CELLS, face, pose, each)
                 for face, each in zip(faces, found[0])
             ]
             assert force == pytest.approx(
@@ -279,9 +280,9 @@ def test_force_is_that_of_the_finite_elements(reference, travel, error):
         assert solved(system, model, pose, compliance.rail[face], active) == 1
         assert system.compliance.workspace.force[face, 0] == pytest.approx(force(depth), rel=error)
         # Control: a rigid wall would press back three times as hard, or more.
-        assert forces_of(compliance, model, record.CELLS, face, pose, np.zeros(PATTERNS))[
-            0
-        ] > 3.0 * force(depth)
+        assert forces_of(compliance, model, CELLS, face, pose, np.zeros(PATTERNS))[0] > 3.0 * force(
+            depth
+        )
 
 
 @pytest.mark.parametrize(
