@@ -1,7 +1,7 @@
 """Effects in the compiled time loop of a scene, read from its machine code."""
 
 from tipoff.highfi.contact import cells
-from tipoff.highfi.dynamics import damping, loads, mounts, pushers
+from tipoff.highfi.dynamics import damping, hold_down, loads, mounts, pushers
 from tipoff.highfi.dynamics.setup import set_up
 from tipoff.highfi.dynamics.step import ADVANCE, Task, perform
 from tipoff.highfi.dynamics.step_size import choose
@@ -26,6 +26,7 @@ LAWS = {
     "rail.mount_stiffness": mounts._force,
     "thrust_offset": loads._offset_line,
     "pushers": pushers._load,
+    "hold_down": hold_down._arm,
 }
 
 

@@ -13,6 +13,7 @@ from tipoff.highfi.state.records import TOTAL
 from tipoff.kernels import rotation
 from tipoff.mechanics import ledger, outcome
 
+_ROUNDING = 1e-15  # J, while the payload is held and no work is done
 _STOP_RATIO = 0.1  # of the transverse scale; with a larger loss of energy the run has no result
 
 
@@ -30,7 +31,7 @@ def fault(stepper: Stepper, recorded: Recorded, row: np.ndarray) -> tuple[str, f
     if stepper.active.struck["depth"].any():
         words = _strike(stepper)
     # Without transverse motion, rounding of the large axial work is no fault.
-    elif loss > _STOP_RATIO * scale + 1e-11 * work:
+    elif loss > _STOP_RATIO * scale + 1e-11 * work + _ROUNDING:
         words = f"transverse energy is off by {loss:.3g} J, its scale being {scale:.3g} J, {now}"
     elif (speed := _approach_speed(stepper)) > FASTEST_APPROACH:
         words = (

@@ -43,6 +43,7 @@ class Recorded:
     wall: float = 0.0  # s
     cpu: float = 0.0  # s, of the first thread
     other_cpu: float = 0.0  # s, of the others
+    settling_steps: int = 0  # before ignition
 
     def add_sample(self, stepper: Stepper, row: np.ndarray) -> None:
         """Store the sample ``row`` (``observe``), with forces and stresses."""
@@ -70,7 +71,8 @@ class Recorded:
     def cost(self, stepper: Stepper) -> dict[str, float]:
         """Steps, savings and neglected vibration of rails at rest, and the cost of friction."""
         whole = max(stepper.steps, 1) * stepper.state.stepped.block.size
-        return {
+        settled = {"settling_steps": self.settling_steps} if self.settling_steps else {}
+        return settled | {
             "steps": stepper.steps,
             "steps_taken": self.parts,
             "friction_substeps": self.most_substeps,

@@ -38,7 +38,7 @@ def trajectory(stepper: Stepper, recorded: Recorded, cost: dict, numerics: Numer
     stress = None
     if status != "diverged":
         stress = monitor.record(setup.monitor, system, recorded.peak, yields)
-    pressed = outcome.pressed_at_ignition(system.faces, forces[0]) if forces.size else ""
+    pressed = outcome.pressed_at_ignition(system.model, forces[0]) if forces.size else ""
     message = "; ".join(filter(None, [recorded.message, exceeded, pressed]))
     seen_from = comoving.frame(system.model)
     return Trajectory(

@@ -11,6 +11,7 @@ from tipoff.files import tell
 from tipoff.highfi import result
 from tipoff.highfi.dynamics import observe, resting, substeps, waking
 from tipoff.highfi.dynamics.checkpoint import Checkpoint
+from tipoff.highfi.dynamics.settle import settle
 from tipoff.highfi.dynamics.setup import Setup, set_up
 from tipoff.highfi.dynamics.step_size import STEPS_PER_CHECK, choose
 from tipoff.highfi.dynamics.stepper import Stepper
@@ -27,6 +28,7 @@ from tipoff.highfi.state.threads import processors
 from tipoff.mechanics import outcome
 from tipoff.mechanics.ending import DONE, WINDOW, is_left_out
 from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes import settled
 from tipoff.scenes.effects.friction import require_two_step
 from tipoff.scenes.scene import Scene
 
@@ -44,6 +46,7 @@ def prepare(scene: Scene, numerics: Numerics | None = None) -> RailMesh:
     meshed here.
     """
     require_two_step(scene)
+    settled.require(scene)
     numerics = numerics or Numerics()
     key = (geometry(scene), numerics.element_size)
     with _MESH_LOCK:
@@ -99,7 +102,7 @@ def run(
     )
     saved = kept.read() if kept is not None and resume else None
     compiling, set_up_cpu = clock.perf_counter(), clock.thread_time() - cpu
-    loop.begin()
+    loop.begin(settles=saved is None)
     compiled = clock.perf_counter()
     if kept is not None and saved is not None:
         kept.resume(loop, saved)
@@ -136,13 +139,15 @@ class Loop:
         """Constants of the run."""
         return self.stepper.setup
 
-    def begin(self) -> None:
+    def begin(self, settles: bool = True) -> None:
         """First forces, velocities of t = -dt/2 that pass through the given ones at t = 0, and the
         first sample.
 
-        Compiles the kernels.
+        Compiles the kernels. A payload that is settled comes to rest before, if it ``settles``.
         """
         stepper, rails = self.stepper, self.setup.rails
+        if settles and self.setup.system.model.initial.settled:
+            self.recorded.settling_steps = settle(stepper)
         stepper.evaluate()
         stepper.kick(-0.5 * self.setup.stepping.dt_s)
         if rails is not None:

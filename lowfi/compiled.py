@@ -2,7 +2,7 @@
 
 from tipoff.kernels.compiled import effects
 from tipoff.kernels.jit import machine_code
-from tipoff.lowfi import pushers
+from tipoff.lowfi import hold_down, pushers
 from tipoff.lowfi.contact import springs, stick_slip, thermal_offset
 from tipoff.lowfi.contact.compliant import modes, solution
 from tipoff.lowfi.dynamics import equations
@@ -26,6 +26,7 @@ LAWS = {
     "platform": springs._relative_turn,
     "thrust_offset": equations._offset_line,
     "pushers": pushers.push_of,
+    "hold_down": hold_down.hold,
     "thermal": thermal_offset.offset_and_slope,
 }
 

@@ -6,13 +6,14 @@ from typing import NamedTuple
 from tipoff.lowfi import system
 from tipoff.lowfi.contact import thermal_offset
 from tipoff.lowfi.contact.compliant import neglected, record
-from tipoff.lowfi.dynamics import cases, integrate, local_error, plan
+from tipoff.lowfi.dynamics import cases, integrate, local_error, plan, settle
 from tipoff.lowfi.dynamics.loop import Loop, Plan
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.outcome import Milestones
 from tipoff.mechanics.promises import Promises
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.scene_model import Model
+from tipoff.scenes import settled
 from tipoff.scenes.scene import Scene
 
 
@@ -40,6 +41,7 @@ def prepare(
     in the values of ``cases.Cases``. Steps are those of ``numerics``, errors of the ledgers those
     ``promised``. A run without modes that ``watches`` them finds their effect. Raises SceneError if
     ``compliance`` is of another rail or lacks what the scene needs."""
+    settled.require(scene)
     model, modes = models[0], numerics.count
     thermal_offset.require(scene, compliance)
     found = compliance.of(scene) if compliance and scene.contact else None
@@ -51,6 +53,9 @@ def prepare(
         neglected=neglected.watched(scene, found, watches),
     )
     steps, every = plan.make(model, scene.time_limit, numerics), cases.of_models(common, models)
+    if model.initial.settled:
+        assert len(models) == 1
+        every = every._replace(start=settle.rest(scene.name, common, every, model)[None])
     return Prepared(
         system=common,
         plan=steps,

@@ -32,8 +32,8 @@ def resist(inertia, mass, pushing, payload, bodies, state, out):
     if inertia is not None:
         moving = Moving(
             payload,
-            _accelerations(payload, state, slot.PAYLOAD, bodies.payload, out),
-            _of_platform(bodies.platform, state, bodies.base, out),
+            accelerations(payload, state, slot.PAYLOAD, bodies.payload, out),
+            of_platform(bodies.platform, state, bodies.base, out),
         )
         for i in range(mass.size):
             inertia.pairs[i] = 0.0
@@ -53,8 +53,8 @@ def _balance(inertia, mass, pushing, i, bodies, moving):
         place_of(pushing, i, body),
     )
     slip = slip_at(body, base, x)
-    there = _acceleration(body, moving.payload, x)
-    here = _acceleration(base, moving.platform, x)
+    there = acceleration(body, moving.payload, x)
+    here = acceleration(base, moving.platform, x)
     turning = rotation.cross(base.rate, slip)
     relative = (
         there[0] - here[0] - 2.0 * turning[0],
@@ -72,7 +72,7 @@ def _balance(inertia, mass, pushing, i, bodies, moving):
 
 
 @kernel
-def _acceleration(body, moving, point):
+def acceleration(body, moving, point):
     """Acceleration (m/s2) of the matter of a body at a ``point``."""
     arm = (point[0] - body.place[0], point[1] - body.place[1], point[2] - body.place[2])
     inward = rotation.cross(body.rate, rotation.cross(body.rate, arm))
@@ -85,7 +85,7 @@ def _acceleration(body, moving, point):
 
 
 @kernel
-def _accelerations(record, state, first, body, out):
+def accelerations(record, state, first, body, out):
     """Acceleration (m/s2) of the mass centre, and angular acceleration (rad/s2) in scene axes, by
     the forces in ``out``."""
     force = slot.triple(out, first + slot.VELOCITY)
@@ -105,8 +105,8 @@ def _accelerations(record, state, first, body, out):
 
 
 @kernel
-def _of_platform(platform, state, base, out):
+def of_platform(platform, state, base, out):
     moving = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     if platform is not None:
-        moving = _accelerations(platform, state, slot.PLATFORM, base, out)
+        moving = accelerations(platform, state, slot.PLATFORM, base, out)
     return moving

@@ -146,7 +146,7 @@ class SingleRun:
         checks = balance.checks(rows, moved, forces, self.model, self.loop, self.promised)
         broken, seen_from = promises.broken(checks, self.promised), comoving.frame(self.model)
         status, result = ("diverged", outcome.Outcome()) if broken else self.judged()
-        pressed = outcome.pressed_at_ignition(self.model.faces, self.forces[0])
+        pressed = outcome.pressed_at_ignition(self.model, self.forces[0])
         message = "; ".join(filter(None, [self.message, broken, self._again(), pressed]))
         return Trajectory(
             model=model_of(self.scene, self.compliance),

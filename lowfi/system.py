@@ -14,6 +14,7 @@ from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.effects.body_force import BodyForce
 from tipoff.scenes.effects.contact import ContactLaw
 from tipoff.scenes.effects.friction import Friction
+from tipoff.scenes.effects.hold_down import HoldDown
 from tipoff.scenes.effects.sticking import Sticking
 from tipoff.scenes.effects.thrust_law import Thrust
 from tipoff.scenes.effects.thrust_offset import ThrustOffset
@@ -49,6 +50,7 @@ class System(NamedTuple):
     pushing: Pushing | None  # thrust over travel
     reacts_on_platform: bool  # whether the platform takes the reaction of the thrust
     thrust_offset: ThrustOffset | None
+    hold_down: HoldDown | None
     contact: Contact | None  # contact springs
     compliance: Compliance | None  # compliant contact, instead of contact springs
     has_contact: bool  # of either kind
@@ -84,6 +86,7 @@ def build(
         pushing=pushing(model.pushers),
         reacts_on_platform=model.reacts_on_platform,
         thrust_offset=model.thrust_offset,
+        hold_down=model.hold_down,
         contact=contact,
         compliance=compliance,
         has_contact=contact is not None or compliance is not None,

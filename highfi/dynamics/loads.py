@@ -7,6 +7,7 @@ smooth.
 """
 
 from tipoff.highfi.contact.pads import friction_power
+from tipoff.highfi.dynamics.hold_down import work_of_hold_down
 from tipoff.highfi.dynamics.pushers import work_of_pushers
 from tipoff.highfi.state.pose import body_matrix, body_rate, origin_of_frame, triple
 from tipoff.highfi.state.records import AXIAL, TOTAL
@@ -86,6 +87,7 @@ def add_work(constants, state, active, pose, thrust, ahead):
         constants.friction, constants, state, active, pose, acceleration, ahead
     )
     _pusher_work(constants.pushers, constants, state, pose)
+    _hold_down_work(constants.hold_down, constants, state, pose)
     _platform_work(constants.frame, constants, state, pose.frame, thrust, (normal, drag))
     _body_force_work(constants.body_force, constants, state, pose.frame)
 
@@ -96,6 +98,13 @@ def _pusher_work(pushers, constants, state, pose):
         speed = _axial_speed(constants.frame, state, pose.frame)
         half = 0.5 * constants.dt
         work_of_pushers(pushers, constants.frame, state, pose, speed, half)
+
+
+@inlined
+def _hold_down_work(latch, constants, state, pose):
+    if latch is not None:
+        speed = _axial_speed(constants.frame, state, pose.frame)
+        work_of_hold_down(latch, constants, state, pose, speed, 0.5 * constants.dt)
 
 
 @kernel

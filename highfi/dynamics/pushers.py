@@ -180,7 +180,7 @@ def kick_pushers(pushers, constants, state, pose, dt):
         for i in range(state.pushing.segment.size):
             size = dt * (state.pushing.force[i] - state.pushing.friction[i])
             if size != 0.0:
-                _kick(constants, state, _arm(pushers, i, constants.frame, state, pose), size)
+                kick_pair(constants, state, _arm(pushers, i, constants.frame, state, pose), size)
         _resist(state.pushing.inertia, pushers.mass, pushers, constants, state, pose, dt)
 
 
@@ -197,18 +197,18 @@ def _resist(inertia, mass, pushers, constants, state, pose, dt):
                 now = _present_speed(pushers, i, constants, state, pose)
                 share, one = inertia.values[SHARE, i], _arm(pushers, i, frame, state, pose)
                 own = dt * (state.pushing.force[i] - state.pushing.friction[i])
-                own *= _mobility(constants, state, one, one)
+                own *= mobility(constants, state, one, one)
                 gained = own + share * (now - inertia.values[SPEED, i] - own)
                 inertia.pairs[i] = mass[i] * gained
                 for j in range(mass.size):
                     if inertia.values[SPEED, j] == inertia.values[SPEED, j]:
                         other = _arm(pushers, j, frame, state, pose)
-                        resisted = mass[i] * _mobility(constants, state, one, other)
+                        resisted = mass[i] * mobility(constants, state, one, other)
                         inertia.matrix[i, j] += resisted if i == j else share * resisted
         law.solve(inertia.matrix, inertia.pairs)
         for i in range(mass.size):
             if inertia.values[SPEED, i] == inertia.values[SPEED, i]:
-                _kick(constants, state, _arm(pushers, i, frame, state, pose), -inertia.pairs[i])
+                kick_pair(constants, state, _arm(pushers, i, frame, state, pose), -inertia.pairs[i])
                 inertia.values[FORCE, i] = inertia.pairs[i] / dt
                 if mass[i] > 0.0:
                     inertia.values[GAINED, i] = inertia.pairs[i] / mass[i]
@@ -218,14 +218,20 @@ def _resist(inertia, mass, pushers, constants, state, pose, dt):
 @kernel
 def _present_speed(pushers, i, constants, state, pose):
     """Speed (m/s) of the travel of pusher ``i`` at the present velocities of the bodies."""
-    arm, body = _arm(pushers, i, constants.frame, state, pose), state.payload
+    return present_speed(constants, state, _arm(pushers, i, constants.frame, state, pose))
+
+
+@kernel
+def present_speed(constants, state, arm):
+    """Speed (m/s) of the payload relative to the platform along and at an ``arm``."""
+    body = state.payload
     rate = body_rate(body, constants.payload.inverse_inertia)
     there = _along(arm.direction, arm.on_payload, triple(body.velocity), rate)
     return there - _speed_of_platform(constants.frame, state, arm)
 
 
 @kernel
-def _mobility(constants, state, one, other):
+def mobility(constants, state, one, other):
     """Change (1/kg) of the speed of travel at the arm ``one`` by a unit impulse of a pair at the
     ``other``."""
     payload = constants.payload
@@ -248,8 +254,8 @@ def _mobility_of_platform(frame, state, one, other):
 
 
 @kernel
-def _kick(constants, state, arm, size):
-    """``size``: impulse (N s)."""
+def kick_pair(constants, state, arm, size):
+    """Kick the bodies by a pair of impulses of ``size`` (N s) at an ``arm``."""
     d, body = arm.direction, state.payload
     push = (size * d[0], size * d[1], size * d[2])
     turn = rotation.cross(arm.on_payload, push)

@@ -32,6 +32,7 @@ from tipoff.highfi.contact.pads import collect_contact, contact_forces
 from tipoff.highfi.dynamics.damping import begin_damping, collect_damping
 from tipoff.highfi.dynamics.elastic import elastic_force, finish_load, hold_blocks, move_and_load
 from tipoff.highfi.dynamics.ending import begin, follow
+from tipoff.highfi.dynamics.hold_down import hold
 from tipoff.highfi.dynamics.loads import (
     accelerate,
     add_external_impulse,
@@ -102,6 +103,7 @@ def _kick(constants, state, task):
     unit = constants.dt / task.stride
     thrust = thrust_load(constants, state, task.first_step * unit)
     _kick_bodies(constants, state, pose, thrust, task.span)
+    hold(constants.hold_down, constants, state, pose, task.first_step * unit, task.span)
     acceleration = body_force_in_frame(constants.body_force, pose)
     inverse_mass = constants.rail.inverse_mass
     kick_nodes(inverse_mass, state.velocity, state.resistance, acceleration, task.span)
@@ -225,6 +227,7 @@ def _advance(constants, state, active, book, team, thread, task):
             pose = pose_in_frame(state, constants.payload, frame)
             thrust = thrust_load(constants, state, n * unit)
             _kick_bodies(constants, state, pose, thrust, dt)
+            hold(constants.hold_down, constants, state, pose, n * unit, dt)
             pose = pose_in_frame(state, constants.payload, frame)
             add_work(constants, state, active, pose, thrust, dt)
             drift_bodies(constants, state, pose)

@@ -96,6 +96,7 @@ class Stepper:
             thrust=m.thrust,
             pushers=s.pushers,
             thrust_offset=m.thrust_offset,
+            hold_down=s.hold_down,
             interface_stiffness=m.interface_stiffness,
             friction=m.friction,  # type: ignore[arg-type]  # sticking is refused by prepare
             body_force=m.body_force,

@@ -15,6 +15,7 @@ from tipoff.kernels import rotation
 from tipoff.kernels.memory import zeros
 from tipoff.mechanics import comoving, scene_model
 from tipoff.scenes.body import inverse, tensor
+from tipoff.scenes.effects.hold_down import HoldDown
 from tipoff.scenes.effects.pusher_law import Pushers
 from tipoff.scenes.effects.structural_damping import Damping
 from tipoff.scenes.faults import Fault, SceneError
@@ -40,6 +41,7 @@ class System(NamedTuple):
     frame: records.Frame | None  # None: fixed platform
     drive: records.Drive
     pushers: Pushers | None  # in frame axes from the frame's origin
+    hold_down: HoldDown | None  # in frame axes from the frame's origin
     origin: np.ndarray  # (3,) m, the frame's origin at ignition in scene axes
     body_offset: np.ndarray  # (3,) m, from the frame's origin to the platform's mass centre
     warm: np.ndarray | None  # (n,3) m, thermal displacement of the nodal arrays, or None
@@ -87,6 +89,7 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
         frame=frame,
         drive=drive,
         pushers=_from_origin(model.pushers, offset),
+        hold_down=_latch_from_origin(model.hold_down, offset),
         origin=origin,
         body_offset=offset,
         warm=warm,
@@ -99,6 +102,14 @@ def _from_origin(found: Pushers | None, offset: np.ndarray) -> Pushers | None:
     if found is None:
         return None
     return found._replace(origin=found.origin + found.direction @ offset)
+
+
+def _latch_from_origin(found: HoldDown | None, offset: np.ndarray) -> HoldDown | None:
+    """The same for a hold-down."""
+    if found is None:
+        return None
+    y, z = (np.array(found.line) + offset[1:]).tolist()
+    return found._replace(line=(y, z))
 
 
 def moving_walls(surfaces: records.Surface, moving_mass: np.ndarray) -> np.ndarray:
@@ -273,6 +284,7 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
         face_force=np.zeros((system.faces.axis.size, 3)),
         history=_history(system.rail, nodes, blocks),
         pushing=pushers.new_state(system.pushers),
+        holding=None if system.hold_down is None else np.zeros(1),
     )
     return state, _active(system, groups)
 

@@ -20,6 +20,7 @@ from tipoff.mechanics.outcome import Milestones
 from tipoff.mechanics.scene_model import Faces, Payload
 from tipoff.scenes.effects.body_force import BodyForce
 from tipoff.scenes.effects.friction import Friction
+from tipoff.scenes.effects.hold_down import HoldDown
 from tipoff.scenes.effects.pusher_law import Pushers
 from tipoff.scenes.effects.structural_damping import Damping
 from tipoff.scenes.effects.thrust_law import Thrust
@@ -151,6 +152,7 @@ class Constants(NamedTuple):
     thrust: Thrust  # over time
     pushers: Pushers | None  # thrust over travel, in frame axes from the frame's origin
     thrust_offset: ThrustOffset | None
+    hold_down: HoldDown | None  # its line in frame axes from the frame's origin
     interface_stiffness: float | None  # N/m3, contact pressure over penetration
     friction: Friction | None
     body_force: BodyForce | None
@@ -251,6 +253,7 @@ class State(NamedTuple):
     face_force: np.ndarray  # (f,3) N on the payload in frame axes
     history: History | None  # None without structural damping
     pushing: Pushing | None  # None without spring pushers
+    holding: np.ndarray | None  # (1,) N, last force of the hold-down on the payload; None without
 
 
 @by_reference

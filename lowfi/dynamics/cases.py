@@ -79,6 +79,7 @@ def system_of(common, cases, n):
         thrust=common.thrust,
         pushing=common.pushing,
         reacts_on_platform=common.reacts_on_platform,
+        hold_down=common.hold_down,
         thrust_offset=_offset(cases.direction, cases.arm, n),
         contact=common.contact,
         compliance=common.compliance,

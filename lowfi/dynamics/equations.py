@@ -22,6 +22,7 @@ from tipoff.lowfi.contact.compliant.loads import load as compliant_load
 from tipoff.lowfi.contact.compliant.modes import vibrate
 from tipoff.lowfi.contact.compliant.solution import solve
 from tipoff.lowfi.contact.springs import load, penetration, relative_pose
+from tipoff.lowfi.hold_down import hold
 from tipoff.lowfi.pusher_inertia import resist
 from tipoff.lowfi.pushers import place_of, push_of, slip_at
 from tipoff.lowfi.state import IMPULSE, PAYLOAD, PLACE, PLATFORM, QUATERNION, SPIN, TURN, VELOCITY
@@ -60,6 +61,7 @@ def derivative(system, touching, stick, time, state, out):
     add_springs(system.contact, system.sticking, system.faces, touching, stick, bodies, out)
     add_compliant_contact(system.compliance, system.faces, touching, bodies, state, out)
     add_pusher_inertia(system.pushing, payload, bodies, state, out)
+    add_hold_down(system.hold_down, payload, time, bodies, state, out)
     move(payload.mass, state, PAYLOAD, bodies.payload, out)
     move_platform(platform, state, bodies.base, out)
 
@@ -203,15 +205,28 @@ def add_pusher_inertia(pushing, payload, bodies, state, out):
 def _add_pusher_inertia(inertia, pushing, payload, bodies, state, out):
     if inertia is not None:
         resist(inertia, pushing.law.mass, pushing, payload, bodies, state, out)
-        speed = _axial_speed(bodies.platform, bodies)
         for i in range(inertia.pairs.size):
             point, size = place_of(pushing, i, bodies.payload), inertia.pairs[i]
-            slip = slip_at(bodies.payload, bodies.base, point)
             d = rotation.rotate(bodies.base.turn, direction_of(pushing.law, i))
-            force = (-size * d[0], -size * d[1], -size * d[2])
-            _pair(bodies.platform, bodies.ledger, force, point, out)
-            entries = slot.THRUST, slot.THRUST_AXIAL
-            add_power(bodies.ledger, entries[0], entries[1], force, slip, speed, 1.0, out)
+            _drive((-size * d[0], -size * d[1], -size * d[2]), point, bodies, out)
+
+
+@kernel
+def add_hold_down(latch, payload, time, bodies, state, out):
+    """Add the force of the hold-down before its release, after all other forces."""
+    if latch is not None:
+        if time < latch.release:
+            force, point = hold(latch, payload, bodies, state, out)
+            _drive(force, point, bodies, out)
+
+
+@kernel
+def _drive(force, point, bodies, out):
+    """Add a pair of forces (N) at a point, whose work counts as that of the thrust."""
+    slip = slip_at(bodies.payload, bodies.base, point)
+    speed = _axial_speed(bodies.platform, bodies)
+    _pair(bodies.platform, bodies.ledger, force, point, out)
+    add_power(bodies.ledger, slot.THRUST, slot.THRUST_AXIAL, force, slip, speed, 1.0, out)
 
 
 @kernel
@@ -233,16 +248,8 @@ def _add_body_force(force, mass, first, ledger, body, out):
     weight = (mass * force.x, mass * force.y, mass * force.z)
     push(out, first, weight, body.place, 1.0)
     add_outside_impulse(ledger, weight, body.place, out)
-    add_power(
-        ledger,
-        slot.BODY_FORCE,
-        slot.BODY_FORCE_AXIAL,
-        weight,
-        body.velocity,
-        body.velocity[0],
-        1.0,
-        out,
-    )
+    velocity, speed = body.velocity, body.velocity[0]
+    add_power(ledger, slot.BODY_FORCE, slot.BODY_FORCE_AXIAL, weight, velocity, speed, 1.0, out)
 
 
 @kernel

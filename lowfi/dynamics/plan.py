@@ -16,7 +16,11 @@ _FIRST_SHARE = 1e-3  # of the time to the first stop
 
 def make(model: Model, end: float, numerics: Numerics) -> Plan:
     """Plan of a run up to ``end`` (s)."""
-    stops = np.append(thrust_law.corners(model.thrust, end), end)
+    released = model.hold_down.release if model.hold_down is not None else 0.0
+    corners = thrust_law.corners(model.thrust, end)
+    if 0.0 < released < end:
+        corners = np.unique(np.append(corners, released))
+    stops = np.append(corners, end)
     if model.thrust.pulses is None:
         return _plan(stops, np.full(stops.size, np.inf), numerics)
     _, centres, widths, first, last = model.thrust.pulses

@@ -108,6 +108,9 @@ class Family:
             except SceneError as error:
                 alone.append((number, _refused(error)))
                 continue
+            if built.model.initial.settled:  # each case needs statics of its own
+                alone.append((number, row))
+                continue
             group = self._group(groups, built)
             group.rows.append((number, row))
             group.models.append(built.model)

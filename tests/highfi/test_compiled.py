@@ -21,6 +21,7 @@ def check(effect: str) -> None:
     platform only: with a free one everything falls together."""
     added = {
         "gravity": {"gravity__z": -9.80665},
+        "hold_down": {"hold_down__release": 500.0},
         "pushers": {"thrust": SPRING},
         "rail.damping": DAMPED,
         "rail.mount_stiffness": SOFT,

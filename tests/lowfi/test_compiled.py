@@ -17,6 +17,7 @@ from tipoff.scenes import load
 # the other.
 ADDED = {
     "gravity": {"gravity.z": -9.80665},
+    "hold_down": {"hold_down.release": 500.0},
     "pushers": {"thrust": {"kind": "spring", "preload": 5e3, "rate": 1e4, "stroke": 0.1}},
     "sticking": {
         "friction": {

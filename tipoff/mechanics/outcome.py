@@ -169,10 +169,12 @@ def window_start(exit_at, marks):
     return max(exit_at + SETTLE_DELAY, marks.settled_thrust)
 
 
-def pressed_at_ignition(faces, forces: np.ndarray) -> str:
+def pressed_at_ignition(model, forces: np.ndarray) -> str:
     """A warning that names the pads with ``forces`` (f,3) N at ignition; empty if there are
-    none."""
-    pads = sorted(set(faces.pad[(forces != 0.0).any(axis=1)].tolist()))
+    none, or if the payload rests on them."""
+    if model.initial.settled:
+        return ""
+    pads = sorted(set(model.faces.pad[(forces != 0.0).any(axis=1)].tolist()))
     return (
         f"initial interference: pads {', '.join(map(str, pads))} press on the rail at ignition"
         if pads

@@ -12,7 +12,7 @@ import numpy as np
 
 from tipoff.kernels.reference import by_reference
 from tipoff.scenes.body import inverse, tensor
-from tipoff.scenes.effects import contact, registry, spring, thrust, thrust_offset
+from tipoff.scenes.effects import contact, hold_down, registry, spring, thrust, thrust_offset
 from tipoff.scenes.effects.body_force import BodyForce
 from tipoff.scenes.effects.friction import Friction
 from tipoff.scenes.effects.initial import Initial
@@ -83,6 +83,7 @@ class Model(NamedTuple):
     pushers: Pushers | None  # thrust over travel
     reacts_on_platform: bool
     thrust_offset: thrust_offset.ThrustOffset | None
+    hold_down: hold_down.HoldDown | None  # None after the release too
     contact: contact.ContactLaw | None
     interface_stiffness: float | None  # N/m3, interface and pad layer in series
     friction: Friction | Sticking | None
@@ -139,6 +140,7 @@ def built(scene: Scene, earlier: Built | None = None) -> Built:
         thrust_offset=thrust_offset.record(
             scene.thrust_offset, scene.mass_offset, scene.thrust.arm
         ),
+        hold_down=hold_down.record(scene),
         contact=kept("contact", lambda: scene.contact.record() if scene.contact else None),
         interface_stiffness=scene.contact.series_stiffness() if scene.contact else None,
         # Friction without contact has no normal force, so it is absent too.

@@ -25,7 +25,7 @@ from tipoff.files import (
     write_csv,
     write_sealed,
 )
-from tipoff.mechanics import ledger, outcome, shown
+from tipoff.mechanics import finite, hand_over, ledger, outcome, shown
 from tipoff.mechanics.model_names import MODELS
 
 if TYPE_CHECKING:
@@ -161,8 +161,12 @@ class Trajectory(Carded):
         found = {name: getattr(self, name) for name in _CHECKED} | {
             "outcome": self.outcome._asdict()
         }
-        if not _is_finite(found):
-            lost = [".".join(path) for path, number in _numbers(found) if not math.isfinite(number)]
+        if not finite.is_finite(found):
+            lost = [
+                ".".join(path)
+                for path, number in finite.numbers(found)
+                if not math.isfinite(number)
+            ]
             raise ValueError(
                 f"{', '.join(lost)}: NaN or inf, which no result may hold (None says that there is "
                 f"no value)"
@@ -229,6 +233,42 @@ class Trajectory(Carded):
             columns |= {f"{name}_{axis} [{unit}]": values[:, i] for i, axis in enumerate(_VECTOR)}
         write_csv(path, columns)
 
+    def state_at_exit(self) -> hand_over.State:
+        """State of the payload 0.1 ms after the exit, in the middle of the window at exit.
+
+        Returns:
+            hand_over.State: time (s), position (m), velocity (m/s), quaternion and rate (rad/s),
+            in the axes of the trajectory.
+
+        Raises:
+            SceneError: a run that did not leave the rail and settle.
+
+        Example:
+            >>> run = tipoff.run(tipoff.load("tiny"), "springs")
+            >>> run.state_at_exit().velocity.shape
+            (3,)
+        """
+        return hand_over.at_exit(self.outcome)
+
+    def export(self, kind: str, path: str | Path) -> None:
+        """Write the state at exit for codes of flight, atomically.
+
+        Args:
+            kind: ``rocketpy``, JSON with the ``initial_solution`` of RocketPy's ``Flight``; or
+                ``csv``, the same 14 numbers as a table.
+            path: file to write.
+
+        Raises:
+            SceneError: another kind, or a run that did not leave the rail and settle.
+
+        Example:
+            >>> tipoff.run(tipoff.load("tiny"), "springs").export("rocketpy", "exit.json")
+            >>> import json
+            >>> len(json.load(open("exit.json"))["initial_solution"])
+            14
+        """
+        hand_over.write(kind, path, self.scene, self.outcome)
+
     def to_xarray(self) -> "xarray.Dataset":
         """Labelled copy, with the motion relative to the platform.
 
@@ -291,7 +331,7 @@ class Trajectory(Carded):
                     if name in data or name != "wall_stress"
                 }
                 plain = {name: json.loads(data.attrs[name]) for name in _PLAIN}
-                _require_plain(plain)
+                finite.require_plain(plain)
                 result = outcome.Outcome(**json.loads(data.attrs["outcome"]))
                 return cls(
                     model=data.attrs["model"],
@@ -346,40 +386,6 @@ def _attributes(run: Trajectory) -> dict[str, str]:
         "outcome": json.dumps(run.outcome._asdict()),
         **plain,
     }
-
-
-def _require_plain(plain: dict[str, Any]) -> None:
-    """Raise ValueError if the JSON of a file has other types than ``save`` writes."""
-    for name in ("checks", "cost", "scene", "numerics", "versions"):
-        if not isinstance(plain[name], dict):
-            raise ValueError(f"{name}: given {plain[name]!r}, expected a table")
-    numbers = plain["checks"] | {"wall_s": plain["cost"].get("wall_s", 0.0)}
-    for name, value in numbers.items():
-        if not outcome.is_number(value):
-            raise ValueError(f"{name}: given {value!r}, expected a number")
-    if not _is_finite(plain):
-        raise ValueError("a number that is not finite")
-
-
-def _is_finite(plain: dict) -> bool:
-    """Whether every number of nested dicts and lists is finite, as the JSON encoder sees it."""
-    try:
-        json.dumps(plain, allow_nan=False)
-    except ValueError:
-        return False
-    return True
-
-
-def _numbers(value, path=()):
-    """(path, float) of every float inside nested dicts and lists."""
-    if isinstance(value, dict):
-        for key, item in value.items():
-            yield from _numbers(item, (*path, str(key)))
-    elif isinstance(value, (list, tuple)):
-        for index, item in enumerate(value):
-            yield from _numbers(item, (*path, str(index)))
-    elif isinstance(value, float):
-        yield path, value
 
 
 assert set(_DIMENSIONS) <= {item.name for item in fields(Trajectory)}

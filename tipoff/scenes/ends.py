@@ -20,7 +20,7 @@ import numpy as np
 
 from tipoff.scenes import pushed
 from tipoff.scenes.body import tensor
-from tipoff.scenes.effects import registry, thrust_law
+from tipoff.scenes.effects import hold_down, registry, thrust_law
 from tipoff.scenes.effects.spring import PushedTable
 from tipoff.scenes.faults import within
 from tipoff.scenes.rounding import at_most, below
@@ -182,7 +182,9 @@ def exit_speed(scene: Any) -> float | None:
     left = _exit(scene, record, gain, pull, forwards=False)
     if not math.isfinite(left):
         return None
-    return _begun(scene) + gain * thrust_law.impulse(record, left) + pull * left
+    held = hold_down.release_time(scene)
+    pushed_on = thrust_law.impulse(record, left) - thrust_law.impulse(record, held)
+    return _begun(scene) + gain * pushed_on + pull * (left - held)
 
 
 def is_driven_otherwise(scene: Any) -> bool:
@@ -298,7 +300,8 @@ def _exit(scene: Any, record: thrust_law.Thrust, gain: float, pull: float, forwa
     distance = way(scene)
     if distance <= 0.0:
         return 0.0
-    speed = begun + _integral(gain * force + pull, time)
+    free = time >= hold_down.release_time(scene)
+    speed = begun + _integral((gain * force + pull) * free, time)
     place = _integral(speed, time)
     past = np.flatnonzero(place >= distance)
     if past.size:

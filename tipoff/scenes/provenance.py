@@ -8,6 +8,7 @@ table then get the text of the table, and the text of the table ends with ", in 
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from tipoff.scenes import overrides as keys
 from tipoff.scenes.overrides import index
 
 USER = "user"
@@ -40,6 +41,24 @@ def overridden(
         elif of(found, key) != text:
             found[key] = text
     return found
+
+
+def mark(raw: dict, changed: Mapping[str, Any]) -> None:
+    """Update the provenance in ``raw``, in which the values ``changed`` were set."""
+    stated = keys.texts(raw.get("provenance"))
+    if stated is None:
+        return
+    given = keys.texts(changed.get("provenance")) or {}
+    given |= {
+        key.removeprefix("provenance."): text
+        for key, text in changed.items()
+        if key.startswith("provenance.")
+    }
+    before = {key: text for key, text in stated.items() if key not in given}
+    changes = {key: keys.is_drop(value) for key, value in changed.items()}
+    raw["provenance"] = overridden(
+        before, raw, changes, {key: text for key, text in given.items() if key in stated}
+    )
 
 
 def of(texts: Mapping[str, str], key: str) -> str | None:

@@ -37,6 +37,8 @@ from tipoff.scenes.effects.contact import ContactTable
 from tipoff.scenes.effects.flight import FlightTable
 from tipoff.scenes.effects.friction import FrictionTable
 from tipoff.scenes.effects.gravity import GravityTable
+from tipoff.scenes.effects.hand_over import HandOverTable
+from tipoff.scenes.effects.hold_down import HoldDownTable
 from tipoff.scenes.effects.initial import InitialTable
 from tipoff.scenes.effects.mass_offset import MassOffsetTable
 from tipoff.scenes.effects.platform import PlatformTable
@@ -55,7 +57,7 @@ CATALOG = reading.CATALOG
 NOMINAL = "nominal"  # the scene itself, named like a condition
 _BESIDE = ("conditions", "agreement", "provenance")
 # the flight after the exit does not change the ejection, and no solver reads [studies]
-_NOT_PHYSICS = {"name", "description", "flight", "studies", *_BESIDE}
+_NOT_PHYSICS = {"name", "description", "flight", "hand_over", "studies", *_BESIDE}
 
 
 class Scene(shown.Shown, ends.Timed, Table):
@@ -87,6 +89,8 @@ class Scene(shown.Shown, ends.Timed, Table):
     mass_offset: MassOffsetTable | None = None
     #: State of payload and platform at ignition.
     initial: InitialTable | None = None
+    #: Latch that holds the travel until the thrust reaches a value.
+    hold_down: HoldDownTable | None = Field(None, exclude_if=is_absent)
     #: Clearance, contact law and interface stiffness.
     contact: ContactTable | None = None
     #: Friction between pads and walls.
@@ -97,6 +101,8 @@ class Scene(shown.Shown, ends.Timed, Table):
     gravity: GravityTable | None = None
     #: Flight in orbit after the exit.
     flight: FlightTable | None = None
+    #: How the rail stands on the ground, for files of the state at exit.
+    hand_over: HandOverTable | None = Field(None, exclude_if=is_absent)
     #: Temperature of the rails.
     thermal: ThermalTable | None = Field(None, exclude_if=is_absent)
     #: Sampling of the results.
@@ -169,7 +175,7 @@ class Scene(shown.Shown, ends.Timed, Table):
         keys.require_shallow(overrides, f"override of {self._source}")
         raw = keys.plain(self._raw)
         lost = keys.apply_all(raw, overrides, Scene)
-        _mark(raw, overrides)
+        provenance.mark(raw, overrides)
         scene, faults = _validated(raw, True)
         if any(key.split(".")[0] in _BESIDE for key in overrides):  # the others were valid before
             faults = faults + _beside_faults(raw, True, faults)
@@ -351,24 +357,6 @@ def _reported(source: str, faults: _Faults) -> list[Fault]:
         Fault(source, key, given, suggestions.expected(Scene, key, words))
         for key, given, words in faults
     ]
-
-
-def _mark(raw: dict, overrides: Mapping[str, Any]) -> None:
-    """Update the provenance in ``raw``, to which ``overrides`` were applied."""
-    stated = keys.texts(raw.get("provenance"))
-    if stated is None:
-        return
-    given = keys.texts(overrides.get("provenance")) or {}
-    given |= {
-        key.removeprefix("provenance."): text
-        for key, text in overrides.items()
-        if key.startswith("provenance.")
-    }
-    before = {key: text for key, text in stated.items() if key not in given}
-    changes = {key: keys.is_drop(value) for key, value in overrides.items()}
-    raw["provenance"] = provenance.overridden(
-        before, raw, changes, {key: text for key, text in given.items() if key in stated}
-    )
 
 
 def _tables(raw: Any) -> list[tuple[str, dict]]:

@@ -63,4 +63,5 @@ def test_an_effect_is_named_in_its_file_the_registry_and_the_scene():
     folders = ("scenes", "mechanics", "calibration", "meshes", "kernels", "highfi", "lowfi")
     paths = [path for folder in folders for path in (package / folder).rglob("*.py")]
     named = {path.name for path in paths if re.search(r"\bgravity\b", path.read_text())}
-    assert named == {"gravity.py", "registry.py", "scene.py"}
+    # the last one takes from it which way is up on the ground
+    assert named == {"gravity.py", "registry.py", "scene.py", "hand_over.py"}

@@ -7,8 +7,10 @@ in the body's own axes.
 
 from typing import NamedTuple
 
+from pydantic import Field
+
 from tipoff.scenes.effects.effect import Effect
-from tipoff.scenes.table import Table
+from tipoff.scenes.table import Table, is_zero
 from tipoff.scenes.units import Angle, Length, Rate, Velocity
 
 EFFECT = Effect("initial", {"initial.position.y": "20 um"})
@@ -59,7 +61,12 @@ class AngularRate(Table):
 
 
 class InitialTable(Table):
-    """``[initial]``: state at ignition."""
+    """``[initial]``: state at ignition. A ``settled`` payload rests on its rails."""
+
+    #: Whether the payload rests on fixed rails under its weight at ignition, at the given travel.
+    #: Position along Y and Z and attitude are then the first guess; they are kept where nothing
+    #: holds the payload.
+    settled: bool = Field(False, exclude_if=is_zero)
 
     #: Displacement of the payload from its centred place.
     position: Displacement = Displacement()
@@ -83,6 +90,7 @@ class InitialTable(Table):
             rate=_triple(self.rate),
             platform_velocity=_triple(self.platform_velocity),
             platform_rate=_triple(self.platform_rate),
+            settled=self.settled,
         )
 
 
@@ -99,3 +107,4 @@ class Initial(NamedTuple):
     rate: tuple = (0.0, 0.0, 0.0)  # rad/s
     platform_velocity: tuple = (0.0, 0.0, 0.0)  # m/s
     platform_rate: tuple = (0.0, 0.0, 0.0)  # rad/s
+    settled: bool = False  # whether the payload rests on its rails

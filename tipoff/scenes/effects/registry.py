@@ -9,6 +9,7 @@ from tipoff.scenes.effects import (
     contact,
     friction,
     gravity,
+    hold_down,
     initial,
     mass_offset,
     mount_stiffness,
@@ -31,6 +32,7 @@ EFFECTS: tuple[Effect, ...] = (
     thermal.EFFECT,
     structural_damping.EFFECT,
     mount_stiffness.EFFECT,
+    hold_down.EFFECT,
 )
 
 

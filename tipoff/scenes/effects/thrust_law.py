@@ -142,6 +142,31 @@ def _grid(thrust: Thrust, duration: float) -> tuple[np.ndarray, np.ndarray]:
     return time, np.abs(sample(thrust, time))
 
 
+def reached(thrust: Thrust, level: float) -> float:
+    """Earliest time (s) from 0 on at which the magnitude of the thrust is at least ``level`` (N);
+    infinite if it never is."""
+    time, force = _grid(thrust, math.inf)
+    high = np.flatnonzero(force >= level)
+    if not high.size:
+        return math.inf
+    first = int(high[0])
+    return _risen(thrust.pulses, thrust.curve, level, time[max(first - 1, 0)], time[first])
+
+
+@njit
+def _risen(pulses, curve, level, below, above):
+    """Time (s) at which the magnitude of the thrust rises to ``level`` (N), between a time ``below``
+    and a time ``above``."""
+    while True:
+        middle = 0.5 * (below + above)
+        if not below < middle < above:
+            return above
+        if abs(magnitude(pulses, curve, middle)) >= level:
+            above = middle
+        else:
+            below = middle
+
+
 def peak(thrust: Thrust, duration: float) -> float:
     """Largest magnitude of the thrust (N) in 0..duration: exact for one pulse and for a curve, else
     within a relative error of 1e-4."""

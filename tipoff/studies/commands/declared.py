@@ -62,7 +62,7 @@ def _typed(hint: Any) -> Any:
             return Annotated[(_typed(inner), *kept)]
         case origin, (inner, types.NoneType) if origin in (typing.Union, types.UnionType):
             return _typed(inner) | None
-        case origin, (inner, *_) if origin is tuple:
+        case origin, (inner, end) if origin is tuple and end is Ellipsis:
             return list[inner] | None  # type: ignore[valid-type]
     return hint
 

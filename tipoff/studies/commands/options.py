@@ -192,6 +192,15 @@ CalibrationFile = Annotated[
         "of the scene.",
     ),
 ]
+Export = Annotated[
+    tuple[str, Path] | None,
+    typer.Option(
+        "--export",
+        metavar="rocketpy|csv FILE",
+        help="Also write the state at exit for codes of flight, in the axes of RocketPy: rocketpy for "
+        "JSON, csv for a table. The table \\[hand_over] of the scene says how the rail stands.",
+    ),
+]
 SettledFrom = Annotated[
     str | None,
     typer.Option(

@@ -6,7 +6,14 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from tipoff.studies.commands.options import At, CalibrationFile, Modes, Surrogate, rate_limits
+from tipoff.studies.commands.options import (
+    At,
+    CalibrationFile,
+    Export,
+    Modes,
+    Surrogate,
+    rate_limits,
+)
 
 if TYPE_CHECKING:
     from tipoff.workspace import models
@@ -85,6 +92,7 @@ class Options:
         tuple[str, ...],
         rate_limits("10 deg/s", "The result is the probability above any of them."),
     ] = ()
+    export: Export = None
     calibration: CalibrationFile = None
     scheduler: Annotated[
         str | None,

@@ -5,6 +5,7 @@ import resource
 import time
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.lowfi.ensemble.store import Store, StoreError
 from tipoff.lowfi.ensemble.table import TableFile
 from tipoff.lowfi.numerics import Numerics
+from tipoff.mechanics import hand_over
 from tipoff.mechanics.model_names import SPRINGS
 from tipoff.scenes import plausibility, uncertainty
 from tipoff.scenes.faults import Fault, SceneError
@@ -149,7 +151,11 @@ def run(study: Study, options: Options) -> Ran:
     """Run the cases that the store lacks, then their twins if the sensitivity is requested. Returns
     the statistics, also written as ``ensemble.json``. Raises StudyError when the store fails."""
     limits = exceedance.limits(options.limits)
+    if options.export:
+        hand_over.require(options.export[0], study.scene.resolved())
     ensemble, path = request(study, options)
+    if options.export:
+        hand_over.require_fixed(ensemble.source.keys)
     try:
         store = ensemble.store(path)
         ensemble.case(0)  # compiles the kernels or loads them from disk, before a time is taken
@@ -158,6 +164,8 @@ def run(study: Study, options: Options) -> Ran:
             told = _sensitivity(study, ensemble, store, options, board)
     except StoreError as fault:
         raise StudyError(str(fault)) from fault
+    if options.export:
+        _export(study, store, options.export)
     memory = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     at, calibrated = _instant(ensemble, options), options.calibration is not None
     found = Ran(
@@ -173,6 +181,17 @@ def run(study: Study, options: Options) -> Ran:
     )
     write_json(study.path("ensemble.json"), found.plain)
     return found
+
+
+def _export(study: Study, store: Store, export: tuple[str, Path]) -> None:
+    """Write mean and covariance of the state at exit of the cases that have one."""
+    left = np.isfinite(store.column("exit_position")[:, 0])
+    wanted = ("exit_time", "exit_position", "exit_velocity", "exit_attitude", "exit_rate")
+    found = SimpleNamespace(**{name: store.column(name)[left] for name in wanted})
+    kind, path = export
+    say(
+        "\n".join(hand_over.words(hand_over.write(kind, path, study.scene.resolved(), found), path))
+    )
 
 
 def _instant(ensemble: Ensemble, options: Options) -> Instant:

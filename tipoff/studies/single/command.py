@@ -9,6 +9,7 @@ from tipoff.studies.commands.options import (
     Cells,
     CheckpointEvery,
     Degree,
+    Export,
     Model,
     Modes,
     Resume,
@@ -64,6 +65,7 @@ def run(
             "thousands of launches of compliant contact.",
         ),
     ] = False,
+    export: Export = None,
     *,
     checkpoint_every: CheckpointEvery = None,
     resume: Resume = True,
@@ -80,6 +82,7 @@ def run(
       tipoff run --condition phi35 --model finite-elements
       tipoff run --condition h4 --accuracy "0.1 deg/s"
       tipoff run --condition h4 --modes 20 --degree 3 --cells 16
+      tipoff run --export rocketpy exit.json
     """
     from tipoff.scenes.faults import Fault, SceneError, together
     from tipoff.studies.runs import page
@@ -95,7 +98,12 @@ def run(
     )
     names = list(study.conditions)
 
+    if export:
+        single.require_export(study, export)
+
     def ranged(name: str, found: dict) -> dict:
+        if export and not found["failed"]:
+            single.export(study, name, found, export)
         return found | (single.ranged(study, name, quiet) if range_ else {})
 
     if accuracy is None and budget is None:

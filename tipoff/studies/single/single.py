@@ -4,13 +4,16 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
+from pathlib import Path
 
 from pydantic import TypeAdapter
 
 from tipoff.lowfi.numerics import AUTO
+from tipoff.mechanics import hand_over
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.mechanics.rail_compliance import DEGREE
-from tipoff.scenes.faults import InputError
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.faults import Fault, InputError, SceneError
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.render.uncertain import uncertain
@@ -143,6 +146,22 @@ def ranged(study: Study, condition: str, quiet: bool = False) -> dict:
     if not quiet:
         print("\n".join(f"  {line}" for line in page.ranges(found)))
     return {"spread": found and asdict(found)}
+
+
+def require_export(study: Study, export: tuple[str, Path]) -> None:
+    """Raise SceneError if the format and file of an ``export`` do not fit the conditions."""
+    names = list(study.conditions)
+    if len(names) != 1:
+        raise SceneError([Fault("--export", "conditions", f"{len(names)}", "one condition")])
+    hand_over.require(export[0], study.condition(names[0]).resolved())
+
+
+def export(study: Study, condition: str, found: dict, export: tuple[str, Path]) -> None:
+    """Write the state at exit of the run ``found``; prints the file and what is assumed."""
+    kind, path = export
+    outcome = Trajectory.load(study.path(found["trajectory"])).outcome
+    rail = hand_over.write(kind, path, study.condition(condition).resolved(), outcome)
+    say("\n".join(hand_over.words(rail, path)))
 
 
 def model(request: Run) -> str:

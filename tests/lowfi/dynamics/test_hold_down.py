@@ -1,0 +1,124 @@
+"""A hold-down on springs: the speed after its release against the integral of the thrust."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from tests.lowfi.support import CENTRED, PAPER_PAD, G, corners, scene
+from tipoff import lowfi
+from tipoff.scenes import SceneError, load
+from tipoff.scenes.effects.hold_down import release_time
+
+MASS, PEAK, WIDTH, CENTRE = 20.0, 4000.0, 2e-3, 6e-3
+PULSE = {"kind": "gaussian", "peak": PEAK, "width": WIDTH, "centre": CENTRE}
+PLATFORM = {"mass": 50.0, "inertia": {"xx": 2.0, "yy": 2.0, "zz": 2.0}}
+OPEN = {"contact": PAPER_PAD, "pads": corners(), "thrust": PULSE}
+TINY = load("tiny")
+
+
+def pulse(time: float) -> float:
+    return PEAK * np.exp(-0.5 * ((time - CENTRE) / WIDTH) ** 2)
+
+
+def released(level: float) -> float:
+    """Time (s) at which the pulse rises to a level (N), by its logarithm."""
+    return CENTRE - WIDTH * np.sqrt(2.0 * np.log(PEAK / level))
+
+
+def held(level: float, **tables):
+    return scene(0.014, 1e-4, mass=MASS, **OPEN | {"hold_down": {"release": level}} | tables)
+
+
+@pytest.mark.case("O91")
+@pytest.mark.parametrize("level", [1000.0, 3999.0])
+def test_the_speed_is_the_impulse_after_the_release(level):
+    asked = held(level, platform=PLATFORM, thrust_offset=CENTRED)
+    run, at = lowfi.run(asked, "springs"), released(level)
+    assert release_time(asked) == pytest.approx(at, rel=1e-12)
+    speed = run.to_xarray().relative_velocity.values[:, 0]
+    before = run.time < at
+    assert before.sum() > 3 and np.abs(speed[before]).max() < 1e-12
+    gain = 1.0 / MASS + 1.0 / PLATFORM["mass"]
+    impulse = quad(pulse, at, run.time[-1], points=[CENTRE], epsabs=1e-12)[0]
+    assert speed[-1] == pytest.approx(gain * impulse, rel=1e-7)
+    assert run.checks["linear_momentum_error"] < 1e-12
+    # Control: without a hold-down the payload has the whole impulse.
+    free = lowfi.run(asked.replace({"hold_down": None}), "springs")
+    assert free.to_xarray().relative_velocity.values[-1, 0] > 1.02 * speed[-1]
+
+
+def test_the_platform_takes_the_reaction_of_a_thrust_that_leaves():
+    """The thrust of a rocket pushes platform and payload together until the release."""
+    asked = held(1000.0, platform=PLATFORM, thrust=PULSE | {"reaction": "exhaust"})
+    run, at = lowfi.run(asked, "springs"), released(1000.0)
+    last = np.flatnonzero(run.time < at)[-1]
+    impulse = quad(pulse, 0.0, run.time[last])[0]
+    together = impulse / (MASS + PLATFORM["mass"])
+    assert run.velocity[last, 0] == pytest.approx(together, rel=1e-7)
+    assert run.platform_velocity[-1, 0] == pytest.approx(
+        quad(pulse, 0.0, at)[0] / (MASS + PLATFORM["mass"]), rel=1e-7
+    )
+
+
+def test_a_payload_on_an_upright_rail_does_not_fall():
+    """Gravity pulls it back before the release. Control: without a hold-down it falls."""
+    late = {"kind": "constant", "force": 1000.0, "start": 5e-3, "duration": 0.1}
+    tables = {"thrust": late, "gravity": {"x": -G, "y": 0.0, "z": 0.0}}
+    run = lowfi.run(held(500.0, **tables), "springs")
+    before = run.time < 5e-3
+    assert np.abs(run.velocity[before]).max() < 1e-12
+    expected = (1000.0 / MASS - G) * (run.time[-1] - 5e-3)
+    assert run.velocity[-1, 0] == pytest.approx(expected, rel=1e-9)
+    free = lowfi.run(scene(0.014, 1e-4, mass=MASS, **OPEN | tables), "springs")
+    assert free.velocity[before][-1, 0] < -0.04
+
+
+@pytest.mark.case("O91")
+@pytest.mark.parametrize("level", [0.0, 20.0])
+def test_a_release_at_ignition_has_the_same_bits_as_none(level):
+    """The pulse begins with 44 N."""
+    assert pulse(0.0) > 20.0
+    free = lowfi.run(scene(0.014, 1e-4, mass=MASS, **OPEN), "springs")
+    run = lowfi.run(held(level), "springs")
+    for name in ("position", "velocity", "quaternion", "rate", "pad_force", "energy"):
+        assert getattr(run, name).tobytes() == getattr(free, name).tobytes()
+
+
+def test_scenes_without_the_table_keep_their_hash():
+    assert "hold_down" in TINY.absent_effects() and "hold_down" not in TINY.resolved()
+    other = TINY.replace({"hold_down.release": "2 kN"})
+    assert other.hash != TINY.hash and other.replace({"hold_down": None}).hash == TINY.hash
+
+
+def test_a_curve_that_jumps_releases_at_the_jump():
+    late = {"kind": "constant", "force": 100.0, "start": 2e-3, "duration": 1e-3}
+    assert release_time(held(100.0, thrust=late)) == 2e-3
+    assert release_time(held(0.0, thrust=late)) == 0.0
+
+
+@pytest.mark.parametrize(
+    "changed, words",
+    [
+        (
+            {"hold_down.release": 5000.0},
+            "given 5000 N, expected at most the largest thrust, 4000 N",
+        ),
+        ({"initial.velocity.x": 1.0}, "initial: given a velocity along the rail"),
+        ({"hold_down.release": -1.0}, "hold_down.release"),
+        (
+            {"thrust": {"kind": "spring", "preload": 100.0, "rate": 1000.0, "stroke": 0.01}},
+            "hold_down: given a table, expected none: springs push",
+        ),
+    ],
+)
+def test_what_is_refused(changed, words):
+    with pytest.raises(SceneError, match=words):
+        lowfi.run(held(1000.0).replace(changed), "springs")
+
+
+def test_cases_are_held_too():
+    asked = held(1000.0, platform=PLATFORM)
+    rows = [{"payload.mass": 20.0}, {"payload.mass": 30.0, "hold_down.release": 2000.0}]
+    found = lowfi.run_many(asked, rows, "springs")
+    steps = [lowfi.run(asked.replace(row), "springs").cost["steps"] for row in rows]
+    assert found.steps.values.tolist() == steps

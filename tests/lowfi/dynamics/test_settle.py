@@ -1,0 +1,130 @@
+"""A payload that rests on its rails at ignition (``initial.settled``)."""
+
+import numpy as np
+import pytest
+
+from tests.lowfi.compliance import REFERENCE, reference_compliance
+from tests.lowfi.support import PAPER_PAD, G, corners, scene
+from tipoff import lowfi
+from tipoff.lowfi import Numerics
+from tipoff.scenes import SceneError
+
+MASS, START = 20.0, 5e-3  # kg; s, start of the thrust
+SETTLED = {"initial": {"settled": True}}
+LATE = {"kind": "constant", "force": 500.0, "start": START, "duration": 0.1}
+RUBBING = {"static": 0.3, "dynamic": 0.2, "static_speed": 0.01, "dynamic_speed": 0.02}
+WEIGHT = {"x": 0.0, "y": -0.4 * G, "z": -G}
+FIXED = {"platform": None, "thrust_offset": None, "thrust": LATE, "duration": 0.01}
+
+
+def on_springs(**tables):
+    changed = {"gravity": WEIGHT, "friction": RUBBING, "contact": PAPER_PAD, "thrust": LATE}
+    return scene(0.01, 1e-4, mass=MASS, **{"pads": corners()} | changed | tables)
+
+
+def before_thrust(run) -> np.ndarray:
+    return run.time < START
+
+
+def sums(run, asked) -> np.ndarray:
+    """(n,3) contact force over mass, m/s2."""
+    return run.pad_force.sum(axis=1)[before_thrust(run)] / asked.payload.mass
+
+
+@pytest.mark.case("O90")
+def test_a_payload_on_springs_stays_at_rest():
+    """It sinks as the law of the paper's pad demands."""
+    asked = on_springs(**SETTLED)
+    run = lowfi.run(asked, "springs")
+    before = before_thrust(run)
+    assert run.message == "" and np.abs(run.velocity[before]).max() < 1e-12
+    assert np.abs(run.rate[before]).max() < 1e-12
+    np.testing.assert_allclose(sums(run, asked), [[0.0, 0.4 * G, G]] * before.sum(), atol=1e-8)
+    for axis, pull in ((1, 0.4 * G), (2, G)):
+        sink = (MASS * pull / 4.0 / PAPER_PAD["stiffness"]) ** (1.0 / 1.5)
+        place = -PAPER_PAD["clearance"] - sink
+        assert run.position[0, axis] == pytest.approx(place, rel=1e-9)
+    # Control: a payload that begins in the middle falls, and its pads bounce.
+    falling = lowfi.run(on_springs(), "springs")
+    assert np.abs(falling.velocity[before][:, 2]).max() > 5e-3
+    assert sums(falling, asked)[:, 2].max() > 2.0 * G
+
+
+def test_a_mass_centre_beside_the_middle_is_balanced():
+    """Forces and moments of the pads against those of the weight."""
+    offset = {"eccentricity": {"axial": 0.02, "radial": 2.0}}
+    asked = on_springs(mass_offset=offset, **SETTLED)
+    run = lowfi.run(asked, "springs")
+    before = before_thrust(run)
+    assert np.abs(run.rate[before]).max() < 1e-10
+    np.testing.assert_allclose(sums(run, asked)[0], [0.0, 0.4 * G, G], atol=1e-7)
+    pads = np.array([pad.position for pad in asked.pads for _ in pad.normals])
+    moment = np.cross(pads - run.position[0], run.pad_force[0]).sum(axis=0)
+    assert np.abs(moment).max() < 1e-3 * MASS * G * 0.02
+    loads = run.pad_force[0][:, 2]
+    assert np.ptp(loads[loads > 0.0]) > 0.05 * MASS * G  # control: they are not equal
+
+
+def test_a_payload_rests_on_an_inclined_rail_that_holds_it():
+    """The latch carries the weight along the rail, and its moment about a mass centre beside the
+    line. Control: without the latch the payload slides back."""
+    offset = {"eccentricity": {"axial": 0.02, "radial": 2.0}}
+    steep = {"gravity": {"x": -0.9 * G, "y": 0.0, "z": -0.4 * G}, "mass_offset": offset}
+    asked = on_springs(hold_down={"release": 400.0}, **SETTLED, **steep)
+    run = lowfi.run(asked, "springs")
+    before = before_thrust(run)
+    assert np.abs(run.velocity[before]).max() < 1e-11
+    assert np.abs(run.rate[before]).max() < 1e-10
+    np.testing.assert_allclose(sums(run, asked)[:, 2], 0.4 * G, rtol=1e-8)
+    sliding = lowfi.run(asked.replace({"hold_down": None}), "springs")
+    assert sliding.velocity[before][-1, 0] < -0.02
+
+
+@pytest.mark.parametrize(
+    "changed, words",
+    [
+        ({"gravity": None}, "gravity: given nothing, expected a weight"),
+        ({"contact": None, "friction": None}, "contact: given nothing"),
+        (
+            {"platform": {"mass": 50.0, "inertia": {"xx": 1.0, "yy": 1.0, "zz": 1.0}}},
+            "free platform",
+        ),
+        ({"initial.velocity.z": 1e-3}, "initial: given a velocity"),
+    ],
+)
+def test_what_is_refused(changed, words):
+    with pytest.raises(SceneError, match=words):
+        lowfi.run(on_springs(**SETTLED).replace(changed), "springs")
+
+
+def test_a_payload_that_no_wall_holds_finds_no_rest():
+    with pytest.raises(SceneError, match=r"initial\.settled.*expected walls and a weight"):
+        lowfi.run(on_springs(pads=corners(normals="y"), **SETTLED), "springs")
+
+
+def test_cases_rest_too():
+    asked = on_springs(**SETTLED)
+    rows = [{"payload.mass": 20.0}, {"payload.mass": 30.0}]
+    found = lowfi.run_many(asked, rows, "springs")
+    steps = [lowfi.run(asked.replace(row), "springs").cost["steps"] for row in rows]
+    assert found.steps.values.tolist() == steps
+    assert not any("press" in str(text) for text in found.message.values)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("modes", [0, 4])
+def test_a_payload_on_compliant_rails_stays_at_rest(modes):
+    """Along the rail it creeps by the small axial force of a bent rail. Control: without the
+    option it falls."""
+    changed = FIXED | {"gravity": WEIGHT}
+    asked = REFERENCE.replace(changed | {"initial.settled": True})
+    numerics = Numerics(modes=modes)
+    run = lowfi.run(asked, compliance=reference_compliance(), numerics=numerics)
+    before = before_thrust(run)
+    assert np.abs(run.velocity[before, 1:]).max() < 1e-7
+    assert np.abs(run.velocity[before, 0]).max() < 1e-5
+    assert np.degrees(np.abs(run.rate[before]).max()) < 1e-3
+    np.testing.assert_allclose(sums(run, asked)[:, 1:], [[0.4 * G, G]] * before.sum(), rtol=1e-4)
+    np.testing.assert_allclose(sums(run, asked)[0, 1:], [0.4 * G, G], rtol=1e-8)
+    falling = lowfi.run(REFERENCE.replace(changed), compliance=reference_compliance())
+    assert np.abs(falling.velocity[before, 2]).max() > 0.01

@@ -1,0 +1,63 @@
+"""Hold-down: a latch between platform and payload, which holds the travel along the rail until the
+thrust first reaches a value. Absent table: none.
+
+The latch takes the force lambda along the rail that keeps the travel constant, and gives it back to
+the platform. It acts on the line of the nominal mass centre along the rail, in both directions, and
+never holds again::
+
+    lambda = -a / w      a: acceleration of the travel by all other forces, w: that by a unit force
+"""
+
+import math
+from typing import NamedTuple
+
+from tipoff.scenes.effects import thrust_law
+from tipoff.scenes.effects.effect import Effect
+from tipoff.scenes.effects.spring import PushedTable
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.table import Table
+from tipoff.scenes.units import NonNegativeForce
+
+EFFECT = Effect("hold_down")
+
+
+class HoldDownTable(Table):
+    """``[hold_down]``: thrust (N) at which the payload is released."""
+
+    #: Thrust at which the payload is released, once for all; 0 is the ignition.
+    release: NonNegativeForce
+
+
+class HoldDown(NamedTuple):
+    """Kernel record."""
+
+    release: float  # s, time of the release
+    line: tuple  # (2,) m, places along Y and Z of the line on which it acts, in platform axes
+
+
+def release_time(scene) -> float:
+    """Time (s) of the release; 0 without a hold-down, infinite if the thrust is too small."""
+    if scene.hold_down is None or isinstance(scene.thrust, PushedTable):
+        return 0.0
+    return thrust_law.reached(scene.thrust.record(), scene.hold_down.release)
+
+
+def record(scene) -> HoldDown | None:
+    """Kernel record, None if nothing is held after the ignition. Raises SceneError for a thrust
+    that never reaches the value, for springs, and for a payload that moves along the rail."""
+    if scene.hold_down is None:
+        return None
+    found, time = [], release_time(scene)
+    if isinstance(scene.thrust, PushedTable):
+        found.append(("hold_down", "a table", "none: springs push from the ignition on"))
+    elif time == math.inf:
+        most = f"at most the largest thrust, {thrust_law.peak(scene.thrust.record(), time):.6g} N"
+        found.append(("hold_down.release", f"{scene.hold_down.release:g} N", most))
+    first, free = scene.initial, scene.platform is not None
+    if first is not None and first.velocity.x != (first.platform_velocity.x if free else 0.0):
+        found.append(("initial", "a velocity along the rail", "none: the payload is held"))
+    if found:
+        raise SceneError([Fault(scene.name, *fault) for fault in found])
+    centre = scene.platform.mass_centre if free else None
+    line = (0.0, 0.0) if centre is None else (-centre.y, -centre.z)
+    return HoldDown(time, line) if time > 0.0 else None
