@@ -103,9 +103,10 @@ view: $(READY) ## one run to look at: VTK files for ParaView, and pictures if `m
 pictures: $(READY) ## add pyvista (0.6 GB) to .venv, with which `make view` draws too
 	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements-view.lock
 
-peers: $(READY) ## the same work in other codes: installs exudyn and mujoco into .venv, runs them and ccx (apt-get install calculix-ccx)
+peers: $(READY) ## the same work in other codes: installs exudyn, mujoco and rocketpy into .venv, runs them and ccx (apt-get install calculix-ccx)
 	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements-peers.lock
 	$(EVIDENCE) peers --out $(OUT) $(if $(KEEP),--keep)
+	.venv/bin/python -m pytest -q -n0 tests/mechanics/test_hand_over.py
 
 convergence: $(READY) ## the error of the reference itself: meshes, steps, interface stiffness, quadrature (minutes)
 	$(TIPOFF) convergence $(ASKED)
