@@ -99,6 +99,7 @@ def test_reference_has_no_other_effects():
         "gravity",
         "thermal",
         "rail.damping",
+        "hold_down",
     ]
 
 
