@@ -1,5 +1,5 @@
 """The draws by settings of the surrogate: one number of modes for all draws, the modes that each draw
-chooses, springs, and more cells and patterns."""
+chooses, springs, and more patterns."""
 
 import math
 from dataclasses import replace
@@ -220,7 +220,7 @@ def test_what_is_said_of_them():
     (said,) = ladder_page.sentences(page)
     assert said.startswith("3 of 5 draws choose rail modes for themselves, 2 of them all 20. In")
     cells = ("no modes, as the population", "all 20 modes", "modes case by case")
-    cells = (*cells, "calibrated springs", "degree 3, 16 cells, all 20 modes")
+    cells = (*cells, "calibrated springs", "degree 3, all 20 modes")
     assert all(f">{cell}<" in html(ladder_page.table(page)) for cell in cells)
     page.modes = 20
     assert ">all 20 modes, as the population<" in html(ladder_page.table(page))
@@ -228,7 +228,7 @@ def test_what_is_said_of_them():
     above, middle, *names = drawing.chart.panels[0].lines
     assert [name.labels for name in names[-2:]] == [
         ("calibrated springs",),
-        ("degree 3, 16 cells, all 20 modes",),
+        ("degree 3, all 20 modes",),
     ]
     np.testing.assert_allclose(middle.x, [2e-3, 9e-3, 4e-3, 1e-3, 9e-2])
     np.testing.assert_allclose(middle.y, [0.02, 0.03, 0.08, 0.98, 0.02])

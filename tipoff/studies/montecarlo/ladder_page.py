@@ -83,7 +83,9 @@ def setting(row: ByRung, found: Tails) -> str:
     degree = f"degree {row.degree}, " if row.degree else ""
     if row.cells != Numerics().cell_count:
         return f"{degree}{row.cells} cells, {modes}"
-    return f"{degree}{modes}{', as the population' if row.modes == found.modes else ''}"
+    return (
+        f"{degree}{modes}{', as the population' if row.modes == found.modes and not degree else ''}"
+    )
 
 
 def figures(found: Tails) -> list[Figure]:
@@ -131,7 +133,14 @@ def _points(rows: list[ByRung], error: str, name: str, colour: str, marker: str)
 
 
 def _named(found: Tails, row: ByRung) -> Line:
-    """The name of a setting at its median, in turn above and below, where names may overlap."""
+    """The name of a setting at its median, above, below or before it, so that names do not
+    overlap."""
+    assert found.ladder is not None
+    beside = "top right"
+    if row.model == SPRINGS or (row.degree and row.modes == found.ladder.held):
+        beside = "bottom right"
+    elif row.modes not in (0, AUTO) and not row.degree:
+        beside = "bottom left"
     return Line(
         [row.cpu_s],
         [row.median or 0.0],
@@ -139,5 +148,5 @@ def _named(found: Tails, row: ByRung) -> Line:
         dash="",
         legend=False,
         labels=(setting(row, found).removesuffix(", as the population"),),
-        beside="top right" if row.modes in (0, AUTO) and row.model != SPRINGS else "bottom right",
+        beside=beside,
     )

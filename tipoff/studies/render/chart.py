@@ -15,7 +15,12 @@ import numpy as np
 from tipoff.files import replacing
 from tipoff.studies.render.palette import GREY, INK, NAVY, RULE
 
-_OFFSETS = {"top center": (4, 6), "top right": (7, 3), "bottom right": (7, -9)}  # points
+_OFFSETS = {  # points
+    "top center": (4, 6),
+    "top right": (7, 3),
+    "bottom right": (7, -9),
+    "bottom left": (-7, -9),
+}
 _MARKERS = 20000  # largest number in a line of an SVG; longer lines become a bitmap
 
 
@@ -34,7 +39,7 @@ class Line:
     marker: str = ""
     legend: bool = True
     labels: tuple[str, ...] = ()
-    beside: str = "top center"  # where a label stands: "top right", "bottom right"
+    beside: str = "top center"  # where a label stands, of ``_OFFSETS``
     size: float = 9.0
 
 
@@ -123,6 +128,7 @@ def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
                     (x, y),
                     textcoords="offset points",
                     xytext=_OFFSETS[line.beside],
+                    horizontalalignment="right" if _OFFSETS[line.beside][0] < 0 else "left",
                     fontsize=7.5,
                     color=INK,
                 )
