@@ -161,7 +161,7 @@ def test_faults_are_listed_at_once_and_a_window_must_lie_in_the_record(tmp_path)
     with pytest.raises(SceneError, match="no such file|No such file"):
         Curves.read(tmp_path / "b.csv")
     path.write_bytes(b"\xff\xfe")
-    with pytest.raises(SceneError, match="a CSV file of text"):
+    with pytest.raises(SceneError, match="file: given no line of numbers"):
         Curves.read(path)
 
 

@@ -13,6 +13,8 @@ from tipoff.highfi.mesh.rail_mesh import read
 from tipoff.highfi.statics import assembly
 from tipoff.meshes import profile, quadrilaterals
 
+pytestmark = pytest.mark.gmsh
+
 LENGTH = 0.12
 SPANS = ((0.0, 0.02), (0.08, 0.1))
 MATERIAL = (2700.0, 70e9, 0.33)

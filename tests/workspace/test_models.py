@@ -129,7 +129,7 @@ def test_an_answer_names_its_model_and_its_error(tmp_path):
         "model compliant, 1 mode of each rail" in vibrating.stdout
         and "rail compliance" not in vibrating.stderr
     )
-    finer = json.loads(call(*asked, "--cells", "16", "--json").stdout)
+    finer = json.loads(call(*asked, "--cells", "10", "--json").stdout)
     assert finer["model"] == COMPLIANT and finer["settled"] != again["settled"]
     springs = json.loads(call(*asked, "--model", "springs", "--json").stdout)
     assert springs["model"] == SPRINGS and springs["settled"] != again["settled"]
