@@ -114,13 +114,13 @@ def shortest_feature(thrust: Thrust) -> float:
 
 
 @njit
-def _bisected(pulses, curve, level, above, below):
-    """Time (s) at which the magnitude of the thrust falls to ``level`` (N), between a time
-    ``above`` and a time ``below``."""
+def _crossed(pulses, curve, level, above, below):
+    """Two neighbouring times (s), between a time ``above`` and a time ``below`` in either order:
+    the magnitude of the thrust is at least ``level`` (N) at the first, and smaller at the second."""
     while True:
         middle = 0.5 * (above + below)
-        if not above < middle < below:
-            return below
+        if middle in (above, below):
+            return above, below
         if abs(magnitude(pulses, curve, middle)) >= level:
             above = middle
         else:
@@ -150,21 +150,8 @@ def reached(thrust: Thrust, level: float) -> float:
     if not high.size:
         return math.inf
     first = int(high[0])
-    return _risen(thrust.pulses, thrust.curve, level, time[max(first - 1, 0)], time[first])
-
-
-@njit
-def _risen(pulses, curve, level, below, above):
-    """Time (s) at which the magnitude of the thrust rises to ``level`` (N), between a time ``below``
-    and a time ``above``."""
-    while True:
-        middle = 0.5 * (below + above)
-        if not below < middle < above:
-            return above
-        if abs(magnitude(pulses, curve, middle)) >= level:
-            above = middle
-        else:
-            below = middle
+    before = time[max(first - 1, 0)]
+    return float(_crossed(thrust.pulses, thrust.curve, level, time[first], before)[0])
 
 
 def peak(thrust: Thrust, duration: float) -> float:
@@ -199,7 +186,7 @@ def _last_above(
     above = np.flatnonzero(force >= level)[-1]
     if above == time.size - 1:
         return float(duration)
-    return float(_bisected(thrust.pulses, thrust.curve, level, time[above], time[above + 1]))
+    return float(_crossed(thrust.pulses, thrust.curve, level, time[above], time[above + 1])[1])
 
 
 def kept(begin: float, end: float, centre: float, width: float) -> float:
