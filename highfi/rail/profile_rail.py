@@ -14,17 +14,7 @@ _FACING = 1e-6  # of a unit normal: sides that are turned less face along an axi
 def profile(scene: Scene, rail: ProfileTable) -> Profile:
     """The rail as meshed. Raises SceneError if nothing holds it, or a pad has no wall."""
     outline = rail.outline().at(rail.at)
-    faults: list[Fault] = []
-    walls: set[int] = set()
-    if not rail.mounts:
-        faults.append(
-            Fault(
-                scene.name,
-                "rail.mounts",
-                "none",
-                "at least one, since nothing else holds a rail that gives way",
-            )
-        )
+    faults, walls = rail.unheld(scene.name), set[int]()
     if scene.contact is not None:
         walls, missing = _walls(scene, outline.sides(), rail.signs())
         faults += missing

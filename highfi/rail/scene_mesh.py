@@ -96,16 +96,7 @@ def _l_section(scene: Scene, rail: SectionTable) -> l_rail.LRailGeometry:
                 "pads at four corners (+-y, +-z) of one size, as the built-in L rails need",
             )
         )
-    if not rail.mounts:
-        faults.append(
-            Fault(
-                scene.name,
-                "rail.mounts",
-                "none",
-                "at least one, since nothing else holds a rail that gives way",
-            )
-        )
-    faults += _on_fillet(scene, rail)
+    faults += [*rail.unheld(scene.name), *_on_fillet(scene, rail)]
     if faults:
         raise SceneError(faults)
     y, z = places.pop()

@@ -9,6 +9,7 @@ from pydantic import Field, ValidationInfo, field_validator
 
 from tipoff.scenes.effects.mount_stiffness import MountStiffness, MountStiffnessTable
 from tipoff.scenes.effects.structural_damping import DampingTable
+from tipoff.scenes.faults import Fault
 from tipoff.scenes.rounding import below
 from tipoff.scenes.table import Table, is_absent, limited
 from tipoff.scenes.units import (
@@ -115,6 +116,11 @@ class HeldBySpans(RailBase):
         if any(below(after.start, before.end) for before, after in itertools.pairwise(inward)):
             raise ValueError("spans that do not overlap")
         return mounts
+
+    def unheld(self, scene: str) -> list[Fault]:
+        """The fault of a rail of the ``scene`` of this name that gives way but has no mount."""
+        expected = "at least one, since nothing else holds a rail that gives way"
+        return [] if self.mounts else [Fault(scene, "rail.mounts", "none", expected)]
 
 
 class DrawnTable(RailBase):
