@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from tests.exact.spring import end_of_stroke
-from tipoff import highfi, lowfi
+from tests.scenes.neighbours import both_models
+from tipoff import lowfi
 from tipoff.calibration import rail_compliance
 from tipoff.scenes import load, uncertainty
 
@@ -88,28 +89,12 @@ def test_both_models_have_like_launches(tmp_path):
     exit speed is outside."""
     scene = SCENE.condition("offset15")
     compliance = rail_compliance.kept(scene, tmp_path, ELEMENTS, lambda _: None)
-    numerics = lowfi.Numerics(relative_tolerance=1e-2, modes=compliance.frequency.shape[1])
 
     def values(run) -> np.ndarray:
         rate = math.degrees(np.linalg.norm(run.outcome.rate))
         return np.array([run.outcome.velocity[0], run.energy[-1, FRICTION], rate])
 
-    changes = np.random.default_rng(1).uniform(-1e-6, 1e-6, 12)
-    near = np.array(
-        [
-            values(
-                lowfi.run(
-                    scene.replace(scene.contact.widened(change)),
-                    "compliant",
-                    compliance=compliance,
-                    numerics=numerics,
-                )
-            )
-            for change in changes
-        ]
-    )
-    found = values(highfi.run(scene, highfi.Numerics(element_size=ELEMENTS)))
-    low, high = near.min(axis=0), near.max(axis=0)
+    found, low, high = both_models(scene, compliance, ELEMENTS, values)
     margin = 0.5 * (high - low)
     assert (low - margin < found).all() and (found < high + margin).all()
     # Control:

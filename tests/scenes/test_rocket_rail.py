@@ -8,6 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tests.exact import pivot
+from tests.scenes.neighbours import both_models
 from tipoff import highfi, lowfi
 from tipoff.mechanics import scene_model
 from tipoff.mechanics.outcome import EXIT_WINDOW
@@ -153,26 +154,11 @@ def test_both_models_have_like_launches():
     outside."""
     scene = SCENE.replace({"rail.stretch": 3.75})
     compliance = highfi.condense(scene, ELEMENTS)
-    numerics = lowfi.Numerics(relative_tolerance=1e-2, modes=compliance.frequency.shape[1])
 
     def values(run) -> np.ndarray:
         return np.array([run.outcome.exit_velocity[0], *np.degrees(run.outcome.exit_rate)])
 
-    near = np.array(
-        [
-            values(
-                lowfi.run(
-                    scene.replace(scene.contact.widened(change)),
-                    "compliant",
-                    compliance=compliance,
-                    numerics=numerics,
-                )
-            )
-            for change in np.random.default_rng(1).uniform(-1e-6, 1e-6, 12)
-        ]
-    )
-    found = values(highfi.run(scene, highfi.Numerics(element_size=ELEMENTS)))
-    low, high = near.min(axis=0), near.max(axis=0)
+    found, low, high = both_models(scene, compliance, ELEMENTS, values)
     margin = 0.5 * (high - low)
     assert (low - margin < found).all() and (found < high + margin).all()
     # Control:
