@@ -3,10 +3,9 @@
 The first run has none. Its forces give the effect of each mode on the settled rates
 (``lowfi.contact.compliant.neglected``). If the sum over the modes is above ``THRESHOLD``, the scene
 is run again with the fewest lowest modes of each rail, at least ``FEWEST``, that bring the rest
-below. The change of the
-rates between the two runs shows how much later contacts enlarge such a sum; if the rest is above
-``THRESHOLD`` with this factor, a third run has all modes. The last run is the result, and ``cost``
-has the sum of all.
+below. The change of the rates between the two runs shows how much later contacts enlarge such a
+sum; if the rest is above ``THRESHOLD`` with this factor, a third run has all modes. The last run is
+the result, and ``cost`` has the sum of all.
 
 The effects are always those of the first run. On a vibrating rail a contact breaks up into touches,
 and a pad leaves each of them slowly: the estimate would be far too high.
@@ -26,7 +25,7 @@ import numpy as np
 from tipoff.lowfi.single_run import SingleRun
 
 THRESHOLD = math.radians(0.02)  # rad/s, of the settled rates
-FEWEST = 4  # if any are needed: the first bending modes have neighbouring frequencies
+FEWEST = 4  # if any are needed; the lowest modes of a rail come in pairs of like frequency
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,12 @@
 """The integrator by itself, its stability limit, refused settings, and runs that end without a
 result."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from tests.lowfi.compliance import REFERENCE, reference_compliance
 from tests.lowfi.support import PAPER_PAD, scene
 from tipoff import lowfi
 from tipoff.lowfi.dynamics import dormand_prince as pair
@@ -92,3 +95,23 @@ def test_overflow_diverges_and_leaves_finite_samples():
     )
     assert run.status == "diverged" and "infinite" in run.message and run.outcome.velocity is None
     assert np.isfinite(run.energy).all() and run.time.size < 1160
+
+
+def test_the_tolerance_chooses_the_contact_cells():
+    """16 along an edge as in the reference, 10 where the integration is coarse, and the given
+    number always; results state the number. Control: the other number has other bits."""
+    fine, coarse = lowfi.Numerics(), lowfi.Numerics(relative_tolerance=1e-2)
+    assert (fine.cell_count, coarse.cell_count) == (16, 10)
+    assert fine.tightened().cell_count == coarse.accurate().cell_count == 16
+    assert [replace(each, cells=12).cell_count for each in (fine, coarse)] == [12, 12]
+    asked, compliance = REFERENCE.condition("phi15"), reference_compliance()
+    for numerics, other in ((fine, 10), (coarse, 16)):
+        chosen, given, control = (
+            lowfi.run(
+                asked, numerics=replace(numerics, modes=0, cells=cells), compliance=compliance
+            )
+            for cells in (None, numerics.cell_count, other)
+        )
+        assert chosen.numerics["cells"] == numerics.cell_count
+        np.testing.assert_array_equal(chosen.rate, given.rate)
+        assert not np.array_equal(chosen.rate, control.rate)
