@@ -10,7 +10,7 @@ from tipoff.scenes.units import is_number, single
 
 AUTO = "auto"
 _LEAST_CELLS, _MOST_CELLS = 4, 100
-_CELLS, _FEW_CELLS = 16, 10  # up to the default tolerance, and above it
+_FEW_CELLS = 10  # their error is as large as that of a tolerance above the default
 _TOLERANCE = 2e-7
 # A relative error of 0.1 % per step gives no solution; below 1e-13 there is only rounding.
 _COARSEST, _FINEST = 1e-2, 1e-13
@@ -37,9 +37,8 @@ class Numerics:
     #: Degree of the patterns of pressure and displacement on a pad face. None means that of the rail
     #: compliance, which may have a higher one: ``tipoff.compliance(scene, degree=4)``.
     degree: int | None = None
-    #: Contact cells along each edge of a pad face on compliant contact. None means 16, as in the
-    #: reference, or 10 at a tolerance above the default, whose error is as large as theirs.
-    cells: int | None = None
+    #: Contact cells along each edge of a pad face on compliant contact; 16, as in the reference.
+    cells: int = 16
 
     def __post_init__(self):
         for name, value in vars(self).items():  # scalars of numpy, as Python has them
@@ -72,9 +71,7 @@ class Numerics:
             faults.append(
                 f"degree: given {self.degree!r}, expected a whole number from 1 to {MOST_DEGREE}"
             )
-        if self.cells is not None and not (
-            type(self.cells) is int and _LEAST_CELLS <= self.cells <= _MOST_CELLS
-        ):
+        if not (type(self.cells) is int and _LEAST_CELLS <= self.cells <= _MOST_CELLS):
             faults.append(
                 f"cells: given {self.cells!r}, expected {_LEAST_CELLS} to {_MOST_CELLS} along each "
                 f"edge of a pad"
@@ -92,12 +89,12 @@ class Numerics:
         """The number of ``modes``; 0 if they are not chosen yet."""
         return self.modes if isinstance(self.modes, int) else 0
 
-    @property
-    def cell_count(self) -> int:
-        """The number of ``cells``, chosen by the tolerance if it is None."""
-        if self.cells is not None:
-            return self.cells
-        return _CELLS if self.relative_tolerance <= _TOLERANCE else _FEW_CELLS
+    @classmethod
+    def of_many(cls, relative_tolerance: float, modes: int | str = AUTO) -> "Numerics":
+        """Numerics of each of many cases: at a tolerance above the default they have fewer contact
+        cells. Raises ValueError for values out of range."""
+        made = cls(relative_tolerance=relative_tolerance, modes=modes)
+        return made if relative_tolerance <= _TOLERANCE else replace(made, cells=_FEW_CELLS)
 
     def tightened(self) -> "Numerics":
         """The same with a tenth of the tolerance, or the finest tolerance."""
@@ -110,7 +107,7 @@ class Numerics:
 
     def as_dict(self) -> dict:
         """Plain values, as written into results."""
-        return vars(self) | {"cells": self.cell_count}
+        return dict(vars(self))
 
 
 def promises_of(numerics: Numerics) -> Promises:

@@ -48,7 +48,7 @@ def prepare(
     found = found.of_degree(numerics.degree or found.degree) if found else None
     common = system.build(
         model,
-        compliance=record.under_pads(scene, model, found, modes, numerics.cell_count),
+        compliance=record.under_pads(scene, model, found, modes, numerics.cells),
         thermal_offset=thermal_offset.under_pads(model, found),
         neglected=neglected.watched(scene, found, watches),
     )

@@ -1,8 +1,6 @@
 """The integrator by itself, its stability limit, refused settings, and runs that end without a
 result."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -97,21 +95,18 @@ def test_overflow_diverges_and_leaves_finite_samples():
     assert np.isfinite(run.energy).all() and run.time.size < 1160
 
 
-def test_the_tolerance_chooses_the_contact_cells():
-    """16 along an edge as in the reference, 10 where the integration is coarse, and the given
-    number always; results state the number. Control: the other number has other bits."""
-    fine, coarse = lowfi.Numerics(), lowfi.Numerics(relative_tolerance=1e-2)
-    assert (fine.cell_count, coarse.cell_count) == (16, 10)
-    assert fine.tightened().cell_count == coarse.accurate().cell_count == 16
-    assert [replace(each, cells=12).cell_count for each in (fine, coarse)] == [12, 12]
+def test_cases_of_a_population_have_fewer_contact_cells_at_a_coarse_tolerance():
+    """A run has those of the reference at any tolerance, so that its error by the tolerance is that
+    of the integration alone. Control: other cells have other bits."""
+    assert lowfi.Numerics(relative_tolerance=1e-2).cells == lowfi.Numerics().cells == 16
+    many = lowfi.Numerics.of_many(1e-2, 4)
+    assert (many.cells, many.modes, many.relative_tolerance) == (10, 4, 1e-2)
+    assert lowfi.Numerics.of_many(2e-7) == lowfi.Numerics() and many.accurate().cells == 10
     asked, compliance = REFERENCE.condition("phi15"), reference_compliance()
-    for numerics, other in ((fine, 10), (coarse, 16)):
-        chosen, given, control = (
-            lowfi.run(
-                asked, numerics=replace(numerics, modes=0, cells=cells), compliance=compliance
-            )
-            for cells in (None, numerics.cell_count, other)
-        )
-        assert chosen.numerics["cells"] == numerics.cell_count
-        np.testing.assert_array_equal(chosen.rate, given.rate)
-        assert not np.array_equal(chosen.rate, control.rate)
+    few, default, given = (
+        lowfi.run(asked, numerics=lowfi.Numerics(modes=0, **cells), compliance=compliance)
+        for cells in ({"cells": 10}, {}, {"cells": 16})
+    )
+    assert default.numerics["cells"] == 16
+    np.testing.assert_array_equal(default.rate, given.rate)
+    assert not np.array_equal(default.rate, few.rate)

@@ -180,7 +180,7 @@ Cells = Annotated[
         min=4,
         max=100,
         help="Contact cells along each edge of a pad face, with --model compliant; 16 by default, "
-        "as in the reference, or 10 at a looser tolerance than the default.",
+        "as in the reference.",
     ),
 ]
 CalibrationFile = Annotated[

@@ -81,7 +81,7 @@ def _over_length(study: Study, name: str, board: Board) -> Trend | None:
 def _over_cases_and_threads(study: Study, name: str, board: Board) -> list[Trend]:
     scene = study.condition(name)
     walls = coarse_walls(study, name, {}) if scene.contact is not None else None
-    family = Family(scene, None, Numerics(relative_tolerance=_TOLERANCE, modes=0), walls)
+    family = Family(scene, None, Numerics.of_many(_TOLERANCE, 0), walls)
     mass = scene.payload.mass
     rows = [{"payload.mass": mass * (1.0 + 1e-6 * number)} for number in range(_CASES[-1])]
 

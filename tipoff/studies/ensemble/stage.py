@@ -123,7 +123,7 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
         vary = options.vary or own or uncertainty.DEFAULT
         source = Drawn(uncertainty.load(vary, study.scene, **changed))
     try:
-        numerics = Numerics(relative_tolerance=options.tolerance, modes=options.chosen.asked)
+        numerics = Numerics.of_many(options.tolerance, options.chosen.asked)
     except ValueError as fault:
         given = f"{options.tolerance:g}, {options.chosen.modes}"
         raise SceneError([Fault("--tolerance, --modes", "numerics", given, str(fault))]) from None

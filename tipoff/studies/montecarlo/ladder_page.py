@@ -81,7 +81,7 @@ def setting(row: ByRung, found: Tails) -> str:
         count, counted(count, "mode")
     )
     degree = f"degree {row.degree}, " if row.degree else ""
-    if row.cells != Numerics().cell_count:
+    if row.cells != Numerics().cells:
         return f"{degree}{row.cells} cells, {modes}"
     return (
         f"{degree}{modes}{', as the population' if row.modes == found.modes and not degree else ''}"

@@ -140,7 +140,7 @@ def _by_rung(rung: rungs.Rung, drawn: Draws, gate: float) -> ByRung:
         model=rung.model,
         modes=numerics.modes,
         degree=numerics.degree,
-        cells=numerics.cell_count,
+        cells=numerics.cells,
         cpu_s=rung.cpu_s,
         case_s=rung.case_s,
     )

@@ -81,7 +81,7 @@ class Surrogate(NamedTuple):
 
     def ensemble(self, source, tolerance: float = TOLERANCE) -> Ensemble:
         """The cases of ``source`` (``lowfi.ensemble.rows``) on this model."""
-        numerics = Numerics(relative_tolerance=tolerance, modes=self.modes)
+        numerics = Numerics.of_many(tolerance, self.modes)
         return Ensemble(
             self.scene,
             source,
@@ -100,7 +100,7 @@ class Surrogate(NamedTuple):
 
     def numerics(self, tolerance: float) -> Numerics:
         """Numerics of a run that is compared with a population; ValueError as for ``mode_count``."""
-        return Numerics(relative_tolerance=tolerance, modes=self.mode_count)
+        return Numerics.of_many(tolerance, self.mode_count)
 
 
 class Population(NamedTuple):
@@ -159,7 +159,7 @@ def require_settling(*models: Surrogate) -> None:
 def _trial_run(model: Surrogate) -> Trajectory:
     """One quick run of the scene, without modes."""
     vibrates = model.compliance is not None and model.name == COMPLIANT
-    numerics = Numerics(relative_tolerance=TOLERANCE, modes=0 if vibrates else AUTO)
+    numerics = Numerics.of_many(TOLERANCE, 0 if vibrates else AUTO)
     return lowfi.run(model.scene, model.name, numerics=numerics, compliance=model.compliance)
 
 
