@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.spatial.transform import Rotation
 
 from tests.lowfi.support import CENTRED, PAPER_PAD, G, corners, scene
 from tipoff import lowfi
@@ -58,6 +59,34 @@ def test_the_platform_takes_the_reaction_of_a_thrust_that_leaves():
     assert run.platform_velocity[-1, 0] == pytest.approx(
         quad(pulse, 0.0, at)[0] / (MASS + PLATFORM["mass"]), rel=1e-7
     )
+
+
+def test_the_line_of_the_latch_has_no_speed_along_the_rail():
+    """A platform whose mass centre is off the rail turns under the thrust, and the payload with it: the
+    payload's point on the line, beside its mass centre, keeps its distance along the rail. Control:
+    its point on a line through the platform's mass centre does not."""
+    centre = {"x": 0.0, "y": 0.12, "z": -0.2}
+    platform = PLATFORM | {"mass_centre": centre}
+    outward, turning = PULSE | {"reaction": "exhaust"}, {"rate": {"x": 3.0, "y": 0.0, "z": 0.0}}
+    asked = held(3999.0, platform=platform, thrust=outward, initial=turning)
+    run = lowfi.run(asked, "springs")
+    before = np.flatnonzero(run.time < released(3999.0))
+    base, body = (
+        Rotation.from_quat(turn[before], scalar_first=True)
+        for turn in (run.platform_quaternion, run.quaternion)
+    )
+    spins = base.apply(run.platform_rate[before]), body.apply(run.rate[before])
+    apart = run.position[before] - run.platform_position[before]
+    seen = base.inv().apply(apart)
+    line = np.column_stack([seen[:, 0], np.full((before.size, 2), [-centre["y"], -centre["z"]])])
+    arm = base.apply(line)
+    speed = run.velocity[before] + np.cross(spins[1], arm - apart)
+    speed -= run.platform_velocity[before] + np.cross(spins[0], arm)
+    along = base.inv().apply(speed)[:, 0]
+    assert np.abs(spins[0]).max(axis=0).min() > 0.2 and np.abs(along).max() < 1e-7
+    away = base.apply(np.column_stack([np.zeros(before.size), -line[:, 1:]]))
+    other = speed + np.cross(spins[1] - spins[0], away)
+    assert np.abs(base.inv().apply(other)[:, 0]).max() > 1e-3
 
 
 def test_a_payload_on_an_upright_rail_does_not_fall():
