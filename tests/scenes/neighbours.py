@@ -17,7 +17,7 @@ def both_models(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The ``values`` (n,) of one run of the reference, in elements of ``element_size`` (m), and the
     lowest and highest ones (n,) of twelve neighbours of the surrogate within 1 µm of play."""
-    numerics = lowfi.Numerics(relative_tolerance=1e-2, modes=compliance.frequency.shape[1])
+    numerics = lowfi.Numerics.of_many(1e-2, compliance.frequency.shape[1])
     near = []
     for change in np.random.default_rng(1).uniform(-1e-6, 1e-6, 12):
         moved = scene.replace(scene.contact.widened(change))

@@ -117,7 +117,7 @@ def test_runs_of_a_method_have_the_modes_of_its_population():
     assert [run.numerics["modes"] for run in runs] == [3, 3]
     steps = method.piece(tolerance)()[:, cases.STEPS]
     same, other = (
-        population.many(population.rows, lowfi.Numerics(relative_tolerance=tolerance, modes=modes))
+        population.many(population.rows, lowfi.Numerics.of_many(tolerance, modes))
         for modes in (3, 0)
     )
     assert [run.cost["steps"] for run in runs] == same.steps.values.tolist()
