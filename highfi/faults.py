@@ -82,8 +82,9 @@ def _approach_speed(stepper: Stepper) -> float:
     payload = system.model.payload
     if system.model.interface_stiffness is None:
         return 0.0
-    # The Frobenius norm is an upper bound of the spectral norm and much faster.
-    spin = np.linalg.norm(payload.inverse_inertia) * np.linalg.norm(state.payload.spin)
+    # A slender body turns much slower than its angular momentum over its least moment of inertia.
+    attitude = rotation.single(state.payload.quaternion)
+    spin = np.linalg.norm(payload.inverse_inertia @ (attitude.T @ state.payload.spin))
     reach = np.sqrt((system.faces.centre**2).sum(axis=1).max())
     turn = rotation.single(state.platform.quaternion)
     _, across_y, across_z = state.payload.velocity @ turn
