@@ -52,8 +52,10 @@ class Settings:
     @property
     def judged_sizes(self) -> tuple[float, ...]:
         """Element sizes (m) by which the reference is judged: those of the convergence study down
-        to its own size, which is the last."""
-        return tuple(ratio * self.element_size for ratio in self.mesh_ratios if ratio >= 1.0)
+        to its own size, which is the last; at least the coarse mesh before it, whose runs other
+        stages need anyway."""
+        coarser = tuple(ratio for ratio in self.mesh_ratios if ratio > 1.0) or (COARSER,)
+        return tuple(ratio * self.element_size for ratio in (*coarser, 1.0))
 
     @property
     def hash(self) -> str:

@@ -1,11 +1,16 @@
 """Uncertainty of the reference from settled rates of a known order."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from tests.studies.synthetic import flight
 from tipoff.comparison.extrapolation import NOT_CONVERGED
-from tipoff.studies.agreement.refinement import MESH, STEP, refinement
+from tipoff.scenes import load
+from tipoff.studies.agreement.refinement import MESH, STEP, groups, refinement
+from tipoff.workspace.settings import Settings
+from tipoff.workspace.study import Study
 
 SIZES = [8.0, 4.0, 2.0]
 
@@ -62,3 +67,14 @@ def test_one_mesh_leaves_it_unknown():
     assert alone.uncertainty_deg_s is None and alone.method == "one grid: not known"
     assert alone.rate_relative_l2 is None
     assert refinement("c", MESH, SIZES[:2], [mesh, mesh], 1).uncertainty_deg_s == 0.0
+
+
+def test_a_scene_with_finer_meshes_only_needs_no_further_mesh():
+    """The mesh that other stages use for differences comes before that of the reference. Control: a mesh
+    of half the size would take sixteen times as long as the reference."""
+    settings = Settings(element_size=0.008, mesh_ratios=(1.0, 0.6))
+    study = Study(load("tiny"), Path("nowhere"), settings)
+    name = next(iter(study.conditions))
+    mesh = groups(study, name)[MESH]
+    assert mesh.sizes == [0.016, 0.008] and mesh.used == 1
+    assert [run.key for run in mesh.runs] == [study.coarse(name).key, study.highfi(name).key]
