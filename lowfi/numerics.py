@@ -82,7 +82,7 @@ class Numerics:
     @property
     def needed_degree(self) -> int:
         """Degree of the rail compliance that a run computes for itself."""
-        return max(self.degree or DEGREE, DEGREE)
+        return self.degree or DEGREE
 
     @property
     def count(self) -> int:

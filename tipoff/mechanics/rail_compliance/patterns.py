@@ -9,7 +9,7 @@ from functools import cache
 
 import numpy as np
 
-DEGREE = 2  # by default
+DEGREE = 3  # by default
 LEAST_DEGREE, MOST_DEGREE = 1, 4
 DRAGGED = 3  # patterns of the traction of friction
 
