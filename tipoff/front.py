@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from tipoff import scenes, sources
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
-from tipoff.mechanics.rail_compliance import DEGREE, LEAST_DEGREE, MOST_DEGREE, RailCompliance
+from tipoff.mechanics.rail_compliance import DEGREE, LOW_DEGREE, MOST_DEGREE, RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import (
     Calibration,
@@ -32,7 +32,7 @@ _EXPECTED = {
     "workers": arguments.whole(1, 1024),
     "store": arguments.PATH,
     "sensitivity": arguments.CHOICE,
-    "degree": arguments.whole(LEAST_DEGREE, MOST_DEGREE),
+    "degree": arguments.whole(LOW_DEGREE, MOST_DEGREE),
     "seed": arguments.whole(0, 2**32 - 1),
     "fit": arguments.NAMES,
 }
@@ -248,7 +248,7 @@ def compliance(
         scene: the scene; only its rail and pads matter.
         element_size: size of the elements (m, or text with a unit); by default that of the
             reference, which the scene may state (``[studies]``).
-        degree: of the polynomials of pressure and displacement on a pad face, 1 to 4. A run may
+        degree: of the polynomials of pressure and displacement on a pad face, 2 to 4. A run may
             have a lower one.
 
     Returns:

@@ -10,6 +10,7 @@ from functools import cache
 import numpy as np
 
 DEGREE = 3  # by default
+LOW_DEGREE = 2  # of a case of many, and the least of a compliance
 LEAST_DEGREE, MOST_DEGREE = 1, 4
 DRAGGED = 3  # patterns of the traction of friction
 
