@@ -187,7 +187,7 @@ def test_each_draw_chooses_its_own_modes_beside_those_of_the_population(study, w
     assert (own.held, own.choosing, own.choosing_all) == (HELD, 10, 10)
     assert [row.modes for row in own.rows] == [0, 3, HELD, AUTO, 4, HELD, HELD]
     assert [row.cpu_s for row in own.rows[:4]] == pytest.approx([1e-3, 2e-3, 3e-3, 4e-3])
-    assert [row.case_s is None for row in own.rows] == [False] * 3 + [True] * 3
+    assert [row.case_s is None for row in own.rows] == [False] * 3 + [True] * 4
     assert {0, 3, HELD} <= set(runs.modes), "timed"
     for shown in (tails_page.summary, tails_page.draw, tails_page.document):
         text = " ".join(html(shown(found)).split())
