@@ -83,8 +83,9 @@ def tails(found: Tails, folder: Path) -> None:
     text = markdown(tails_page.document(found))
     head = _TAILS.format(scene=f"`{folder.name}`", **vars(found))
     write_text(_ROOT / "docs" / "tails.md", f"{head}\n\n{text}\n")
-    for name in ("tails.png", "ladder.png") if found.ladder else ("tails.png",):
-        shutil.copyfile(folder / "figures" / name, _ROOT / "docs" / name)
+    for drawn in tails_page.figures(found):
+        (picture, *_) = chart.to_files(drawn.chart, folder / "figures")
+        shutil.copyfile(picture, _ROOT / "docs" / picture.name)
 
 
 def _into_readme(name: str, text: str) -> None:

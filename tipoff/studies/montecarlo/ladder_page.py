@@ -139,7 +139,7 @@ def _named(found: Tails, row: ByRung) -> Line:
     beside = "top right"
     if row.model == SPRINGS or (row.degree and row.modes == found.ladder.held):
         beside = "bottom right"
-    elif row.modes not in (0, AUTO) and not row.degree:
+    elif row.degree or row.modes not in (0, AUTO, found.modes, found.ladder.held):
         beside = "bottom left"
     return Line(
         [row.cpu_s],
