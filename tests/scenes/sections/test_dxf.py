@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from tipoff.scenes.sections import dxf
+from tipoff.scenes.sections import dxf, paths
 from tipoff.scenes.sections.outline import outline
 
 
@@ -62,13 +62,13 @@ def test_arcs_and_bulges_are_chords_that_hardly_deviate(tmp_path, turned):
         )
     exact, arcs = 200.0 + 25.0 * math.pi, 10.0 * math.pi
     area = 1e6 * moments(tmp_path, text).area
-    assert 0.0 < exact - area < dxf.DEVIATION * 30.0 * arcs
+    assert 0.0 < exact - area < paths.DEVIATION * 30.0 * arcs
 
 
 def test_a_negative_bulge_is_a_notch(tmp_path):
     found = moments(tmp_path, drawing(polyline((0, 0), (20, 0, -1), (20, 10), (0, 10))))
     exact = 200.0 - 12.5 * math.pi
-    assert abs(1e6 * found.area - exact) < dxf.DEVIATION * 20.0 * 5.0 * math.pi
+    assert abs(1e6 * found.area - exact) < paths.DEVIATION * 20.0 * 5.0 * math.pi
 
 
 def test_units_of_the_header_or_of_the_key(tmp_path):
