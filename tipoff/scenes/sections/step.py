@@ -86,9 +86,16 @@ def _direction(found: Solid, near: float, scale: float) -> np.ndarray:
         if fault is None and size[0] > size[1:].max() + near:
             return along
     longest = max(range(len(each)), key=lambda place: _edges_along(found, each[place]))
-    length, *width = (f"{1e3 * scale * place:.4g}" for place in sizes[longest])
-    short = f"it is {length} mm long, with a section of {' x '.join(width)} mm: draw it longer"
-    raise ValueError(f"an extrusion; {faults[longest] or short}; {WAY_OUT}")
+    words = [faults[longest]] if faults[longest] else []
+    for size, fault in zip(sizes, faults):
+        if fault is None:
+            length, *width = (f"{1e3 * scale * place:.4g}" for place in size)
+            words.append(
+                f"as one it is {length} mm long with a section of {' x '.join(width)} mm, where a rail "
+                "is longer than wide"
+            )
+            break
+    raise ValueError(f"an extrusion; {'; '.join(words)}; {WAY_OUT}")
 
 
 def _different(given: Iterable[np.ndarray]) -> list[np.ndarray]:
