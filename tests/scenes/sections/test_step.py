@@ -229,7 +229,7 @@ def test_controls_other_solids_are_refused_with_what_was_found(tmp_path, draw, w
 def test_the_unit_of_the_file_counts(tmp_path):
     path = written(tmp_path / "rail.step", lambda occ: prism(occ, BLOCK))
     assert found(path, "mm").moments().area == pytest.approx(2e-4)
-    with pytest.raises(ValueError, match="no rail.unit, or that of the file, which is 0.001 m"):
+    with pytest.raises(ValueError, match="no rail.unit, or 'mm': the file states 0.001 m"):
         found(path, "in")
 
 

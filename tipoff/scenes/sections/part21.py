@@ -15,8 +15,9 @@ from typing import Any, NamedTuple
 
 from tipoff.files import read_input
 
-_COMMENT = re.compile(r"('[^']*+')|/\*.*?\*/", re.DOTALL)
-_INSTANCE = re.compile(r"#(\d{1,18})\s*+=\s*+((?:[^';]++|'[^']*+')*+);")
+_COMMENT = re.compile(r"('[^']*+')|/\*(?:[^*]++|\*(?!/))*+(?:\*/|\Z)")
+_STATEMENT = re.compile(r"\s*+((?:[^';]++|'[^']*+')*+);")
+_INSTANCE = re.compile(r"#(\d{1,18})\s*+=\s*+")
 _TOKEN = re.compile(
     r"\s*+(?:(?P<text>'(?:[^']|'')*+')|(?P<reference>#\d{1,18})|(?P<mark>[(),*$])"
     r"|(?P<number>[-+]?\d[\d.]*+(?:[Ee][-+]?\d++)?+)|(?P<word>\.?[A-Za-z_][\w-]*+\.?)|\"[^\"]*+\")"
@@ -48,7 +49,7 @@ class Instances:
             raise ValueError("a whole STEP file; the end, END-ISO-10303-21, is missing")
         if "/*" in content:
             content = _COMMENT.sub(lambda found: found[1] or " ", content)
-        self._texts = {int(number): text for number, text in _INSTANCE.findall(content)}
+        self._texts = dict(_instances(content))
         if len(self._texts) > _MOST_INSTANCES:
             raise ValueError(f"at most {_MOST_INSTANCES:,} instances, not {len(self._texts):,}")
         self._read: dict[int, dict[str, list]] = {}
@@ -75,6 +76,16 @@ class Instances:
                 values = self.of(Reference(number)).get(name)
                 if values is not None:
                     yield Reference(number), values
+
+
+def _instances(content: str) -> Iterator[tuple[int, str]]:
+    """Number and text of each instance. What has no end is left out: another one refers to it, or none
+    does."""
+    place = 0
+    while statement := _STATEMENT.match(content, place):
+        place = statement.end()
+        if begin := _INSTANCE.match(statement[1]):
+            yield int(begin[1]), statement[1][begin.end() :]
 
 
 def value(values: list, place: int, kind: type) -> Any:

@@ -46,7 +46,12 @@ def extrusion(path: str | Path, unit: str | None) -> Extrusion:
         raise ValueError('a unit: the file states none, so set rail.unit, for example "mm"')
     scale = found.unit or paths.UNITS[unit or "m"]
     if unit is not None and not math.isclose(scale, paths.UNITS[unit]):
-        raise ValueError(f"no rail.unit, or that of the file, which is {scale:g} m")
+        own = next(
+            (name for name, metres in paths.UNITS.items() if math.isclose(metres, scale)), ""
+        )
+        raise ValueError(
+            f"no rail.unit{f', or {own!r}' if own else ''}: the file states {scale:g} m"
+        )
     return _extrusion(found, scale)
 
 
@@ -76,39 +81,48 @@ def _extrusion(found: Solid, scale: float) -> Extrusion:
 def _direction(found: Solid, near: float, scale: float) -> np.ndarray:
     """Unit vector along which the solid is an extrusion that is longer than wide."""
     each = _different(face.direction for face in found.faces if face.direction is not None)
-    if not each:
+    if not len(each):
         raise ValueError(f"an extrusion, with planes at its ends; {WAY_OUT}")
     every = np.concatenate([face.points() for face in found.faces])
-    sizes = [np.ptp(every @ np.array([along, *_across(along)]).T, axis=0) for along in each]
-    faults = [_fault(found, along, near, scale) for along in each]
-    for along, size, fault in zip(each, sizes, faults):
-        # a plate with holes is an extrusion along its holes
-        if fault is None and size[0] > size[1:].max() + near:
+    words: list[str] = []
+    for along in each:
+        size = np.ptp(every @ np.array([along, *_across(along)]).T, axis=0)
+        if not _is_along(found, along) or _fault(found, along, near, scale) is not None:
+            continue
+        if size[0] > size[1:].max() + near:
             return along
-    longest = max(range(len(each)), key=lambda place: _edges_along(found, each[place]))
-    words = [faults[longest]] if faults[longest] else []
-    for size, fault in zip(sizes, faults):
-        if fault is None:
-            length, *width = (f"{1e3 * scale * place:.4g}" for place in size)
-            words.append(
-                f"as one it is {length} mm long with a section of {' x '.join(width)} mm, where a rail "
-                "is longer than wide"
-            )
-            break
+        length, *width = (f"{1e3 * scale * place:.4g}" for place in size)
+        words = [  # a plate with holes is an extrusion along its holes
+            f"as one it is {length} mm long with a section of {' x '.join(width)} mm, where a rail "
+            "is longer than wide"
+        ]
+    longest = max(each, key=lambda along: _edges_along(found, along))
+    if fault := _fault(found, longest, near, scale):
+        words.insert(0, fault)
     raise ValueError(f"an extrusion; {'; '.join(words)}; {WAY_OUT}")
 
 
-def _different(given: Iterable[np.ndarray]) -> list[np.ndarray]:
-    """Directions, one of each two that are parallel, towards the positive side of the nearest axis."""
-    found: list[np.ndarray] = []
+def _different(given: Iterable[np.ndarray]) -> np.ndarray:
+    """Directions (n,3), one of those that are parallel, towards the positive side of the nearest axis."""
+    found = np.empty((0, 3))
     for each in given:
-        if not any(_is_parallel(each, other) for other in found):
-            found.append(np.copysign(1.0, each[np.abs(each).argmax()]) * each)
+        if not _is_parallel(found, each).any():
+            found = np.vstack([found, np.copysign(1.0, each[np.abs(each).argmax()]) * each])
     return found
 
 
-def _is_parallel(one: np.ndarray, two: np.ndarray) -> bool:
-    return math.hypot(*np.cross(one, two)) < _ANGLE
+def _is_parallel(several: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Which of ``several`` directions (...,3) are parallel to one."""
+    return np.linalg.norm(np.cross(several, along), axis=-1) < _ANGLE
+
+
+def _is_along(found: Solid, along: np.ndarray) -> bool:
+    """Whether each face may be a side or an end of an extrusion along a direction."""
+    if any(face.direction is None for face in found.faces):
+        return False
+    every = np.array([face.direction for face in found.faces])
+    plane = np.array([face.surface == "PLANE" for face in found.faces])
+    return bool((_is_parallel(every, along) | (plane & (np.abs(every @ along) < _ANGLE))).all())
 
 
 def _edges_along(found: Solid, along: np.ndarray) -> float:

@@ -16,7 +16,7 @@ import numpy as np
 from tipoff.scenes.sections.part21 import Instances, Reference, value
 
 WAY_OUT = "give such a rail as a solid, [rail] geometry"
-_MOST_FACES = 2000
+_MOST_FACES = 1000
 _SAME = 1e-9  # of directions, and of the places of an assembly over their distance
 _CURVES_ON_SURFACES = ("SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE")
 _PREFIXES = {"": 0, "KILO": 3, "DECI": -1, "CENTI": -2, "MILLI": -3, "MICRO": -6}
