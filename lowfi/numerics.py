@@ -5,12 +5,12 @@ import math
 from dataclasses import dataclass, replace
 
 from tipoff.mechanics.promises import RIGID, Promises
-from tipoff.mechanics.rail_compliance import DEGREE, MODES, MOST_DEGREE
+from tipoff.mechanics.rail_compliance import DEGREE, LOW_DEGREE, MODES, MOST_DEGREE
 from tipoff.scenes.units import is_number, single
 
 AUTO = "auto"
 _LEAST_CELLS, _MOST_CELLS = 4, 100
-_FEW_CELLS = 10  # their error is as large as that of a tolerance above the default
+_FEW_CELLS = 10
 _TOLERANCE = 2e-7
 # A relative error of 0.1 % per step gives no solution; below 1e-13 there is only rounding.
 _COARSEST, _FINEST = 1e-2, 1e-13
@@ -92,9 +92,11 @@ class Numerics:
     @classmethod
     def of_many(cls, relative_tolerance: float, modes: int | str = AUTO) -> "Numerics":
         """Numerics of each of many cases: at a tolerance above the default they have fewer contact
-        cells. Raises ValueError for values out of range."""
+        cells and patterns, whose error is as large. Raises ValueError for values out of range."""
         made = cls(relative_tolerance=relative_tolerance, modes=modes)
-        return made if relative_tolerance <= _TOLERANCE else replace(made, cells=_FEW_CELLS)
+        if relative_tolerance <= _TOLERANCE:
+            return made
+        return replace(made, cells=_FEW_CELLS, degree=LOW_DEGREE)
 
     def tightened(self) -> "Numerics":
         """The same with a tenth of the tolerance, or the finest tolerance."""

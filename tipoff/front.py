@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from tipoff import scenes, sources
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
-from tipoff.mechanics.rail_compliance import DEGREE, MOST_DEGREE, RailCompliance
+from tipoff.mechanics.rail_compliance import DEGREE, LOW_DEGREE, MOST_DEGREE, RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import (
     Calibration,
@@ -32,7 +32,7 @@ _EXPECTED = {
     "workers": arguments.whole(1, 1024),
     "store": arguments.PATH,
     "sensitivity": arguments.CHOICE,
-    "degree": arguments.whole(DEGREE, MOST_DEGREE),
+    "degree": arguments.whole(LOW_DEGREE, MOST_DEGREE),
     "seed": arguments.whole(0, 2**32 - 1),
     "fit": arguments.NAMES,
 }

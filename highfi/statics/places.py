@@ -18,6 +18,7 @@ from tipoff.highfi.statics.pressure import Pressed, Wall
 from tipoff.highfi.statics.solve import Clamped, one_thread
 from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import PATTERNS
+from tipoff.mechanics.rail_compliance.patterns import LOW_DEGREE, count
 from tipoff.scenes.effects.thermal import FIELDS
 
 # of the length of a pad: the least length of the part of its wall that is seen near an end of the
@@ -159,8 +160,8 @@ def part_of_wall(
 ) -> np.ndarray:
     """Middle and half length (s,2) m of the part of a wall between the X of ``reach`` under a face of
     half length ``half`` with its middle at X = ``middle`` (s,) m. Near an end, and past it, it is
-    the last half of a pad, or three quarters for more ``patterns`` than the default."""
-    share = _LEAST_PART if patterns <= PATTERNS else _LEAST_PART_OF_MORE
+    the last half of a pad, or three quarters for ``patterns`` of a degree above the second."""
+    share = _LEAST_PART if patterns <= count(LOW_DEGREE) else _LEAST_PART_OF_MORE
     least = min(2.0 * half * share, reach[1] - reach[0])
     low = np.clip(middle - half, reach[0], reach[1] - least)
     high = np.clip(middle + half, reach[0] + least, reach[1])

@@ -95,12 +95,12 @@ def test_overflow_diverges_and_leaves_finite_samples():
     assert np.isfinite(run.energy).all() and run.time.size < 1160
 
 
-def test_cases_of_a_population_have_fewer_contact_cells_at_a_coarse_tolerance():
+def test_cases_of_a_population_have_fewer_cells_and_patterns_at_a_coarse_tolerance():
     """A run has those of the reference at any tolerance, so that its error by the tolerance is that
     of the integration alone. Control: other cells have other bits."""
     assert lowfi.Numerics(relative_tolerance=1e-2).cells == lowfi.Numerics().cells == 16
     many = lowfi.Numerics.of_many(1e-2, 4)
-    assert (many.cells, many.modes, many.relative_tolerance) == (10, 4, 1e-2)
+    assert (many.cells, many.degree, many.modes, many.relative_tolerance) == (10, 2, 4, 1e-2)
     assert lowfi.Numerics.of_many(2e-7) == lowfi.Numerics() and many.accurate().cells == 10
     asked, compliance = REFERENCE.condition("phi15"), reference_compliance()
     few, default, given = (

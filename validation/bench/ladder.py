@@ -23,9 +23,8 @@ from tipoff.workspace.progress import say
 
 # degree of the patterns, modes of each rail
 RUNGS: tuple[tuple[int, int | str], ...] = (
-    (2, 0),
     (2, AUTO),
-    (2, MODES),
+    (3, 0),
     (3, AUTO),
     (3, MODES),
     (4, MODES),

@@ -16,7 +16,7 @@ from tipoff.scenes import load
 from tipoff.studies.montecarlo import ladder_page, paired_statistics
 from tipoff.studies.populations import draws, rungs
 from tipoff.studies.populations.population import Surrogate
-from tipoff.studies.populations.rungs import FINER, Rung, Rungs
+from tipoff.studies.populations.rungs import OTHERS, Rung, Rungs
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
 
@@ -129,7 +129,7 @@ def test_the_shorter_of_two_times_counts(study, compliance, untimed):
 
 def test_finer_settings_have_the_rates_of_single_runs(study, found, rate):
     """On the compliance of the degree that they need. Control: the default settings."""
-    assert tuple(rung.numerics for rung in found.others) == FINER, "not calibrated"
+    assert tuple(rung.numerics for rung in found.others) == OTHERS, "not calibrated"
     for rung in found.others:
         size, degree = study.settings.coarse_size, rung.numerics.needed_degree
         under = study.rail_compliance(study.scene, element_size=size, degree=degree)
@@ -170,7 +170,7 @@ def synthetic() -> Rungs:
         own=Rung("compliant", Numerics(), results(chosen), 4e-3),
         others=[
             Rung("springs", Numerics(modes=0), results(none + 1.0), 1e-3),
-            Rung("compliant", FINER[1], results(none), 9e-2),
+            Rung("compliant", OTHERS[1], results(none), 9e-2),
         ],
         wider=results(wider),
         clearance_change=1e-6,

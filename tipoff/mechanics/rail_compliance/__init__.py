@@ -34,7 +34,13 @@ a scene (``mechanics.rail_compliance.joint_terms``).
 """
 
 from tipoff.mechanics.rail_compliance.models import may_vibrate, model_of, require_modes
-from tipoff.mechanics.rail_compliance.patterns import DEGREE, MOST_DEGREE, PATTERNS, on_part
+from tipoff.mechanics.rail_compliance.patterns import (
+    DEGREE,
+    LOW_DEGREE,
+    MOST_DEGREE,
+    PATTERNS,
+    on_part,
+)
 from tipoff.mechanics.rail_compliance.record import (
     MODES,
     RailCompliance,
@@ -45,6 +51,7 @@ from tipoff.mechanics.rail_compliance.stations import cubic
 
 __all__ = [
     "DEGREE",
+    "LOW_DEGREE",
     "MODES",
     "MOST_DEGREE",
     "PATTERNS",

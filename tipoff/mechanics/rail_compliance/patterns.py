@@ -9,7 +9,8 @@ from functools import cache
 
 import numpy as np
 
-DEGREE = 2  # by default
+DEGREE = 3  # by default
+LOW_DEGREE = 2  # of a case of many, and the least of a compliance
 LEAST_DEGREE, MOST_DEGREE = 1, 4
 DRAGGED = 3  # patterns of the traction of friction
 

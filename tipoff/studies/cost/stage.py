@@ -41,7 +41,7 @@ from tipoff.workspace.timing import timed
 from tipoff.workspace.words import counted
 
 MODES = (0, 1, 2, 8)  # modes of each rail, in addition to those of the agreement study
-DEGREES = 3, 4  # of the patterns, with all modes
+DEGREES = 2, 4  # of the patterns, beside the default, with all modes
 STIFFNESS_ALONG = f"{COMPLIANT}, mean pressure of each face by itself"
 NAME, POINTS = "cost_study", "cost.json"
 

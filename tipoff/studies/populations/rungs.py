@@ -3,9 +3,9 @@ in time over many random ejections.
 
 A population has one number of rail modes, which pilot cases choose (``lowfi.ensemble.pilot``). Here
 the surrogate runs all draws without modes, with the modes of the population, with those that each
-draw chooses, and with all; then with more patterns too (``FINER``); and once as
-calibrated springs if the study has a calibration. If a draw chooses modes, a run with a little more
-clearance shows how sensitive the draw is.
+draw chooses, and with all; then with the settings ``OTHERS``; and once as calibrated springs if the
+study has a calibration. If a draw chooses modes, a run with a little more clearance shows how
+sensitive the draw is.
 """
 
 import statistics
@@ -26,7 +26,11 @@ from tipoff.studies.populations.population import Surrogate
 from tipoff.workspace.run import Run, execute
 from tipoff.workspace.study import Study
 
-FINER = Numerics(modes=FEWEST, degree=3), Numerics(modes=MODES, degree=3)
+OTHERS = (
+    Numerics(modes=FEWEST, degree=2),
+    Numerics(modes=2 * FEWEST),
+    Numerics(modes=MODES, degree=4),
+)
 _REPEATS = 2  # timed runs
 
 
@@ -46,7 +50,7 @@ class Rung(NamedTuple):
 class Rungs(NamedTuple):
     """``held``, modes of each rail in the rail compliance; ``chosen`` (n,), those that each draw
     chooses; ``same``, the draws with one number of modes, ascending from none to all; ``own``, with
-    those ``chosen``; ``others``, springs and finer settings; ``wider``, the k draws that choose
+    those ``chosen``; ``others``, springs and ``OTHERS``; ``wider``, the k draws that choose
     some modes, with these and every clearance larger by ``clearance_change`` (m)."""
 
     held: int
@@ -75,7 +79,7 @@ def run(study: Study, model: Surrogate, rows: Rows) -> Rungs | None:
         chosen=chosen,
         same=[_same(study, model, rows, count) for count in sorted({0, model.mode_count, held})],
         own=_of(model, requested, found),
-        others=[*_springs(study, model, rows), *_finer(study, model, rows, held)],
+        others=[*_springs(study, model, rows), *_others(study, model, rows, held)],
         wider=draws.results(wider, model.instant.at),
         clearance_change=change,
     )
@@ -110,13 +114,13 @@ def _same(study: Study, model: Surrogate, rows: Rows, count: int) -> Rung:
     return _rung(study, model, requested, f"{count} modes")._replace(case_s=case_s)
 
 
-def _finer(study: Study, model: Surrogate, rows: Rows, held: int) -> list[Rung]:
-    """The draws with the settings ``FINER``, with at most the modes ``held``."""
+def _others(study: Study, model: Surrogate, rows: Rows, held: int) -> list[Rung]:
+    """The draws with the settings ``OTHERS``, with at most the modes ``held``."""
     found = []
-    for number, asked in enumerate(FINER, 1):
+    for number, asked in enumerate(OTHERS, 1):
         numerics = replace(asked, modes=min(asked.count, held))
-        requested = draws.beside(study, model, rows, numerics, f"-finer{number}")
-        found.append(_rung(study, model, requested, f"finer {number}"))
+        requested = draws.beside(study, model, rows, numerics, f"-other{number}")
+        found.append(_rung(study, model, requested, f"other settings {number}"))
     return found
 
 

@@ -11,7 +11,6 @@ from pydantic import TypeAdapter
 from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics import hand_over
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
-from tipoff.mechanics.rail_compliance import DEGREE
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.faults import Fault, InputError, SceneError
 from tipoff.studies.agreement import kept, verdicts
@@ -58,7 +57,7 @@ def run(
     vibrating = study.lowfi(condition, fitted, **options.numerics)
     if scene.contact is None:
         return result_of(study, condition, vibrating, quiet)
-    found = study.rail_compliance(scene, degree=options.degree or DEGREE)
+    found = study.rail_compliance(scene, degree=vibrating.numerics.needed_degree)
     request = study.lowfi(condition, fitted, compliance=found, **options.numerics)
     return result_of(study, condition, request, quiet)
 

@@ -202,7 +202,7 @@ def test_ledgers_and_momentum(condition):
     asked, compliance = REFERENCE.condition(condition), reference_compliance()
     coarse, fine = (
         lowfi.run(asked, numerics=Numerics(relative_tolerance=tolerance), compliance=compliance)
-        for tolerance in (2e-7, 1e-10)
+        for tolerance in (2e-7, 1e-11)
     )
     for run in (coarse, fine):
         assert run.status == "exited"
@@ -224,8 +224,8 @@ def test_ledgers_and_momentum(condition):
         np.degrees(coarse.outcome.rate), abs=close
     )
     # Control: without the force along the rail the transverse ledger would miss hundreds of times
-    # as much, in h8 and h9 dozens of times.
-    least = 1e-3 if condition in ("h8", "h9") else 1e-2
+    # as much, in h7 to h9 dozens of times.
+    least = 1e-3 if condition in ("h7", "h8", "h9") else 1e-2
     assert (
         work_along(asked, compliance, fine)
         > least * np.abs(fine.transverse_energy[:, ledger.STATE].sum(axis=1)).max()

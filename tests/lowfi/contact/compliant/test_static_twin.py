@@ -69,6 +69,18 @@ BOUNDS = {
         "flat, at the end, 0.03 deg": (2.2, 2.2, 2.2),
         "flat, at the end, 0.5 deg": (5.2, 4.7, 11.0),
     },
+    3: {
+        "on the rail": (3.0, 0.8, 2.1),
+        "at the end": (2.0, 1.7, 1.5),
+        "on the rail, 0.03 deg": (2.5, 1.0, 2.1),
+        "at the end, 0.03 deg": (1.9, 1.0, 1.5),
+        "on the rail, 0.5 deg": (1.7, 1.4, 2.4),
+        "at the end, 0.5 deg": (2.3, 2.1, 3.6),
+        "flat, on the rail": (0.2, 0.2, 0.7),
+        "flat, at the end": (2.1, 1.7, 1.1),
+        "flat, at the end, 0.03 deg": (1.6, 1.2, 1.4),
+        "flat, at the end, 0.5 deg": (2.9, 2.6, 4.4),
+    },
     4: {
         "on the rail": (0.9, 0.5, 0.7),
         "at the end": (1.3, 1.2, 0.8),
@@ -181,7 +193,9 @@ def errors(name: str, found: RailCompliance) -> np.ndarray:
     return np.max(every, axis=0)
 
 
-@pytest.mark.parametrize("degree", [DEGREE, pytest.param(4, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "degree", [DEGREE, *(pytest.param(degree, marks=pytest.mark.slow) for degree in (2, 4))]
+)
 @pytest.mark.parametrize("name", GROUPS)
 def test_the_law_is_near_its_static_twin(name, degree):
     """Nothing is fitted: the difference is that of the patterns."""
