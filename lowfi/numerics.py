@@ -4,6 +4,7 @@ scene."""
 import math
 from dataclasses import dataclass, replace
 
+from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.mechanics.promises import RIGID, Promises
 from tipoff.mechanics.rail_compliance import DEGREE, LOW_DEGREE, MODES, MOST_DEGREE
 from tipoff.scenes.units import is_number, single
@@ -90,11 +91,14 @@ class Numerics:
         return self.modes if isinstance(self.modes, int) else 0
 
     @classmethod
-    def of_many(cls, relative_tolerance: float, modes: int | str = AUTO) -> "Numerics":
-        """Numerics of each of many cases: at a tolerance above the default they have fewer contact
-        cells and patterns, whose error is as large. Raises ValueError for values out of range."""
+    def of_many(
+        cls, relative_tolerance: float, modes: int | str = AUTO, model: str = COMPLIANT
+    ) -> "Numerics":
+        """Numerics of each of many cases of a ``model``: at a tolerance above the default, compliant
+        contact has fewer cells and patterns, whose error is as large. Raises ValueError for values
+        out of range."""
         made = cls(relative_tolerance=relative_tolerance, modes=modes)
-        if relative_tolerance <= _TOLERANCE:
+        if relative_tolerance <= _TOLERANCE or model != COMPLIANT:
             return made
         return replace(made, cells=_FEW_CELLS, degree=LOW_DEGREE)
 

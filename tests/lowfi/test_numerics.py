@@ -102,6 +102,8 @@ def test_cases_of_a_population_have_fewer_cells_and_patterns_at_a_coarse_toleran
     many = lowfi.Numerics.of_many(1e-2, 4)
     assert (many.cells, many.degree, many.modes, many.relative_tolerance) == (10, 2, 4, 1e-2)
     assert lowfi.Numerics.of_many(2e-7) == lowfi.Numerics() and many.accurate().cells == 10
+    springs = lowfi.Numerics.of_many(1e-2, 0, "springs")  # they have no patterns
+    assert springs == lowfi.Numerics(relative_tolerance=1e-2, modes=0)
     asked, compliance = REFERENCE.condition("phi15"), reference_compliance()
     few, default, given = (
         lowfi.run(asked, numerics=lowfi.Numerics(modes=0, **cells), compliance=compliance)

@@ -76,7 +76,7 @@ def test_surrogate_is_timed_by_turns(monkeypatch, tmp_path):
 
     monkeypatch.setattr(ablation, "warm_up", lambda run: None)
     monkeypatch.setattr(ablation, "timed", timed)
-    monkeypatch.setattr(Study, "rail_compliance", lambda *_: None)
+    monkeypatch.setattr(Study, "rail_compliance", lambda *_, **__: None)
     study = Study(scenes.load("tiny"), tmp_path, replace(defaults("tiny"), lowfi_repeats=3))
     lines = {"a": {}, "b": {"friction": None}}
     requested = ablation.surrogate_runs(study, "phi15", lines)

@@ -14,7 +14,7 @@ from tests.lowfi.compliance import REFERENCE
 from tipoff import lowfi, scenes
 from tipoff.highfi import compliance
 from tipoff.lowfi.single_run import SingleRun
-from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance
 from tipoff.scenes import parse
 from tipoff.workspace import kernel_marks, kernel_process, machine
 from tipoff.workspace.kernel_process import compiled_beside
@@ -86,7 +86,7 @@ def test_the_process_gets_the_scene(started, tmp_path):
         pass
     described, degree = json.loads((tmp_path / "given").read_text())
     given = parse(described, bare_numbers_are_si=True)
-    assert degree == 2
+    assert degree == DEGREE
     assert given.hash == REFERENCE.replace(JOINTS).hash  # the factor changes no kernel
 
 

@@ -141,12 +141,17 @@ class Study:
         )
 
     def rail_compliance(
-        self, scene: Scene, element_size: float | None = None, degree: int = DEGREE
+        self,
+        scene: Scene,
+        element_size: float | None = None,
+        degree: int = DEGREE,
+        run_degree: int | None = None,
     ) -> RailCompliance | None:
         """Rail compliance under the pads of ``scene``, on elements of ``element_size`` (m; None:
         those of the reference), for patterns of this ``degree``. It is computed once for a rail
-        with its pads and clearance, and stored in this folder. The kernels of runs on it are
-        compiled at the same time (``workspace.kernel_process``). None without contact."""
+        with its pads and clearance, and stored in this folder. The kernels of runs on it, for
+        patterns of ``run_degree`` if they have fewer, are compiled at the same time
+        (``workspace.kernel_process``). None without contact."""
         if scene.contact is None:
             return None
         from tipoff.calibration import rail_compliance  # slow to load
@@ -154,7 +159,7 @@ class Study:
         size = element_size or self.settings.element_size
         if rail_compliance.kept_file(scene, self.folder, size, degree).exists():
             return rail_compliance.kept(scene, self.folder, size, say, degree)
-        with compiled_beside(scene, self.settings.workers, degree):
+        with compiled_beside(scene, self.settings.workers, run_degree or degree):
             return rail_compliance.kept(scene, self.folder, size, say, degree)
 
     def rail_compliances(

@@ -133,7 +133,7 @@ class Surrogate:
     def _numerics(self, tolerance: float):
         from tipoff.lowfi import Numerics
 
-        return Numerics.of_many(tolerance, self.population.modes)
+        return Numerics.of_many(tolerance, self.population.modes, self.population.model)
 
 
 class PlainRungeKutta:

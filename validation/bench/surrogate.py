@@ -137,7 +137,7 @@ def lines(found: dict) -> list[str]:
 def _ensemble(population: Population, cases: int, tolerance: float) -> dict:
     from tipoff.lowfi import Numerics
 
-    rows, numerics = varied(cases, seed=7), Numerics.of_many(tolerance)
+    rows, numerics = varied(cases, seed=7), Numerics.of_many(tolerance, model=population.model)
     population.many(rows[:50], numerics)
     wall, processor = time.perf_counter(), time.process_time()
     table = population.many(rows, numerics)

@@ -127,7 +127,7 @@ def test_the_shorter_of_two_times_counts(study, compliance, untimed):
     assert [label for label in made if label in labels] == 2 * labels
 
 
-def test_finer_settings_have_the_rates_of_single_runs(study, found, rate):
+def test_other_settings_have_the_rates_of_single_runs(study, found, rate):
     """On the compliance of the degree that they need. Control: the default settings."""
     assert tuple(rung.numerics for rung in found.others) == OTHERS, "not calibrated"
     for rung in found.others:
@@ -170,7 +170,7 @@ def synthetic() -> Rungs:
         own=Rung("compliant", Numerics(), results(chosen), 4e-3),
         others=[
             Rung("springs", Numerics(modes=0), results(none + 1.0), 1e-3),
-            Rung("compliant", OTHERS[1], results(none), 9e-2),
+            Rung("compliant", OTHERS[-1], results(none), 9e-2),
         ],
         wider=results(wider),
         clearance_change=1e-6,
@@ -220,7 +220,7 @@ def test_what_is_said_of_them():
     (said,) = ladder_page.sentences(page)
     assert said.startswith("3 of 5 draws choose rail modes for themselves, 2 of them all 20. In")
     cells = ("no modes, as the population", "all 20 modes", "modes case by case")
-    cells = (*cells, "calibrated springs", "degree 3, all 20 modes")
+    cells = (*cells, "calibrated springs", "degree 4, all 20 modes")
     assert all(f">{cell}<" in html(ladder_page.table(page)) for cell in cells)
     page.modes = 20
     assert ">all 20 modes, as the population<" in html(ladder_page.table(page))
@@ -228,7 +228,7 @@ def test_what_is_said_of_them():
     above, middle, *names = drawing.chart.panels[0].lines
     assert [name.labels for name in names[-2:]] == [
         ("calibrated springs",),
-        ("degree 3, all 20 modes",),
+        ("degree 4, all 20 modes",),
     ]
     np.testing.assert_allclose(middle.x, [2e-3, 9e-3, 4e-3, 1e-3, 9e-2])
     np.testing.assert_allclose(middle.y, [0.02, 0.03, 0.08, 0.98, 0.02])

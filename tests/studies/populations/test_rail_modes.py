@@ -171,7 +171,7 @@ def test_pairs_and_their_cost_have_the_modes_of_the_population(study, watch):
 
 def test_each_draw_chooses_its_own_modes_beside_those_of_the_population(study, watch, monkeypatch):
     """Where the rails have modes. Each draw has a run that chooses, one without modes, one with those
-    of the population, one with all, one with more clearance, and two with finer settings."""
+    of the population, one with all, one with more clearance, and three with other settings."""
     monkeypatch.setattr(Study, "rail_compliance", lambda *_, **__: VIBRATING)
     took = {0: 1e-3, 3: 2e-3, HELD: 3e-3, AUTO: 4e-3, 4: 5e-3}
     monkeypatch.setattr(
@@ -180,12 +180,12 @@ def test_each_draw_chooses_its_own_modes_beside_those_of_the_population(study, w
     runs = watch(3)
     montecarlo.run(study, OPTIONS)
     found = read(tails, study, Options(OPTIONS, 10))
-    beside, *further = (runs.single[begin : begin + 10] for begin in range(0, 80, 10))
-    expected = [{AUTO}, {5}, {0}, {3}, {5}, {4}, {5}]  # the second with more clearance
+    beside, *further = (runs.single[begin : begin + 10] for begin in range(0, 90, 10))
+    expected = [{AUTO}, {5}, {0}, {3}, {5}, {4}, {5}, {5}]  # the second with more clearance
     assert beside == [3] * 10 and [set(each) for each in further] == expected
     own = found.ladder
     assert (own.held, own.choosing, own.choosing_all) == (HELD, 10, 10)
-    assert [row.modes for row in own.rows] == [0, 3, HELD, AUTO, 4, HELD]
+    assert [row.modes for row in own.rows] == [0, 3, HELD, AUTO, 4, HELD, HELD]
     assert [row.cpu_s for row in own.rows[:4]] == pytest.approx([1e-3, 2e-3, 3e-3, 4e-3])
     assert [row.case_s is None for row in own.rows] == [False] * 3 + [True] * 3
     assert {0, 3, HELD} <= set(runs.modes), "timed"

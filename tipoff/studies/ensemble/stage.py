@@ -20,7 +20,7 @@ from tipoff.lowfi.ensemble.store import Store, StoreError
 from tipoff.lowfi.ensemble.table import TableFile
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics import hand_over
-from tipoff.mechanics.model_names import SPRINGS
+from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.scenes import plausibility, uncertainty
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.agreement import kept, verdicts
@@ -122,17 +122,23 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
         own = study.scene.studies and study.scene.studies.errors
         vary = options.vary or own or uncertainty.DEFAULT
         source = Drawn(uncertainty.load(vary, study.scene, **changed))
+    springs = options.chosen.model == SPRINGS
     try:
-        numerics = Numerics.of_many(options.tolerance, options.chosen.asked)
+        numerics = Numerics.of_many(
+            options.tolerance, options.chosen.asked, SPRINGS if springs else COMPLIANT
+        )
     except ValueError as fault:
         given = f"{options.tolerance:g}, {options.chosen.modes}"
         raise SceneError([Fault("--tolerance, --modes", "numerics", given, str(fault))]) from None
     if options.store is not None and options.store.exists() and not options.store.is_dir():
         raise SceneError([Fault("--store", "path", str(options.store), "a folder")])
     kept.require_accepted(study, options.chosen.name)
-    springs = options.chosen.model == SPRINGS
-    found = study.rigid_rails(study.scene) if springs else study.rail_compliance(study.scene)
     scene = study.scene
+    found = (
+        study.rigid_rails(scene)
+        if springs
+        else study.rail_compliance(scene, run_degree=numerics.degree)
+    )
     if fitted is not None and not springs:  # before a case, which may vary a constant
         scene, fitted = fitted.split(scene)
     asked = Ensemble(scene, source, calibration=fitted, numerics=numerics, compliance=found)

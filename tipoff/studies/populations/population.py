@@ -81,7 +81,7 @@ class Surrogate(NamedTuple):
 
     def ensemble(self, source, tolerance: float = TOLERANCE) -> Ensemble:
         """The cases of ``source`` (``lowfi.ensemble.rows``) on this model."""
-        numerics = Numerics.of_many(tolerance, self.modes)
+        numerics = Numerics.of_many(tolerance, self.modes, self.name)
         return Ensemble(
             self.scene,
             source,
@@ -100,7 +100,7 @@ class Surrogate(NamedTuple):
 
     def numerics(self, tolerance: float) -> Numerics:
         """Numerics of a run that is compared with a population; ValueError as for ``mode_count``."""
-        return Numerics.of_many(tolerance, self.mode_count)
+        return Numerics.of_many(tolerance, self.mode_count, self.name)
 
 
 class Population(NamedTuple):
@@ -134,7 +134,8 @@ def surrogate(study: Study, model: str | None = None, condition: str | None = No
         fitted = calibrate.load(study)
         return Surrogate(fitted.apply(scene), fitted, study.rigid_rails(scene))
     require_accepted(study, model, condition)
-    return Surrogate(scene, None, study.rail_compliance(scene))
+    degree = Numerics.of_many(TOLERANCE).degree
+    return Surrogate(scene, None, study.rail_compliance(scene, run_degree=degree))
 
 
 def require_settling(*models: Surrogate) -> None:
@@ -159,7 +160,7 @@ def require_settling(*models: Surrogate) -> None:
 def _trial_run(model: Surrogate) -> Trajectory:
     """One quick run of the scene, without modes."""
     vibrates = model.compliance is not None and model.name == COMPLIANT
-    numerics = Numerics.of_many(TOLERANCE, 0 if vibrates else AUTO)
+    numerics = Numerics.of_many(TOLERANCE, 0 if vibrates else AUTO, model.name)
     return lowfi.run(model.scene, model.name, numerics=numerics, compliance=model.compliance)
 
 

@@ -44,7 +44,7 @@ def found(
 ) -> Sides:
     """Sides of every row of overrides of ``model.scene``; ``progress`` is called with the share
     done."""
-    numerics = Numerics.of_many(TOLERANCE, model.modes)
+    numerics = Numerics.of_many(TOLERANCE, model.modes, model.name)
 
     def one(row: dict[str, float]) -> tuple[int, int, list[float]]:
         run = lowfi.run(
