@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.scenes.rail import MESH_UNITS, MeshTable, directions
+from tipoff.scenes.rail import MeshTable, directions
+from tipoff.scenes.sections.paths import UNITS
 
 
 class Asked(NamedTuple):
@@ -29,7 +30,7 @@ class Asked(NamedTuple):
         """Points (n,3) m in scene axes. Those of a file in scene axes keep every bit."""
         if self[:3] == Asked()[:3]:
             return points
-        return (MESH_UNITS[self.unit] * points - np.array(self.origin)) @ np.array(
+        return (UNITS[self.unit] * points - np.array(self.origin)) @ np.array(
             directions(self.axes)
         ).T
 

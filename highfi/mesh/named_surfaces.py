@@ -12,7 +12,7 @@ from tipoff.highfi.mesh.asked import AS_DRAWN, Asked
 from tipoff.highfi.mesh.boxes import chosen
 from tipoff.highfi.mesh.cells import Kind
 from tipoff.highfi.mesh.file_elements import corners
-from tipoff.highfi.mesh.files.tables import any_case, is_surface
+from tipoff.highfi.mesh.files.tables import LEFT_OUT, any_case, is_surface
 
 # corners of the surface elements of files
 _CORNERS = {
@@ -70,6 +70,9 @@ def named_surfaces(
     for name, given in {**own, **asked.groups}.items():
         if name in asked.boxes:
             continue
+        if left_out := [words for each in given if (words := groups.left_out(each))]:
+            faults.append(left_out[0])
+            continue
         if unknown := [each for each in given if not groups.has(each)]:
             faults.append(f"no group '{unknown[0]}' (groups in the mesh: {groups.shown()})")
             continue
@@ -97,20 +100,27 @@ class _Groups:
         self._physical = mesh.cell_data.get("gmsh:physical")
         every = (*mesh.field_data, *mesh.cell_sets, *mesh.point_sets)
         self._named = {name.lower(): name for name in reversed(every)}
+        self._left_out: dict[str, str] = dict((mesh.info or {}).get(LEFT_OUT, {}))
 
     def names(self) -> list[str]:
-        """All names, in the order of the file."""
-        return list(
-            dict.fromkeys([*self._mesh.field_data, *self._mesh.cell_sets, *self._mesh.point_sets])
-        )
+        """All names, in the order of the file; then those of groups that are not read."""
+        mesh = self._mesh
+        named = (*mesh.field_data, *mesh.cell_sets, *mesh.point_sets, *self._left_out)
+        return list(dict.fromkeys(named))
 
     def shown(self) -> str:
         """All names, as messages list them."""
-        return ", ".join(sorted(self.names())) or "none"
+        return ", ".join(sorted({*self._named.values()})) or "none"
 
     def has(self, name: str) -> bool:
         """Whether there is such a group, in letters of any case."""
         return name.lower() in self._named
+
+    def left_out(self, name: str) -> str:
+        """Why a group is not read, or not all of it; empty for others."""
+        reasons = {key.lower(): reason for key, reason in self._left_out.items()}
+        reason = reasons.get(name.lower(), "")
+        return f"group '{name}' is not read: {reason}" if reason else ""
 
     def facets(self, name: str) -> np.ndarray:
         """Corners (m,w) of the facets of a group; of a set of points, the faces on the boundary

@@ -13,7 +13,7 @@ import numpy as np
 import typer
 
 from tests.comparison.curve_files import adams_files, dyna_files
-from tests.fuzz import mutants, results
+from tests.fuzz import mutants, results, sections
 from tests.highfi.mesh import forms
 from tipoff import scenes
 from tipoff.comparison.curve_files.layout import of_options
@@ -390,4 +390,5 @@ KINDS: dict[str, Callable[[random.Random, Path], None]] = {
     "distributions": _distributions,
     "calibration": _calibration,
     **results.KINDS,
+    **sections.KINDS,
 }

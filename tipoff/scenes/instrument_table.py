@@ -1,5 +1,5 @@
-"""Tables that instruments and other programs write. A table may have commas, semicolons or tabs
-between its cells, comment lines, lines of text before its header, a header behind a comment mark,
+"""Tables that instruments and other programs write. A table may have commas, semicolons, tabs or
+blanks between its cells, comment lines, lines of text before its header, a header behind a comment mark,
 and decimal commas.
 
 The unit of a column is in brackets after its name, ``Time [ms]`` or ``Thrust (lbf)``, after a slash
@@ -70,7 +70,7 @@ class Written(NamedTuple):
     def unit(self, place: int, si: str) -> str | None:
         """The unit that the table states for a column of dimension ``si``; None without one."""
         stated = head(self.header[place], si)[1] if self.header else None
-        below = self.units[place] if place < len(self.units) else ""
+        below = self.units[place].strip("[]() ") if place < len(self.units) else ""
         return stated if stated is not None else below or None
 
     def places(self, name: str, si: str) -> list[int]:
@@ -103,7 +103,7 @@ def read(
     numbers. If none has, it is the first such line that is no comment. Lines at the end with a
     summary are left out.
 
-    With ``is_loose`` cells may be between blanks, and lines between the header and the numbers are
+    With ``is_loose`` rows of text may be between blanks too, and lines between the header and the numbers are
     left out. Raises SceneError as ``csv_file.lines`` does.
     """
     data = _utf_8(data)
@@ -247,7 +247,7 @@ def _separator(lines: list[str], is_loose: bool) -> str | None:
     such a line None for blanks, if ``is_loose``, or the separator that occurs."""
     plain = [line for line in lines if not line.lstrip().startswith(_MARKS[:-1])]
     begun = list(itertools.islice(filter(_NUMBER.match, plain), _SAMPLE))
-    if is_loose and begun and all(map(_DECIMAL_COMMAS.fullmatch, begun)):
+    if begun and (all(map(_DECIMAL_COMMAS.fullmatch, begun)) or all(map(_has_blanks, begun))):
         return None
     for line in itertools.chain(begun, plain[:_SEARCHED]):
         for separator in _SEPARATORS:
@@ -256,6 +256,11 @@ def _separator(lines: list[str], is_loose: bool) -> str | None:
     text = "".join(plain[:_SEARCHED])
     occurring = next((separator for separator in _SEPARATORS if separator in text), ",")
     return None if is_loose else occurring
+
+
+def _has_blanks(line: str) -> bool:
+    """Whether two numbers of a line have blanks between them, and nothing else is between cells."""
+    return not any(mark in line for mark in _SEPARATORS) and _is_data(line.split())
 
 
 def _cells(line: str, separator: str | None) -> list[str]:

@@ -8,7 +8,9 @@ import numpy as np
 
 from tipoff.scenes import plausible_ranges, sinking, thrust_plausibility
 from tipoff.scenes.effects.thermal import fields
+from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.rail_base import HeldBySpans
+from tipoff.scenes.sections.outline import SAME
 
 _WAVE_SPEED = (100.0, 10_000.0)
 _DENSITY = (10.0, 20_000.0)
@@ -42,6 +44,7 @@ def warnings(scene) -> list[str]:
                 f"plausible {_DENSITY[0]:g} to {_DENSITY[1]:g} kg/m3"
             )
     found += plausible_ranges.warnings(scene) + _of_inertia(scene) + _of_mounts(scene.rail)
+    found += _of_length(scene.rail)
     found += _of_joints(scene.rail.mount_stiffness) + thrust_plausibility.warnings(scene)
     if scene.contact is not None:
         found += sinking.warnings(scene) + _of_interface(scene.contact)
@@ -120,6 +123,17 @@ def _of_mounts(rail) -> list[str]:
                 f"that between mounts"
             )
     return found
+
+
+def _of_length(rail) -> list[str]:
+    """A solid of another length than the rail, which has its section only."""
+    drawn = rail.solid_length() if isinstance(rail, ProfileTable) else None
+    if drawn is None or abs(drawn - (rail.end - rail.start)) < SAME:
+        return []
+    return [
+        f"rail.section, rail.start, rail.end: the solid is {drawn:.6g} m long, the rail "
+        f"{rail.end - rail.start:.6g} m from start to end, which counts"
+    ]
 
 
 def _of_joints(table) -> list[str]:

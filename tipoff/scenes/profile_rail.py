@@ -1,11 +1,12 @@
-"""``[rail] section``: an extruded rail of any section, given by corners, by a drawing (DXF), or by a
-few numbers.
+"""``[rail] section``: an extruded rail of any section, given by corners, by a drawing (DXF), by an
+extruded solid (STEP), or by a few numbers.
 
 The section stands across X with its origin at ``at``. Its walls are found: every side that faces a
 pad at the clearance for which the section is drawn. The platform holds the sides at the points
 ``mounted``, on the stretches ``mounts``.
 """
 
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, PrivateAttr, Tag
@@ -14,7 +15,7 @@ from pydantic import model_validator as model
 from tipoff.files import content_hash
 from tipoff.scenes.faults import close, within
 from tipoff.scenes.rail_base import DrawnTable, HeldBySpans
-from tipoff.scenes.sections import dxf
+from tipoff.scenes.sections import dxf, step
 from tipoff.scenes.sections.outline import Loop, Outline, outline
 from tipoff.scenes.sections.shapes import SHAPES, ShapeTable
 from tipoff.scenes.table import at_least_one, is_absent, limited
@@ -30,7 +31,7 @@ def _one_of_three(section: Any) -> Any:
         return section
     given = str(section.get("shape", "")) if isinstance(section, dict) else ""
     raise ValueError(
-        'corners such as [["0 mm", "0 mm"], ["24 mm", "0 mm"], ...], a DXF file, or a table whose '
+        'corners such as [["0 mm", "0 mm"], ["24 mm", "0 mm"], ...], a DXF or STEP file, or a table whose '
         f"shape is one of {', '.join(SHAPES)}{close(given, SHAPES)}"
     )
 
@@ -46,8 +47,8 @@ class ProfileTable(HeldBySpans, DrawnTable):
     hexahedra."""
 
     GIVEN_BY = "section"
-    #: Section across the rail: corners along Y and Z, in order; a DXF file with closed loops; or a
-    #: table with a shape.
+    #: Section across the rail: corners along Y and Z, in order; a DXF file with closed loops; a STEP
+    #: file with an extruded solid; or a table with a shape.
     section: Annotated[
         Annotated[str, Tag("file")]
         | Annotated[_Points, Tag("points")]
@@ -55,7 +56,8 @@ class ProfileTable(HeldBySpans, DrawnTable):
         Discriminator(_kind),
         BeforeValidator(_one_of_three),
     ]
-    #: Unit of the lengths of a DXF file: m, cm, mm, in or ft; that of its header where absent.
+    #: Unit of the lengths of a DXF or STEP file: m, cm, mm, in or ft; the one that the file states
+    #: where absent.
     unit: Literal["m", "cm", "mm", "in", "ft"] | None = Field(None, exclude_if=is_absent)
     #: Place of the origin of the section in the scene, along Y and Z.
     at: _Point = (0.0, 0.0)
@@ -66,6 +68,7 @@ class ProfileTable(HeldBySpans, DrawnTable):
     #: Length of the elements along the rail, as a multiple of the element size.
     stretch: quantity("dimensionless", ge=1.0, le=20.0) = 1.0  # type: ignore[valid-type]
     _outline: Outline = PrivateAttr()
+    _solid_length: float | None = PrivateAttr(None)
 
     @model(mode="after")
     def _drawn(self):
@@ -83,12 +86,16 @@ class ProfileTable(HeldBySpans, DrawnTable):
                 given = f"({1e3 * point[0]:.6g}, {1e3 * point[1]:.6g}) mm"
                 raise within(f"mounted.{place}", given, str(fault)) from fault
         if self.unit is not None and not isinstance(self.section, str):
-            raise within("unit", repr(self.unit), "no such key, other than with a DXF file")
+            raise within("unit", repr(self.unit), "no such key, other than with a file")
         return self
 
     def _read(self) -> Outline:
         if isinstance(self.section, str):
-            return outline(dxf.loops(self.section, self.unit))
+            if Path(self.section).suffix.lower() not in step.SUFFIXES:
+                return outline(dxf.loops(self.section, self.unit))
+            found = step.extrusion(self.section, self.unit)
+            self._solid_length = found.length
+            return outline(found.loops)
         if isinstance(self.section, tuple):
             return outline([self.section])
         return self.section.outline()
@@ -96,6 +103,10 @@ class ProfileTable(HeldBySpans, DrawnTable):
     def outline(self) -> Outline:
         """The outline of the section in its own axes."""
         return self._outline
+
+    def solid_length(self) -> float | None:
+        """Length (m) of the solid whose section this is; None without a solid."""
+        return self._solid_length
 
     def blocks(self) -> tuple[Loop, ...]:
         """Four corners (m) of each block that fills the section, in scene axes; none if they are not

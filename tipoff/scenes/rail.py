@@ -143,8 +143,6 @@ def _wrong_names(surfaces: Iterable[str]) -> list[str]:
     ]
 
 
-# scale to metres of the units of mesh files
-MESH_UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "ft": 0.3048}
 _Axis = Literal["x", "y", "z", "-x", "-y", "-z"]
 
 

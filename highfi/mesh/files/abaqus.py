@@ -135,6 +135,10 @@ def _surface(model: Model, keyword: Keyword) -> None:
         ]
         # a surface may have the name of its only set
         nodes += [one for one in found if (one.scope, one.name) != (model.scope, name)]
+    if kind not in ("ELEMENT", "NODE") or "COMBINE" in keyword.given:
+        given = f"COMBINE={keyword.given['COMBINE']}" if "COMBINE" in keyword.given else kind
+        reason = f"line {keyword.line}: *SURFACE with {given}; write its elements and their sides"
+        model.left_out[model.written[model.named(keyword.of("NAME"))]] = reason
     if kind != "ELEMENT" or "COMBINE" in keyword.given:
         return
     members = model.current.surfaces.setdefault(model.named(keyword.of("NAME")), [])

@@ -99,7 +99,9 @@ def gathered(model: Model) -> meshio.Mesh:
     _add_elements(model, groups)
     every, parts = groups.finished()
     node_groups = _node_groups(model, shifts)
-    return mesh(np.concatenate(labels), np.concatenate(points), every, parts, node_groups)
+    return mesh(
+        np.concatenate(labels), np.concatenate(points), every, parts, node_groups, model.left_out
+    )
 
 
 def _add_elements(model: Model, groups: "_Groups") -> None:
@@ -109,11 +111,11 @@ def _add_elements(model: Model, groups: "_Groups") -> None:
         for name, given in body.sets.items():
             line = given[0].line if given else 0
             shown_name = groups.add(model.written[name])
-            with _refused(name):
+            with _refused(model, name):
                 groups.extend(shown_name, members.of_set(scope, name, line))
         for name, lines in body.surfaces.items():
             shown_name = groups.add(model.written[name])
-            with _refused(name):
+            with _refused(model, name):
                 for reference, face in lines:
                     found = members.of(reference)
                     groups.extend_by_faces(shown_name, found, face, reference.line)
@@ -129,7 +131,7 @@ def _node_groups(model: Model, shifts: dict[str, int]) -> dict[str, np.ndarray]:
     found: dict[str, set[int]] = {}
     for scope, body in model.bodies.items():
         for name, given in body.node_sets.items():
-            with _refused(name):
+            with _refused(model, name):
                 inside = members.of_set(scope, name, given[0].line if given else 0)
                 group = found.setdefault(any_case(name) or model.written[name], set())
                 for owner, nodes in inside.items():
@@ -138,13 +140,14 @@ def _node_groups(model: Model, shifts: dict[str, int]) -> dict[str, np.ndarray]:
 
 
 @contextmanager
-def _refused(name: str) -> Iterator[None]:
-    """Let faults of walls and mounts pass, and no others."""
+def _refused(model: Model, name: str) -> Iterator[None]:
+    """Let faults of walls and mounts pass. Other groups are left out: a scene may still name them."""
     try:
         yield
-    except Unreadable:
+    except Unreadable as fault:
         if any_case(name):
             raise
+        model.left_out[model.written[name]] = str(fault)
 
 
 class _Groups:

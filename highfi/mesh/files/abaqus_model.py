@@ -42,6 +42,7 @@ class Model:
         self.bodies: dict[str, Body] = {ROOT: Body()}
         self.parts: dict[str, Body] = {}
         self.written: dict[str, str] = {}  # names of groups by their capitals
+        self.left_out: dict[str, str] = {}  # groups that are not read as a whole, and why
         self.current, self.scope = self.bodies[ROOT], ROOT
 
     def named(self, name: str) -> str:

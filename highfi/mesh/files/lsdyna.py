@@ -57,6 +57,8 @@ class _Model:
         self.parts: dict[int, str] = {}
         self.titles: dict[tuple[str, int], str] = {}  # of sets
         self.sets: dict[tuple[str, int], list[tuple[int, ...]]] = {}
+        self.sums: dict[tuple[str, int], tuple[int, list[int]]] = {}  # line, numbers of sets
+        self.left_out: dict[str, str] = {}  # sets that are not read, and why
 
     def add(self, group: str, kind: str, line: int, numbers: list[int]) -> None:
         """Add an element: its number, its part and its nodes."""
@@ -196,19 +198,65 @@ def _set(model: _Model, keyword: Keyword) -> None:
     lines = [(line, text) for line, text in lines if text]
     if not lines:
         raise Unreadable(f"line {keyword.line}: *{keyword.name} without a number")
-    if options not in _LAYOUTS:
-        if is_surface(any_case(title)):
-            raise Unreadable(
-                f"line {keyword.line}: *{keyword.name} is not read; write '{title}' as a list"
-            )
-        return
     number = _first(keyword, lines[0][1], lines[0][0])
+    if options not in (*_LAYOUTS, "ADD"):
+        reason = f"line {keyword.line}: *{keyword.name} is not read"
+        if is_surface(any_case(title)):
+            raise Unreadable(f"{reason}; write '{title}' as a list")
+        model.left_out[title or _untitled(group, number)] = f"{reason}; write the set as a list"
+        return
+    if options == "ADD":
+        model.titles.setdefault((group, number), title)
+        numbers = [_numbers(keyword, text, line, _OTHER, 8) for line, text in lines[1:]]
+        _, every = model.sums.setdefault((group, number), (keyword.line, []))
+        every += [each for row in numbers for each in row if each]
+        return
     members = model.sets.setdefault((group, number), [])
     model.titles.setdefault((group, number), title)
     # attributes follow the corners of a segment, and the number in a column
     count = 4 if group == "SEGMENT" else 1 if options == "COLUMN" else 8
     for line, text in lines[1:]:
         members += _members(group, options, _numbers(keyword, text, line, _OTHER, count), line)
+
+
+def _untitled(group: str, number: int) -> str:
+    return f"{group.lower()} set {number}"
+
+
+def _sum(model: _Model, key: tuple[str, int]) -> list[tuple[int, ...]]:
+    """Members of the sets that a set adds up, each once. Raises Unreadable for a set that is not there or
+    contains itself."""
+    line, _ = model.sums[key]
+    found: dict[tuple[int, ...], tuple[int, ...]] = {}
+    left, seen = [key], set[tuple[str, int]]()
+    while left:
+        if (one := left.pop()) in seen:
+            continue
+        seen.add(one)
+        for member in model.sets.get(
+            one, []
+        ):  # corners of a facet in any order, or the ends of a range
+            found.setdefault(tuple(sorted(member)) if key[0] == "SEGMENT" else member, member)
+        for number in model.sums.get(one, (0, []))[1]:
+            other = (key[0], number)
+            if other == key or (other not in model.sets and other not in model.sums):
+                wrong = "contains itself" if other == key else "is not there as a list"
+                raise Unreadable(f"line {line}: {_untitled(*other)} {wrong}")
+            left.append(other)
+    return list(found.values())
+
+
+def _add_sums(model: _Model) -> None:
+    sums: dict[tuple[str, int], list[tuple[int, ...]]] = {}
+    for key in model.sums:
+        try:
+            sums[key] = _sum(model, key)
+        except Unreadable as fault:
+            title = model.titles[key]
+            if is_surface(any_case(title)):
+                raise
+            model.left_out[title or _untitled(*key)] = str(fault)
+    model.sets |= sums
 
 
 def _members(group: str, options: str, row: list[int], line: int) -> Iterator[tuple[int, ...]]:
@@ -226,6 +274,7 @@ def _members(group: str, options: str, row: list[int], line: int) -> Iterator[tu
 
 
 def _mesh(model: _Model) -> meshio.Mesh:
+    _add_sums(model)
     labels = np.array(model.labels, dtype=np.int64)
     blocks = [
         Block(kind, np.array(list(found), dtype=np.int64), np.array(list(found.values())))
@@ -242,7 +291,7 @@ def _mesh(model: _Model) -> meshio.Mesh:
     for place, (_, part) in enumerate(owners):
         put(model.parts.get(part) or f"part {part}", place, np.arange(len(blocks[place].labels)))
     for (group, number), members in model.sets.items():
-        name = model.titles[group, number] or f"{group.lower()} set {number}"
+        name = model.titles[group, number] or _untitled(group, number)
         if group == "SEGMENT":
             for width, kind in ((3, "triangle"), (4, "quad")):
                 if rows := [row for row in members if len(row) == width]:
@@ -265,7 +314,7 @@ def _mesh(model: _Model) -> meshio.Mesh:
         name: [parts.get(place, nothing) for place in range(len(blocks))]
         for name, parts in chosen.items()
     }
-    return mesh(labels, np.array(model.points, dtype=float), blocks, groups, nodes)
+    return mesh(labels, np.array(model.points, dtype=float), blocks, groups, nodes, model.left_out)
 
 
 def _inside(labels: np.ndarray, members: list[tuple[int, ...]]) -> np.ndarray:

@@ -105,7 +105,7 @@ def read(content: bytes) -> meshio.Mesh:
         any_case(name) or name: numbers[members]
         for name, members in sets.of(GRIDS, numbers).items()
     }
-    return mesh(numbers, places, blocks, groups, grids)
+    return mesh(numbers, places, blocks, groups, grids, sets.left_out)
 
 
 def _place(card: Card) -> list[float]:

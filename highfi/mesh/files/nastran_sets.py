@@ -26,6 +26,7 @@ class Sets:
 
     def __init__(self, text: str) -> None:
         self._found: dict[tuple[str, str], list[tuple[int, int]]] = {}
+        self.left_out: dict[str, str] = {}  # sets that are not read, and why
         lines = text.splitlines()
         self._names = {found[1]: found[2].strip() for found in map(_NAMED.match, lines) if found}
         bulk = [
@@ -57,7 +58,9 @@ class Sets:
 
     def _add(self, name: str, kind: str, words: list[str], line: int) -> None:
         words = [word.upper() for word in words]
-        if {"ALL", "EXCEPT", "SKIN"} & {*words}:
+        if unread := {"ALL", "EXCEPT", "SKIN"} & {*words}:
+            reason = f"line {line}: a set with {min(unread)}; write its numbers"
+            self.left_out[name] = reason
             return
         found = self._found.setdefault((name, kind), [])
         while words:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import meshio
 import numpy as np
 
+LEFT_OUT = "left out"  # key of the reasons, by the name of a group, in the info of a mesh
 _LISTED = 5  # numbers in one message
 
 
@@ -91,10 +92,11 @@ def mesh(
     blocks: Sequence[Block],
     groups: dict[str, list[np.ndarray]],
     nodes: Mapping[str, np.ndarray] = MappingProxyType({}),
+    left_out: Mapping[str, str] = MappingProxyType({}),
 ) -> meshio.Mesh:
     """Mesh of nodes with numbers ``labels`` (n,) at ``points`` (n,3), and of ``blocks``; ``groups``
     has, for each name, the places of its members in each block, ``nodes`` the numbers of the nodes
-    of further groups.
+    of further groups, ``left_out`` the reason why a group is not read, or not all of it.
 
     Raises Unreadable for nodes with two places or without one.
     """
@@ -114,4 +116,4 @@ def mesh(
             raise Unreadable(f"no coordinates for nodes {shown(missing)}, which elements use")
         cells.append((block.kind, order[place]))
     sets = {name: np.flatnonzero(np.isin(labels, members)) for name, members in nodes.items()}
-    return meshio.Mesh(points, cells, cell_sets=groups, point_sets=sets)
+    return meshio.Mesh(points, cells, cell_sets=groups, point_sets=sets, info={LEFT_OUT: left_out})

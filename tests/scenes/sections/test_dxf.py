@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from tipoff.scenes.sections import dxf
+from tipoff.scenes.sections import dxf, paths
 from tipoff.scenes.sections.outline import outline
 
 
@@ -62,13 +62,13 @@ def test_arcs_and_bulges_are_chords_that_hardly_deviate(tmp_path, turned):
         )
     exact, arcs = 200.0 + 25.0 * math.pi, 10.0 * math.pi
     area = 1e6 * moments(tmp_path, text).area
-    assert 0.0 < exact - area < dxf.DEVIATION * 30.0 * arcs
+    assert 0.0 < exact - area < paths.DEVIATION * 30.0 * arcs
 
 
 def test_a_negative_bulge_is_a_notch(tmp_path):
     found = moments(tmp_path, drawing(polyline((0, 0), (20, 0, -1), (20, 10), (0, 10))))
     exact = 200.0 - 12.5 * math.pi
-    assert abs(1e6 * found.area - exact) < dxf.DEVIATION * 20.0 * 5.0 * math.pi
+    assert abs(1e6 * found.area - exact) < paths.DEVIATION * 20.0 * 5.0 * math.pi
 
 
 def test_units_of_the_header_or_of_the_key(tmp_path):
@@ -79,6 +79,12 @@ def test_units_of_the_header_or_of_the_key(tmp_path):
         moments(tmp_path, drawing(square, units=0))
     with pytest.raises(ValueError, match="the drawing states this one"):
         moments(tmp_path, drawing(square), "in")
+
+
+def test_an_arc_that_hardly_bends_is_a_line(tmp_path):
+    """Its radius is beyond all numbers."""
+    found = moments(tmp_path, drawing(polyline((0, 0, 1e-200), (20, 0), (20, 10), (0, 10))))
+    assert found.area == pytest.approx(2e-4)
 
 
 @pytest.mark.parametrize(
@@ -92,6 +98,10 @@ def test_units_of_the_header_or_of_the_key(tmp_path):
         (drawing([(0, "LINE"), (10, 0), (20, 0)]), "a LINE has no group 11"),
         (drawing([*line(0, 0, 1, 0), (230, -1)]), "is mirrored"),
         (drawing(line(0, 0, 1, 0)).replace("EOF", "END"), "EOF, is missing"),
+        (drawing(arc(0, 0, 0, 0, 90), line(0, 0, 9, 9), line(9, 9, 0, 0)), "sides of 0.01 mm"),
+        (drawing(polyline((0, 0, 1e300), (9, 0), (9, 9))), "arcs with an angle below 360 degrees"),
+        (drawing(polyline((0, 0), (1e300, 0), (9, 9))), "within 1000 m of the origin"),
+        (drawing([(0, "LWPOLYLINE"), (70, 0)]), "a LWPOLYLINE has no group 10"),
         ("nonsense\nof text\n", "line 1 has no code"),
         ("AutoCAD Binary DXF\r\n", "this one is binary"),
         ("  0\nEOF\n", "one section ENTITIES"),

@@ -84,7 +84,7 @@ material = { density = "2700 kg/m**3", youngs_modulus = "70 GPa", poisson_ratio 
     "keys, key, words",
     [
         ({"section": {"shape": "t_slo"}}, "rail.section", "did you mean t_slot?"),
-        ({"section": 3}, "rail.section", "a DXF file, or a table whose shape is one of"),
+        ({"section": 3}, "rail.section", "a DXF or STEP file, or a table"),
         ({"section": SLOTTED | {"web": "12 mm"}}, "rail.section", "a floor with a width"),
         ({"section": SLOTTED | {"web": "12"}}, "rail.section.web", "a quantity in m"),
         ({"section": SLOTTED | {"wall": "1 mm"}}, "rail.section.wall", "no such key"),
@@ -93,7 +93,7 @@ material = { density = "2700 kg/m**3", youngs_modulus = "70 GPa", poisson_ratio 
         ({"section": "missing.dxf"}, "rail.section", "a readable file"),
         ({"mounted": [["15 mm", "-19 mm"]]}, "rail.mounted.0", "nearest side is (4, -20) to"),
         ({"mounted": []}, "rail.mounted", "at least one"),
-        ({"unit": "mm"}, "rail.unit", "other than with a DXF file"),
+        ({"unit": "mm"}, "rail.unit", "other than with a file"),
         ({"stretch": 0.5}, "rail.stretch", "greater than or equal to 1"),
         ({"fillet": "2 mm"}, "rail.fillet", "no such key with section"),
     ],

@@ -83,6 +83,21 @@ READ = {
         [[0, 1e-3], [0, 5]],
     ),
     "UTF-16": ("Time [s]\tForce [N]\r\n0\t0\r\n1\t5\r\n".encode("utf-16"), {}, [[0, 1], [0, 5]]),
+    "blanks": (
+        "made by hand\n# Time [s]  Thrust [N]\n 0.0   0\n 0.5  7e0\n",
+        {},
+        [[0, 0.5], [0, 7]],
+    ),
+    "blanks and decimal commas": (
+        "Time(s) Thrust(N)\n0,0 0,0\n0,5 7,5\n",
+        {},
+        [[0, 0.5], [0, 7.5]],
+    ),
+    "units in brackets below": (
+        "t;F;p\n[ms];[kN];[bar]\n0;0;1\n5;1,5;2\n",
+        {},
+        [[0, 5e-3], [0, 1500]],
+    ),
     "empty cells at the end": ("Time [s];Force [N];\n0;0;\n1;5;\n;;\n", {}, [[0, 1], [0, 5]]),
 }
 
@@ -165,7 +180,7 @@ REFUSED = {
     ),
     "text below the header": ("Time [s],Force [N]\nabc,def\n0,0\n1,5\n", {}, "'abc' in line 2"),
     "a second header": ("time_s,force_N\n0,0\ntime_s,force_N\n1,1\n", {}, "'time_s' in line 3"),
-    "spaces": ("time force\n0 0\n1 5\n", {}, "header 'time force'"),
+    "no units between blanks": ("time force\n0 0\n1 5\n", {}, "header 'time, force'"),
     "a line that ends early": (
         "n,Time [s],Force [N]\n1,0,0\n2,1,5\n3,2\n",
         {},

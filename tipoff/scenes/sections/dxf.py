@@ -1,9 +1,7 @@
 """Outline of a section from a drawing: closed loops of LINE, ARC and LWPOLYLINE in ASCII DXF.
 
 A file is a list of pairs, a group code and a value on a line each. Every entity of the drawing must
-be one of the three; others are refused by name, since a left-out line would change the section. The
-bulge of a vertex is the tangent of a quarter of the angle of the arc to the next one. Arcs become
-chords that deviate by at most ``DEVIATION`` of the larger extent of the drawing.
+be one of the three; others are refused by name, since a left-out line would change the section.
 
 Source: Autodesk, DXF Reference, 2012: group codes of LINE, ARC, LWPOLYLINE, and of $INSUNITS.
 """
@@ -12,18 +10,14 @@ import math
 from pathlib import Path
 
 from tipoff.files import read_input
+from tipoff.scenes.sections import paths
 from tipoff.scenes.sections.outline import Corner
 
-DEVIATION = 0.0025  # of the larger extent
 _UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m"}  # of $INSUNITS
-_SCALE = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "ft": 0.3048}
 _READ = "LINE, ARC and LWPOLYLINE are read"
-_JOINED = 1e-4  # of the larger extent: ends closer than this are one
 _MOST_ENTITIES = 2000
 
 Pairs = list[tuple[int, str]]
-# the points of an entity: (y, z, bulge to the next one) in units of the drawing
-_Path = list[tuple[float, float, float]]
 
 
 def loops(path: str | Path, unit: str | None) -> list[list[Corner]]:
@@ -38,19 +32,13 @@ def loops(path: str | Path, unit: str | None) -> list[list[Corner]]:
         raise ValueError('a unit: the drawing states none, so set rail.unit, for example "mm"')
     if unit is not None and own is not None and unit != own:
         raise ValueError(f"no rail.unit, or {own!r}: the drawing states this one")
-    scale = _SCALE[unit or own or "m"]
-    paths: list[_Path] = []
-    closed: list[_Path] = []
+    still_open: list[paths.Path] = []
+    closed: list[paths.Path] = []
     for entity in _entities(pairs):
-        (closed if _is_closed(entity) else paths).append(_points(entity))
-    every = [point[:2] for each in (*paths, *closed) for point in each]
-    if not every:
+        (closed if _is_closed(entity) else still_open).append(_points(entity))
+    if not still_open and not closed:
         raise ValueError(f"closed loops; the drawing has no entities; {_READ}")
-    extent = max(max(axis) - min(axis) for axis in zip(*every))
-    found = closed + _chained(paths, _JOINED * extent)
-    return [
-        [(scale * y, scale * z) for y, z in _chords(each, DEVIATION * extent)] for each in found
-    ]
+    return paths.loops(still_open, closed, paths.UNITS[unit or own or "m"])
 
 
 def _pairs(path: str | Path) -> Pairs:
@@ -68,7 +56,7 @@ def _pairs(path: str | Path) -> Pairs:
             ) from None
     if (0, "EOF") not in found:
         raise ValueError("a whole ASCII DXF; the end, EOF, is missing")
-    return found
+    return found[: found.index((0, "EOF")) + 1]
 
 
 def _units_of_header(pairs: Pairs) -> int:
@@ -102,10 +90,10 @@ def _entities(pairs: Pairs) -> list[Pairs]:
 
 
 def _is_closed(entity: Pairs) -> bool:
-    return entity[0][1] == "LWPOLYLINE" and bool(int(_first(entity, 70, "0")) & 1)
+    return entity[0][1] == "LWPOLYLINE" and bool(int(_number(_first(entity, 70, "0"))) & 1)
 
 
-def _points(entity: Pairs) -> _Path:
+def _points(entity: Pairs) -> paths.Path:
     kind = entity[0][1]
     if _number(_first(entity, 230, "1")) < 0.0:
         raise ValueError(f"entities seen from above; a {kind} is mirrored (group 230 is negative)")
@@ -121,13 +109,15 @@ def _points(entity: Pairs) -> _Path:
             (y + radius * math.cos(angle), z + radius * math.sin(angle), bulge)
             for angle in (begin, begin + sweep)
         ]
-    found: _Path = []
+    found: paths.Path = []
     for code, value in entity:
         if code == 10:
             found.append((_number(value), 0.0, 0.0))
         elif code in (20, 42) and found:
             y, z, bulge = found[-1]
             found[-1] = (y, _number(value), bulge) if code == 20 else (y, z, _number(value))
+    if not found:
+        raise ValueError(f"a whole drawing; a {kind} has no group 10")
     return found
 
 
@@ -149,55 +139,4 @@ def _number(text: str) -> float:
         found = math.nan
     if not math.isfinite(found):
         raise ValueError(f"numbers in the drawing, not {text!r}")
-    return found
-
-
-def _chained(paths: list[_Path], near: float) -> list[_Path]:
-    """Closed loops of open paths, whose ends are at most ``near`` apart."""
-    left, found = list(paths), []
-    while left:
-        chain = left.pop(0)
-        while math.dist(chain[0][:2], chain[-1][:2]) > near or len(chain) < 3:
-            end = chain[-1][:2]
-            place = next((n for n, path in enumerate(left) if _touches(path, end, near)), None)
-            if place is None:
-                raise ValueError(
-                    f"closed loops; one ends at ({end[0]:.6g}, {end[1]:.6g}) of the drawing"
-                )
-            path = left.pop(place)
-            if math.dist(path[0][:2], end) > near:
-                path = _reversed(path)
-            chain = [*chain[:-1], (*end, path[0][2]), *path[1:]]
-        found.append(chain[:-1])
-    return found
-
-
-def _touches(path: _Path, end: Corner, near: float) -> bool:
-    return any(math.dist(path[place][:2], end) <= near for place in (0, -1))
-
-
-def _reversed(path: _Path) -> _Path:
-    bulges = [-bulge for _, _, bulge in path[-2::-1]] + [0.0]
-    return [(y, z, bulge) for (y, z, _), bulge in zip(path[::-1], bulges)]
-
-
-def _chords(path: _Path, deviation: float) -> list[Corner]:
-    """Corners of a closed path whose arcs are chords."""
-    found: list[Corner] = []
-    for (y, z, bulge), (to_y, to_z, _) in zip(path, path[1:] + path[:1]):
-        found.append((y, z))
-        if bulge == 0.0:
-            continue
-        sweep = 4.0 * math.atan(bulge)
-        half_y, half_z = 0.5 * (to_y - y), 0.5 * (to_z - z)
-        to_centre = (1.0 - bulge * bulge) / (2.0 * bulge)  # of half of the chord, to its left
-        centre = (y + half_y - half_z * to_centre, z + half_z + half_y * to_centre)
-        radius, begin = math.dist(centre, (y, z)), math.atan2(z - centre[1], y - centre[0])
-        step = 2.0 * math.acos(max(0.0, 1.0 - deviation / radius))
-        count = max(2, math.ceil(abs(sweep) / step - 1e-9))
-        for part in range(1, count):
-            angle = begin + sweep * part / count
-            found.append(
-                (centre[0] + radius * math.cos(angle), centre[1] + radius * math.sin(angle))
-            )
     return found
