@@ -183,7 +183,7 @@ def test_cost_has_three_meshes_and_three_tolerances(pipeline):
         "1 mode",
         "2 modes",
         "8 modes",
-        "degree 3, 20 modes",
+        "degree 2, 20 modes",
         "degree 4, 20 modes",
     ]
     assert len(result(pipeline[0], "cost_study")["matched"]) == 5
