@@ -169,7 +169,7 @@ Degree = Annotated[
         min=2,
         max=4,
         help="Degree of the polynomials of pressure and displacement on a pad face, with --model "
-        "compliant; 2 (default) to 4: slower, and nearer to the reference.",
+        "compliant, from 2 to 4; default: 3. A higher one is slower, and nearer to the reference.",
     ),
 ]
 Cells = Annotated[
