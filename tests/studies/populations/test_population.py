@@ -86,7 +86,7 @@ def test_numbers_of_springs_vary(tmp_path):
     ]
     model = Surrogate(scene, None, None)
     found = population.run(Study(scene, tmp_path, Settings(workers=1)), "s", model, Listed(rows))
-    numerics = Numerics.of_many(population.TOLERANCE)
+    numerics = Numerics.of_many(population.TOLERANCE, model="springs")
     nominal, *alone = (
         lowfi.run(scene.replace(row), "springs", numerics=numerics).outcome.rate
         for row in ({}, *rows)
@@ -105,7 +105,7 @@ def test_cases_are_kept_and_not_run_again(tmp_path, monkeypatch):
     alone = lowfi.run(
         SCENE.replace(rows[1]),
         "springs",
-        numerics=Numerics.of_many(population.TOLERANCE),
+        numerics=Numerics.of_many(population.TOLERANCE, model="springs"),
     ).outcome
     assert found.counts == {
         "asked": 3,
