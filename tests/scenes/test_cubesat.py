@@ -7,6 +7,7 @@ import pytest
 from scipy.stats import ks_2samp
 
 from tests.exact.spring import end_of_stroke
+from tests.scenes.neighbours import both_models
 from tipoff import highfi, lowfi
 from tipoff.calibration import rail_compliance
 from tipoff.scenes import load, uncertainty
@@ -16,6 +17,7 @@ SCENE = load("cubesat_3u")
 # Typed here a second time on purpose, in SI, from the public documents.
 MASS, SIZE, BOX = 4.0, (0.3405, 0.1, 0.1), 0.02
 ELEMENTS, CHANGE = 0.016, 1e-6  # m; elements of both models, and the distance of neighbours
+FRICTION = 6  # place of the friction in the ledger
 FREE = {"contact": None, "friction": None, "mass_offset": None}
 
 
@@ -80,6 +82,27 @@ def test_the_errors_are_inputs_of_the_scene():
     largest = found.vary["mass_offset.eccentricity.axial"].ppf(np.array([1.0 - 1e-12]))[0]
     assert largest <= BOX * (1.0 + 1e-9)
     assert all(item.provenance for item in found.vary.values())
+
+
+@pytest.mark.slow
+def test_a_launch_of_the_reference_is_among_those_of_the_surrogate(tmp_path):
+    """One run of the reference among twelve neighbours of the surrogate within 1 µm, on the same elements
+    of 16 mm: exit speed, friction and total rate lie among them, with a margin of half their spread. A
+    single launch is chaotic, so no closer comparison of one run is possible. Control: without friction the
+    exit speed is outside."""
+    scene = SCENE.condition("offset15")
+    compliance = rail_compliance.kept(scene, tmp_path, ELEMENTS, lambda _: None)
+
+    def values(run) -> np.ndarray:
+        rate = math.degrees(np.linalg.norm(run.outcome.rate))
+        return np.array([run.outcome.velocity[0], run.energy[-1, FRICTION], rate])
+
+    found, low, high = both_models(scene, compliance, ELEMENTS, values)
+    margin = 0.5 * (high - low)
+    assert (low - margin < found).all() and (found < high + margin).all()
+    # Control:
+    free = lowfi.run(scene.replace({"friction": None}), "springs").outcome.velocity[0]
+    assert free > high[0] + margin[0]
 
 
 @pytest.mark.slow
