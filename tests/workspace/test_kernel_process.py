@@ -6,16 +6,19 @@ import signal
 import subprocess
 import sys
 import threading
+from contextlib import nullcontext
 
 import numba
 import pytest
 
 from tests.lowfi.compliance import REFERENCE
 from tipoff import lowfi, scenes
+from tipoff.calibration import rail_compliance
 from tipoff.highfi import compliance
 from tipoff.lowfi.single_run import SingleRun
-from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance
+from tipoff.mechanics.rail_compliance import DEGREE, LOW_DEGREE, RailCompliance
 from tipoff.scenes import parse
+from tipoff.studies.populations import population
 from tipoff.workspace import kernel_marks, kernel_process, machine
 from tipoff.workspace.kernel_process import compiled_beside
 from tipoff.workspace.run import Run
@@ -88,6 +91,23 @@ def test_the_process_gets_the_scene(started, tmp_path):
     given = parse(described, bare_numbers_are_si=True)
     assert degree == DEGREE
     assert given.hash == REFERENCE.replace(JOINTS).hash  # the factor changes no kernel
+
+
+@pytest.mark.parametrize("condition", [None, "phi35"])
+def test_a_population_compiles_the_kernels_of_its_cases(condition, monkeypatch, tmp_path):
+    """Its cases have fewer patterns than the compliance. Control: a run."""
+    asked = []
+
+    def beside(scene, workers, patterns):
+        asked.append(patterns)
+        return nullcontext()
+
+    monkeypatch.setattr("tipoff.workspace.study.compiled_beside", beside)
+    monkeypatch.setattr(rail_compliance, "kept", lambda *_: None)
+    study = Study(REFERENCE, tmp_path, Settings())
+    population.surrogate(study, "compliant", condition)
+    study.rail_compliance(REFERENCE)
+    assert asked == [LOW_DEGREE, DEGREE]
 
 
 @pytest.mark.parametrize("code", ["raise SystemExit(3)", "import os; os.abort()", "?"])
