@@ -7,18 +7,19 @@ the same compliance, and a surrogate is judged with the compliance of its result
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 
 import numpy as np
 
 from tipoff import cache, sources
-from tipoff.files import content_hash
+from tipoff.files import content_hash, tell
 from tipoff.highfi import compliance as statics
 from tipoff.highfi import discretisation
 from tipoff.highfi.statics import inputs, places
 from tipoff.mechanics import scene_model
-from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance, content, digest
+from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance, content, digest, stored
+from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.studies import element_size as own_size
 
@@ -27,6 +28,7 @@ _DECIDES = {"rail", "pads", "contact", "platform"}  # tables that determine ``ma
 _PLACES = 4  # stations along the rail at which meshes are compared
 # A loop over scenes with one rail reads it once.
 KEPT: cache.Cache[RailCompliance] = cache.binary(content, RailCompliance.load, cache.Held)
+KEPT_JOINTS = cache.binary(stored.content_of_joints, stored.read_joints)
 
 
 def compliance(
@@ -40,9 +42,16 @@ def compliance(
     """
     size = element_size or own_size(scene.studies)
     rails = statics.rails(scene, size)
-    return discretisation.stated(
-        scene, size, statics.condense(scene, size, held=rails, degree=degree), rails
-    )
+    found = statics.condense(scene, size, held=rails, degree=degree)
+    found = discretisation.stated(scene, size, found, rails)
+    return found.finding(partial(_joints, scene, size, degree))
+
+
+def _joints(scene: Scene, element_size: float, degree: int) -> JointTerms | None:
+    """The terms of all factors on the stiffness of the mounts; None for rigid ones."""
+    if scene.rail.mount_stiffness is None:
+        return None
+    return statics.condense(scene, element_size, degree=degree, joints=True).joints
 
 
 def walls(scene: Scene, element_size: float | None = None) -> RailCompliance | None:
@@ -72,10 +81,29 @@ def kept(
     found = KEPT.get_or_make(
         path, key, "it is computed again", lambda: _made(scene, element_size, degree, path, say)
     )
+    found.finding(partial(_kept_joints, scene, folder, element_size, degree))
     if path not in _SAID:
         _SAID.add(path)
         say(f"  {found.accuracy()}")
     return found
+
+
+def _kept_joints(scene: Scene, folder: Path, element_size: float, degree: int) -> JointTerms | None:
+    """As ``_joints``, from a file beside that of the compliance."""
+    if scene.rail.mount_stiffness is None:
+        return None
+
+    def made() -> JointTerms:
+        tell(
+            "terms for other stiffnesses of the mounts, once per rail and pads; takes as long again"
+        )
+        terms = _joints(scene, element_size, degree)
+        assert terms is not None
+        return terms
+
+    key = _key(scene, element_size, degree)
+    path = cache.file(folder, "joints", key, ".npz")
+    return KEPT_JOINTS.get_or_make(path, key, "it is computed again", made)
 
 
 def _made(

@@ -68,7 +68,7 @@ class Compliance(NamedTuple):
     shape: np.ndarray  # (s,f,p,n) 1/kg^0.5, V
     # (s,f,p,t) m, mean displacement away from the payload by a unit of each of the t thermal fields
     warm: np.ndarray
-    joints: JointTerms | None  # of rails on joints, if modes were requested
+    joints: JointTerms | None  # of rails on joints, if requested
 
 
 def condense(
@@ -78,12 +78,14 @@ def condense(
     modes: int = MODES,
     held: Sequence[HeldRail] | None = None,
     degree: int = DEGREE,
+    joints: bool = False,
 ) -> RailCompliance:
     """Flexibility and lowest ``modes`` of the rails of ``scene`` in elements of about
     ``element_size`` (m), at stations about ``spacing`` (m) apart (None: ``spacing_of``), from half a
-    pad before ignition until the last pad has left by half a pad, for patterns of this ``degree``. The result is valid
-    for any factor on the stiffness of the mounts. With ``rails(scene, element_size)`` as ``held``,
-    their factors can be used again.
+    pad before ignition until the last pad has left by half a pad, for patterns of this ``degree``.
+    With ``joints`` it holds the terms for any factor on the stiffness of the mounts; their time grows
+    with the square of the rail's length. With ``rails(scene, element_size)`` as ``held``, their
+    factors can be used again.
 
     Raises SceneError or MeshError.
     """
@@ -91,7 +93,8 @@ def condense(
     stations = _stations(scene, spacing or spacing_of(scene))
     own = inputs.of(scene)
     held = held or rails(scene, element_size)
-    found = of_rails(held, own.faces, own.reach, stations, of_degree.count(degree), modes, DRAGGED)
+    count = of_degree.count(degree)
+    found = of_rails(held, own.faces, own.reach, stations, count, modes, DRAGGED, joints)
     inverse = np.linalg.pinv(found.gram, rcond=_SINGULAR, hermitian=True)
     middle, size = found.part[..., 0], found.part[..., 1]
     place = np.stack([-middle, np.ones_like(size)], axis=-1) / size[..., None]
@@ -218,10 +221,12 @@ def of_rails(
     patterns: int = PATTERNS,
     modes: int = 0,
     dragged: int = 0,
+    joints: bool = False,
 ) -> Compliance:
     """As ``along``, for ``held`` rails whose points are in the axes of ``faces.centre`` and
     ``faces.wall``, between the X (m) of ``reach``. Friction
-    drags the first ``dragged`` of the patterns.
+    drags the first ``dragged`` of the patterns. With ``joints`` and modes, the terms of
+    joints are computed.
 
     Raises MeshError for a rail under a face without a mount, ValueError for an unavailable number
     of patterns or modes.
@@ -253,7 +258,7 @@ def of_rails(
         # An additional last place without response, for faces without a wall (number -1).
         pairs, number_of = pressed_together(places, len(patches.found))
         answer, heated, frequency, swung, terms = patches.solved(
-            rail, 0.5 * (reach[0] + reach[1]), modes, pairs
+            rail, 0.5 * (reach[0] + reach[1]), modes, pairs, joints
         )
         between = np.pad(answer, [(0, 1), (0, 0), (0, 0)])
         heated, swung = (np.pad(moved, [(0, 1), (0, 0), (0, 0)]) for moved in (heated, swung))

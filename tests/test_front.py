@@ -14,7 +14,9 @@ SCENE = tipoff.load("tiny")
 CALIBRATION = tipoff.Calibration(
     {"contact.stiffness": 2.2e9}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0
 )
-FOUND = SimpleNamespace(flexibility=1.0, degree=2, accuracy=lambda: "")
+FOUND = SimpleNamespace(
+    flexibility=1.0, degree=2, accuracy=lambda: "", finding=lambda joints: FOUND
+)
 
 
 @pytest.fixture

@@ -106,13 +106,13 @@ class Patches:
         return number
 
     def solved(
-        self, held: HeldRail, middle: float, modes: int, pairs: np.ndarray
+        self, held: HeldRail, middle: float, modes: int, pairs: np.ndarray, joints: bool
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, joint_terms.Terms | None]:
         """Displacement (q,p,p+d) in m of the first place of each of the ``pairs`` (q,2) under the
         loads of the second, normals of the faces positive: p pressures, then d tractions along X;
         and (m,p,t) of all places under a unit
         of each field of temperature around X = ``middle`` (m); frequencies (n,) rad/s of the lowest
-        modes and their displacement (m,p,n); the terms of a joint if there are modes."""
+        modes and their displacement (m,p,n); with ``joints`` and modes, the terms of a joint."""
         operator, loads = held.operator, self.loads()
         clamped = held.clamped(loads.shape[1])
         load, still = thermal.of_each_field(self._rail, operator, held.material, middle)
@@ -121,7 +121,7 @@ class Patches:
         answer = _under_each_other(clamped, loads, drag, pairs, self._patterns)
         frequency, shape = held.modes(modes)
         terms = None
-        if operator.joints is not None and modes:
+        if joints and operator.joints is not None and modes:
             heat = load + operator.joints @ still
             direct = answer[pairs[:, 0] == pairs[:, 1], :, : self._patterns]
             own = np.einsum("maa->ma", direct).ravel()

@@ -144,7 +144,7 @@ def test_a_hidden_stiffness_of_the_mounts_is_found():
     what both give together is sure: every weak direction mixes them. So both are named: by
     information the fit would hold the mounts."""
     scene = SCENE.replace(ON_JOINTS | {"agreement.fitted": ["phi60"]})
-    compliance = highfi.condense(scene, 0.008)
+    compliance = highfi.condense(scene, 0.008, joints=True)
     hidden = TRUTH | {"rail.mount_stiffness.factor": 1.7}
     plan = Plan(points=64, starts=2, evaluations=120, polish=20)
     truth = curves(scene.replace(hidden), compliance)

@@ -22,7 +22,7 @@ NAMES = [*compliant.KEYS, *alignment.NAMES]
 @functools.cache
 def bolted() -> tuple[scenes.Scene, RailCompliance]:
     scene = SCENE.replace(BOLTED)
-    return scene, highfi.condense(scene, 8e-3)
+    return scene, highfi.condense(scene, 8e-3, joints=True)
 
 
 def require_own_value(scene: scenes.Scene, compliance: RailCompliance, name: str) -> None:

@@ -135,7 +135,10 @@ def test_the_faces_of_a_rail_from_a_file_are_part_of_it():
 
 
 def test_the_elements_are_those_that_are_asked_for_or_of_the_scene(monkeypatch):
-    monkeypatch.setattr(rail_compliance.statics, "condense", lambda scene, size, held, degree: size)
+    def condense(scene, size, held, degree):
+        return SimpleNamespace(finding=lambda joints: size)
+
+    monkeypatch.setattr(rail_compliance.statics, "condense", condense)
     monkeypatch.setattr(
         rail_compliance.discretisation, "stated", lambda scene, size, found, rails: found
     )
@@ -154,7 +157,9 @@ def _said(monkeypatch, tmp_path, seconds: float) -> list[str]:
         for part in range(4):
             now += seconds
             report(0.25 * (part + 1))
-        return SimpleNamespace(accuracy=lambda: "")
+        found = SimpleNamespace(accuracy=lambda: "")
+        found.finding = lambda joints: found
+        return found
 
     monkeypatch.setattr(rail_compliance, "KEPT", memory())
     monkeypatch.setattr(rail_compliance.time, "perf_counter", lambda: now)

@@ -1,11 +1,15 @@
 """Rail compliance at a factor on the stiffness of the mounts, against its condensation there."""
 
+import pickle
+
 import numpy as np
 import pytest
 
 from tests.highfi.support import tiny
 from tipoff import highfi
+from tipoff.calibration import rail_compliance
 from tipoff.highfi import compliance
+from tipoff.highfi.statics import inputs
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST
 from tipoff.scenes import SceneError
@@ -25,7 +29,7 @@ def on_joints(factor=1.0, **changed):
 
 @pytest.fixture(scope="module")
 def nominal():
-    return highfi.condense(on_joints(), SIZE)
+    return highfi.condense(on_joints(), SIZE, joints=True)
 
 
 def largest(found, exact):
@@ -70,6 +74,27 @@ def test_what_it_is_made_for(nominal):
     np.testing.assert_array_equal(half.flexibility, nominal.flexibility)
 
 
+def test_it_is_computed_for_the_first_factor(nominal, tmp_path):
+    """A compliance has the terms of its joints as soon as a run has a factor, in memory, in its folder
+    and in the file that a user saves. Its identity does not depend on whether it has them."""
+    scene, said = on_joints(), []
+    for found in (
+        rail_compliance.compliance(scene, SIZE),
+        rail_compliance.kept(scene, tmp_path, SIZE, said.append),
+    ):
+        assert found.joints is None and found.hash == nominal.hash
+        half = found.of(scene.replace({KEY: 0.5}))
+        np.testing.assert_array_equal(half.shape, nominal.of(scene.replace({KEY: 0.5})).shape)
+        found.save(tmp_path / "rail.npz")
+        read = RailCompliance.load(tmp_path / "rail.npz")
+        np.testing.assert_array_equal(read.joints.moved, nominal.joints.moved)
+    [stored] = tmp_path.glob("joints-*.npz")
+    before = stored.stat().st_mtime_ns
+    again = pickle.loads(pickle.dumps(found))
+    np.testing.assert_array_equal(again.of(scene.replace({KEY: 0.5})).shape, half.shape)
+    assert stored.stat().st_mtime_ns == before
+
+
 def test_a_file_holds_it(nominal, tmp_path):
     nominal.save(tmp_path / "rail.npz")
     read = RailCompliance.load(tmp_path / "rail.npz")
@@ -80,8 +105,10 @@ def test_a_file_holds_it(nominal, tmp_path):
 
 def test_one_pattern_that_friction_does_not_drag():
     """As the convergence study asks for: the same numbers as with friction, and none of it."""
+    scene = on_joints()
+    held, own = compliance.rails(scene, SIZE), inputs.of(scene)
     without, dragged = (
-        compliance.along(on_joints(), SIZE, [0.0, 0.05], patterns=1, modes=4, dragged=count)
+        compliance.of_rails(held, own.faces, own.reach, [0.0, 0.05], 1, 4, count, joints=True)
         for count in (0, 1)
     )
     assert without.joints.moved_by_friction.shape[2] == without.joints.moved_first.shape[2] == 0

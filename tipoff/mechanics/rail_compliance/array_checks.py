@@ -50,10 +50,6 @@ def require(found: Any) -> None:
         expected["uncertainty"] = (faces,)
     for name, shape in expected.items():
         _require_shape(name, getattr(found, name), shape)
-    apart = found.rail[:, None] != found.rail
-    for name in ("flexibility", "dragged"):
-        if (table := getattr(found, name)) is not None and table.swapaxes(2, 3)[:, apart].any():
-            raise ValueError(f"{name}: given some between faces on different rails, expected none")
     if (terms := found.joints) is None:
         return
     _require_dimensions("joints.share", terms.share, 2)

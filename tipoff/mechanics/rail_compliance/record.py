@@ -1,17 +1,17 @@
 """The record of a rail compliance: its fields, its file, the models that it allows."""
 
 import hashlib
-import io
 import json
 import threading
-from dataclasses import MISSING, dataclass, fields, replace
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
 from functools import cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
 
-from tipoff.files import DamageError, content_hash, require_whole, write_sealed
-from tipoff.mechanics.rail_compliance import array_checks, fewer, joint_terms, patterns
+from tipoff.files import DamageError, content_hash, write_sealed
+from tipoff.mechanics.rail_compliance import array_checks, fewer, joint_terms, patterns, stored
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST, JointTerms
 from tipoff.mechanics.rail_compliance.shown import Shown
 from tipoff.mechanics.rail_compliance.stations import cubic
@@ -20,10 +20,8 @@ from tipoff.scenes.scene import Scene
 
 MODES = 20  # of each rail, stored with its compliance
 
-_KEEPING = threading.Lock()
+_KEEPING, _FINDING = threading.Lock(), threading.Lock()
 _KEPT_FACTORS = 4  # compliances at other factors that are kept in memory
-_PLAIN = ("made_for", "element_size", "frequency_uncertainty", "not_known")  # no arrays
-_JOINTS = "joints."  # prefix of the names of their arrays in a file
 _ROUNDING = 1e-9  # of the norm of F: error of a zero eigenvalue due to the modes
 
 
@@ -57,7 +55,7 @@ class RailCompliance(Shown):
     part: np.ndarray | None = None
     #: (t,s,f,p) m, displacement away from the payload for a unit of each field of temperature.
     warm: np.ndarray | None = None
-    #: Effect of a factor on the stiffness of the mounts.
+    #: Effect of a factor on the stiffness of the mounts, if it is known.
     joints: JointTerms | None = None
     #: (n,f,3) m, offset of walls that are not straight, from end to end
     #: (``mechanics.drawn_walls``).
@@ -66,6 +64,8 @@ class RailCompliance(Shown):
     #: patterns, for a unit of pressure in each and a coefficient of 1. None for walls that friction
     #: does not move.
     dragged: np.ndarray | None = None
+    #: Computes ``joints``, None for rigid mounts.
+    find_joints: Callable[[], JointTerms | None] | None = None
 
     def __post_init__(self):
         """Arrays in the order of rows, as in a file: sums over an array in another order have other
@@ -107,7 +107,7 @@ class RailCompliance(Shown):
         return {}
 
     def _at(self, factor: float) -> "RailCompliance":
-        terms, flexibility, heat = self.joints, self.flexibility, self.warm
+        terms, flexibility, heat = self._terms, self.flexibility, self.warm
         assert terms is not None  # checked by require
         if flexibility is not None:
             flexibility = joint_terms.flexibility(terms, factor, flexibility, self.rail)
@@ -124,8 +124,27 @@ class RailCompliance(Shown):
             shape=shape,
             warm=heat,
             joints=None,
+            find_joints=None,
             dragged=dragged,
         )
+
+    def finding(self, joints: Callable[[], JointTerms | None]) -> "RailCompliance":
+        """This compliance, which calls ``joints`` at the first factor other than 1: the terms take
+        about as long as the rest, and most runs have no factor."""
+        object.__setattr__(self, "find_joints", joints)
+        return self
+
+    @property
+    def _terms(self) -> JointTerms | None:
+        """``joints``, computed where they are not known."""
+        with _FINDING:  # threads share a compliance
+            return self._found_joints
+
+    @cached_property
+    def _found_joints(self) -> JointTerms | None:
+        if self.joints is None and self.find_joints is not None:
+            return self.find_joints()
+        return self.joints
 
     def cubic(self, modes: int = 0) -> tuple[np.ndarray, np.ndarray]:
         """Flexibility (s-1,f,m,4,p p) between each face and the ``members`` of its rail, without the
@@ -204,7 +223,8 @@ class RailCompliance(Shown):
 
     @cached_property
     def hash(self) -> str:
-        """Hexadecimal SHA-256 of all fields except ``mechanics.rail_compliance.elements_stated``."""
+        """Hexadecimal SHA-256 of all fields except ``mechanics.rail_compliance.elements_stated`` and
+        ``joints``, which follow from the same rail."""
         digest = hashlib.sha256(self.made_for.encode())
         for array in (
             self.travel,
@@ -215,7 +235,6 @@ class RailCompliance(Shown):
             self.shape,
             self.part,
             self.warm,
-            *(self.joints or ()),
             self.drawn,
             self.dragged,
         ):
@@ -289,17 +308,19 @@ class RailCompliance(Shown):
             expected = "a compliance for warm rails: compute it again"
             raise SceneError([Fault(scene.name, "thermal", given, expected)])
         factor = _factor(scene)
-        if factor != 1.0 and (self.joints is None or not LEAST <= factor <= MOST):
+        fixed = self.joints is None and self.find_joints is None
+        if factor != 1.0 and (fixed or not LEAST <= factor <= MOST):
             expected = (
                 "1, for a compliance of fewer patterns"
-                if self.joints is None
+                if fixed
                 else f"{LEAST:g} to {MOST:g}: change normal and shear for others"
             )
             key = "rail.mount_stiffness.factor"
             raise SceneError([Fault(scene.name, key, f"{factor:g}", expected)])
 
     def save(self, path: str | Path) -> None:
-        """Write atomically, as arrays with their digest.
+        """Write atomically, as arrays with their digest. The file holds ``joints``, which are
+        computed first if they are not known.
 
         Args:
             path: file to write, ``.npz``.
@@ -307,14 +328,7 @@ class RailCompliance(Shown):
         Example:
             >>> tipoff.compliance(tipoff.load("tiny"), 8e-3).save("rail.npz")
         """
-        write_sealed(path, content(self))
-
-    def _arrays(self) -> dict:
-        """The fields by name, with the arrays of ``joints`` one by one."""
-        found = self.__getstate__()
-        terms = found.pop("joints")
-        parts = terms._asdict() if terms is not None else {}
-        return found | {f"{_JOINTS}{name}": part for name, part in parts.items()}
+        write_sealed(path, content(replace(self, joints=self._terms)))
 
     @classmethod
     def load(cls, path: str | Path) -> "RailCompliance":
@@ -335,19 +349,7 @@ class RailCompliance(Shown):
             >>> rail = tipoff.RailCompliance.load("rail.npz")
         """
         try:
-            require_whole(path)
-            with np.load(path, allow_pickle=False) as found:
-                arrays = {
-                    field.name: found[field.name]
-                    for field in fields(cls)
-                    if field.default is MISSING or field.name in found
-                }
-                names = [f"{_JOINTS}{name}" for name in JointTerms._fields]
-                if names[0] in found:
-                    arrays["joints"] = JointTerms(*(found[name] for name in names))
-            compliance = cls(
-                **arrays | {name: arrays[name].item() for name in {*_PLAIN} & {*arrays}}
-            )
+            compliance = cls(**stored.read(path))
             array_checks.require(compliance)
         except DamageError as fault:
             raise ValueError(f"{path}: not a file of rail compliance: it {fault.reason}") from fault
@@ -359,11 +361,10 @@ class RailCompliance(Shown):
 
 
 def content(compliance: RailCompliance) -> bytes:
-    """The file that ``RailCompliance.save`` writes, without its digest."""
-    stream = io.BytesIO()
-    arrays = {name: value for name, value in compliance._arrays().items() if value is not None}
-    np.savez_compressed(stream, **arrays)
-    return stream.getvalue()
+    """The file of what is known of a compliance, without its digest."""
+    known = compliance.__getstate__()
+    known.pop("find_joints")
+    return stored.content(known)
 
 
 def _is_positive(matrices: np.ndarray) -> bool:
