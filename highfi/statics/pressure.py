@@ -24,8 +24,8 @@ class Pressed(NamedTuple):
 
     # (p,p) integral of phi_a phi_b dA / A over the part of the face (area A) that has a wall
     gram: np.ndarray
-    node: np.ndarray  # (q,k) node numbers
-    load: np.ndarray  # (p,q,k), to be summed over q
+    node: np.ndarray  # (n,) node numbers, ascending
+    load: np.ndarray  # (p,n)
 
 
 class Wall:
@@ -61,9 +61,10 @@ class Wall:
         local = (place[found] - middle) / half
         phi = (local[:, None] ** powers(MOST_DEGREE)[:patterns]).prod(axis=2)
         part = area / (4.0 * np.abs(half).prod())
-        return Pressed(
-            part * phi.T @ phi, self._facets[near[facet]], part * phi.T[:, :, None] * weight
-        )
+        node, number = np.unique(self._facets[near[facet]], return_inverse=True)
+        share = np.zeros((len(found), node.size))
+        share[np.arange(len(found))[:, None], number.reshape(weight.shape)] = weight
+        return Pressed(part * phi.T @ phi, node, part * phi.T @ share)
 
     def _near(self, first: float, last: float) -> np.ndarray:
         """Facets, ascending, that may be between two X (m)."""
