@@ -46,9 +46,8 @@ def read(path: str | Path) -> dict[str, Any]:
             _pairs(name, found[name], together)
         elif (pairs := found.pop(name + _OF_PAIRS, None)) is not None:
             _, stations, patterns, _ = pairs.shape
-            table = np.zeros((*together.shape, stations, patterns, patterns))
-            table[together] = pairs
-            found[name] = table.transpose(2, 0, 3, 1, 4)
+            found[name] = np.zeros((stations, *2 * (len(together), patterns)))
+            found[name].transpose(1, 3, 0, 2, 4)[together] = pairs
     if any(name.startswith(_JOINTS) for name in found):
         found["joints"] = _joints(found)
     return found | {name: found[name].item() for name in {*_PLAIN} & {*found}}
