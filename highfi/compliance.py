@@ -37,6 +37,7 @@ from tipoff.mechanics.rail_compliance import (
     RailCompliance,
     digest,
     on_part,
+    pairs,
 )
 from tipoff.mechanics.rail_compliance import patterns as of_degree
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
@@ -55,8 +56,9 @@ class Compliance(NamedTuple):
     Near an end of the rail, xi runs over the ``part`` of a face that has a wall."""
 
     travel: np.ndarray  # (s,) m of the payload along X since ignition
-    matrix: np.ndarray  # (s,f,p,f,p) m/N, zero between faces on different rails
-    dragged: np.ndarray  # (s,f,p,f,d) m/N, under tractions along X
+    # (s,f,m,p,p+d) m/N between faces on one rail (``mechanics.rail_compliance.pairs``): p columns
+    # under pressures, d under tractions along X
+    near: np.ndarray
     gram: np.ndarray  # (s,f,p,p), zero where a face has no wall
     # (s,f,2) middle and half length, in xi of the whole face, of the part that has a wall
     part: np.ndarray
@@ -69,6 +71,16 @@ class Compliance(NamedTuple):
     # (s,f,p,t) m, mean displacement away from the payload by a unit of each of the t thermal fields
     warm: np.ndarray
     joints: JointTerms | None  # of rails on joints, if requested
+
+    @property
+    def matrix(self) -> np.ndarray:
+        """Mean displacements (s,f,p,f,p) m/N under pressures, of all faces."""
+        return pairs.whole(self.near[..., : self.gram.shape[-1]], self.rail)
+
+    @property
+    def dragged(self) -> np.ndarray:
+        """Mean displacements (s,f,p,f,d) m/N under tractions along X, of all faces."""
+        return pairs.whole(self.near[..., self.gram.shape[-1] :], self.rail)
 
 
 def condense(
@@ -101,14 +113,12 @@ def condense(
     whole = on_part(place, degree).swapaxes(-1, -2)
     first = np.linalg.pinv(found.gram[..., :DRAGGED, :DRAGGED], rcond=_SINGULAR, hermitian=True)
     inverse, first = whole @ inverse, whole[..., :DRAGGED, :DRAGGED] @ first
-    flexibility, dragged = (
-        np.einsum("siab,sibjc,sjdc->siajd", each, matrix, each, optimize=True)
-        for each, matrix in ((inverse, found.matrix), (first, found.dragged[:, :, :DRAGGED]))
-    )
+    pressed, rubbed = found.near[..., :count], found.near[..., :DRAGGED, count:]
+    dragged = pairs.on_both_sides(first, rubbed, found.rail)
     warm = np.einsum("siab,sibt->tsia", inverse, found.warm)
     return RailCompliance(
         travel=stations,
-        flexibility=flexibility,
+        flexibility=pairs.on_both_sides(inverse, pressed, found.rail),
         rail=found.rail,
         half=found.half,
         frequency=found.frequency,
@@ -124,7 +134,7 @@ def condense(
             shape=inverse @ found.joints.shape,
         ),
         drawn=_drawn(scene, element_size),
-        dragged=0.5 * (dragged + dragged.transpose(0, 3, 4, 1, 2)),
+        dragged=0.5 * (dragged + pairs.transposed(dragged, found.rail)),
     )
 
 
@@ -236,10 +246,7 @@ def of_rails(
     stations = np.asarray(travel, dtype=float)
     count = faces.axis.size
     half = scene_model.half_sizes(faces)
-    matrix, gram = (
-        np.zeros((stations.size, count, patterns, count, patterns + dragged)),
-        np.zeros((stations.size, count, patterns, patterns)),
-    )
+    gram = np.zeros((stations.size, count, patterns, patterns))
     middle = faces.centre[:, 0] + stations[:, None]
     part = np.stack(
         [part_of_wall(x, long, reach, patterns) for x, long in zip(middle.T, half[:, 0])], axis=1
@@ -250,15 +257,24 @@ def of_rails(
     frequencies: list[np.ndarray] = []
     parts: list[joint_terms.Part] = []
     warm = np.zeros((stations.size, count, patterns, FIELDS))
+    under: list[tuple[HeldRail, Patches, list[np.ndarray]]] = []
+    rails = 0
     for rail in held:
         patches = Patches(rail.rail, patterns, dragged)
         places = [patches.under(faces, half, signs, reach, stations) for signs in rail.images]
-        if not patches.found:
-            continue
+        if patches.found:
+            under.append((rail, patches, places))
+        for number in places:
+            here = (number >= 0).any(axis=0)
+            rail_of[here] = rails
+            rails += bool(here.any())
+    beside = pairs.beside(rail_of)
+    near = np.zeros((stations.size, *beside.shape, patterns, patterns + dragged))
+    for rail, patches, places in under:
         # An additional last place without response, for faces without a wall (number -1).
-        pairs, number_of = pressed_together(places, len(patches.found))
+        together, number_of = pressed_together(places, len(patches.found), beside)
         answer, heated, frequency, swung, terms = patches.solved(
-            rail, 0.5 * (reach[0] + reach[1]), modes, pairs, joints
+            rail, 0.5 * (reach[0] + reach[1]), modes, together, joints
         )
         between = np.pad(answer, [(0, 1), (0, 0), (0, 0)])
         heated, swung = (np.pad(moved, [(0, 1), (0, 0), (0, 0)]) for moved in (heated, swung))
@@ -267,18 +283,15 @@ def of_rails(
             gram += grams[number]
             # the fields linear in y and z change sign with the image
             warm += heated[number] * np.r_[1.0, signs, 1.0]
-            matrix += between[number_of(number)].transpose(0, 1, 3, 2, 4)
+            near += between[number_of(number)]
             shape += swung[number]
-            here = (number >= 0).any(axis=0)
-            if here.any():
-                rail_of[here] = len(frequencies)
+            if (number >= 0).any():
                 frequencies.append(frequency)
                 if terms is not None:
                     parts.append(joint_terms.Part(number, signs, terms))
     return Compliance(
         travel=stations,
-        matrix=matrix[..., :patterns],
-        dragged=matrix[..., patterns:],
+        near=near,
         gram=gram,
         part=part,
         rail=rail_of,

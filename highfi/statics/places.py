@@ -169,15 +169,15 @@ def part_of_wall(
 
 
 def pressed_together(
-    places: list[np.ndarray], count: int
+    places: list[np.ndarray], count: int, beside: np.ndarray
 ) -> tuple[np.ndarray, Callable[[np.ndarray], np.ndarray]]:
     """All pairs (q,2) of the ``count`` places that are pressed at the same travel, ascending, for
-    ``places`` (s,f) under the faces of each image; and the function from such an array to the
-    number (s,f,f) of the pair, -1 without a wall."""
+    ``places`` (s,f) under the faces of each image, with the faces ``beside`` (f,m) each on its rail;
+    and the function from such an array to the number (s,f,m) of the pair, -1 without a wall."""
 
     def keys(number: np.ndarray) -> np.ndarray:
-        first, second = number[:, :, None], number[:, None, :]
-        return np.where((first >= 0) & (second >= 0), first * count + second, -1)
+        first, second = number[:, :, None], number[:, beside]
+        return np.where((first >= 0) & (second >= 0) & (beside >= 0), first * count + second, -1)
 
     every = np.unique(np.concatenate([keys(number).ravel() for number in places]))
     every = every[every >= 0]

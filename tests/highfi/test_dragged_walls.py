@@ -9,6 +9,7 @@ from tipoff import highfi
 from tipoff.highfi import compliance
 from tipoff.highfi.statics import assembly, inputs
 from tipoff.highfi.statics.places import Patches
+from tipoff.mechanics.rail_compliance import pairs
 from tipoff.scenes import load
 
 SIZE = 4e-3
@@ -22,7 +23,7 @@ def condensed():
 def test_it_is_the_symmetric_part(condensed):
     """Maxwell and Betti hold for pressure alone: friction pulls another way than the wall is
     measured. Control: the full displacement of a face is not symmetric."""
-    found = condensed.dragged
+    found = pairs.whole(condensed.dragged, condensed.rail)
     np.testing.assert_allclose(found, found.transpose(0, 3, 4, 1, 2), atol=1e-12 * found.max())
     one = compliance.along(tiny(), SIZE, condensed.travel[3:4], dragged=3).dragged[0]
     square = one[:, :3].reshape(one.shape[0] * 3, -1)
@@ -60,7 +61,8 @@ def test_its_size_on_the_clamped_rail():
     found = highfi.condense(scene, SIZE)
     faces = np.arange(found.rail.size)
     own = found.compliance()[:, faces, faces]
-    share = scene.friction.dynamic * found.dragged[:, faces, 0, faces, 0] / own
+    every = pairs.whole(found.dragged, found.rail)
+    share = scene.friction.dynamic * every[:, faces, 0, faces, 0] / own
     whole = np.isclose(found.part, [0.0, 1.0], atol=1e-9).all(axis=2)
     assert np.abs(share[whole]).max() == pytest.approx(0.0167, abs=5e-4)
 
@@ -75,7 +77,7 @@ def test_friction_acts_half_a_wall_from_the_middle_of_the_leg(condensed):
     own = condensed.compliance()[:, face, face]
     slope = np.gradient(own, condensed.travel)
     expected = 0.25 * scene.rail.thickness * slope
-    found = condensed.dragged[:, face, 0, face, 0]
+    found = pairs.whole(condensed.dragged, condensed.rail)[:, face, 0, face, 0]
     whole = np.isclose(condensed.part[:, face], [0.0, 1.0]).all(axis=1)  # away from both ends
     inside = np.flatnonzero(whole)[2:-2]
     likeness = np.corrcoef(found[inside], expected[inside])[0, 1]

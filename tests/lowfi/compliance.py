@@ -17,7 +17,7 @@ from tipoff.lowfi.contact import springs
 from tipoff.lowfi.contact.compliant import loads, record, solution
 from tipoff.lowfi.dynamics import equations
 from tipoff.mechanics import scene_model
-from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest
+from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest, pairs
 from tipoff.mechanics.rail_compliance.patterns import powers
 from tipoff.scenes.scene import Scene
 
@@ -44,7 +44,7 @@ def handmade(scene: Scene, entries: dict, rail=None) -> RailCompliance:
     rail = np.zeros(count, dtype=np.int64) if rail is None else rail
     return RailCompliance(
         np.array([0.0, 1.0]),
-        flexibility,
+        pairs.of_whole(flexibility, rail),
         rail,
         half,
         np.zeros((rail.max() + 1, 0)),
@@ -190,7 +190,8 @@ def forces_of(
 
 def flexibility_at(compliance: RailCompliance, travel: float) -> np.ndarray:
     """(f,p,f,p) m/N between the stations."""
-    return CubicSpline(compliance.travel, compliance.flexibility)(travel)
+    every = pairs.whole(compliance.flexibility, compliance.rail)
+    return CubicSpline(compliance.travel, every)(travel)
 
 
 CLEARANCE = REFERENCE.contact.clearance

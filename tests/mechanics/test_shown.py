@@ -58,9 +58,9 @@ def test_a_card_is_escaped(run):
 def _walls() -> RailCompliance:
     """Four faces at three stations, each as stiff as its number says."""
     faces = 4
-    own = np.zeros((3, faces, PATTERNS, faces, PATTERNS))
+    own = np.zeros((3, faces, 1, PATTERNS, PATTERNS))
     for face in range(faces):
-        own[:, face, 0, face, 0] = 1e-9 * (1 + face) * np.array([1.0, 2.0, 3.0])
+        own[:, face, 0, 0, 0] = 1e-9 * (1 + face) * np.array([1.0, 2.0, 3.0])
     return RailCompliance(
         travel=np.array([0.0, 0.01, 0.02]),
         flexibility=own,

@@ -75,17 +75,16 @@ def request(scene: Scene, degree: int = DEGREE) -> Run:
     if scene.rail.mount_stiffness is not None:
         scene = scene.replace({"rail.mount_stiffness.factor": 1.0})
     faces = scene_model.built(scene).nominal
-    count, size = faces.axis.size, patterns.count(degree)
-    first = patterns.DRAGGED
+    count, size, first = faces.axis.size, patterns.count(degree), patterns.DRAGGED
     still = RailCompliance(
         travel=np.array([0.0, 1.0]),
-        flexibility=np.zeros((2, count, size, count, size)),
+        flexibility=np.zeros((2, count, count, size, size)),
         rail=np.zeros(count, dtype=np.int64),
         half=scene_model.half_sizes(faces),
         frequency=np.zeros((1, 0)),
         shape=np.zeros((2, count, size, 0)),
         made_for=digest(scene),
         warm=None if scene.thermal is None else np.zeros((FIELDS, 2, count, size)),
-        dragged=np.zeros((2, count, first, count, first)),
+        dragged=np.zeros((2, count, count, first, first)),
     )
     return Run("lowfi", scene.name, scene, lowfi.Numerics(), compliance=still)

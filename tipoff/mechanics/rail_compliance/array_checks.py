@@ -30,9 +30,9 @@ def require(found: Any) -> None:
         raise ValueError("travel: given stations out of order, expected rising ones")
     if not faces or found.rail.min() < 0:
         raise ValueError(f"rail: given {faces} faces, expected each on a rail of number 0 or more")
-    rails = int(found.rail.max()) + 1
+    rails, most = found.members.shape
     expected: dict[str, tuple[int, ...]] = {
-        "flexibility": (stations, faces, patterns, faces, patterns),
+        "flexibility": (stations, faces, most, patterns, patterns),
         "half": (faces, 2),
         "frequency": (rails, modes),
         "shape": (stations, faces, patterns, modes),
@@ -42,7 +42,7 @@ def require(found: Any) -> None:
     if found.part is not None:
         expected["part"] = (stations, faces, 2)
     if found.dragged is not None:
-        expected["dragged"] = (stations, faces, DRAGGED, faces, DRAGGED)
+        expected["dragged"] = (stations, faces, most, DRAGGED, DRAGGED)
     if found.drawn is not None:
         _require_dimensions("drawn", found.drawn, 3)
         expected["drawn"] = (max(len(found.drawn), 2), faces, drawn_walls.ACROSS)

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from tipoff.mechanics.rail_compliance import patterns
+from tipoff.mechanics.rail_compliance import pairs, patterns
 
 
 def of_first(own: Any, count: int) -> dict[str, Any]:
@@ -13,10 +13,10 @@ def of_first(own: Any, count: int) -> dict[str, Any]:
     gram, flexibility, dragged = own.gram[..., :count, :], own.flexibility, own.dragged
     onto = np.linalg.inv(gram[..., :count]) @ gram
     if flexibility is not None:
-        flexibility = np.einsum("siab,sibjc,sjdc->siajd", onto, flexibility, onto, optimize=True)
+        flexibility = pairs.on_both_sides(onto, flexibility, own.rail)
     if dragged is not None:
         inside = np.arange(patterns.DRAGGED) < count
-        dragged = dragged * inside[:, None, None] * inside
+        dragged = dragged * inside[:, None] * inside
     return {
         "flexibility": flexibility,
         "dragged": dragged,
@@ -32,14 +32,14 @@ def restricted(own: Any, count: int, coupled: bool) -> dict[str, Any]:
     ``coupled``, without the coupling between faces, modes and friction on the walls."""
     first = of_first(own, count)
     flexibility, shape = np.zeros_like(own.flexibility), np.zeros_like(own.shape)
-    flexibility[:, :, :count, :, :count] = first["flexibility"]
+    flexibility[..., :count, :count] = first["flexibility"]
     shape[:, :, :count] = first["shape"]
     found = first | {"flexibility": flexibility, "shape": shape, "warm": own.warm}
     if coupled:
         return found
-    alone = np.eye(len(own.rail))[None, :, None, :, None]
+    alone = pairs.beside(own.rail) == np.arange(len(own.rail))[:, None]
     return found | {
-        "flexibility": flexibility * alone,
+        "flexibility": flexibility * alone[:, :, None, None],
         "dragged": None,
         "frequency": own.frequency[:, :0],
         "shape": shape[..., :0],

@@ -20,6 +20,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tipoff.mechanics.rail_compliance import pairs
+
 LEAST, MOST = 0.25, 4.0  # factors between which the modes are accurate
 TERMS = 1e-7  # relative to the displacement under a pad: sum of the terms that are left out
 
@@ -45,31 +47,29 @@ def _weights(terms: JointTerms, factor: float) -> np.ndarray:
 def flexibility(
     terms: JointTerms, factor: float, nominal: np.ndarray, rail: np.ndarray
 ) -> np.ndarray:
-    """Flexibility (s,f,p,f,p) m/N at a ``factor``, from the ``nominal`` one; ``rail`` (f,): number
+    """Flexibility (s,f,m,p,p) m/N at a ``factor``, from the ``nominal`` one; ``rail`` (f,): number
     of the rail of each face."""
     return nominal - _together(terms, factor, (terms.moved, terms.moved), rail)
 
 
 def dragged(terms: JointTerms, factor: float, nominal: np.ndarray, rail: np.ndarray) -> np.ndarray:
-    """As ``flexibility`` for the displacement (s,f,d,f,d) m/N by friction."""
+    """As ``flexibility`` for the displacement (s,f,m,d,d) m/N by friction."""
     change = _together(terms, factor, (terms.moved_first, terms.moved_by_friction), rail)
-    return nominal - 0.5 * (change + change.transpose(0, 3, 4, 1, 2))
+    return nominal - 0.5 * (change + pairs.transposed(change, rail))
 
 
 def _together(
     terms: JointTerms, factor: float, both: tuple[np.ndarray, np.ndarray], rail: np.ndarray
 ) -> np.ndarray:
-    """Sum (s,f,p,f,p) of the products of the terms of ``both`` (s,f,p,n) loads."""
+    """Sum (s,f,m,p,p) of the products of the terms of ``both`` (s,f,p,n) loads."""
     weights, (stations, faces, patterns, _) = _weights(terms, factor), both[0].shape
-    found = np.zeros((stations, faces, patterns, faces, patterns))
-    for number in range(len(weights)):
-        own = np.flatnonzero(rail == number)
-        shape = (stations, own.size, patterns)
+    rails = pairs.members(rail)
+    found = np.zeros((stations, faces, rails.shape[1], patterns, patterns))
+    for weight, row in zip(weights, rails):
+        own = row[row >= 0]
         flat, other = (each[:, own].reshape(stations, own.size * patterns, -1) for each in both)
-        change = (flat * weights[number]) @ other.transpose(0, 2, 1)
-        found[:, own[:, None], :, own[None, :], :] += change.reshape(*shape, *shape[1:]).transpose(
-            1, 3, 0, 2, 4
-        )
+        change = (flat * weight) @ other.transpose(0, 2, 1)
+        found[:, own, : own.size] = pairs.blocks(change, own.size)
     return found
 
 

@@ -11,7 +11,14 @@ from pathlib import Path
 import numpy as np
 
 from tipoff.files import DamageError, content_hash, write_sealed
-from tipoff.mechanics.rail_compliance import array_checks, fewer, joint_terms, patterns, stored
+from tipoff.mechanics.rail_compliance import (
+    array_checks,
+    fewer,
+    joint_terms,
+    pairs,
+    patterns,
+    stored,
+)
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST, JointTerms
 from tipoff.mechanics.rail_compliance.shown import Shown
 from tipoff.mechanics.rail_compliance.stations import cubic
@@ -37,7 +44,8 @@ class RailCompliance(Shown):
 
     #: (s,) m, travel of the payload along X since ignition, evenly spaced.
     travel: np.ndarray
-    #: (s,f,p,f,p) m/N, None for rigid walls.
+    #: (s,f,m,p,p) m/N between each face and the ``members`` of its rail (``pairs``), None for rigid
+    #: walls.
     flexibility: np.ndarray | None
     #: (f,) number of the rail of each face.
     rail: np.ndarray
@@ -60,7 +68,7 @@ class RailCompliance(Shown):
     #: (n,f,3) m, offset of walls that are not straight, from end to end
     #: (``mechanics.drawn_walls``).
     drawn: np.ndarray | None = None
-    #: (s,f,d,f,d) m/N, symmetric part of the displacement by friction along X, in the first d
+    #: (s,f,m,d,d) m/N likewise, symmetric part of the displacement by friction along X, in the first d
     #: patterns, for a unit of pressure in each and a coefficient of 1. None for walls that friction
     #: does not move.
     dragged: np.ndarray | None = None
@@ -165,20 +173,13 @@ class RailCompliance(Shown):
         return None if self.dragged is None else self._between_faces(self.dragged)
 
     def _between_faces(self, table: np.ndarray) -> np.ndarray:
-        """Cubics between each face and the members of its rail; the others do not move it."""
-        count = np.arange(self.rail.size)[:, None]
-        near = table.transpose(1, 3, 0, 2, 4)[count, self.members[self.rail]]  # (f,m,s,p,p)
-        between = cubic(self.travel, near.transpose(2, 0, 1, 3, 4)).transpose(0, 1, 2, 5, 3, 4)
+        between = cubic(self.travel, table).transpose(0, 1, 2, 5, 3, 4)
         return np.ascontiguousarray(between.reshape(*between.shape[:4], -1))
 
     @cached_property
     def members(self) -> np.ndarray:
         """Numbers (r,m) of the faces on each rail; -1 fills up."""
-        rails = [np.flatnonzero(self.rail == number) for number in range(self.rail.max() + 1)]
-        found = np.full((len(rails), max(rail.size for rail in rails)), -1)
-        for row, rail in zip(found, rails):
-            row[: rail.size] = rail
-        return found
+        return pairs.members(self.rail)
 
     @cached_property
     def shapes(self) -> np.ndarray:
@@ -191,23 +192,21 @@ class RailCompliance(Shown):
         return {}
 
     def residual(self, modes: int) -> np.ndarray:
-        """Flexibility (s,f,p,f,p) m/N without the part of the first ``modes`` of each rail. Raises
+        """Flexibility (s,f,m,p,p) m/N without the part of the first ``modes`` of each rail. Raises
         ValueError if this is not positive semidefinite: the modes then belong to another rail."""
         flexibility = self._flexibility()
         if modes == 0:
             return flexibility
         part = self.shape[..., :modes] / self.frequency[self.rail, None, :modes]
-        together = (self.rail[:, None] == self.rail)[:, None, :, None]
-        rest = flexibility - together * np.einsum("siam,sjbm->siajb", part, part)
-        for row in self.members:  # rails do not move each other
+        rest = flexibility.copy()
+        for row in self.members:
             own = row[row >= 0]
-            size = own.size * rest.shape[2]
-            part, whole = (
-                table[:, own][:, :, :, own].reshape(-1, size, size) for table in (rest, flexibility)
-            )
-            norm = np.linalg.norm(whole, axis=(1, 2))
+            moved = part[:, own].reshape(len(part), -1, modes)
+            rest[:, own, : own.size] -= pairs.blocks(moved @ moved.swapaxes(1, 2), own.size)
+            left, every = (pairs.of_rail(table, own) for table in (rest, flexibility))
+            norm = np.linalg.norm(every, axis=(1, 2))
             allowed = _ROUNDING * np.where(norm > 0.0, norm, 1.0)
-            if not _is_positive(part + allowed[:, None, None] * np.eye(size)):
+            if not _is_positive(left + allowed[:, None, None] * np.eye(left.shape[1])):
                 words = "with more compliance than the wall has, expected modes of the same rail"
                 raise ValueError(f"modes: given {modes} {words}")
         return rest
@@ -245,8 +244,9 @@ class RailCompliance(Shown):
     def compliance(self) -> np.ndarray:
         """Mean displacement (s,f,f) in m/N of each face under a unit force spread evenly over each,
         both on the parts that have a wall."""
-        mean = self.gram[..., 0, :]
-        return np.einsum("sia,siajb,sjb->sij", mean, self._flexibility(), mean, optimize=True)
+        mean = self.gram[..., :1, :]
+        found = pairs.on_both_sides(mean, self._flexibility(), self.rail)
+        return pairs.whole(found, self.rail)[:, :, 0, :, 0]
 
     @cached_property
     def gram(self) -> np.ndarray:

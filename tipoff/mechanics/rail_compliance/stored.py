@@ -1,9 +1,5 @@
 """Files of a rail compliance, and of its joint terms: arrays by name, without compression, because
-that would hardly shorten numbers and takes most of the time of reading.
-
-Faces on different rails do not move each other. So the tables between faces are stored for the pairs
-on one rail: (f,f) there is (q,) here, the first axis.
-"""
+that would hardly shorten numbers and takes most of the time of reading."""
 
 import io
 from collections.abc import Mapping
@@ -16,18 +12,12 @@ from tipoff.files import require_whole
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 
 _PLAIN = ("made_for", "element_size", "frequency_uncertainty", "not_known")  # no arrays
-_PAIRS = ("flexibility", "dragged")  # tables (s,f,p,f,p)
-_OF_PAIRS = ".pairs"  # suffix of their names in a file
 _JOINTS = "joints."  # prefix of the names of the joint terms in a file
 
 
 def content(fields: Mapping[str, Any]) -> bytes:
-    """The file of the ``fields`` of a ``RailCompliance`` that are not None, without its digest.
-    Raises ValueError for a table that couples faces on different rails."""
+    """The file of the ``fields`` of a ``RailCompliance`` that are not None, without its digest."""
     known = {name: value for name, value in fields.items() if value is not None}
-    together = _together(known["rail"])
-    for name in {*_PAIRS} & {*known}:
-        known[name + _OF_PAIRS] = _pairs(name, known.pop(name), together)
     return _written(known | _named(known.pop("joints", None)))
 
 
@@ -40,14 +30,6 @@ def read(path: str | Path) -> dict[str, Any]:
     """The fields of a ``RailCompliance`` in a file. Raises FileNotFoundError, DamageError, and many
     kinds of exceptions for a foreign or damaged file."""
     found: dict[str, Any] = _arrays(path)
-    together = _together(found["rail"])
-    for name in _PAIRS:
-        if name in found:  # of older files
-            _pairs(name, found[name], together)
-        elif (pairs := found.pop(name + _OF_PAIRS, None)) is not None:
-            _, stations, patterns, _ = pairs.shape
-            found[name] = np.zeros((stations, *2 * (len(together), patterns)))
-            found[name].transpose(1, 3, 0, 2, 4)[together] = pairs
     if any(name.startswith(_JOINTS) for name in found):
         found["joints"] = _joints(found)
     return found | {name: found[name].item() for name in {*_PLAIN} & {*found}}
@@ -62,20 +44,6 @@ def _arrays(path: str | Path) -> dict[str, np.ndarray]:
     require_whole(path)
     with np.load(path, allow_pickle=False) as found:
         return dict(found)
-
-
-def _together(rail: np.ndarray) -> np.ndarray:
-    """Whether two faces (f,f) are on one rail."""
-    return rail[:, None] == rail
-
-
-def _pairs(name: str, table: np.ndarray, together: np.ndarray) -> np.ndarray:
-    """Part (q,s,p,p) of a table (s,f,p,f,p) for the pairs of faces that are ``together``. Raises
-    ValueError if others are coupled."""
-    between = table.transpose(1, 3, 0, 2, 4)
-    if between[~together].any():
-        raise ValueError(f"{name}: given some between faces on different rails, expected none")
-    return between[together]
 
 
 def _named(terms: JointTerms | None) -> dict[str, np.ndarray]:

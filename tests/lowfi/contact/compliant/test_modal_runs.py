@@ -79,7 +79,7 @@ def crossing(ratio: float):
     sines = np.sqrt(2.0 / (DENSITY * WIDTH * HEIGHT * LENGTH)) * np.sin(
         np.pi * number * travel[:, None] / LENGTH
     )
-    flexibility, shape = np.zeros((101, 1, PATTERNS, 1, PATTERNS)), np.zeros((101, 1, PATTERNS, 20))
+    flexibility, shape = np.zeros((101, 1, 1, PATTERNS, PATTERNS)), np.zeros((101, 1, PATTERNS, 20))
     flexibility[:, 0, 0, 0, 0], shape[:, 0, 0] = (sines**2 / frequency**2).sum(axis=1), sines
     return asked, replace(
         handmade(asked, {}),
