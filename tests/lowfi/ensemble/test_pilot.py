@@ -31,7 +31,29 @@ def pilots(monkeypatch):
         return SimpleNamespace(numerics={"modes": (len(seen) - 1) % pilot.PILOT})
 
     monkeypatch.setattr(pilot, "solved", solved)
+    monkeypatch.setattr(pilot, "_is_chaotic", lambda *_: False)
     return seen
+
+
+def test_a_case_that_a_micrometre_turns_over_chooses_none(monkeypatch):
+    """15 of 16 cases with a change of 0.6 of their total rate choose no modes, whatever these would
+    change. Control: a change of 0.4 leaves the choice to the modes."""
+
+    def pilot_of(share):
+        def solved(scene, *_, **__):
+            number = scene.thrust_offset.misalignment.radial
+            base = REFERENCE.contact.clearance
+            wider = share * (scene.contact.clearance - base) / 1e-6 * (number > 0.0)
+            outcome = SimpleNamespace(rate=[0.0, 3e-3, 4e-3 + 5e-3 * wider])
+            return SimpleNamespace(numerics={"modes": 20}, outcome=outcome)
+
+        monkeypatch.setattr(pilot, "solved", solved)
+        return pilot.settled(asked())
+
+    chaotic = pilot_of(0.6)
+    assert chaotic.numerics.modes == 0 and "(15 cases)" in chaotic.modes_why
+    regular = pilot_of(0.4)
+    assert regular.numerics.modes == 20 and "clearance" not in regular.modes_why
 
 
 def test_a_store_keeps_the_number_and_its_reason(pilots, tmp_path):
