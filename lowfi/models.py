@@ -27,7 +27,7 @@ def require(
     faults = []
     degree = numerics.degree if numerics is not None else None
     if model == COMPLIANT:
-        if degree is not None and compliance is not None and degree > compliance.degree:
+        if isinstance(degree, int) and compliance is not None and degree > compliance.degree:
             faults.append(
                 (
                     "numerics.degree",

@@ -6,7 +6,13 @@ from dataclasses import dataclass, replace
 
 from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.mechanics.promises import RIGID, Promises
-from tipoff.mechanics.rail_compliance import DEGREE, LOW_DEGREE, MODES, MOST_DEGREE
+from tipoff.mechanics.rail_compliance import (
+    DEGREE,
+    LEAST_DEGREE,
+    LOW_DEGREE,
+    MODES,
+    MOST_DEGREE,
+)
 from tipoff.scenes.units import is_number, single
 
 AUTO = "auto"
@@ -36,8 +42,9 @@ class Numerics:
     #: without inertia, ``"auto"`` as many modes as matter to the run (``lowfi.modes``).
     modes: int | str = AUTO
     #: Degree of the patterns of pressure and displacement on a pad face. None means that of the rail
-    #: compliance, which may have a higher one: ``tipoff.compliance(scene, degree=4)``.
-    degree: int | None = None
+    #: compliance, which may have a higher one: ``tipoff.compliance(scene, degree=4)``. ``"auto"`` means
+    #: the least one whose next would hardly change the run (``lowfi.degrees``).
+    degree: int | str | None = None
     #: Contact cells along each edge of a pad face on compliant contact; 16, as in the reference.
     cells: int = 16
 
@@ -66,11 +73,13 @@ class Numerics:
                 f"modes: given {self.modes!r}, expected a whole number from 0 to {MODES}, or "
                 f"{AUTO!r}"
             )
-        if self.degree is not None and not (
-            type(self.degree) is int and 1 <= self.degree <= MOST_DEGREE
-        ):
+        is_number_of_degree = (
+            type(self.degree) is int and LEAST_DEGREE <= self.degree <= MOST_DEGREE
+        )
+        if self.degree not in (None, AUTO) and not is_number_of_degree:
             faults.append(
-                f"degree: given {self.degree!r}, expected a whole number from 1 to {MOST_DEGREE}"
+                f"degree: given {self.degree!r}, expected a whole number from {LEAST_DEGREE} to "
+                f"{MOST_DEGREE}, or {AUTO!r}"
             )
         if not (type(self.cells) is int and _LEAST_CELLS <= self.cells <= _MOST_CELLS):
             faults.append(
@@ -83,7 +92,14 @@ class Numerics:
     @property
     def needed_degree(self) -> int:
         """Degree of the rail compliance that a run computes for itself."""
+        if isinstance(self.degree, str):
+            return MOST_DEGREE
         return max(self.degree or DEGREE, DEGREE)
+
+    @property
+    def known_degree(self) -> int | None:
+        """The ``degree`` if it is a number."""
+        return self.degree if isinstance(self.degree, int) else None
 
     @property
     def count(self) -> int:

@@ -45,7 +45,7 @@ def prepare(
     model, modes = models[0], numerics.count
     thermal_offset.require(scene, compliance)
     found = compliance.of(scene) if compliance and scene.contact else None
-    found = found.of_degree(numerics.degree or found.degree) if found else None
+    found = found.of_degree(numerics.known_degree or found.degree) if found else None
     common = system.build(
         model,
         compliance=record.under_pads(scene, model, found, modes, numerics.cells),

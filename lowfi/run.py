@@ -4,7 +4,7 @@ import time as clock
 from collections.abc import Callable
 from dataclasses import replace
 
-from tipoff.lowfi import modes
+from tipoff.lowfi import degrees, modes
 from tipoff.lowfi.models import require
 from tipoff.lowfi.numerics import AUTO, Numerics
 from tipoff.lowfi.single_run import SingleRun, integrated
@@ -61,6 +61,14 @@ def solved(
     def made(asked: Numerics, watches: bool = False) -> SingleRun:
         return integrated(SingleRun(scene, asked, compliance, watches=watches), progress, spent)
 
+    why = ""
+    if numerics.degree == AUTO and compliance is not None:
+        plain = replace(numerics, modes=0)
+        degree, why = degrees.choose(
+            lambda each: made(replace(plain, degree=each)), compliance.degree
+        )
+        numerics = replace(numerics, degree=degree)
+
     def tried(count: int) -> SingleRun:
         if count and vibrates:
             vibrates(count)
@@ -77,6 +85,8 @@ def solved(
         result.cost.update(choice.cost())
     else:
         result = made(numerics).trajectory()
+    if why:
+        result.numerics["degree_why"] = why
     compile_cpu = spent.pop("compile_cpu_s")
     result.cost.update(wall_s=clock.perf_counter() - began - spent["compile_s"], **spent)
     result.cost["cpu_s"] = clock.thread_time() - cpu - compile_cpu

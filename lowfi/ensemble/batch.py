@@ -63,6 +63,8 @@ class Family:
     ):
         if numerics.modes == AUTO and may_vibrate(scene, compliance):
             raise ValueError("modes: cases of an ensemble need a number, which its pilot chooses")
+        if numerics.degree == AUTO:
+            raise ValueError("degree: cases of an ensemble need a number")
         self.scene, self.calibration, self.widening = scene, calibration, widening
         self.numerics, self.compliance = numerics, compliance
         calibrated = calibration.apply(scene) if calibration else scene

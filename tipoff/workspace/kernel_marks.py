@@ -131,8 +131,9 @@ def _modes(run: Run) -> str | int:
     return getattr(run.numerics, "modes", 0) if pressed else 0
 
 
-def _degree(run: Run) -> int | None:
-    """Degree of the patterns on a pad face, for which kernels are compiled; None on rigid walls."""
+def _degree(run: Run) -> int | str | None:
+    """Degree of the patterns on a pad face, for which kernels are compiled; ``"auto"`` stands for those
+    of a choice. None on rigid walls."""
     if run.model != COMPLIANT or run.compliance is None:
         return None
     return run.numerics.degree or run.compliance.degree

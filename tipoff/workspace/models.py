@@ -23,7 +23,7 @@ class Options(NamedTuple):
     name: str | None = None  # None: the default
     calibration: Path | None = None  # file, of a surrogate
     modes: int | str | None = None  # of each rail on compliant contact; None: "auto"
-    degree: int | None = None  # of the patterns on a pad face; None: the default
+    degree: int | str | None = None  # of the patterns on a pad face; None: the default
     cells: int | None = None  # along each edge of a pad face; None: the default
 
     @property
@@ -34,7 +34,9 @@ class Options(NamedTuple):
     @property
     def numerics(self) -> dict[str, Any]:
         """Numerics of a run on compliant contact."""
-        return {"modes": self.asked} | ({} if self.cells is None else {"cells": self.cells})
+        others = {"degree": self.degree, "cells": self.cells}
+        given = {name: value for name, value in others.items() if value is not None}
+        return {"modes": self.asked} | given
 
     @property
     def model(self) -> str:

@@ -50,11 +50,15 @@ class Run:
 
 
 def with_modes_of(nominal: Trajectory, run: Run) -> Run:
-    """``run`` with the rail modes that the ``nominal`` run chose. Two compared runs must have the
-    same equations; otherwise a change of modes would appear as the effect of their difference."""
-    if "modes_why" not in nominal.numerics:
-        return run
-    return replace(run, numerics=replace(run.numerics, modes=nominal.numerics["modes"]))
+    """``run`` with the rail modes, and the degree of patterns, that the ``nominal`` run chose. Two
+    compared runs must have the same equations; otherwise a change of modes would appear as the effect
+    of their difference."""
+    chosen = {
+        name: nominal.numerics[name]
+        for name in ("modes", "degree")
+        if f"{name}_why" in nominal.numerics
+    }
+    return replace(run, numerics=replace(run.numerics, **chosen)) if chosen else run
 
 
 def execute(

@@ -36,6 +36,7 @@ a scene (``mechanics.rail_compliance.joint_terms``).
 from tipoff.mechanics.rail_compliance.models import may_vibrate, model_of, require_modes
 from tipoff.mechanics.rail_compliance.patterns import (
     DEGREE,
+    LEAST_DEGREE,
     LOW_DEGREE,
     MOST_DEGREE,
     PATTERNS,
@@ -51,6 +52,7 @@ from tipoff.mechanics.rail_compliance.stations import cubic
 
 __all__ = [
     "DEGREE",
+    "LEAST_DEGREE",
     "LOW_DEGREE",
     "MODES",
     "MOST_DEGREE",

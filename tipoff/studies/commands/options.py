@@ -5,12 +5,21 @@ from typing import Annotated, Any, Literal
 
 import typer
 
+_DEGREES = ("1", "2", "3", "4")
+
 
 def modes_of(text: str) -> int | str:
     """A number of modes, or ``auto``; raises BadParameter."""
     if text == "auto" or text.isdecimal():
         return text if text == "auto" else int(text)
     raise typer.BadParameter(f"{text!r}: a whole number from zero, or auto")
+
+
+def degree_of(text: str) -> int | str:
+    """A degree of patterns, or ``auto``; raises BadParameter."""
+    if text == "auto" or text in _DEGREES:
+        return text if text == "auto" else int(text)
+    raise typer.BadParameter(f"{text!r}: {', '.join(_DEGREES)}, or auto")
 
 
 def scene_names(incomplete: str) -> list[str]:
@@ -162,14 +171,14 @@ Modes = Annotated[
     ),
 ]
 Degree = Annotated[
-    int | None,
+    str | None,
     typer.Option(
         "--degree",
         metavar="N",
-        min=2,
-        max=4,
+        parser=degree_of,
         help="Degree of the polynomials of pressure and displacement on a pad face, with --model "
-        "compliant, from 2 to 4; default: 3. A higher one is slower, and nearer to the reference.",
+        "compliant, from 1 to 4; default: 3. A higher one is slower, and nearer to the reference; auto: "
+        "the least one whose next would hardly change the rates.",
     ),
 ]
 Cells = Annotated[

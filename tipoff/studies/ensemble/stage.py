@@ -137,7 +137,7 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
     found = (
         study.rigid_rails(scene)
         if springs
-        else study.rail_compliance(scene, run_degree=numerics.degree)
+        else study.rail_compliance(scene, run_degree=numerics.known_degree)
     )
     if fitted is not None and not springs:  # before a case, which may vary a constant
         scene, fitted = fitted.split(scene)

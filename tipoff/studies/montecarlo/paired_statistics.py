@@ -139,7 +139,7 @@ def _by_rung(rung: rungs.Rung, drawn: Draws, gate: float) -> ByRung:
         most_95=float(np.quantile(settled, 0.95)) if settled.size else None,
         model=rung.model,
         modes=numerics.modes,
-        degree=numerics.degree,
+        degree=numerics.known_degree,
         cells=numerics.cells,
         cpu_s=rung.cpu_s,
         case_s=rung.case_s,

@@ -134,7 +134,7 @@ def surrogate(study: Study, model: str | None = None, condition: str | None = No
         fitted = calibrate.load(study)
         return Surrogate(fitted.apply(scene), fitted, study.rigid_rails(scene))
     require_accepted(study, model, condition)
-    degree = Numerics.of_many(TOLERANCE).degree
+    degree = Numerics.of_many(TOLERANCE).known_degree
     return Surrogate(scene, None, study.rail_compliance(scene, run_degree=degree))
 
 

@@ -192,6 +192,8 @@ def lines(row: Single, made_with: str, study: Study) -> list[str]:
         text += disturbed.lines(row.disturbed, limit)
     if why := row.numerics.get("modes_why"):
         text.append(f"  rail modes    {why}")
+    if why := row.numerics.get("degree_why"):
+        text.append(f"  degree        {why}")
     if row.rail_compliance:
         text.append(f"  rails         {row.rail_compliance['words']}")
     text.append(f"  agreement     {row.agreement}")

@@ -1,0 +1,57 @@
+"""The degree of patterns that a run chooses."""
+
+import numpy as np
+import pytest
+
+from tests.highfi.support import COARSE, tiny
+from tipoff import highfi, lowfi
+from tipoff.lowfi import degrees, modes
+from tipoff.lowfi.ensemble.batch import Family
+from tipoff.scenes import SceneError
+
+
+@pytest.fixture(scope="module")
+def fourth():
+    return highfi.condense(tiny(), COARSE.element_size, degree=4)
+
+
+def rate_of(compliance, **numerics) -> np.ndarray:
+    found = lowfi.run(tiny(), compliance=compliance, numerics=lowfi.Numerics(modes=0, **numerics))
+    return np.array(found.outcome.rate)
+
+
+@pytest.mark.parametrize("limit, expected", [(1e-3, 2), (1e-4, 3), (1e-5, 4)])
+def test_it_is_the_least_whose_next_hardly_changes_the_rates(fourth, monkeypatch, limit, expected):
+    """For limits (rad/s) that degrees meet or not. The run has the bits of a run with its degree."""
+    monkeypatch.setattr(degrees, "THRESHOLD", limit)
+    rates = {degree: rate_of(fourth, degree=degree) for degree in (2, 3, 4)}
+    changes = {each: np.abs(rates[each + 1] - rates[each]).max() for each in (2, 3)}
+    assert next((each for each, change in changes.items() if change <= limit), 4) == expected
+    found = lowfi.run(tiny(), compliance=fourth, numerics=lowfi.Numerics(modes=0, degree="auto"))
+    assert found.numerics["degree"] == expected
+    assert found.numerics["degree_why"].startswith(f"{expected}: ")
+    np.testing.assert_array_equal(found.outcome.rate, rates[expected])
+
+
+def test_its_limit_is_that_of_modes():
+    assert degrees.THRESHOLD == modes.THRESHOLD
+
+
+def test_no_higher_degree_than_that_of_the_compliance(fourth):
+    second = fourth.of_degree(2)
+    found = lowfi.run(tiny(), compliance=second, numerics=lowfi.Numerics(modes=0, degree="auto"))
+    assert found.numerics["degree"] == 2 and "no higher one" in found.numerics["degree_why"]
+
+
+def test_where_it_has_no_meaning(fourth):
+    """Springs have no patterns, and the cases of an ensemble have one number. Without contact nothing is
+    chosen."""
+    numerics = lowfi.Numerics(modes=0, degree="auto")
+    with pytest.raises(SceneError, match="numerics.degree: given auto"):
+        lowfi.run(tiny(), "springs", numerics=numerics)
+    with pytest.raises(ValueError, match="degree: cases of an ensemble need a number"):
+        Family(tiny(), None, numerics, fourth)
+    free = lowfi.run(tiny().replace({"contact": None, "friction": None}), numerics=numerics)
+    assert "degree_why" not in free.numerics
+    with pytest.raises(ValueError, match="1 to 4, or 'auto'"):
+        lowfi.Numerics(degree="most")

@@ -1,0 +1,29 @@
+"""Options of ``tipoff run`` that are numerics reach the run."""
+
+import json
+
+import pytest
+
+from tests.studies.test_first_steps import call
+
+
+@pytest.mark.parametrize(
+    "options, numerics",
+    [
+        (
+            ["--degree", "2", "--cells", "12", "--modes", "1"],
+            {"degree": 2, "cells": 12, "modes": 1},
+        ),
+        (["--degree", "auto", "--modes", "0"], {"cells": 16, "modes": 0}),
+    ],
+)
+def test_numerics_of_the_command_are_those_of_the_run(options, numerics, tmp_path):
+    """A chosen degree is stated with its reason."""
+    found = call("run", "--scene", "tiny", "--out", str(tmp_path), "--json", *options)
+    given = json.loads(found.stdout)["numerics"]
+    assert {name: given[name] for name in numerics} == numerics
+    assert ("degree_why" in given) == ("auto" in options)
+
+
+def test_a_degree_that_no_pattern_has_is_refused():
+    assert "1, 2, 3, 4, or auto" in call("run", "--scene", "tiny", "--degree", "5").output
