@@ -9,7 +9,8 @@ occur on coarse meshes, for two reasons: a part of a step takes the same time on
 n), and the thickness of a wall, one element, limits the step.
 
 Pads are removed, or added between the others of the same payload. This changes the motion and its
-contacts, so p of a run includes that change; p of a step has less of it. Effects differ in kind, so
+contacts, so p of a run includes that change; p of a step has less of it. The runs have no rail modes,
+because a number chosen for each would be another change. Effects differ in kind, so
 only the time of each, and of all over none, is given.
 
 Times are of one processor, without compilation, as in the ablation study: of a whole run of the
@@ -144,7 +145,9 @@ def pads(study: Study, name: str) -> tuple[Growth, ...]:
     ]
     if study.scene.contact is not None:
         wanted[COMPLIANT] = [
-            study.lowfi(name, None, change, f"-pads-{count}", coarse_walls(study, name, change))
+            study.lowfi(
+                name, None, change, f"-pads-{count}", coarse_walls(study, name, change), modes=0
+            )
             for count, change in variants.items()
         ]
     with Board("cost, pads", len(wanted)) as board:
