@@ -1,5 +1,8 @@
 """``modes="auto"``: on rails whose first frequencies span a factor of more than ten the surrogate
-agrees with the reference on the same mesh, and no mode vibrates where none matters."""
+agrees with the reference on the same mesh, and no mode vibrates where none matters.
+
+``python -m tests.lowfi.test_auto_modes`` prints the table of these rails in ``docs/rail_modes.md``.
+"""
 
 import functools
 from collections.abc import Callable
@@ -45,8 +48,8 @@ RAILS = {
 }
 
 
-def scene(name: str):
-    return load("tiny").condition("phi60").replace(RAILS[name])
+def scene(name: str, condition: str = "phi60"):
+    return load("tiny").condition(condition).replace(RAILS[name])
 
 
 @functools.cache
@@ -57,22 +60,17 @@ def compliance_of(name: str) -> RailCompliance:
 
 def error(name: str, *numerics: Numerics) -> list[float]:
     """Largest errors of the settled rates (deg/s) on the mesh of the reference."""
-    asked = scene(name)
+    asked, compliance = scene(name), compliance_of(name)
     reference = highfi.run(asked, COARSE).outcome.rate
-    compliance = compliance_of(name)
     return [
-        float(
-            np.degrees(
-                np.abs(
-                    np.subtract(
-                        lowfi.run(asked, compliance=compliance, numerics=each).outcome.rate,
-                        reference,
-                    )
-                ).max()
-            )
-        )
+        apart(lowfi.run(asked, compliance=compliance, numerics=each).outcome.rate, reference)
         for each in numerics
     ]
+
+
+def apart(rate, other) -> float:
+    """Largest difference (deg/s) of two settled rates (3,) rad/s."""
+    return float(np.degrees(np.abs(np.subtract(rate, other)).max()))
 
 
 @pytest.mark.parametrize(
@@ -271,3 +269,29 @@ def test_an_ensemble_has_one_number_of_modes():
         for row in rows
     ]
     np.testing.assert_array_equal(found["rate"].values, single)
+
+
+def _row(name: str, condition: str) -> tuple[str, ...]:
+    """A row of the table of rails: errors without modes, with 20 and with the chosen ones, and the effect
+    of all modes as estimated and as measured, deg/s."""
+    asked, compliance = scene(name, condition), compliance_of(name)
+    reference = highfi.run(asked, COARSE).outcome.rate
+    none, every, auto = (
+        lowfi.run(asked, compliance=compliance, numerics=each)
+        for each in (Numerics(modes=0), Numerics(modes=20), Numerics())
+    )
+    watched = SingleRun(asked, Numerics(modes=0), compliance, watches=True)
+    watched.begin()
+    watched.integrate(None)
+    errors = [f"{apart(run.outcome.rate, reference):.3f}" for run in (none, every, auto)]
+    chosen = f"{errors[2]}, {auto.numerics['modes'] or 'none'}"
+    estimated = f"{np.degrees(watched.neglected().sum()):.2g}"
+    measured = f"{apart(every.outcome.rate, none.outcome.rate):.2g}"
+    first = f"{compliance.frequency.min() / (2e3 * np.pi):.2g} kHz"
+    return (name, first, condition, *errors[:2], chosen, estimated, measured)
+
+
+if __name__ == "__main__":
+    for rail in RAILS:
+        for given in ("phi15", "phi60"):
+            print("|", " | ".join(_row(rail, given)), "|", flush=True)
