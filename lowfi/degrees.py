@@ -10,19 +10,19 @@ import numpy as np
 
 from tipoff.lowfi.modes import THRESHOLD
 from tipoff.lowfi.single_run import SingleRun
-from tipoff.mechanics.rail_compliance import LOW_DEGREE
+from tipoff.mechanics.rail_compliance import DEGREE, LOW_DEGREE
 
 
 def choose(run: Callable[[int], SingleRun], most: int) -> tuple[int, str]:
     """The degree, up to ``most``, and the reason in one line of text; ``run`` makes a run with
     patterns of a degree."""
-    degree, change = LOW_DEGREE, 0.0
+    degree, change = min(LOW_DEGREE, most), 0.0
     rate = _settled(run(degree))
     while degree < most:
         following = _settled(run(degree + 1))
         if rate is None or following is None:
-            which = degree if rate is None else degree + 1
-            return degree, f"{degree}: a run with patterns of degree {which} did not settle"
+            which, usual = degree if rate is None else degree + 1, min(DEGREE, most)
+            return usual, f"{usual}: a run with patterns of degree {which} did not settle"
         change, rate = float(np.abs(following - rate).max()), following
         if change <= THRESHOLD:
             moved = f"degree {degree + 1} would move the settled rates by"

@@ -71,5 +71,7 @@ def require(
             )
         if degree is not None:
             faults.append(("numerics.degree", str(degree), "none: springs stand on rigid rails"))
+        if numerics is not None and numerics.cells != Numerics().cells:
+            faults.append(("numerics.cells", str(numerics.cells), "none: springs have no cells"))
     if faults:
         raise SceneError([Fault(f"{scene.name}, model {model}", *fault) for fault in faults])

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+import tipoff
 from tests.highfi.support import COARSE, tiny
-from tipoff import highfi, lowfi
+from tipoff import front, highfi, lowfi
 from tipoff.lowfi import degrees, modes
 from tipoff.lowfi.ensemble.batch import Family
 from tipoff.scenes import SceneError
@@ -55,3 +56,18 @@ def test_where_it_has_no_meaning(fourth):
     assert "degree_why" not in free.numerics
     with pytest.raises(ValueError, match="1 to 4, or 'auto'"):
         lowfi.Numerics(degree="most")
+
+
+def test_springs_have_no_cells():
+    """Control: the default."""
+    with pytest.raises(SceneError, match="numerics.cells: given 8, expected none"):
+        lowfi.run(tiny(), "springs", numerics=lowfi.Numerics(cells=8))
+    lowfi.run(tiny(), "springs", numerics=lowfi.Numerics())
+
+
+def test_a_call_from_python_may_choose_it(monkeypatch):
+    """As the command line does."""
+    monkeypatch.setattr(front, "compliance", lambda scene, degree: given.append(degree) or walls)
+    given, walls = [], highfi.condense(tiny(), COARSE.element_size)
+    found = tipoff.run(tiny(), modes=0, degree="auto")
+    assert given == [4] and found.numerics["degree"] in (2, 3)

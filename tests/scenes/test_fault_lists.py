@@ -68,3 +68,11 @@ def test_faults_of_other_kinds_are_all_listed():
     """Control."""
     faults = [Fault("a.toml", f"payload.{chr(97 + k)}", "1 m", "kg") for k in range(20)]
     assert len(str(SceneError(faults)).splitlines()) == 21
+
+
+@pytest.mark.parametrize("key", ["agreement.settled_limit", "studies.neighbours"])
+def test_a_condition_has_no_keys_of_the_whole_scene(key):
+    """They would have no effect there. Control: a key of its tables."""
+    found = {fault.key: fault.expected for fault in refused(small(conditions={"phi15": {key: 3}}))}
+    assert "a key of the scene itself" in found[f"conditions.phi15.{key}"]
+    parse(small(conditions={"phi15": {"payload.mass": "9 kg"}}))

@@ -200,3 +200,14 @@ def test_an_interface_stiffer_than_any_is_named(stiffness, warned):
     scene = parse(small(contact=CONTACT | {"interface_stiffness": f"{stiffness} N/m**3"}))
     found = [text for text in scene.warnings if "steps of the reference" in text]
     assert len(found) == warned
+
+
+def test_the_motion_of_a_platform_that_is_not_there_is_named():
+    """Control: with a platform, or without motion, nothing is said."""
+    moving = {"initial": {"platform_velocity": {"x": 0.1}, "platform_rate": {"z": 0.01}}}
+    found = load("tiny").replace(moving | {"platform": None}).warnings
+    said = [words.partition(":")[0] for words in found if "no effect" in words]
+    assert said == ["initial.platform_velocity", "initial.platform_rate"]
+    assert not any("no effect" in words for words in load("tiny").replace(moving).warnings)
+    rest = {"initial": {"velocity": {"x": 0.1}}, "platform": None}
+    assert not any("no effect" in words for words in load("tiny").replace(rest).warnings)

@@ -8,8 +8,10 @@ from typing import get_args
 import pytest
 from typer.testing import CliRunner
 
+from tests.scenes.test_calibration import CALIBRATION
 from tests.studies.agreement.made import ROW, table
 from tipoff import scenes
+from tipoff.lowfi import Numerics
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
 from tipoff.scenes.faults import SceneError
 from tipoff.studies.agreement import kept
@@ -67,6 +69,22 @@ def test_what_could_not_be_judged_is_not_called_unmeasured(study, monkeypatch):
         assert words.startswith("not known: ") and said in words
     monkeypatch.setattr("tipoff.studies.agreement.stage.stored", lambda _: None)
     assert "tipoff compare measures it" in kept.words(study, COMPLIANT)
+
+
+def test_the_error_is_that_of_the_same_numerics_and_constants(study, monkeypatch):
+    """Those that tipoff compare used. Control: they have an error."""
+    monkeypatch.setattr("tipoff.studies.agreement.stage.stored", lambda _: TABLE)
+    monkeypatch.setattr(
+        "tipoff.studies.calibration.stage.constants", lambda _: CALIBRATION.constants
+    )
+    assert "0.012 deg/s" in kept.words(study, COMPLIANT, ROW.condition)
+    words = kept.words(study, COMPLIANT, ROW.condition, numerics="degree 1 and 4 cells")
+    assert words.startswith("not measured with degree 1 and 4 cells")
+    assert single.own_numerics(Numerics(degree=1, cells=4)) == "degree 1 and 4 cells"
+    assert single.own_numerics(Numerics(degree=3)) == single.own_numerics(Numerics()) == ""
+    assert "0.14 deg/s" in kept.words(study, SPRINGS, ROW.condition, CALIBRATION)
+    others = replace(CALIBRATION, constants={"contact.clearance": 3e-4})
+    assert kept.words(study, SPRINGS, None, others).startswith("not measured with these constants")
 
 
 def test_the_command_line_has_the_names_of_the_models():
@@ -145,10 +163,13 @@ def test_the_error_comes_from_the_agreement_table(study, monkeypatch):
         "at most 0.012 deg/s from the reference on 1 condition where that is converged and "
         "pads touch"
     )
-    assert "0.14 deg/s" in kept.words(study, SPRINGS, "phi15", calibrated=True)
+    monkeypatch.setattr(
+        "tipoff.studies.calibration.stage.constants", lambda _: CALIBRATION.constants
+    )
+    assert "0.14 deg/s" in kept.words(study, SPRINGS, "phi15", CALIBRATION)
     assert kept.words(study, SPRINGS, "phi15").startswith("not measured")
     assert kept.words(study, COMPLIANT, "phi15", modes=2).startswith("not measured")
-    said = kept.words(study, COMPLIANT, "phi15", calibrated=True)
+    said = kept.words(study, COMPLIANT, "phi15", CALIBRATION)
     assert (
         said == "not measured: the agreement table has compliant contact with the scene's constants"
     )

@@ -218,7 +218,7 @@ def _number(name: str, value: Any) -> Any:
     value = plain(value)
     if name in ("relative_tolerance", "safety"):
         return units.parse(value, "dimensionless", bare_numbers_are_si=True)
-    whole = name in ("cells", "degree", "maximum_steps")
+    whole = name in ("cells", "degree", "maximum_steps") and value != "auto"
     if whole and value is not None and (isinstance(value, bool) or not isinstance(value, int)):
         raise ValueError("a whole number")
     return value

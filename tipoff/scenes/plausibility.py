@@ -50,6 +50,8 @@ def warnings(scene) -> list[str]:
         found += sinking.warnings(scene) + _of_interface(scene.contact)
     if scene.thermal is not None:
         found += _of_temperature(scene)
+    if scene.initial is not None and scene.platform is None:
+        found += _of_fixed_platform(scene.initial.record())
     return found
 
 
@@ -133,6 +135,15 @@ def _of_length(rail) -> list[str]:
     return [
         f"rail.section, rail.start, rail.end: the solid is {drawn:.6g} m long, the rail "
         f"{rail.end - rail.start:.6g} m from start to end, which counts"
+    ]
+
+
+def _of_fixed_platform(initial) -> list[str]:
+    """Motion of a platform that the scene has not."""
+    return [
+        f"initial.{name}: no effect on fixed rails; [platform] describes a platform that moves"
+        for name in ("platform_velocity", "platform_rate")
+        if any(getattr(initial, name))
     ]
 
 

@@ -26,7 +26,7 @@ def faults(raw: dict[str, Any], scene_type: type) -> list[tuple[str, str, str]]:
         (f"conditions.{name}.{key}", repr(value), "a key of the scene itself, for all conditions")
         for name, table in list(conditions.items())[:MOST]
         for key, value in _table(table).items()
-        if key.partition(".")[0] == "studies"
+        if key.partition(".")[0] in ("studies", "agreement")
     ]
     found += [
         (f"agreement.{role}", repr(name), "a name from [conditions]")

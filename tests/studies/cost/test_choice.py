@@ -1,6 +1,7 @@
 """The model that an accuracy or a time calls for, from measured cost."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from typer.testing import CliRunner
@@ -8,6 +9,7 @@ from typer.testing import CliRunner
 from tests.studies.agreement.made import ROW, table
 from tests.studies.cost.made import cost, point
 from tipoff import scenes
+from tipoff.studies.agreement.candidates import Candidate
 from tipoff.studies.agreement.stage import Simpler
 from tipoff.studies.cli import app
 from tipoff.studies.cost import stage as cost_stage
@@ -181,6 +183,30 @@ def test_nothing_is_chosen_without_measured_cost(tmp_path):
     study = Study(scenes.load("tiny"), tmp_path / "tiny", Settings())
     with pytest.raises(StudyError, match="tipoff cost --scene tiny"):
         single.chosen(study, "phi15", 0.1, None)
+
+
+@pytest.mark.parametrize("degree", [2, None])
+def test_a_chosen_point_runs_with_its_patterns(tmp_path, monkeypatch, degree):
+    """And a run that the agreement table lacks says so. Control: a point that has the default."""
+    study = Study(scenes.load("tiny"), tmp_path / "tiny", Settings(element_size=16e-3))
+    found = point(
+        model="patterns", rung="modal", setting=1e-6, error_deg_s=0.01, modes=0, degree=degree
+    )
+    made = []
+    monkeypatch.setattr(cost_stage, "stored", lambda _: {})
+    table = cost([found], 0.02)
+    monkeypatch.setattr(cost_stage, "STAGE", SimpleNamespace(read=lambda _: table))
+    candidate = Candidate("modal", "compliant", compliance={"phi15": None})
+    monkeypatch.setattr(cost_stage, "surrogates", lambda *_: [candidate])
+    monkeypatch.setattr(single, "result_of", lambda *given: made.append(given) or {})
+    single.chosen(study, "phi15", 0.1, None)
+    [(_, condition, request, _, agreement)] = made
+    assert condition == "phi15" and request.numerics.modes == 0
+    if degree is None:
+        assert request.compliance is None and agreement is None
+    else:
+        assert request.compliance.degree == degree
+        assert agreement.startswith("not in the agreement table; error 0.01 deg/s on ")
 
 
 @pytest.mark.parametrize(

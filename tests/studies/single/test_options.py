@@ -25,5 +25,27 @@ def test_numerics_of_the_command_are_those_of_the_run(options, numerics, tmp_pat
     assert ("degree_why" in given) == ("auto" in options)
 
 
+@pytest.mark.parametrize(
+    "command, faults",
+    [
+        ("run --range --model springs --degree 2", ["--model", "--degree"]),
+        ("run --range --calibration c.toml --cells 8", ["--calibration", "--cells"]),
+        ("run --range --budget 1s", ["--budget"]),
+        ("ensemble --table t.csv --vary paper --seed 3", ["vary", "seed"]),
+        (
+            "ensemble --case 1 --at exit --limit 1 --scheduler tcp://a:1 --export csv a.csv",
+            ["--at", "--limit", "--scheduler", "--export"],
+        ),
+        ("montecarlo --finer 5 --interface --model springs", ["--finer", "--interface"]),
+        ("curves a=a.csv --model finite-elements --calibration c.toml", ["--model"]),
+    ],
+)
+def test_an_option_without_effect_is_refused(command, faults, tmp_path):
+    """Every one of them."""
+    found = call(*command.split(), "--scene", "tiny", "--out", tmp_path)
+    assert found.exit_code == 2
+    assert all(f"{name}: " in found.stderr for name in faults), found.stderr
+
+
 def test_a_degree_that_no_pattern_has_is_refused():
     assert "1, 2, 3, 4, or auto" in call("run", "--scene", "tiny", "--degree", "5").output

@@ -137,8 +137,7 @@ class RailCompliance(Shown):
         )
 
     def finding(self, joints: Callable[[], JointTerms | None]) -> "RailCompliance":
-        """This compliance, which calls ``joints`` at the first factor other than 1: the terms take
-        about as long as the rest, and most runs have no factor."""
+        """This compliance, which calls ``joints`` at the first factor other than 1."""
         object.__setattr__(self, "find_joints", joints)
         return self
 

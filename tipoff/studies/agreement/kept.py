@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
+from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import NOMINAL
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.verdicts import Row
@@ -61,15 +62,21 @@ def words(
     study: Study,
     model: str,
     condition: str | None = None,
-    calibrated: bool = False,
+    calibration: Calibration | None = None,
     modes: int | str = AUTO,
+    numerics: str = "",
 ) -> str:
     """The error of ``model`` on ``condition`` as text, or the largest error over all conditions
-    with contact and a converged reference."""
+    with contact and a converged reference. ``numerics``: as text, those that are not the default."""
     if model == FINITE_ELEMENTS:
         return "the reference itself"
+    calibrated = calibration is not None
     if calibrated and model == COMPLIANT:
         return "not measured: the agreement table has compliant contact with the scene's constants"
+    if numerics:
+        return f"not measured with {numerics}: tipoff compare has the default"
+    if calibration is not None and calibration.constants != _own_constants(study):
+        return "not measured with these constants: tipoff compare has those of tipoff calibrate"
     table = _stored(study)
     found = _rows(table, model, calibrated, modes)
     own = [row for row in found if row.condition == condition]
@@ -102,6 +109,16 @@ def words(
     if lost_count := len(errors) - len(known):
         parts.append(f"it does not settle on {lost_count} where the reference does")
     return f"{'; '.join(parts)}{_others(touched)}{where}"
+
+
+def _own_constants(study: Study) -> dict | None:
+    """The calibrated constants of springs in the agreement table; None without."""
+    from tipoff.studies.calibration import stage  # slow to load
+
+    try:
+        return stage.constants(study)
+    except KeyError:
+        return None
 
 
 def _others(rows: Sequence[Row]) -> str:

@@ -13,8 +13,8 @@ _WALL = Column("wall time", "s")
 
 @dataclass(frozen=True, kw_only=True)
 class Point:
-    """A run of one model. ``setting``: element size (m) or relative tolerance; ``modes``: None if
-    neither they nor the patterns are varied; errors: None if a run did not settle, and for the
+    """A run of one model. ``setting``: element size (m) or relative tolerance; ``modes`` and the
+    ``degree`` of patterns: None if they are not varied; errors: None if a run did not settle, and for the
     reference; ``reference``: whether it is the finest mesh and settled; ``pareto``: whether no
     faster point has an error bound as small."""
 
@@ -30,6 +30,7 @@ class Point:
     status: str
     reference: bool
     pareto: bool = False
+    degree: int | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -184,7 +184,7 @@ def points_by_patterns(
         numerics = f"degree {degree}, {ALL_MODES} modes"
         tolerance = [Numerics().relative_tolerance]
         found += [
-            replace(point, model=BY_PATTERNS, numerics=numerics, modes=ALL_MODES)
+            replace(point, model=BY_PATTERNS, numerics=numerics, modes=ALL_MODES, degree=degree)
             for point in surrogate_points(study, name, better, finest, tolerance)
         ]
     return found

@@ -104,6 +104,11 @@ def _require(study: Study, options: Options) -> None:
         study.condition(options.condition)
     for model in options.model or ():
         known.require(known.Options(model))
+    surrogates = {*(options.model or ())} - {FINITE_ELEMENTS}
+    if options.calibration and options.model and len(surrogates) != 1:
+        given = ", ".join(options.model)
+        expected = "one surrogate, which the file belongs to, with --calibration"
+        raise SceneError([Fault("--model", "option", given, expected)])
     idle = {"--condition": options.condition, "--calibration": options.calibration}
     if not options.model and any(idle.values()):
         raise SceneError(

@@ -44,6 +44,7 @@ def _answer(request: Request, options: Options) -> Output:
     if options.case is None:
         found = stage.run(study, options)
         return Output(found.plain, lambda _: page.summary(found), request.out)
+    options.require_one()
     one = stage.case(study, options, options.case)
     return Output(one.plain, lambda _: page.case(one))
 

@@ -103,6 +103,21 @@ class Options:
         ),
     ] = None
 
+    def require_one(self) -> None:
+        """Raise SceneError for options that say nothing on one case, every fault listed."""
+        from tipoff.scenes.faults import Fault, SceneError
+
+        given = {
+            "--at": self.at,
+            "--limit": ", ".join(self.limits),
+            "--export": " ".join(map(str, self.export or ())),
+            "--scheduler": self.scheduler,
+        }
+        expected = "none with --case, which prints one case with all its values"
+        faults = [Fault(name, "option", value, expected) for name, value in given.items() if value]
+        if faults:
+            raise SceneError(faults)
+
     @property
     def chosen(self) -> "models.Options":
         """The options of the model."""

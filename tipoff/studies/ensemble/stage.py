@@ -108,7 +108,7 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
     fitted = constants(options.chosen.calibration, options.chosen.model, study.scene.name)
     changed = {
         name: value
-        for name in ("cases", "seed", "sampling")
+        for name in ("vary", "cases", "seed", "sampling")
         if (value := getattr(options, name)) is not None
     }
     if options.table is not None:
@@ -120,7 +120,7 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
         source: Any = TableFile(options.table)
     else:
         own = study.scene.studies and study.scene.studies.errors
-        vary = options.vary or own or uncertainty.DEFAULT
+        vary = changed.pop("vary", None) or own or uncertainty.DEFAULT
         source = Drawn(uncertainty.load(vary, study.scene, **changed))
     springs = options.chosen.model == SPRINGS
     try:
@@ -246,8 +246,9 @@ def _limit(study: Study) -> float:
 
 
 def _agreement(study: Study, options: Options) -> str:
-    chosen, calibrated = options.chosen, options.calibration is not None
-    return kept.words(study, chosen.model, None, calibrated, chosen.asked)
+    chosen = options.chosen
+    fitted = constants(chosen.calibration, chosen.model, study.scene.name)
+    return kept.words(study, chosen.model, None, fitted, chosen.asked)
 
 
 def case(study: Study, options: Options, number: int) -> One:

@@ -33,12 +33,28 @@ def _answer(request: Request, options: Options) -> Output:
         own = page.summary(stage.STAGE.read(found))
         return own + (tails_page.summary(tails.STAGE.read(checked)) if checked else [])
 
+    _require(options)
     study = request.study()
     if options.draws is None:
         return Output(stage.run(study, options.population), shown, request.out)
     tails.checked(study, options)
     found = {**stage.run(study, options.population), "reference": tails.run(study, options)}
     return Output(found, shown, request.out)
+
+
+def _require(options: Options) -> None:
+    """Raise SceneError for options that would have no effect, every fault listed."""
+    from tipoff.mechanics.model_names import SPRINGS
+    from tipoff.scenes.faults import Fault, SceneError
+
+    faults = []
+    if options.draws is None and options.fine is not None:
+        faults.append(Fault("--finer", "option", str(options.fine), "--reference for this option"))
+    if options.population.reading.interface and options.population.model == SPRINGS:
+        expected = "none with --model springs, which have no interface stiffness"
+        faults.append(Fault("--interface", "option", "given", expected))
+    if faults:
+        raise SceneError(faults)
 
 
 def _load() -> Contents:

@@ -186,7 +186,7 @@ def answering(study: Study, model: Surrogate, condition: str | None = None) -> d
         "model": model.words,
         "modes": model.modes,
         "modes_why": model.modes_why,
-        "agreement": kept.words(study, model.name, condition, model.calibration is not None),
+        "agreement": kept.words(study, model.name, condition, model.calibration),
         "at": model.instant.at,
         "at_why": model.instant.why,
     }

@@ -84,6 +84,7 @@ def run(
       tipoff run --condition h4 --modes 20 --degree 3 --cells 16
       tipoff run --export rocketpy exit.json
     """
+    from tipoff.mechanics.model_names import COMPLIANT
     from tipoff.scenes.faults import Fault, SceneError, together
     from tipoff.studies.runs import page
     from tipoff.studies.single import single
@@ -92,6 +93,22 @@ def run(
     def shown(found: dict) -> "list[Part]":
         return [page.settled(single.rows(found))] if "conditions" in found else []
 
+    def without(options: dict, expected: str) -> None:
+        if wrong := [name for name, value in options.items() if value is not None]:
+            raise SceneError([Fault(name, "option", "given", expected) for name in wrong])
+
+    own = {
+        "--model": model,
+        "--calibration": calibration,
+        "--modes": modes,
+        "--degree": degree,
+        "--cells": cells,
+    }
+    if range_:
+        usual = {"--model": None} if model == COMPLIANT else {}
+        chosen = {"--accuracy": accuracy, "--budget": budget}
+        expected = "none: --range is that of compliant contact with its defaults"
+        without(own | chosen | usual, expected)
     options, quiet = models.Options(model, calibration, modes, degree, cells), request.json_
     study = request.study(
         condition or ["nominal"], checkpoint_every=checkpoint_every, resume=resume
@@ -112,16 +129,7 @@ def run(
             names, lambda name: ranged(name, single.run(study, name, options, quiet))
         )
         return Output(found, shown)
-    given = {
-        "--model": model,
-        "--calibration": calibration,
-        "--modes": modes,
-        "--degree": degree,
-        "--cells": cells,
-    }
-    if wrong := [name for name, value in given.items() if value is not None]:
-        expected = "none: --accuracy and --budget choose the model"
-        raise SceneError([Fault(name, "option", "given", expected) for name in wrong])
+    without(own, "none: --accuracy and --budget choose the model")
     error, wall = together(
         lambda: quantity("--accuracy", accuracy, "deg/s", "0.1 deg/s"),
         lambda: quantity("--budget", budget, "s", "2 s"),

@@ -8,9 +8,10 @@ from pathlib import Path
 
 from pydantic import TypeAdapter
 
-from tipoff.lowfi.numerics import AUTO
+from tipoff.lowfi.numerics import AUTO, Numerics
 from tipoff.mechanics import hand_over
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
+from tipoff.mechanics.rail_compliance import DEGREE
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.faults import Fault, InputError, SceneError
 from tipoff.studies.agreement import kept, verdicts
@@ -25,6 +26,14 @@ from tipoff.workspace.attempt import attempt
 from tipoff.workspace.progress import say
 from tipoff.workspace.run import Run
 from tipoff.workspace.study import Study, StudyError
+
+_COMPARED = (
+    "highfi",
+    "uncalibrated",
+    "calibrated",
+    "compliant",
+    "modal",
+)  # rungs of tipoff compare
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,9 +110,8 @@ def chosen(
             "there is no cost study of this scene with this code: run tipoff cost --scene "
             f"{study.scene.name} first"
         )
-    found = choice.choose(
-        cost.STAGE.read(measured), condition, compare.stored(whole), accuracy, budget
-    )
+    table = cost.STAGE.read(measured)
+    found = choice.choose(table, condition, compare.stored(whole), accuracy, budget)
     say(found.why)
     point = found.point
     if point.rung == "highfi":
@@ -114,26 +122,54 @@ def chosen(
         )
         if point.modes is not None:
             candidate = candidate._replace(modes=point.modes)
+        if point.degree is not None:
+            walls = study.rail_compliance(study.condition(condition), degree=point.degree)
+            candidate = candidate._replace(compliance={condition: walls})
         request = candidate.request(study, condition, relative_tolerance=point.setting)
-    return result_of(study, condition, request, quiet) | {"chosen": found.plain()}
+    agreement = None
+    if point.degree is not None or point.rung not in _COMPARED:
+        error = "unknown" if point.error_deg_s is None else f"{point.error_deg_s:.2g} deg/s"
+        agreement = f"not in the agreement table; error {error} on {table.condition} (tipoff cost)"
+    return result_of(study, condition, request, quiet, agreement) | {"chosen": found.plain()}
 
 
-def result_of(study: Study, condition: str, request: Run, quiet: bool) -> dict:
+def result_of(
+    study: Study, condition: str, request: Run, quiet: bool, agreement: str | None = None
+) -> dict:
+    """The result of a run. ``agreement``: the error of its model as text, by default that of the
+    agreement table."""
     found = study.store.get(request)
-    calibrated, modes = request.calibration is not None, getattr(request.numerics, "modes", AUTO)
+    numerics = request.numerics
+    if agreement is None:
+        agreement = kept.words(
+            study,
+            request.model,
+            condition,
+            request.calibration,
+            getattr(numerics, "modes", AUTO),
+            own_numerics(numerics) if request.model == COMPLIANT else "",
+        )
     moved = None
     if request.fidelity == "lowfi" and found.outcome.rate is not None:
         moved = disturbed.kept(study.store, request, found, study.settings.clearance_change)
     made = Single(
         **vars(row(condition, found, study.relative(study.store.path(request)), request)),
         implausible=tuple(request.scene.warnings),
-        agreement=kept.words(study, request.model, condition, calibrated, modes),
+        agreement=agreement,
         disturbed=moved,
         failed=tuple(failure(condition, request, found)),
     )
     if not quiet:
         print("\n".join(lines(made, model(request), study)))
     return asdict(made)
+
+
+def own_numerics(numerics: Numerics) -> str:
+    """Degree and cells as text, where they are not those of the default."""
+    found = [f"degree {numerics.degree}"] if numerics.degree not in (None, DEGREE) else []
+    if numerics.cells != Numerics().cells:
+        found.append(f"{numerics.cells} cells")
+    return " and ".join(found)
 
 
 def ranged(study: Study, condition: str, quiet: bool = False) -> dict:
