@@ -1,5 +1,6 @@
 """Kernels that several runs need are compiled side by side, each once."""
 
+import gc
 import sys
 from types import ModuleType
 
@@ -160,3 +161,17 @@ def test_a_run_that_chooses_modes_announces_their_kernels_before_it_goes_on(
     assert ["with modes of the rails" in text for text in said] == ([True, False] if chosen else [])
     assert kernel_marks.are_there(asked, chosen=True) == bool(chosen)
     assert kernel_marks.are_there(asked)
+
+
+@pytest.mark.parametrize("before", [(700, 10, 10), (10**6, 99, 99)])
+def test_python_collects_garbage_as_before_after_a_compilation(before):
+    """After an error too. Inside it collects seldom, and never more often than before."""
+    usual = gc.get_threshold()
+    try:
+        gc.set_threshold(*before)
+        with pytest.raises(ZeroDivisionError), kernel_marks.rare_collections():
+            assert gc.get_threshold() == tuple(map(max, before, (50_000, 50, 50)))
+            raise ZeroDivisionError
+        assert gc.get_threshold() == before
+    finally:
+        gc.set_threshold(*usual)

@@ -24,7 +24,8 @@ def warm_up(run: Run) -> None:
     prepare(run)
     scene = run.scene
     first = min(scene.time_limit, max(scene.output.interval, 1e-3))
-    execute(replace(run, scene=scene.replace({"duration": first})))
+    with kernel_marks.rare_collections():
+        execute(replace(run, scene=scene.replace({"duration": first})))
 
 
 def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
