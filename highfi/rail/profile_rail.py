@@ -14,19 +14,21 @@ _FACING = 1e-6  # of a unit normal: sides that are turned less face along an axi
 def profile(scene: Scene, rail: ProfileTable) -> Profile:
     """The rail as meshed. Raises SceneError if nothing holds it, or a pad has no wall."""
     outline = rail.outline().at(rail.at)
-    faults, walls = rail.unheld(scene.name), set[int]()
+    faults, sides = rail.unheld(scene.name), outline.sides()
+    mounted = {rail.outline().side_at(point) for point in rail.mounted}
     if scene.contact is not None:
-        walls, missing = _walls(scene, outline.sides(), rail.signs())
+        walls, missing = _walls(scene, sides, rail.signs())
         faults += missing
+    else:  # nothing presses; a mesh has some wall
+        walls = {*range(len(sides))} - mounted
     if faults:
         raise SceneError(faults)
-    mounted = (rail.outline().side_at(point) for point in rail.mounted)
     return Profile(
         loops=outline.loops,
         blocks=rail.blocks(),
         area=outline.moments().area,
         walls=tuple(sorted(walls)),
-        mounted=tuple(sorted(set(mounted))),
+        mounted=tuple(sorted(mounted)),
         ends=(rail.start, rail.end),
         spans=tuple(sorted((span.start, span.end) for span in rail.mounts)),
         stretch=rail.stretch,

@@ -87,7 +87,7 @@ def _chosen(ensemble: Ensemble) -> list[int | None]:
         (row,) = source.rows(number, number + 1)
         try:
             scene = ensemble.scene.replace(row)
-            if _is_chaotic(ensemble, scene, replace(numerics, modes=0)):
+            if is_chaotic(ensemble, scene, replace(numerics, modes=0)):
                 found.append(None)
                 continue
             run = solved(scene, ensemble.calibration, numerics, compliance=ensemble.compliance)
@@ -97,7 +97,7 @@ def _chosen(ensemble: Ensemble) -> list[int | None]:
     return found
 
 
-def _is_chaotic(ensemble: Ensemble, scene: Scene, numerics: Numerics) -> bool:
+def is_chaotic(ensemble: Ensemble, scene: Scene, numerics: Numerics) -> bool:
     """Whether a change of every clearance in either direction changes a settled rate by more than
     half of the total rate, in runs with ``numerics``."""
     if ensemble.calibration is not None:  # its clearance is changed

@@ -52,6 +52,20 @@ def test_an_l_of_corners_gives_the_rates_of_the_built_in_one():
     assert own.rate == pytest.approx(built.rate, rel=1e-9)
 
 
+def test_a_payload_that_touches_nothing_needs_no_walls():
+    """As in the ablation: the same mesh, and the flight of the built-in section."""
+    free = {"contact": None, "friction": None}
+    scene = load("tiny")
+    built, own = (
+        highfi.run(each.replace(free), COARSE).outcome for each in (scene, as_corners(scene))
+    )
+    assert own.rate == pytest.approx(built.rate, rel=1e-9)
+    touching, apart = (
+        prepare(each, COARSE) for each in (as_corners(scene), as_corners(scene).replace(free))
+    )
+    np.testing.assert_array_equal(apart.points, touching.points)
+
+
 def deflection(name, size, length, stretch):
     """Deflections (m) along Y and Z of the end of a cantilever under 1 N on its end, evenly."""
     outline, blocks = shape(**SHAPES[name]), table(**SHAPES[name]).blocks()

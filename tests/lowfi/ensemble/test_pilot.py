@@ -31,7 +31,7 @@ def pilots(monkeypatch):
         return SimpleNamespace(numerics={"modes": (len(seen) - 1) % pilot.PILOT})
 
     monkeypatch.setattr(pilot, "solved", solved)
-    monkeypatch.setattr(pilot, "_is_chaotic", lambda *_: False)
+    monkeypatch.setattr(pilot, "is_chaotic", lambda *_: False)
     return seen
 
 

@@ -125,7 +125,7 @@ def watch(monkeypatch):
     def watched(*choice: int) -> Runs:
         runs = Runs(*choice)
         monkeypatch.setattr(pilot, "solved", runs.solved)
-        monkeypatch.setattr(pilot, "_is_chaotic", lambda *_: False)
+        monkeypatch.setattr(pilot, "is_chaotic", lambda *_: False)
         for module in (fill, within, draws):
             monkeypatch.setattr(module, "completed", runs.completed)
         monkeypatch.setattr(draws, "filled", runs.filled)
