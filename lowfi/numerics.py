@@ -73,10 +73,8 @@ class Numerics:
                 f"modes: given {self.modes!r}, expected a whole number from 0 to {MODES}, or "
                 f"{AUTO!r}"
             )
-        is_number_of_degree = (
-            type(self.degree) is int and LEAST_DEGREE <= self.degree <= MOST_DEGREE
-        )
-        if self.degree not in (None, AUTO) and not is_number_of_degree:
+        is_degree = type(self.degree) is int and LEAST_DEGREE <= self.degree <= MOST_DEGREE
+        if self.degree not in (None, AUTO) and not is_degree:
             faults.append(
                 f"degree: given {self.degree!r}, expected a whole number from {LEAST_DEGREE} to "
                 f"{MOST_DEGREE}, or {AUTO!r}"

@@ -19,7 +19,7 @@ def profile(scene: Scene, rail: ProfileTable) -> Profile:
     if scene.contact is not None:
         walls, missing = _walls(scene, sides, rail.signs())
         faults += missing
-    else:  # nothing presses; a mesh has some wall
+    else:  # nothing presses, but a mesh needs a wall
         walls = {*range(len(sides))} - mounted
     if faults:
         raise SceneError(faults)

@@ -3,18 +3,17 @@ them.
 
 ``PILOT`` cases, evenly spaced, are single runs that choose their own number (``lowfi.modes``). The
 ensemble takes the fewest modes that are sufficient for half of them, so a minority of cases with
-modes does not make all cases expensive. On scene ``reference`` a third of the random ejections
-choose modes, and 1 um of clearance changes most of these by more than the modes do; but all modes
-make a case at a loose tolerance over 30 times as expensive (docs/tails.md). A pilot case is
+modes does not make all cases expensive. On scene ``reference`` half of the random ejections choose
+modes, and four modes make a case ten times as expensive (docs/rail_modes.md). A pilot case is
 integrated at least as accurately as a single run at the default tolerance, because the forces of a
 coarse integration excite modes that the contact does not.
 
-Some scenes are chaotic: 1 um of clearance changes the rates of a case by as much as their size. Then
-a change of one case by modes says nothing, and such a case chooses none. What counts is the
-distribution: that of 3,000 launches of the scene ``cubesat_3u`` without modes is that of 600 with
-all 20, at a thirtieth of the time, and that of the finite elements. All cases then have the same equations,
-and each can be run again alone with this number. A store keeps the number with its reason, so an
-ensemble with a store has one pilot.
+A case is chaotic if 1 um of clearance changes its rates by more than half of their size. A change by
+modes then says nothing about this case, and it chooses none. Only the distribution of many cases
+counts. On scene ``cubesat_3u`` the modes do not change it (docs/rail_modes.md).
+
+All cases have the same equations, and each can be run again alone with this number. A store keeps
+the number with its reason, so an ensemble with a store has one pilot.
 """
 
 from dataclasses import replace
@@ -53,12 +52,14 @@ def settled(ensemble: Ensemble, store: str | Path | None = None) -> Ensemble:
     chosen = sorted(0 if number is None else number for number in pilots)
     count = chosen[int(_ENOUGH_FOR * (len(chosen) - 1))] if chosen else 0
     above, chaotic = sum(number > count for number in chosen), pilots.count(None)
-    why = (
-        f"{count or 'none'}: enough for {len(chosen) - above} of {len(chosen)} pilot cases, whose settled "
-        f"rates more modes would move by less than {np.degrees(modes.THRESHOLD):g} deg/s"
-    )
+    enough = f"{count or 'none'}: enough for {len(chosen) - above} of {len(chosen)} pilot cases"
+    limit = f"by less than {np.degrees(modes.THRESHOLD):g} deg/s"
+    why = f"{enough}, whose settled rates more modes would move {limit}"
     if chaotic:
-        why += f", or 1 um of clearance by more than half of their size ({chaotic} cases)"
+        why = (
+            f"{enough}. {chaotic} are chaotic: 1 um of clearance changes their settled rates by more "
+            f"than half. More modes would move those of the others {limit}"
+        )
     return _with(ensemble, count, why)
 
 
@@ -98,8 +99,8 @@ def _chosen(ensemble: Ensemble) -> list[int | None]:
 
 
 def is_chaotic(ensemble: Ensemble, scene: Scene, numerics: Numerics) -> bool:
-    """Whether a change of every clearance in either direction changes a settled rate by more than
-    half of the total rate, in runs with ``numerics``."""
+    """Whether 1 um more or less of every clearance changes a settled rate by more than half of the
+    total rate, in runs with ``numerics``."""
     if ensemble.calibration is not None:  # its clearance is changed
         scene = ensemble.calibration.apply(scene)
     assert scene.contact is not None  # its rails may vibrate

@@ -1,5 +1,7 @@
 """The degree of patterns that a run chooses."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -71,3 +73,16 @@ def test_a_call_from_python_may_choose_it(monkeypatch):
     given, walls = [], highfi.condense(tiny(), COARSE.element_size)
     found = tipoff.run(tiny(), modes=0, degree="auto")
     assert given == [4] and found.numerics["degree"] in (2, 3)
+
+
+@pytest.mark.parametrize("lost", [2, 3])
+def test_a_run_that_does_not_settle_leaves_the_default(lost):
+    """The reason names its degree. Control: the others settle."""
+
+    def run(degree):
+        rate = None if degree == lost else [0.0, 0.0, float(degree)]
+        return SimpleNamespace(message="", judged=lambda: ("", SimpleNamespace(rate=rate)))
+
+    found, why = degrees.choose(run, 4)
+    assert found == 3 and f"patterns of degree {lost} did not settle" in why
+    assert degrees.choose(lambda degree: run(1), 4)[0] == 2

@@ -149,6 +149,9 @@ def test_arrays_that_do_not_belong_together_are_refused(compliance, tmp_path):
             ValueError, match="not a file of rail compliance.*expected finite numbers"
         ):
             RailCompliance.load(tmp_path / "walls.npz")
+    write_with(tmp_path / "walls.npz", compliance, {"find_joints": np.zeros(1)})
+    with pytest.raises(ValueError, match="find_joints: given an array"):
+        RailCompliance.load(tmp_path / "walls.npz")
     with pytest.raises(FileNotFoundError):
         RailCompliance.load(tmp_path / "none.npz")
 

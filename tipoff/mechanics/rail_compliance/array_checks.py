@@ -16,6 +16,8 @@ _ROUNDING = 1e-6
 def require(found: Any) -> None:
     """Raise ValueError if types or shapes of ``found``, a ``RailCompliance``, are not consistent,
     or if a number is not finite."""
+    if found.find_joints is not None:
+        raise ValueError("find_joints: given an array, expected none in a file")
     _require_plain(found)
     _require_dimensions("travel", found.travel, 1)
     _require_dimensions("rail", found.rail, 1, "iu")

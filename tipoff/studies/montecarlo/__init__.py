@@ -52,7 +52,7 @@ def _require(options: Options) -> None:
         faults.append(Fault("--finer", "option", str(options.fine), "--reference for this option"))
     if options.population.reading.interface and options.population.model == SPRINGS:
         expected = "none with --model springs, which have no interface stiffness"
-        faults.append(Fault("--interface", "option", "given", expected))
+        faults.append(Fault("--interface", "option", "yes", expected))
     if faults:
         raise SceneError(faults)
 

@@ -94,8 +94,11 @@ def run(
         return [page.settled(single.rows(found))] if "conditions" in found else []
 
     def without(options: dict, expected: str) -> None:
-        if wrong := [name for name, value in options.items() if value is not None]:
-            raise SceneError([Fault(name, "option", "given", expected) for name in wrong])
+        wrong = {name: str(value) for name, value in options.items() if value is not None}
+        if wrong:
+            raise SceneError(
+                [Fault(name, "option", given, expected) for name, given in wrong.items()]
+            )
 
     own = {
         "--model": model,
