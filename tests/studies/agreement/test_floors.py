@@ -12,11 +12,18 @@ from tipoff.workspace.store import Store
 from tipoff.workspace.study import Study
 
 
-@pytest.mark.parametrize("chosen", [{"modes": 3, "modes_why": "3 of 20"}, {"modes": "auto"}])
+@pytest.mark.parametrize(
+    "chosen",
+    [
+        {"modes": 3, "modes_why": "3 of 20"},
+        {"modes": 3, "modes_why": "3 of 20", "degree": 2, "degree_why": "2: ..."},
+        {"modes": "auto", "degree": 4},
+    ],
+)
 def test_runs_with_other_clearances_have_the_modes_of_the_nominal_one(
     tmp_path, monkeypatch, chosen
 ):
-    """Control: a nominal run that chose nothing."""
+    """And its degree of patterns. Control: a nominal run that chose nothing."""
     made = []
 
     def fill(_store, _title, runs):
@@ -35,3 +42,5 @@ def test_runs_with_other_clearances_have_the_modes_of_the_nominal_one(
     assert nominal.numerics.modes == "auto" and len(others) == 2
     expected = chosen["modes"] if "modes_why" in chosen else "auto"
     assert [run.numerics.modes for run in others] == [expected, expected]
+    degree = chosen["degree"] if "degree_why" in chosen else None
+    assert [run.numerics.degree for run in others] == [degree, degree]

@@ -1,6 +1,7 @@
 """Growth of cost: exponents against exact laws, scenes of other pads, prices of effects."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -144,6 +145,20 @@ def test_mesh_from_a_file_is_not_run_ten_times(monkeypatch, tmp_path):
         "channel": [SPRINGS, COMPLIANT],
         "tiny": [FINITE_ELEMENTS, SPRINGS, COMPLIANT],
     }
+
+
+def test_runs_over_pads_have_no_modes(monkeypatch, tmp_path):
+    """A number that each chooses would be another change."""
+    seen = {}
+
+    def over_pads(model, runs, counts, board):
+        seen[model] = [run.numerics.modes for run in runs if run.fidelity == "lowfi"]
+
+    monkeypatch.setattr(scaling, "over_pads", over_pads)
+    walls = SimpleNamespace(hash="0", flexibility=1.0)
+    monkeypatch.setattr(scaling, "coarse_walls", lambda study, name, change: walls)
+    scaling.pads(Study(scenes.load("tiny"), tmp_path, defaults("tiny")), "phi15")
+    assert len(seen[COMPLIANT]) > 2 and set(seen[COMPLIANT]) == {0}
 
 
 def test_longer_rails_are_rails_end_to_end():
