@@ -14,6 +14,7 @@ from tipoff.studies.agreement.stage import Simpler
 from tipoff.studies.cli import app
 from tipoff.studies.cost import stage as cost_stage
 from tipoff.studies.cost.choice import choose, elsewhere
+from tipoff.studies.cost.page import recommended, terminal
 from tipoff.studies.single import single
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study, StudyError
@@ -142,6 +143,26 @@ def test_what_holds_on_one_condition_is_not_promised_of_another():
         choose(COST, "h8", agreement(0.01, None), 0.03)
     for unknown in (None, agreement(13.0, 9.0)):
         assert choose(COST, "nominal", unknown, 0.03).why.endswith("none are measured on nominal")
+
+
+def test_errors_below_the_uncertainty_of_the_reference_recommend_no_model():
+    """All errors are below it under chaos, so the fastest springs would be the best. Control: the same
+    points with a reference that is known to the limit of agreement."""
+    springs = point(model="springs", rung="uncalibrated", error_deg_s=0.05, wall_s=0.001)
+    measured = replace(COST, points=(springs, *COST.points))
+    chaotic = replace(measured, band_deg_s=11.6)
+    assert "On phi15 the reference is uncertain by 12 deg/s" in terminal(chaotic)[-1].text
+    assert terminal(chaotic)[-1] and recommended(chaotic) is None
+    assert recommended(measured) is springs and len(terminal(measured)) == 1
+    within = {"budget": 0.01}
+    assert choose(measured, "phi15", None, **within).point.model == "compliant fine"
+    found = choose(replace(chaotic, points=(springs, *COST.points[2:])), "phi15", None, **within)
+    assert found.point.model == "compliant" and "no error ranks the models" in found.why
+    # the reference of another condition has its own uncertainty
+    there = choose(measured, "h8", agreement(0.01, 9.0), **within)
+    assert there.point.model == "compliant" and "no error ranks the models" in there.why
+    known = choose(measured, "h8", agreement(0.01, 0.02), **within)
+    assert known.point.model == "compliant fine" and "the most accurate" in known.why
 
 
 def test_other_modes_are_chosen_only_where_they_were_measured():

@@ -12,12 +12,14 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import NamedTuple
 
+from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.stage import Agreement
 from tipoff.studies.cost.results import Cost, Point
 from tipoff.workspace.settings import COARSER
 from tipoff.workspace.study import StudyError
 
 _ROUNDING = 1e-9
+_SPRINGS = "uncalibrated", "calibrated"  # rungs of the agreement study
 
 
 class Trusted(NamedTuple):
@@ -62,14 +64,34 @@ def choose(
     ]
     if not fit:
         raise StudyError(_refusal(points, accuracy, budget) + _measured(cost, condition, there))
-    best = min(fit, key=_by_time if accuracy is not None else _by_error)
-    reason = (
-        "the fastest with this accuracy"
-        if accuracy is not None
-        else "the most accurate within this time"
-    )
+    unsure = unranked(condition, there.get("highfi", cost.band_deg_s))
+    best, reason = _best(fit, accuracy is not None, unsure)
     why = f"{words(best)}: {reason}, of {len(points)} measured on {cost.condition}"
     return Choice(*best, why + _measured(cost, condition, there))
+
+
+def unranked(condition: str, uncertainty: float | None) -> str:
+    """Why errors do not rank the models on a condition; empty if they do. They do not where the
+    ``uncertainty`` (deg/s) of the reference is above the limit of agreement, as it is under chaos."""
+    if uncertainty is None or uncertainty <= verdicts.CONVERGED_DEG_S:
+        return ""
+    return (
+        f"On {condition} the reference is uncertain by {uncertainty:.2g} deg/s, more than the "
+        f"{verdicts.CONVERGED_DEG_S:g} deg/s of agreement. Smaller errors do not rank the models, so none "
+        "is recommended. Finer elements may help. Where 1 µm changes the launch, compare distributions: "
+        "tipoff compare --neighbours"
+    )
+
+
+def _best(fit: list[Trusted], cheapest: bool, unsure: str) -> tuple[Trusted, str]:
+    """The best of the points that ``fit``, with the reason: the ``cheapest`` or the most accurate. If
+    the errors rank no model, compliant contact is preferred to springs."""
+    if cheapest:
+        return min(fit, key=_by_time), "the fastest with this accuracy"
+    if unsure:
+        found = min(fit, key=lambda item: (item.point.rung in _SPRINGS, *_by_error(item)))
+        return found, "its contact follows from the rail, and no error ranks the models"
+    return min(fit, key=_by_error), "the most accurate within this time"
 
 
 def _by_time(item: Trusted) -> tuple[float, float]:

@@ -10,7 +10,7 @@ from tipoff.studies.cost import choice, scaling_page
 from tipoff.studies.cost.results import BY_MODES, Cost, Match, Point
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.column import Column, of_record
-from tipoff.studies.render.document import Figure, Heading, Part
+from tipoff.studies.render.document import Figure, Heading, Notice, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Table
 
@@ -18,8 +18,8 @@ _ERRORS = (
     "Condition {condition}. Errors are relative to the finest finite-element mesh. The band is "
     "the uncertainty of this mesh; in the Pareto front smaller errors count as the band. Below: "
     "the part of the error that a smaller tolerance removes. Labels: model, element size, "
-    "number of modes. The cross is the recommended model: the fastest surrogate within the band "
-    "or 0.1 deg/s, whichever is larger."
+    "number of modes. The cross is the recommended model: the fastest surrogate with an error of at "
+    "most 0.1 deg/s."
 )
 
 # colour, marker and dash of each model, in the order of the points
@@ -39,12 +39,18 @@ def draw(found: Cost) -> list[Part]:
     """Errors over wall time, and the growth of the run time."""
     growth = scaling_page.CAPTION.format(condition=found.condition)
     return [
+        *_unranked(found),
         Figure(picture(found), _ERRORS.format(condition=found.condition)),
         *tables(found),
         Heading("Growth of the run time"),
         Figure(scaling_page.picture(found.scaling), growth),
         *scaling_page.tables(found.scaling),
     ]
+
+
+def _unranked(found: Cost) -> list[Part]:
+    unsure = choice.unranked(found.condition, found.band_deg_s)
+    return [Notice(f"{unsure}.")] if unsure else []
 
 
 def _of_point(name: str) -> tuple[Column, Callable[[Point], Any]]:
@@ -72,7 +78,7 @@ def terminal(found: Cost) -> list[Part]:
         f"The fastest model of each accuracy, condition {found.condition}, "
         f"{len(best)} of {len(found.points)} measured points:"
     )
-    return [Table.of_records(best, *_POINTS, title=title, kind=Point)]
+    return [Table.of_records(best, *_POINTS, title=title, kind=Point), *_unranked(found)]
 
 
 def tables(found: Cost) -> list[Part]:
@@ -134,18 +140,16 @@ def picture(cost: Cost) -> Chart:
 
 
 def recommended(cost: Cost) -> Point | None:
-    """The fastest surrogate whose error is no larger than the uncertainty of the finest mesh, or
-    the limit of agreement if that is larger; without one, the most accurate surrogate. None where that
-    uncertainty is not known."""
-    if cost.band_deg_s is None:
+    """The fastest surrogate within the limit of agreement, or the most accurate one if none is. None where
+    errors do not rank the models, or the uncertainty of the finest mesh is not known."""
+    if cost.band_deg_s is None or choice.unranked(cost.condition, cost.band_deg_s):
         return None
-    enough = max(cost.band_deg_s, verdicts.CONVERGED_DEG_S)
     points = [
         (point.error_deg_s, point)
         for point in cost.points
         if point.error_deg_s is not None and point.model != FINITE_ELEMENTS
     ]
-    good = [point for error, point in points if error <= enough]
+    good = [point for error, point in points if error <= verdicts.CONVERGED_DEG_S]
     if good:
         return min(good, key=lambda point: point.wall_s)
     return min(points, key=itemgetter(0))[1] if points else None
