@@ -14,9 +14,7 @@ import numpy as np
 
 from tipoff import cache, sources
 from tipoff.files import content_hash, tell
-from tipoff.highfi import compliance as statics
-from tipoff.highfi import discretisation
-from tipoff.highfi.statics import inputs, places
+from tipoff.highfi.statics import inputs
 from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance, content, digest, stored
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
@@ -40,6 +38,9 @@ def compliance(
 
     Takes seconds to minutes, once for a rail and its pads. Raises SceneError or MeshError.
     """
+    from tipoff.highfi import compliance as statics  # slow to load
+    from tipoff.highfi import discretisation
+
     size = element_size or own_size(scene.studies)
     rails = statics.rails(scene, size)
     found = statics.condense(scene, size, held=rails, degree=degree)
@@ -49,6 +50,8 @@ def compliance(
 
 def _joints(scene: Scene, element_size: float, degree: int) -> JointTerms | None:
     """The terms of all factors on the stiffness of the mounts; None for rigid ones."""
+    from tipoff.highfi import compliance as statics  # slow to load
+
     if scene.rail.mount_stiffness is None:
         return None
     return statics.condense(scene, element_size, degree=degree, joints=True).joints
@@ -62,6 +65,8 @@ def walls(scene: Scene, element_size: float | None = None) -> RailCompliance | N
         return None
     if scene.thermal is not None:
         return compliance(scene, element_size).rigid()
+    from tipoff.highfi import compliance as statics  # slow to load
+
     return statics.walls(scene, element_size or own_size(scene.studies))
 
 
@@ -109,6 +114,8 @@ def _kept_joints(scene: Scene, folder: Path, element_size: float, degree: int) -
 def _made(
     scene: Scene, element_size: float, degree: int, path: Path, say: Callable[[str], None]
 ) -> RailCompliance:
+    from tipoff.highfi.statics import places  # slow to load
+
     say(
         f"rail compliance, once per rail and pads: {1e3 * element_size:g} mm elements, then "
         f"{500 * element_size:g} mm for its uncertainty; takes seconds to minutes"
@@ -178,12 +185,14 @@ class _Asked:
 @lru_cache(maxsize=16)  # each call of the surrogate in a loop over scenes asks
 def _digest_of(asked: _Asked) -> str:
     scene = asked.scene
-    return content_hash(digest(scene), inputs.of(statics.nominal(scene)).digest())
+    return content_hash(digest(scene), inputs.of(inputs.nominal(scene)).digest())
 
 
 def direct(scene: Scene, element_size: float) -> np.ndarray:
     """Mean displacement (s,f) m/N of each of f faces under a unit force on it, at s places along the
     rail, in elements of ``element_size`` (m)."""
+    from tipoff.highfi import compliance as statics  # slow to load
+
     faces = scene_model.built(scene).nominal
     way = (scene.rail.end - faces.half_length - faces.centre[:, 0]).max()
     found = statics.along(scene, element_size, np.linspace(0.0, way, _PLACES), patterns=1)

@@ -8,7 +8,7 @@ from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.stepper import Stepper
 from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.numerics import Numerics
-from tipoff.highfi.run import prepare
+from tipoff.highfi.simulation import prepare
 from tipoff.highfi.state import nodes
 from tipoff.kernels.compiled import effects
 from tipoff.mechanics.ledger import BODY_FORCE

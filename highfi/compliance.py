@@ -24,7 +24,7 @@ import numpy as np
 
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.rail import drawn_walls
-from tipoff.highfi.run import prepare
+from tipoff.highfi.simulation import prepare
 from tipoff.highfi.statics import inputs, joint_terms
 from tipoff.highfi.statics.held import HeldRail, distinct
 from tipoff.highfi.statics.places import Patches, part_of_wall, pressed_together
@@ -101,7 +101,7 @@ def condense(
 
     Raises SceneError or MeshError.
     """
-    scene = nominal(scene)
+    scene = inputs.nominal(scene)
     stations = _stations(scene, spacing or spacing_of(scene))
     own = inputs.of(scene)
     held = held or rails(scene, element_size)
@@ -186,17 +186,10 @@ def walls(scene: Scene, element_size: float, spacing: float | None = None) -> Ra
     )
 
 
-def nominal(scene: Scene) -> Scene:
-    """``scene`` with a factor of 1 on the stiffness of its mounts."""
-    if scene.rail.mount_stiffness is None:
-        return scene
-    return scene.replace({"rail.mount_stiffness.factor": 1.0})
-
-
 def rails(scene: Scene, element_size: float) -> list[HeldRail]:
     """The distinct rails of ``scene`` in elements of about ``element_size`` (m) on their mounts, with
     a factor of 1 on the stiffness of these. Raises SceneError or MeshError."""
-    return _held(nominal(scene), element_size)
+    return _held(inputs.nominal(scene), element_size)
 
 
 def _held(scene: Scene, element_size: float) -> list[HeldRail]:

@@ -33,7 +33,7 @@ from tipoff.highfi import compliance
 from tipoff.highfi.mesh import split
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
-from tipoff.highfi.run import prepare
+from tipoff.highfi.simulation import prepare
 from tipoff.highfi.statics import assembly, inputs
 from tipoff.highfi.statics.held import HeldRail
 from tipoff.highfi.statics.operator import internal_force
@@ -73,7 +73,7 @@ def stated(
     """``found`` with the size (m) of its elements and their uncertainty. ``compliance.condense``
     made it for ``scene`` and ``element_size`` (m); ``rails`` are those that it used. Raises
     SceneError or MeshError."""
-    mesh = prepare(compliance.nominal(scene), Numerics(element_size=element_size))
+    mesh = prepare(inputs.nominal(scene), Numerics(element_size=element_size))
     size = split.shortest(mesh) if isinstance(scene.rail, MeshTable) else element_size
     known = of(scene, element_size, rails)
     return replace(
@@ -88,7 +88,7 @@ def stated(
 def of(scene: Scene, element_size: float, rails: Sequence[HeldRail] | None = None) -> Uncertainty:
     """Uncertainty of ``compliance.condense`` in elements of ``element_size`` (m), with the same
     ``rails``. Raises SceneError or MeshError."""
-    scene = compliance.nominal(scene)
+    scene = inputs.nominal(scene)
     own = inputs.of(scene)
     way = own.reach[1] - own.faces.half_length - own.faces.centre[:, 0]
     travel = np.linspace(0.0, way.max(), _PLACES)

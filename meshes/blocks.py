@@ -6,8 +6,7 @@ one number, from their mean length.
 """
 
 import numpy as np
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
+import scipy  # its submodules load at their first use
 
 _SAME = 1e-9  # m: corners closer than this are one
 _EDGES = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
@@ -39,8 +38,8 @@ def _divisions(blocks: np.ndarray, element_size: float) -> np.ndarray:
     _, number = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)
     number = number.reshape(-1, 4)
     pairs = np.concatenate([number[:, [0, 2]], number[:, [1, 3]]])
-    graph = csr_array((np.ones(len(pairs)), pairs.T), shape=(number.max() + 1,) * 2)
-    _, strand = connected_components(graph, directed=False)
+    graph = scipy.sparse.csr_array((np.ones(len(pairs)), pairs.T), shape=(number.max() + 1,) * 2)
+    _, strand = scipy.sparse.csgraph.connected_components(graph, directed=False)
     lengths = np.linalg.norm(np.diff(blocks[:, _EDGES], axis=2)[:, :, 0], axis=2)
     own = strand[number]
     mean = np.bincount(own.ravel(), lengths.ravel()) / np.bincount(own.ravel())

@@ -110,7 +110,12 @@ def test_a_wheel_puts_one_name_into_an_environment(wheel):
     with zipfile.ZipFile(wheel) as archive:
         names = archive.namelist()
     assert {name.split("/")[0] for name in names if ".dist-info" not in name} == {"tipoff"}
-    for held in ("highfi/run.py", "lowfi/run.py", "calibration/run.py", "meshes/l_rail.py"):
+    for held in (
+        "highfi/simulation.py",
+        "lowfi/simulation.py",
+        "calibration/run.py",
+        "meshes/l_rail.py",
+    ):
         assert f"tipoff/{held}" in names
     assert "tipoff/scenes/catalog/reference.toml" in names
 

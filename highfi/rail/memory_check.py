@@ -3,8 +3,8 @@ is made if its size is known in advance (``memory_fault`` for files)."""
 
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.rail import memory_estimate
+from tipoff.highfi.rail.geometry import elements
 from tipoff.highfi.rail.memory_fault import too_large
-from tipoff.highfi.rail.scene_mesh import elements
 from tipoff.highfi.statics import assembly
 from tipoff.scenes.scene import Scene
 

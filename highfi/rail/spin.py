@@ -14,7 +14,8 @@ refused if this ratio exceeds ``MOST``.
 import numpy as np
 
 from tipoff.highfi.mesh.rail_mesh import RailMesh, read
-from tipoff.highfi.rail.scene_mesh import geometry, make_mesh
+from tipoff.highfi.rail.geometry import geometry
+from tipoff.highfi.rail.scene_mesh import make_mesh
 from tipoff.highfi.rail.step_cost import spacing
 from tipoff.highfi.statics import held
 from tipoff.mechanics import scene_model

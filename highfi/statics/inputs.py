@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.files import content_hash
-from tipoff.highfi.rail.scene_mesh import geometry
+from tipoff.highfi.rail.geometry import geometry
 from tipoff.mechanics import scene_model
 from tipoff.mechanics.scene_model import Faces
 from tipoff.scenes.effects.mount_stiffness import MountStiffness
@@ -34,18 +34,25 @@ class Inputs(NamedTuple):
         return content_hash(self.shape, material, self.joint, faces, self.reach)
 
 
+def nominal(scene: Scene) -> Scene:
+    """``scene`` with a factor of 1 on the stiffness of its mounts."""
+    if scene.rail.mount_stiffness is None:
+        return scene
+    return scene.replace({"rail.mount_stiffness.factor": 1.0})
+
+
 def of(scene: Scene) -> Inputs:
     """The record of ``scene``. Raises SceneError if pads do not fit the built-in section or nothing
     holds it."""
-    nominal = scene_model.built(scene).nominal
-    wall = np.round(scene_model.in_scene_axes(scene, nominal).wall, _DIGITS)
+    faces = scene_model.built(scene).nominal
+    wall = np.round(scene_model.in_scene_axes(scene, faces).wall, _DIGITS)
     # the thermal offset is for a unit of each field
     material = scene.rail.material.model_copy(update={"yield_strength": None, "expansion": None})
     return Inputs(
         _shape(scene),
         material,
         scene.rail.joint(),
-        nominal._replace(wall=wall),
+        faces._replace(wall=wall),
         (scene.rail.start, scene.rail.end),
     )
 

@@ -13,7 +13,7 @@ from tipoff.lowfi.dynamics.loop import Sampling
 from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
 from tipoff.lowfi.numerics import AUTO, Numerics, promises_of
 from tipoff.lowfi.preparation import prepare
-from tipoff.lowfi.run import solved
+from tipoff.lowfi.simulation import solved
 from tipoff.mechanics import comoving, ending, outcome, scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance, may_vibrate
 from tipoff.mechanics.scene_model import Built, Faces

@@ -26,7 +26,7 @@ from tipoff.lowfi.ensemble import store as stores
 from tipoff.lowfi.ensemble import twins
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.numerics import AUTO, Numerics
-from tipoff.lowfi.run import solved
+from tipoff.lowfi.simulation import solved
 from tipoff.mechanics.rail_compliance import may_vibrate
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.scene import Scene

@@ -11,6 +11,7 @@ from tests.in_memory import memory
 from tipoff import calibration
 from tipoff.calibration import rail_compliance
 from tipoff.highfi import compliance as statics
+from tipoff.highfi import discretisation
 from tipoff.highfi.statics import places
 from tipoff.mechanics.rail_compliance import digest
 from tipoff.scenes import SceneError, load
@@ -138,10 +139,8 @@ def test_the_elements_are_those_that_are_asked_for_or_of_the_scene(monkeypatch):
     def condense(scene, size, held, degree):
         return SimpleNamespace(finding=lambda joints: size)
 
-    monkeypatch.setattr(rail_compliance.statics, "condense", condense)
-    monkeypatch.setattr(
-        rail_compliance.discretisation, "stated", lambda scene, size, found, rails: found
-    )
+    monkeypatch.setattr(statics, "condense", condense)
+    monkeypatch.setattr(discretisation, "stated", lambda scene, size, found, rails: found)
     assert calibration.compliance(load("tiny"), 6e-3) == 6e-3
     assert calibration.compliance(load("tiny")) == 8e-3
     assert calibration.compliance(load("clamped").replace({"name": "tiny"})) == 2e-3
@@ -163,10 +162,8 @@ def _said(monkeypatch, tmp_path, seconds: float) -> list[str]:
 
     monkeypatch.setattr(rail_compliance, "KEPT", memory())
     monkeypatch.setattr(rail_compliance.time, "perf_counter", lambda: now)
-    monkeypatch.setattr(rail_compliance.statics, "condense", condense)
-    monkeypatch.setattr(
-        rail_compliance.discretisation, "stated", lambda scene, size, found, rails: found
-    )
+    monkeypatch.setattr(statics, "condense", condense)
+    monkeypatch.setattr(discretisation, "stated", lambda scene, size, found, rails: found)
     lines: list[str] = []
     rail_compliance.kept(load("tiny"), tmp_path, 8e-3, lines.append)
     return lines

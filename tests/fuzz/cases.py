@@ -141,7 +141,7 @@ def take_steps(scene: scenes.Scene) -> None:
     from tipoff.highfi.dynamics.setup import set_up
     from tipoff.highfi.dynamics.step_size import choose
     from tipoff.highfi.dynamics.system import build
-    from tipoff.highfi.run import Loop
+    from tipoff.highfi.simulation import Loop
 
     numerics = highfi.Numerics(element_size=1e-3 * COARSE)
     drawn, few = walls(scene, numerics.element_size), lowfi.Numerics(maximum_steps=200)

@@ -16,7 +16,7 @@ from tipoff.highfi.dynamics.step_size import Stepping, choose
 from tipoff.highfi.dynamics.system import System, build
 from tipoff.highfi.mesh.rail_mesh import RailMesh, read
 from tipoff.highfi.numerics import Numerics
-from tipoff.highfi.run import Loop
+from tipoff.highfi.simulation import Loop
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import load
 

@@ -281,7 +281,7 @@ def _forces(record: thrust_law.Thrust) -> tuple[np.ndarray, np.ndarray]:
     corners = np.append(thrust_law.corners(record, last), last)
     both_sides = np.append(corners, np.nextafter(corners, -np.inf))  # of a jump
     time = np.unique(np.concatenate([np.linspace(0.0, last, _POINTS), both_sides]))
-    return time, thrust_law.sample(record, time)
+    return time, thrust_law.estimated(record, time)
 
 
 def _pushed(record: thrust_law.Thrust) -> float:

@@ -2,8 +2,6 @@
 
 from collections.abc import Sequence
 
-from tipoff.highfi.rail import memory_estimate, step_cost
-from tipoff.highfi.statics import assembly
 from tipoff.workspace.progress import say
 from tipoff.workspace.run import Run
 from tipoff.workspace.study import Study
@@ -13,7 +11,9 @@ from tipoff.workspace.words import counted
 def announce(study: Study, runs: Sequence[Run]) -> None:
     """Print the number of missing ``runs`` of the reference, and the time and memory that they
     take."""
-    from tipoff import highfi
+    from tipoff import highfi  # slow to load
+    from tipoff.highfi.rail import memory_estimate, step_cost
+    from tipoff.highfi.statics import assembly
 
     for size in dict.fromkeys(run.numerics.element_size for run in runs):
         wanted = [run for run in runs if run.numerics.element_size == size]

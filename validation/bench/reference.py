@@ -83,7 +83,7 @@ def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dic
     from tipoff.highfi.dynamics.setup import set_up
     from tipoff.highfi.dynamics.step_size import choose
     from tipoff.highfi.dynamics.system import build
-    from tipoff.highfi.run import Loop
+    from tipoff.highfi.simulation import Loop
     from tipoff.highfi.state.threads import processors
     from validation.bench.csr_loop import CsrLoop
 

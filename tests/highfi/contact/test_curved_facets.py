@@ -15,7 +15,7 @@ from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.mesh import facets
 from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
 from tipoff.highfi.numerics import Numerics
-from tipoff.highfi.run import Loop
+from tipoff.highfi.simulation import Loop
 
 TRIANGLE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0.5, 0, 0], [0.5, 0.5, 0], [0, 0.5, 0]])
 INTERFACE_STIFFNESS = 1e12

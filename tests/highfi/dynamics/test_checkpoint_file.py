@@ -16,7 +16,7 @@ from tipoff.files import discard, sealed, write_sealed
 from tipoff.highfi import CheckpointError, Numerics
 from tipoff.highfi.dynamics import checkpoint
 from tipoff.highfi.dynamics.checkpoint import Checkpoint
-from tipoff.highfi.run import Loop
+from tipoff.highfi.simulation import Loop
 
 pytestmark = pytest.mark.case("X20")
 

@@ -13,7 +13,7 @@ from tests.highfi.support import NEUTRAL, loop_on, replace_constants
 from tipoff.highfi.dynamics import stable_step
 from tipoff.highfi.dynamics.step_limit import step_limit, used
 from tipoff.highfi.numerics import Numerics
-from tipoff.highfi.run import Loop
+from tipoff.highfi.simulation import Loop
 from tipoff.scenes import parse
 from tipoff.scenes.effects.structural_damping import Damping
 

@@ -11,7 +11,7 @@ from tipoff.highfi import Numerics
 from tipoff.highfi.dynamics.setup import set_up
 from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import general_elements
-from tipoff.highfi.run import Loop
+from tipoff.highfi.simulation import Loop
 from tipoff.highfi.state.threads import processors
 
 NUMERICS = Numerics(element_size=0.008)

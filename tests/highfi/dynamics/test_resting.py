@@ -18,7 +18,7 @@ from tipoff.highfi.dynamics.resting import Rails
 from tipoff.highfi.dynamics.setup import set_up
 from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import build
-from tipoff.highfi.run import Loop
+from tipoff.highfi.simulation import Loop
 from tipoff.kernels import rotation
 from tipoff.mechanics.ledger import ENTRIES
 from tipoff.mechanics.trajectory import Trajectory

@@ -20,7 +20,7 @@ from tipoff.highfi import Numerics
 from tipoff.highfi.dynamics.setup import set_up
 from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import build
-from tipoff.highfi.run import Loop
+from tipoff.highfi.simulation import Loop
 from tipoff.kernels import rotation
 
 SLOWER = 300.0

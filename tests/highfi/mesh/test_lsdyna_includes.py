@@ -8,7 +8,7 @@ from tests.highfi.mesh import lsdyna_text
 from tests.highfi.mesh.test_mesh_files import check_rail, read_text
 from tests.scenes.support import refused, small
 from tipoff.highfi.mesh.rail_mesh import MeshError, read
-from tipoff.highfi.rail.scene_mesh import geometry
+from tipoff.highfi.rail.geometry import geometry
 from tipoff.scenes import parse
 
 RAIL = {"start": "-88 mm", "end": "132 mm"} | {

@@ -1,8 +1,6 @@
 """Memory is checked before it is used: what a run will need, what is available, and the refusal
 when that is less."""
 
-import importlib
-
 import pytest
 import typer
 from typer.testing import CliRunner
@@ -10,16 +8,16 @@ from typer.testing import CliRunner
 from tests.highfi.support import tiny
 from tests.meshes.test_solid import drawn, drilled, flat, mesh_here, scene_of
 from tipoff import highfi
-from tipoff.highfi import Numerics
+from tipoff.highfi import Numerics, simulation
 from tipoff.highfi.mesh import split
 from tipoff.highfi.rail import memory_estimate
-from tipoff.highfi.rail.scene_mesh import geometry, make_mesh
+from tipoff.highfi.rail.geometry import geometry
+from tipoff.highfi.rail.scene_mesh import make_mesh
 from tipoff.meshes import l_rail
 from tipoff.scenes import SceneError, load
 from tipoff.studies.runs import command as commands
 from validation.bench.command import bench
 
-runs = importlib.import_module("tipoff.highfi.run")  # the name in the package is the function
 MEMINFO = "MemTotal:       16000000 kB\nMemFree:         1000000 kB\nMemAvailable:    8000000 kB\n"
 
 
@@ -99,7 +97,7 @@ def test_section_that_does_not_fit_is_refused_before_it_is_meshed(monkeypatch):
     """The fault has both numbers and a size that fits; at that size the check passes. Control:
     without the check the mesh would be begun."""
     monkeypatch.setattr(memory_estimate, "available", lambda: 2_000_000_000)
-    monkeypatch.setattr(runs, "make_mesh", lambda *_: pytest.fail("meshed"))
+    monkeypatch.setattr(simulation, "make_mesh", lambda *_: pytest.fail("meshed"))
     with pytest.raises(SceneError) as caught:
         highfi.prepare(load("reference"), Numerics(element_size=0.00025))
     (fault,) = caught.value.faults
@@ -116,7 +114,7 @@ def test_mesh_of_a_file_that_leaves_too_little_is_refused(monkeypatch):
     scene = load("channel")
     mesh = highfi.prepare(scene)
     elements, nodes = mesh.cells.shape
-    runs.MESHES.clear()
+    simulation.MESHES.clear()
     monkeypatch.setattr(
         memory_estimate, "available", lambda: 0.9 * memory_estimate.of_mesh(elements, nodes, 0)
     )
@@ -160,7 +158,7 @@ def test_a_solid_is_not_filled_where_its_elements_do_not_fit(
 @pytest.mark.parametrize("command", [commands.highfi, bench])
 def test_commands_report_it_without_a_traceback(tmp_path, monkeypatch, command):
     monkeypatch.setattr(memory_estimate, "available", lambda: 100_000_000)
-    runs.MESHES.clear()
+    simulation.MESHES.clear()
     app = typer.Typer()
     app.command()(command)
     result = CliRunner().invoke(app, ["--element-size", "1", "--out", str(tmp_path / "out")])

@@ -10,7 +10,7 @@ from tests.highfi.support import COARSE, tiny
 from tests.meshes.test_solid import drawn, l_sections, l_surfaces, scene_of
 from tipoff import highfi
 from tipoff.highfi.mesh.rail_mesh import MeshError
-from tipoff.highfi.rail.scene_mesh import geometry
+from tipoff.highfi.rail.geometry import geometry
 from tipoff.meshes import channel, l_rail, msh
 from tipoff.scenes import SceneError, load
 

@@ -13,7 +13,7 @@ from tipoff import highfi
 from tipoff.highfi import compliance
 from tipoff.highfi.mesh.rail_mesh import read
 from tipoff.highfi.numerics import Numerics
-from tipoff.highfi.run import prepare
+from tipoff.highfi.simulation import prepare
 from tipoff.highfi.statics import assembly
 from tipoff.highfi.statics.solve import Clamped
 from tipoff.meshes import profile

@@ -13,7 +13,7 @@ from tipoff.highfi.dynamics.system import general_elements
 from tipoff.highfi.mesh import facets, pieces
 from tipoff.highfi.mesh.halve import halved
 from tipoff.highfi.mesh.rail_mesh import read
-from tipoff.highfi.rail.scene_mesh import geometry
+from tipoff.highfi.rail.geometry import geometry
 from tipoff.highfi.statics import assembly
 from tipoff.highfi.statics.solve import Clamped
 from tipoff.meshes import l_rail, msh

@@ -14,7 +14,7 @@ from tipoff.highfi.dynamics.setup import set_up
 from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.mesh.rail_mesh import RailMesh
-from tipoff.highfi.run import Loop
+from tipoff.highfi.simulation import Loop
 from tipoff.scenes import load
 
 FLOOR = 0.016  # deg/s: what 1 um of clearance changes on the reference scene

@@ -13,7 +13,7 @@ from tipoff import highfi
 from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.elements import hexahedral_recovery, hexahedron
 from tipoff.highfi.numerics import Numerics
-from tipoff.highfi.rail.scene_mesh import geometry
+from tipoff.highfi.rail.geometry import geometry
 from tipoff.highfi.stress import gauge, monitor
 from tipoff.mechanics.trajectory import Trajectory
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from tests.exact.thrust import gaussian_peak, kept_by_cut
 from tests.scenes.support import small
 from tipoff.scenes import SceneError, load, parse
-from tipoff.scenes.effects import thrust
+from tipoff.scenes.effects import thrust, thrust_law
 from tipoff.scenes.effects.measured import MeasuredCurve, fit_gaussian
 from tipoff.scenes.effects.thrust_law import Pulses, Thrust
 
@@ -100,6 +100,21 @@ def test_the_law_is_the_sum_of_its_pulses():
     )
     assert np.allclose(thrust.sample(record, time), expected, rtol=1e-13, atol=1e-9)
     assert thrust.shortest_feature(record) == 2e-3
+
+
+def test_python_and_the_compiled_law_give_the_same_bits():
+    """Few values come from Python, many from the compiled law. Control: the estimate, whose last bits
+    may differ."""
+    pulses = Pulses(*np.array([[900.0, 300.0], [9e-3, 21e-3], [2e-3, 5e-3]]), 1e-3, 30e-3)
+    record = Thrust(pulses, None)
+    time = np.random.default_rng(3).uniform(-5e-3, 40e-3, 2000)
+    many, few = (
+        thrust.sample(record, time),
+        [thrust.sample(record, part)[0] for part in time[:, None]],
+    )
+    assert (many == few).all() and 0 < np.count_nonzero(many) < len(many)
+    about = thrust_law.estimated(record, time)
+    np.testing.assert_allclose(about, many, rtol=1e-14)
 
 
 def test_outside_the_cut_there_is_nothing():

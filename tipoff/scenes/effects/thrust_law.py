@@ -4,6 +4,8 @@ F(t) = sum_i P_i exp(-(t - t_i)^2 / (2 s_i^2))   begin <= t <= end,   or a piece
 """
 
 import math
+from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +16,8 @@ from tipoff.kernels.reference import by_reference
 ROOT_TWO_PI = math.sqrt(2.0 * math.pi)
 # Widths around a pulse in which the thrust is evaluated: for one pulse, and for one of several.
 _COARSE, _FINE = np.linspace(-8.0, 8.0, 17), np.linspace(-8.0, 8.0, 801)
+_BISECTIONS = 60  # of the usual interval
+_FEW = 500  # terms that Python sums; to load the first compiled function of a process takes 0.2 s
 
 
 @by_reference
@@ -54,9 +58,9 @@ def _pulsed(pulses, time):
     if not pulses.begin <= time <= pulses.end:
         return 0.0
     total = 0.0
-    for i in range(pulses.peaks.size):
+    for i in range(len(pulses.peaks)):
         x = (time - pulses.centres[i]) / pulses.widths[i]
-        total += pulses.peaks[i] * np.exp(-0.5 * x * x)
+        total += pulses.peaks[i] * math.exp(-0.5 * x * x)
     return total
 
 
@@ -92,7 +96,33 @@ def _sampled(pulses, curve, times):
 
 def sample(thrust: Thrust, time: np.ndarray) -> np.ndarray:
     """Thrust (N) at each of ``time`` (n,) s."""
+    if (force := _by_python(thrust, time.size)) is not None:
+        return np.array([force(at) for at in time.tolist()])
     return _sampled(thrust.pulses, thrust.curve, np.ascontiguousarray(time, dtype=float))
+
+
+def estimated(thrust: Thrust, time: np.ndarray) -> np.ndarray:
+    """As ``sample``, to the last few bits, but pulses without compiled code."""
+    pulses = thrust.pulses
+    if pulses is None:
+        return sample(thrust, time)
+    x = (time[:, None] - pulses.centres) / pulses.widths
+    burns = (time >= pulses.begin) & (time <= pulses.end)
+    return np.where(burns, (pulses.peaks * np.exp(-0.5 * x * x)).sum(axis=1), 0.0)
+
+
+def _by_python(thrust: Thrust, values: int) -> Callable[[float], float] | None:
+    """The thrust (N) over the time (s) as a function of Python, with the bits of the compiled one; None
+    for a curve, and if ``values`` of it have many terms."""
+    pulses = thrust.pulses
+    if pulses is None or values * pulses.peaks.size > _FEW:
+        return None
+    listed = Pulses(
+        *(each.tolist() for each in (pulses.peaks, pulses.centres, pulses.widths)),
+        float(pulses.begin),
+        float(pulses.end),
+    )
+    return partial(_pulsed.py_func, listed)
 
 
 def corners(thrust: Thrust, duration: float) -> np.ndarray:
@@ -113,18 +143,17 @@ def shortest_feature(thrust: Thrust) -> float:
     return float(np.diff(np.unique(_curve(thrust).times)).min(initial=math.inf))
 
 
-@njit
-def _crossed(pulses, curve, level, above, below):
+def _crossed(thrust: Thrust, level: float, above: float, below: float) -> tuple[float, float]:
     """Two neighbouring times (s), between a time ``above`` and a time ``below`` in either order:
     the magnitude of the thrust is at least ``level`` (N) at the first, and smaller at the second."""
-    while True:
-        middle = 0.5 * (above + below)
-        if middle in (above, below):
-            return above, below
-        if abs(magnitude(pulses, curve, middle)) >= level:
+    force = _by_python(thrust, _BISECTIONS) or partial(magnitude, thrust.pulses, thrust.curve)
+    above, below = float(above), float(below)
+    while (middle := 0.5 * (above + below)) not in (above, below):
+        if abs(force(middle)) >= level:
             above = middle
         else:
             below = middle
+    return above, below
 
 
 def _grid(thrust: Thrust, duration: float) -> tuple[np.ndarray, np.ndarray]:
@@ -151,7 +180,7 @@ def reached(thrust: Thrust, level: float) -> float:
         return math.inf
     first = int(high[0])
     before = time[max(first - 1, 0)]
-    return float(_crossed(thrust.pulses, thrust.curve, level, time[first], before)[0])
+    return float(_crossed(thrust, level, time[first], before)[0])
 
 
 def peak(thrust: Thrust, duration: float) -> float:
@@ -186,7 +215,7 @@ def _last_above(
     above = np.flatnonzero(force >= level)[-1]
     if above == time.size - 1:
         return float(duration)
-    return float(_crossed(thrust.pulses, thrust.curve, level, time[above], time[above + 1])[1])
+    return float(_crossed(thrust, level, time[above], time[above + 1])[1])
 
 
 def kept(begin: float, end: float, centre: float, width: float) -> float:

@@ -16,7 +16,6 @@ import numpy as np
 from tipoff.comparison.extrapolation import Estimate, estimate
 from tipoff.comparison.metrics import compare
 from tipoff.highfi.numerics import LEAST_CELLS, Numerics
-from tipoff.highfi.rail import refinement as mesh_files
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement.verdicts import Refinement
@@ -59,6 +58,8 @@ def mesh_sizes(
     """Requested element sizes (m), coarsest first, and the sizes of their meshes. A file gives one
     mesh for several ``given`` sizes. Then only the size of the other stages is used, or else the
     smallest, and finer sizes follow until there are ``least`` meshes, if they fit."""
+    from tipoff.highfi.rail import refinement as mesh_files  # slow to load
+
     wanted = list(given)
     own: dict[float, float] = {}
     for asked, size in zip(wanted, mesh_files.sizes(scene, wanted)):

@@ -182,7 +182,7 @@ def reference_seconds(run: Run, speed: Pace) -> tuple[float, str] | None:
 
 def _elements(scene: Scene, size: float, speed: Pace) -> float | None:
     if scene.rail.IS_STRAIGHT:
-        from tipoff.highfi.rail.scene_mesh import elements  # slow to load
+        from tipoff.highfi.rail.geometry import elements  # slow to load
 
         return elements(scene, size)
     if speed.elements is None or speed.element_size is None:

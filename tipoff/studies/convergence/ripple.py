@@ -21,7 +21,7 @@ from tipoff.highfi import Numerics, prepare
 from tipoff.highfi.dynamics.setup import set_up
 from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import build
-from tipoff.highfi.run import Loop
+from tipoff.highfi.simulation import Loop
 from tipoff.highfi.state.threads import processors
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.scenes.scene import Scene

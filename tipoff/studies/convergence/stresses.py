@@ -8,7 +8,6 @@ There the stress of linear elasticity is infinite, so the peak grows with every 
 with a fillet on joints has neither.
 """
 
-from tipoff.highfi.elements.hexahedral_recovery import von_mises
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
@@ -28,6 +27,8 @@ def has_limit(scene: Scene) -> bool:
 def patch_peak(scene: Scene, run: Trajectory) -> float | None:
     """Largest von Mises stress (Pa) of any patch below the cut-off frequency; None for a run
     without patches."""
+    from tipoff.highfi.elements.hexahedral_recovery import von_mises  # slow to load
+
     if run.wall_stress is None or not run.wall_stress.size:
         return None
     return float(von_mises(contact_loads.low_passed(scene, run.wall_stress)).max())

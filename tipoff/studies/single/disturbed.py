@@ -8,7 +8,6 @@ from dataclasses import asdict, dataclass, fields, replace
 
 from tipoff import cache, sources
 from tipoff.files import content_hash
-from tipoff.lowfi.ensemble import twins
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.agreement.verdicts import largest, settled_change
 from tipoff.workspace.run import Run, execute, with_modes_of
@@ -47,6 +46,8 @@ def kept(store: Store, run: Run, nominal: Trajectory, clearance_change: float) -
 
 def of(run: Run, nominal: Trajectory, clearance_change: float) -> Disturbed:
     """Changes by ``clearance_change`` (m), and by a tighter tolerance."""
+    from tipoff.lowfi.ensemble import twins  # slow to load
+
     if run.calibration is not None:  # its clearance is changed
         run = replace(run, scene=run.calibration.apply(run.scene), calibration=None)
     run = with_modes_of(nominal, run)

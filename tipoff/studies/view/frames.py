@@ -40,7 +40,7 @@ class Frame(NamedTuple):
 
 
 class Camera:
-    """Takes frames of a ``highfi.run.Loop`` at its present sample; common data is computed once."""
+    """Takes frames of a ``highfi.simulation.Loop`` at its present sample; common data is computed once."""
 
     def __init__(self, loop):
         self.system, mesh = loop.setup.system, loop.setup.system.mesh

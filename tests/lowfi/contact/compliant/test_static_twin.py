@@ -13,7 +13,7 @@ from tests.lowfi.compliance import REFERENCE, SMOOTH
 from tests.lowfi.contact.compliant.static_twin import StaticTwin
 from tipoff.highfi import compliance as statics
 from tipoff.highfi.numerics import Numerics
-from tipoff.highfi.run import prepare
+from tipoff.highfi.simulation import prepare
 from tipoff.highfi.state.records import OVER
 from tipoff.kernels import rotation
 from tipoff.lowfi import system as systems

@@ -28,7 +28,7 @@ from tests.lowfi.compliance import (
 from tipoff.highfi.contact import surface
 from tipoff.highfi.mesh import facets, pieces
 from tipoff.highfi.numerics import Numerics
-from tipoff.highfi.run import prepare
+from tipoff.highfi.simulation import prepare
 from tipoff.highfi.statics import assembly
 from tipoff.kernels import rotation
 from tipoff.lowfi import state as slot

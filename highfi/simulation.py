@@ -21,8 +21,9 @@ from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.rail import spin, step_cost
 from tipoff.highfi.rail.fit import check_fit
+from tipoff.highfi.rail.geometry import geometry
 from tipoff.highfi.rail.memory_check import check_before, check_mesh
-from tipoff.highfi.rail.scene_mesh import geometry, make_mesh
+from tipoff.highfi.rail.scene_mesh import make_mesh
 from tipoff.highfi.recorded import Recorded
 from tipoff.highfi.state.threads import processors
 from tipoff.mechanics import outcome
