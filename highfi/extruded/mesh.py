@@ -47,17 +47,29 @@ class Columns(NamedTuple):
     highest: np.ndarray  # (c,) highest chunk that each chunk, or one before it, depends on
 
 
+def is_even(points: np.ndarray) -> bool:
+    """Whether nodes at ``points`` (n,3) m are those of an even extrusion along X."""
+    return _grid(points) is not None
+
+
+def _grid(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+    """Places (s,2) in the section of an even extrusion, in units of ``_SAME``, and for each node the
+    number (n,) of its place and of its layer; None if there is no even extrusion."""
+    places, point = np.unique(np.round(points[:, 1:] / _SAME), axis=0, return_inverse=True)
+    stations, layer = np.unique(np.round(points[:, 0] / _SAME), return_inverse=True)
+    uneven = stations.size < 3 or np.ptp(np.diff(stations)) > 2.0
+    if uneven or len(places) * stations.size != len(points):
+        return None
+    return places, point.reshape(-1), layer.reshape(-1)
+
+
 def find(points: np.ndarray, operator: Operator) -> tuple[Columns, np.ndarray] | None:
     """Columns of a mesh (points (n,3) m) and the new number (n,) of each node; None if the mesh is
     not an even extrusion."""
-    if operator.cells.shape[1] != 8:
+    if operator.cells.shape[1] != 8 or (found := _grid(points)) is None:
         return None
-    places, point = np.unique(np.round(points[:, 1:] / _SAME), axis=0, return_inverse=True)
-    stations, layer = np.unique(np.round(points[:, 0] / _SAME), return_inverse=True)
-    point, layer = point.reshape(-1), layer.reshape(-1)
-    sections, layers = point.max() + 1, stations.size
-    if layers < 3 or np.ptp(np.diff(stations)) > 2.0 or sections * layers != len(points):
-        return None
+    places, point, layer = found
+    sections, layers = len(places), layer.max() + 1
     stride = -(-layers // LANES) * LANES
     blocks = _blocks(operator, point, layer, layers)
     if blocks is None:

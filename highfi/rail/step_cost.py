@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from tipoff.highfi.dynamics import stable_step
+from tipoff.highfi.extruded import mesh as extruded
 from tipoff.highfi.mesh.cells import edge_lengths, jacobians, thickness
 from tipoff.highfi.mesh.rail_mesh import RailMesh, listed, slivers
 from tipoff.highfi.numerics import Numerics
@@ -22,8 +23,9 @@ from tipoff.scenes.scene import Scene
 
 MOST = 6.0  # times the steps of hexahedra of the same size; above it there is a warning
 _WORST = 500  # elements assembled for each measure
-# ns of one core for one step of one element, by its number of nodes: if many elements share a
-# matrix, and if each has its own
+# ns of one core for one step: without elements, of an element of an extrusion, and of another
+# element by its number of nodes, if many share a matrix and if each has its own
+_STEP, _COLUMNS = 8e3, 2.5
 _SHARED, _OWN = {8: 45.0, 10: 150.0}, {8: 250.0, 10: 900.0}
 _FEW = 0.1  # matrices per element
 _LONG = 1200.0  # s on one core; a longer run is announced with its time
@@ -103,10 +105,12 @@ def long_run(mesh: RailMesh, scene: Scene, step: float) -> str:
 
 
 def _seconds(mesh: RailMesh, scene: Scene, step: float) -> float:
-    count = len(mesh.cells)
+    count, nodes = mesh.cells.shape
     is_shared = len(assembly.shape_classes(mesh)[1]) < _FEW * count
-    nanoseconds = (_SHARED if is_shared else _OWN)[mesh.cells.shape[1]]
-    return 1e-9 * nanoseconds * scene.expected_end / step * count
+    element = (_SHARED if is_shared else _OWN)[nodes]
+    if is_shared and nodes == 8 and extruded.is_even(mesh.points):
+        element = _COLUMNS
+    return 1e-9 * (_STEP + element * count) * scene.expected_end / step
 
 
 def spacing(mesh: RailMesh) -> float:

@@ -40,6 +40,8 @@ from tipoff.workspace.study import Study
         (0.33, "dimensionless", "0.33"),
         (9.9, "kg", "9.9 kg"),
         ((0.35, 0.2), "m", "350 mm, 200 mm"),
+        ((), "m", "none"),
+        (("bolts", "part 2"), "", "bolts, part 2"),
     ],
 )
 def test_values_are_shown_in_readable_units(value, unit, shown):
@@ -62,6 +64,13 @@ def test_every_number_of_the_scene_is_listed_with_unit_and_provenance():
         for key, _, _, stated in inputs.values(scene)
         if key.split(".")[0] in ("payload", "platform", "rail", "friction", "thrust_offset")
     }
+
+
+@pytest.mark.parametrize("name", scenes.catalog())
+def test_every_scene_of_the_catalogue_is_listed(name):
+    """Some have empty lists, such as the holes of a section."""
+    table = inputs.scene_tables(scenes.load(name))[0]
+    assert {"`payload.mass`", "`rail.material.density`"} <= {row[0] for row in table.rows}
 
 
 def test_what_a_scene_says_of_a_mesh_file_is_listed():

@@ -60,11 +60,7 @@ def _unit_inside(annotation) -> str:
 def readable(value: Any, unit: str) -> str:
     """A value with its unit as text: angles in degrees, lengths, times and forces with a prefix."""
     if isinstance(value, (list, tuple)):
-        return (
-            ", ".join(readable(item, unit) for item in value)
-            if not isinstance(value[0], str)
-            else ", ".join(value)
-        )
+        return ", ".join(readable(item, unit) for item in value) or "none"
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return str(value)
     if unit == "rad":
