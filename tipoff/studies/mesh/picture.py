@@ -96,29 +96,15 @@ def _oblique(axes, mesh, colours: dict[str, str], ink: str) -> None:
 
 
 def _section(axes, mesh, colours: dict[str, str], ink: str) -> None:
-    """Draw the middle layer of the rail at +y +z, seen along X, with thick lines for the named
-    surfaces. Without a rail there, draw all rails."""
+    """Draw the section of one rail, with thick lines for the named surfaces."""
     from matplotlib.collections import LineCollection, PolyCollection
 
-    centres = mesh.points[mesh.cells].mean(axis=1)
-    corner = (centres[:, 1] > 0.0) & (centres[:, 2] > 0.0)
-    corner |= not corner.any()  # a custom launcher may have no rail there
-    inside = centres[corner, 0]
-    layer = _cut(mesh, corner, inside[np.argmin(np.abs(inside - inside.mean()))])
+    elements, surfaces = section(mesh)
     axes.add_collection(
-        PolyCollection(
-            _outlines(mesh, layer), facecolors="#dfe3e7", edgecolors="#3b4149", linewidths=0.7
-        )
+        PolyCollection(elements, facecolors="#dfe3e7", edgecolors="#3b4149", linewidths=0.7)
     )
-    reach = mesh.points[mesh.cells[layer]][:, :, 0]
-    for name, colour in colours.items():
-        facets = mesh.points[mesh.surfaces[name]]
-        near = facets[
-            (facets[:, :, 1:].min(axis=(1, 2)) > 0.0)
-            & (np.abs(facets[:, :, 0].mean(axis=1) - reach.mean()) < np.ptp(reach))
-        ]
-        lines = [(1e3 * facet[:, 1:].min(axis=0), 1e3 * facet[:, 1:].max(axis=0)) for facet in near]
-        axes.add_collection(LineCollection(lines, colors=colour, linewidths=3.0))
+    for name, lines in surfaces.items():
+        axes.add_collection(LineCollection(lines, colors=colours[name], linewidths=3.0))
     axes.autoscale()
     axes.margins(0.08)
     axes.set_aspect("equal")
@@ -130,25 +116,43 @@ def _section(axes, mesh, colours: dict[str, str], ink: str) -> None:
     axes.set_title("section of one rail", fontsize=10.5, color=ink)
 
 
-def _cut(mesh, among, x: float) -> np.ndarray:
-    """Numbers of the elements marked in ``among`` that the plane at ``x`` (m) cuts."""
-    along = mesh.points[mesh.cells][:, :, 0]
-    return np.flatnonzero(among & (along.min(axis=1) < x) & (along.max(axis=1) > x))
+def section(mesh) -> tuple[list[np.ndarray], dict[str, list[np.ndarray]]]:
+    """Polygons (k,2) in mm of the elements that a plane across X cuts in the middle of the rail
+    farthest along +y +z, and lines (2,2) of its surfaces by name."""
+    from tipoff.highfi.mesh.cells import kind
+    from tipoff.highfi.mesh.pieces import pieces
+
+    rail = max(pieces(mesh), key=lambda piece: piece.points[:, 1:].sum(axis=1).mean())
+    elements = rail.points[rail.cells]
+    centres = elements[:, :, 0].mean(axis=1)
+    x = centres[np.argmin(np.abs(centres - centres.mean()))]
+    lines = {}
+    for name, facets in rail.surfaces.items():
+        corners = 4 if facets.shape[1] == 4 else 3  # not the middles of the edges
+        around = np.array([(one, (one + 1) % corners) for one in range(corners)])
+        lines[name] = _cuts(rail.points[facets], around, x)
+    return [_by_angle(points) for points in _cuts(elements, kind(mesh.cells).edges, x)], lines
 
 
-def _outlines(mesh, layer) -> list[np.ndarray]:
-    """Outlines (mm) of elements seen along X: the box around a hexahedron, the four faces of a
-    tetrahedron."""
-    from tipoff.highfi.mesh.cells import HEXAHEDRON, TETRAHEDRON, kind
+def _cuts(shapes: np.ndarray, edges: np.ndarray, x: float) -> list[np.ndarray]:
+    """Points (k,2), y and z in mm, in which the plane at ``x`` (m) cuts the ``edges`` (e,2) of each of the
+    ``shapes`` (n,nodes,3) m that it passes through."""
+    along = shapes[:, :, 0] - x
+    passed = (along.min(axis=1) < 0.0) & (along.max(axis=1) > 0.0)
+    found = []
+    for points, height in zip(shapes[passed], along[passed]):
+        (first, second), (begin, end) = edges.T, height[edges].T
+        crossing = (begin < 0.0) != (end < 0.0)
+        share = (begin / np.where(crossing, begin - end, 1.0))[crossing, None]
+        one, two = points[first[crossing], 1:], points[second[crossing], 1:]
+        found.append(1e3 * (one + share * (two - one)))
+    return found
 
-    nodes = 1e3 * mesh.points[mesh.cells[layer]][:, :, 1:]
-    if kind(mesh.cells) is not HEXAHEDRON:
-        return list(nodes[:, TETRAHEDRON.faces[:, :3]].reshape(-1, 3, 2))
-    low, high = nodes.min(axis=1), nodes.max(axis=1)
-    return [
-        np.array([(a[0], a[1]), (b[0], a[1]), (b[0], b[1]), (a[0], b[1])])
-        for a, b in zip(low, high)
-    ]
+
+def _by_angle(points: np.ndarray) -> np.ndarray:
+    """Corners (k,2) of a convex polygon in their order around it."""
+    y, z = (points - points.mean(axis=0)).T
+    return points[np.argsort(np.arctan2(z, y))]
 
 
 def _view(azimuth: float, elevation: float) -> np.ndarray:

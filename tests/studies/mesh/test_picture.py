@@ -1,0 +1,30 @@
+"""The section of a rail that the picture of its mesh shows."""
+
+import numpy as np
+import pytest
+
+from tipoff import highfi, scenes
+from tipoff.highfi.elements import hexahedron
+from tipoff.highfi.mesh.pieces import pieces
+from tipoff.studies.mesh import picture
+
+
+def area(polygon: np.ndarray) -> float:
+    y, z = polygon.T
+    return 0.5 * abs(np.dot(y, np.roll(z, 1)) - np.dot(z, np.roll(y, 1)))
+
+
+@pytest.mark.parametrize("name, rails", [("tiny", 4), ("rocket_rail", 1)])
+def test_the_section_has_the_area_and_the_surfaces_of_the_rail(name, rails):
+    """The webs of a T-slot are oblique. Control: the boxes around its elements, which are larger."""
+    mesh = highfi.prepare(scenes.load(name), highfi.Numerics(element_size=20e-3))
+    volume = hexahedron.basis(mesh.points[mesh.cells]).dx.sum() / rails
+    length = np.ptp(mesh.points[:, 0])
+    polygons, lines = picture.section(mesh)
+    assert len(pieces(mesh)) == rails
+    assert sum(map(area, polygons)) == pytest.approx(1e6 * volume / length, rel=1e-9)
+    boxes = sum(np.ptp(polygon, axis=0).prod() for polygon in polygons)
+    assert (boxes > 1.1e6 * volume / length) == (name == "rocket_rail")
+    assert set(lines) == set(mesh.surfaces)
+    walls = [name for name, found in lines.items() if found]
+    assert {"contact_y", "contact_z"} <= set(walls) if name == "tiny" else len(walls) >= 6
