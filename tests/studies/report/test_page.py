@@ -242,7 +242,7 @@ def test_figures_of_one_condition():
     force[100:200, 2, 1] = 50.0
     runs = Runs({"phi15": flight(pad_force=force)}, {}, {"phi15": flight()})
     assert [panel.title for panel in figures.contact_forces(scene, runs, "phi15").panels] == [
-        "pad 2 (rear, -y +z)"
+        "pad 2 at x -80, y -100, z 100 mm"
     ]
     panels = figures.figure6(runs, ["phi15"]).panels
     assert [len(panel.lines) for panel in panels] == [2 + 5, 1, 6, 3]

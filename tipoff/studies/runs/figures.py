@@ -172,11 +172,8 @@ def contact_forces(scene: Scene, runs: Runs, condition: str) -> Chart:
 
 
 def _pad_title(scene: Scene, pad: int) -> str:
-    x, y, z = scene.pads[pad].position
-    return (
-        f"pad {pad + 1} ({'front' if x > 0 else 'rear'}, {'+' if y > 0 else '-'}y "
-        f"{'+' if z > 0 else '-'}z)"
-    )
+    x, y, z = (f"{1e3 * place:.4g}" for place in scene.pads[pad].position)
+    return f"pad {pad + 1} at x {x}, y {y}, z {z} mm"
 
 
 _LEDGER_COLOURS = dict(
