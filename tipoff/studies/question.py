@@ -20,12 +20,14 @@ class Result(NamedTuple):
 
     ``run`` makes it. ``stored`` finds it if it was made from the present scene, code and settings.
     The report makes each result without ``stored``. It shows a result with ``stored`` if there is
-    one. ``tipoff report --every`` also makes missing ones that have ``run``.
+    one. ``tipoff report --every`` also makes missing ones that have ``run``; if the report has limits of
+    rates, ``within`` makes those that depend on limits, in the form of ``exceedance.limits``.
     """
 
     name: str
     run: Callable[["Study"], dict] | None = None
     stored: Callable[["Study"], Any] | None = None
+    within: Callable[["Study", tuple[str, ...]], dict] | None = None
 
 
 class Section(NamedTuple):
@@ -105,9 +107,13 @@ class Question(Entry):
                     stage.STAGE.name, lambda found: page.draw(stage.STAGE.read(found)), name
                 )
 
+            def within(study: "Study", limits: tuple[str, ...]) -> dict:
+                return stage.run(study, options(limits=limits) if options else None)
+
             stored = None if always else getattr(stage, "stored", stage.STAGE.stored)
+            limited = "limits" in getattr(options, "__dataclass_fields__", ())
             return Contents(
-                (Result(stage.STAGE.name, stage.run, stored),),
+                (Result(stage.STAGE.name, stage.run, stored, within if limited else None),),
                 (Section(name, link, section, title),),
             )
 

@@ -3,6 +3,7 @@ network."""
 
 import re
 from dataclasses import asdict, replace
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from tipoff.studies import registry
 from tipoff.studies.agreement import other_rails, verdicts
 from tipoff.studies.agreement.page import starred
 from tipoff.studies.cost.page import picture as cost_picture
+from tipoff.studies.populations import exceedance
 from tipoff.studies.render.chart import Chart, Line, Panel, to_files
 from tipoff.studies.render.table import Table, markdown, number
 from tipoff.studies.report import inputs, stage
@@ -26,6 +28,7 @@ from tipoff.studies.report.promises import promises
 from tipoff.studies.runs import figures
 from tipoff.studies.runs.figures import Runs
 from tipoff.studies.runs.stage import row
+from tipoff.workspace.errors import StudyError
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.study import Study
 
@@ -335,3 +338,26 @@ def test_a_study_the_scene_gives_no_occasion_for_stops_nothing(tmp_path, monkeyp
         and not re.search(r"Not made: [^.]*\bflight\b", page.read_text())
         and "[flight]" in page.read_text()
     )
+
+
+def test_limits_of_the_report_are_those_of_the_studies_that_it_makes(tmp_path, monkeypatch):
+    """Control: without a limit each study has its own default."""
+    asked = {}
+    for name in ("limits", "montecarlo"):
+        owner = import_module(f"tipoff.studies.{name}.stage")
+
+        def run(study, options=None, name=name):
+            asked[name] = options and options.limits
+            raise StudyError("not made here")
+
+        monkeypatch.setattr(owner, "run", run)
+    mine = [item for item in registry.results() if item.name in ("limits", "montecarlo")]
+    monkeypatch.setattr(stage, "results", lambda: mine)
+    study = Study(scenes.load("tiny"), tmp_path / "tiny", defaults("tiny"))
+    given = exceedance.limits(["x=2 deg/s", "0.1 rad/s"])
+    stage.run(study, every=True, limits=given)
+    assert set(asked) == {"limits", "montecarlo"}
+    for texts in asked.values():
+        assert exceedance.limits(texts) == given
+    stage.run(study, every=True)
+    assert asked == {"limits": None, "montecarlo": None}

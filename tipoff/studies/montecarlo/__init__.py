@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from tipoff.studies.commands.declared import command
 from tipoff.studies.commands.request import Request
 from tipoff.studies.commands.running import Output
-from tipoff.studies.montecarlo.options import Options
+from tipoff.studies.montecarlo.options import Cases, Options
 from tipoff.studies.question import Contents, Entry, Result, Section
 
 if TYPE_CHECKING:
@@ -71,7 +71,12 @@ def _load() -> Contents:
 
     return Contents(
         (
-            Result(stage.NAME, stage.run, stage.STAGE.stored),
+            Result(
+                stage.NAME,
+                stage.run,
+                stage.STAGE.stored,
+                lambda study, limits: stage.run(study, Cases(limits=limits)),
+            ),
             Result(
                 tails.NAME,
                 lambda study: tails.run(study, Options(draws=_DRAWS)),

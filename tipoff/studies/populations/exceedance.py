@@ -34,6 +34,11 @@ class Limit:
             f"{self.deg_s:g} deg/s"
         )
 
+    @property
+    def asked(self) -> str:
+        """The text that ``limits`` reads."""
+        return f"{'' if self.axis == TOTAL else f'{self.axis}='}{self.deg_s!r} deg/s"
+
 
 def limits(texts: Sequence[str], option: str = "--limit") -> list[Limit]:
     """Limits from texts such as ``x=2 deg/s``, or ``5 deg/s`` for the total rate. Raises SceneError

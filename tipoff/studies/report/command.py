@@ -25,7 +25,7 @@ def report(
             "--limit",
             metavar="[AXIS=]RATE",
             help='Limit of a rate, "x=2 deg/s", or of the total rate, "5 deg/s". The page compares '
-            "the rates with it. Repeatable.",
+            "the rates with it; studies that --every makes have it too. Repeatable.",
         ),
     ] = None,
 ) -> Output:

@@ -32,19 +32,20 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
     ``every``, each study without a present result is made too; the page gives the reason if the
     scene does not allow a study. The page states whether the rates are within ``limits``.
     """
+    asked = tuple(limit.asked for limit in limits)
     documents: dict[str, dict | None] = {}
     problems: dict[str, str] = {}
     listed = results()
-    for name, make_result, stored in listed:
+    for name, make_result, stored, _ in listed:
         if make_result is None or stored is not None:
             continue
         passing = () if any(documents.values()) else InputError
         documents[name], reason = attempt(name, partial(make_result, study), passing)
         problems |= {name: reason} if reason else {}
-    absent, failed = _made(study, listed) if every else ({}, {})
+    absent, failed = _made(study, listed, asked) if every else ({}, {})
     problems |= failed
     there: dict[str, Any] = {}
-    for name, _, stored in listed:
+    for name, _, stored, _ in listed:
         if stored is not None:
             there[name], reason = attempt(f"the stored result of {name}", partial(stored, study))
             problems |= {name: reason} if reason else {}
@@ -80,7 +81,7 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
         name: study.path(f"{name}.json").read_text() for name, found in documents.items() if found
     }
     drawn = sources.digest("tipoff.studies.report.assembly")
-    shown = study.key(__name__, drawn, study.scene.resolved().get("flight"), list(limits))
+    shown = study.key(__name__, drawn, study.scene.resolved().get("flight"), asked)
     key = content_hash(
         keys,
         content_hash(made_at),
@@ -113,14 +114,19 @@ def _verdict(agreement: dict | None) -> str:
     )
 
 
-def _made(study: Study, listed: list[Result]) -> tuple[dict[str, str], dict[str, str]]:
-    """Make every missing optional result. Returns reasons by name for results that the scene or its
-    settings do not allow, and for those that failed."""
+def _made(
+    study: Study, listed: list[Result], limits: tuple[str, ...]
+) -> tuple[dict[str, str], dict[str, str]]:
+    """Make every missing optional result, with ``limits`` of rates where it depends on them. Returns
+    reasons by name for results that the scene or its settings do not allow, and for those that
+    failed."""
     refused: dict[str, str] = {}
     failed: dict[str, str] = {}
-    for name, make, stored in listed:
+    for name, make, stored, within in listed:
         if make is None or stored is None:
             continue
+        if limits and within is not None:
+            make = partial(within, limits=limits)
         try:
             missing = partial(_missing, study, make, stored)
             _, reason = attempt(name, missing, (StudyError, InputError))
