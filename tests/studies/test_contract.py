@@ -115,6 +115,15 @@ def test_a_command_prints_the_text_or_the_result(module, stage, tmp_path, monkey
     assert json.loads(told.stdout) == found
 
 
+@pytest.mark.parametrize("module, stage", PRINTED)
+def test_a_command_has_only_options_that_change_its_result(module, stage):
+    """Of a result that does not depend on the scene: none that changes the scene or its elements."""
+    folder = module.__package__.rpartition(".")[2]
+    name = "compare" if folder == "agreement" else folder
+    said = CliRunner().invoke(app, [name, "--help"]).stdout
+    assert all((option in said) == stage.of_scene for option in ("--set", "--element-size"))
+
+
 def test_each_study_with_a_section_has_kept_results():
     shown = {name.partition("/")[2] for name in TEXTS if name.startswith("page/")}
     assert {f"{section.anchor}.md" for section in registry.sections()} == shown

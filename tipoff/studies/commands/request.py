@@ -64,8 +64,8 @@ def scene_command(
 ) -> Callable[[Callable[..., Output]], Callable[..., None]]:
     """Decorator: a command from a function of a request and its own options that returns the output.
 
-    The help lists own options after --set, and keyword-only ones after --workers. ``without``:
-    "element_size" or "workers" if the command does not have this option.
+    The help lists own options after --set, and keyword-only ones after --workers. ``without``: names of
+    common options that the command does not have.
     """
     common = {name: option for name, option in _COMMON.items() if name not in without}
 
@@ -76,12 +76,16 @@ def scene_command(
             guarded(lambda: function(request, **given), request.json_)
 
         _, *own = inspect.signature(function).parameters.values()
+
+        def shared(*names: str) -> list[Parameter]:
+            return [common[name] for name in names if name in common]
+
         options = [
-            *(common[name] for name in ("scene", "out", "set_")),
+            *shared("scene", "out", "set_"),
             *(option for option in own if option.kind is not Parameter.KEYWORD_ONLY),
-            *(common[name] for name in ("element_size", "workers") if name in common),
+            *shared("element_size", "workers"),
             *(option for option in own if option.kind is Parameter.KEYWORD_ONLY),
-            *(common[name] for name in ("json_", "strict")),
+            *shared("json_", "strict"),
         ]
         command.__annotations__ = {option.name: option.annotation for option in options}
         command.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
