@@ -2,10 +2,10 @@
 platform.
 
 The names in ``__all__`` are imported at their first use: a command that needs only numbers of the
-reference does not load its solver.
+reference does not load its solver. Each import is a statement, because digests of programs follow
+these.
 """
 
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -17,20 +17,23 @@ if TYPE_CHECKING:
 
 __all__ = ["CheckpointError", "Numerics", "compiled_effects", "condense", "prepare", "run"]
 
-_MODULES = {
-    "CheckpointError": "dynamics.checkpoint",
-    "Numerics": "numerics",
-    "compiled_effects": "compiled",
-    "condense": "compliance",
-    "prepare": "simulation",
-    "run": "simulation",
-}
-
 
 def __getattr__(name: str) -> Any:
-    if name in _MODULES:
-        return getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module: Any
+    match name:
+        case "CheckpointError":
+            from tipoff.highfi.dynamics import checkpoint as module
+        case "Numerics":
+            from tipoff.highfi import numerics as module
+        case "compiled_effects":
+            from tipoff.highfi import compiled as module
+        case "condense":
+            from tipoff.highfi import compliance as module
+        case "prepare" | "run":
+            from tipoff.highfi import simulation as module
+        case _:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(module, name)
 
 
 def __dir__() -> list[str]:

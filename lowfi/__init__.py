@@ -4,7 +4,6 @@ Runge-Kutta.
 The names in ``__all__`` are imported at their first use, as those of ``tipoff.highfi``.
 """
 
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -15,18 +14,21 @@ if TYPE_CHECKING:
 
 __all__ = ["Numerics", "compiled_effects", "run", "run_many"]
 
-_MODULES = {
-    "Numerics": "numerics",
-    "compiled_effects": "compiled",
-    "run": "simulation",
-    "run_many": "ensemble.many",
-}
-
 
 def __getattr__(name: str) -> Any:
-    if name in _MODULES:
-        return getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module: Any
+    match name:
+        case "Numerics":
+            from tipoff.lowfi import numerics as module
+        case "compiled_effects":
+            from tipoff.lowfi import compiled as module
+        case "run":
+            from tipoff.lowfi import simulation as module
+        case "run_many":
+            from tipoff.lowfi.ensemble import many as module
+        case _:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(module, name)
 
 
 def __dir__() -> list[str]:
