@@ -1,5 +1,6 @@
 """``python -m tipoff`` and the command ``tipoff``."""
 
+import atexit
 import gc
 import os
 import signal
@@ -16,6 +17,7 @@ def main() -> None:
     even while modules load."""
     _one_thread_of_blas()
     gc.set_threshold(*_RARE)
+    atexit.register(_end)
     sys.unraisablehook = _keep_interrupts
     try:
         from tipoff.studies.cli import app
@@ -27,6 +29,14 @@ def main() -> None:
     except OSError as error:
         print(f"tipoff: {error}", file=sys.stderr)
         sys.exit(1)
+
+
+def _end() -> None:
+    """Ignore Ctrl-C once all work is done: it would end the process by the signal, with the exit code of
+    a command that was stopped. Python looks for garbage at its end, which takes a tenth of a second, and
+    the memory goes back anyway."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    gc.freeze()
 
 
 def _keep_interrupts(dropped: "sys.UnraisableHookArgs") -> None:
