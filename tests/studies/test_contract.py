@@ -14,6 +14,7 @@ from tipoff.studies import registry
 from tipoff.studies.cli import app
 from tipoff.studies.runs import stage as runs
 from tipoff.workspace import options as rules
+from tipoff.workspace.errors import StudyError
 
 ENTRIES = (*registry.COMPARISON, *registry.ON_DEMAND, *registry.QUESTIONS)
 COMMANDS = [
@@ -116,12 +117,23 @@ def test_a_command_prints_the_text_or_the_result(module, stage, tmp_path, monkey
 
 
 @pytest.mark.parametrize("module, stage", PRINTED)
-def test_a_command_has_only_options_that_change_its_result(module, stage):
-    """Of a result that does not depend on the scene: none that changes the scene or its elements."""
+def test_changes_of_the_scene_are_refused_where_the_result_would_ignore_them(
+    module, stage, tmp_path, monkeypatch
+):
+    """Control: every other command takes them."""
+
+    def run(*_):
+        raise StudyError("not made here")
+
+    monkeypatch.setattr(module, "run", run)
     folder = module.__package__.rpartition(".")[2]
     name = "compare" if folder == "agreement" else folder
-    said = CliRunner().invoke(app, [name, "--help"]).stdout
-    assert all((option in said) == stage.of_scene for option in ("--set", "--element-size"))
+    asked = [name, "--scene", "tiny", "--out", str(tmp_path)]
+    asked += ["--set", "payload.mass=9 kg", "--element-size", "9"]
+    said = CliRunner().invoke(app, asked)
+    refused = said.exit_code == 2 and "2 faults in the options" in said.stderr
+    assert refused != stage.of_scene
+    assert not refused or "scenes and elements of their own" in said.stderr
 
 
 def test_each_study_with_a_section_has_kept_results():

@@ -1,6 +1,6 @@
 """The record of a study: its command, its results, its sections of the page."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -64,8 +64,7 @@ class Question(Entry):
     command, section and make target.
 
     ``text``: the help of the command. ``title``: of its section. ``link``: the text of the link to
-    the section. ``options``: the dataclass of its options; None without any; ``without``: common options
-    that the command does not have. If options of the
+    the section. ``options``: the dataclass of its options; None without any. If options of the
     command belong to the study, the method ``asked`` of the dataclass returns the study of a
     request and the options of the stage. ``always``: whether each report makes the result. ``own``:
     a command in place of the one made from ``options``.
@@ -84,7 +83,6 @@ class Question(Entry):
         options: type | None = None,
         always: bool = False,
         own: Callable[..., None] | None = None,
-        without: Collection[str] = (),
     ):
         name = package.rpartition(".")[2]
 
@@ -93,6 +91,8 @@ class Question(Entry):
 
         def answer(request: Request, options: Any) -> Output:
             stage, page = modules()
+            if not stage.STAGE.of_scene:
+                request.require_the_scene_as_it_is()
             if hasattr(options, "asked"):
                 study, options = options.asked(request)
             else:
@@ -119,5 +119,4 @@ class Question(Entry):
                 (Section(name, link, section, title),),
             )
 
-        made = own or command(name, text or "", options, answer, without)
-        super().__init__((made,), contents)
+        super().__init__((own or command(name, text or "", options, answer),), contents)

@@ -55,6 +55,21 @@ class Request:
             **settings,
         )
 
+    def require_the_scene_as_it_is(self) -> None:
+        """Raise SceneError, every fault listed, for options that change the scene or its elements: a
+        result that does not depend on these would ignore them."""
+        from tipoff.scenes.faults import Fault, SceneError
+
+        given = {"--set": self.set_, "--element-size": self.element_size}
+        expected = "none: the cases of this command have scenes and elements of their own"
+        faults = [
+            Fault(option, "option", str(value), expected)
+            for option, value in given.items()
+            if value
+        ]
+        if faults:
+            raise SceneError(faults)
+
 
 _COMMON = inspect.signature(Request).parameters
 
@@ -64,8 +79,8 @@ def scene_command(
 ) -> Callable[[Callable[..., Output]], Callable[..., None]]:
     """Decorator: a command from a function of a request and its own options that returns the output.
 
-    The help lists own options after --set, and keyword-only ones after --workers. ``without``: names of
-    common options that the command does not have.
+    The help lists own options after --set, and keyword-only ones after --workers. ``without``:
+    "element_size" or "workers" if the command does not have this option.
     """
     common = {name: option for name, option in _COMMON.items() if name not in without}
 
@@ -76,16 +91,12 @@ def scene_command(
             guarded(lambda: function(request, **given), request.json_)
 
         _, *own = inspect.signature(function).parameters.values()
-
-        def shared(*names: str) -> list[Parameter]:
-            return [common[name] for name in names if name in common]
-
         options = [
-            *shared("scene", "out", "set_"),
+            *(common[name] for name in ("scene", "out", "set_")),
             *(option for option in own if option.kind is not Parameter.KEYWORD_ONLY),
-            *shared("element_size", "workers"),
+            *(common[name] for name in ("element_size", "workers") if name in common),
             *(option for option in own if option.kind is Parameter.KEYWORD_ONLY),
-            *shared("json_", "strict"),
+            *(common[name] for name in ("json_", "strict")),
         ]
         command.__annotations__ = {option.name: option.annotation for option in options}
         command.__signature__ = inspect.Signature(  # type: ignore[attr-defined]

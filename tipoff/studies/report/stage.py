@@ -125,16 +125,21 @@ def _made(
     for name, make, stored, within in listed:
         if make is None or stored is None:
             continue
-        if limits and within is not None:
-            make = partial(within, limits=limits)
+        wanted = make if within is None or not limits else partial(_within, within, limits)
         try:
-            missing = partial(_missing, study, make, stored)
+            missing = partial(_missing, study, wanted, stored)
             _, reason = attempt(name, missing, (StudyError, InputError))
             failed |= {name: reason} if reason else {}
         except (StudyError, InputError) as fault:
             refused[name] = str(fault)
             say(f"{name}: not made\n{fault}")
     return refused, failed
+
+
+def _within(
+    make: Callable[[Study, tuple[str, ...]], dict], limits: tuple[str, ...], study: Study
+) -> dict:
+    return make(study, limits)
 
 
 def _missing(

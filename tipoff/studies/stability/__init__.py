@@ -1,9 +1,8 @@
 """Run hard cases, each with a simpler method that fails on it; writes stability.json.
 
-The cases have their own scenes. The scene only names the folder of the result.
+The cases have scenes and elements of their own; the scene only names the folder of the result.
 """
 
 from tipoff.studies.question import Question
 
-_UNUSED = "set_", "element_size", "workers", "strict"
-QUESTION = Question(__name__, __doc__, "Hard cases", "Hard cases", always=True, without=_UNUSED)
+QUESTION = Question(__name__, __doc__, "Hard cases", "Hard cases", always=True)
