@@ -70,11 +70,11 @@ def choose(
     return result, Choice(result.modes, why, tuple(each for each in every if each is not result))
 
 
-def needed(effect: np.ndarray) -> int:
+def needed(effect: np.ndarray, threshold: float = THRESHOLD) -> int:
     """The fewest lowest modes for which the sum of the ``effect`` (n,) rad/s of the others is at
-    most ``THRESHOLD``."""
+    most the ``threshold`` (rad/s)."""
     rest = np.append(np.cumsum(effect[::-1])[::-1], 0.0)
-    return int(np.argmax(rest <= THRESHOLD))
+    return int(np.argmax(rest <= threshold))
 
 
 def _enlarged(last: list[SingleRun], effect: np.ndarray) -> float:

@@ -4,9 +4,10 @@ without a number."""
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
-from tests.lowfi.compliance import REFERENCE, handmade
+from tests.lowfi.compliance import REFERENCE, handmade, reference_compliance
 from tipoff.lowfi import Numerics, run_many
 from tipoff.lowfi.ensemble import pilot
 from tipoff.lowfi.ensemble.batch import Family
@@ -35,9 +36,9 @@ def pilots(monkeypatch):
     return seen
 
 
-def test_a_case_that_a_micrometre_turns_over_chooses_none(monkeypatch):
-    """15 of 16 cases with a change of 0.6 of their total rate choose no modes, whatever these would
-    change. Control: a change of 0.4 leaves the choice to the modes."""
+def test_a_case_that_a_micrometre_turns_over_chooses_by_the_direct_effect(monkeypatch):
+    """15 of 16 cases with a change of 0.6 of their total rate take the modes that change their contacts,
+    whatever a run with modes would change. Control: a change of 0.4 leaves the choice to that run."""
 
     def pilot_of(share):
         def solved(scene, *_, **__):
@@ -48,12 +49,38 @@ def test_a_case_that_a_micrometre_turns_over_chooses_none(monkeypatch):
             return SimpleNamespace(numerics={"modes": 20}, outcome=outcome)
 
         monkeypatch.setattr(pilot, "solved", solved)
+        monkeypatch.setattr(pilot, "directly", lambda *_: direct)
         return pilot.settled(asked())
 
-    chaotic = pilot_of(0.6)
-    assert chaotic.numerics.modes == 0 and "15 are chaotic" in chaotic.modes_why
+    for direct in (0, 8):
+        chaotic = pilot_of(0.6)
+        assert chaotic.numerics.modes == direct and "15 are chaotic" in chaotic.modes_why
     regular = pilot_of(0.4)
     assert regular.numerics.modes == 20 and "clearance" not in regular.modes_why
+
+
+def test_the_direct_effect_is_relative_to_the_rates(monkeypatch):
+    """The effects of three modes are 0.3, 0.06 and 0.02 of the total rate: one mode is enough, as the
+    others change it by less than a tenth."""
+    rate = [0.0, 0.3, 0.4]
+    run = SimpleNamespace(
+        judged=lambda: ("exited", SimpleNamespace(rate=rate)),
+        neglected=lambda: 0.5 * np.array([0.3, 0.06, 0.02]),
+    )
+    monkeypatch.setattr(pilot, "integrated", lambda *_: run)
+    monkeypatch.setattr(pilot, "SingleRun", lambda *_, **__: None)
+    assert pilot.directly(asked(), REFERENCE, Numerics(modes=0)) == 1
+    rate[1:] = [3.0, 4.0]
+    assert pilot.directly(asked(), REFERENCE, Numerics(modes=0)) == 0
+
+
+def test_the_direct_effect_of_a_run():
+    """The modes of the reference rail change a contact by less than a tenth of the rates. Control: a rail
+    that is as stiff and a thousand times as heavy, whose modes are slow."""
+    walls, plain = reference_compliance(), Numerics(modes=0)
+    assert pilot.directly(asked()._replace(compliance=walls), REFERENCE, plain) == 0
+    heavy = replace(walls, frequency=walls.frequency / 30.0, shape=walls.shape / 30.0)
+    assert pilot.directly(asked()._replace(compliance=heavy), REFERENCE, plain) > 0
 
 
 def test_a_store_keeps_the_number_and_its_reason(pilots, tmp_path):
