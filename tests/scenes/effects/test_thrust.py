@@ -103,8 +103,8 @@ def test_the_law_is_the_sum_of_its_pulses():
 
 
 def test_python_and_the_compiled_law_give_the_same_bits():
-    """Few values come from Python, many from the compiled law. Control: the estimate, whose last bits
-    may differ."""
+    """Few values come from Python, many from the compiled law. The estimate has them but for the last
+    bits."""
     pulses = Pulses(*np.array([[900.0, 300.0], [9e-3, 21e-3], [2e-3, 5e-3]]), 1e-3, 30e-3)
     record = Thrust(pulses, None)
     time = np.random.default_rng(3).uniform(-5e-3, 40e-3, 2000)
