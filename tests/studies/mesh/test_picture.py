@@ -6,6 +6,7 @@ import pytest
 from tipoff import highfi, scenes
 from tipoff.highfi.elements import hexahedron
 from tipoff.highfi.mesh.pieces import pieces
+from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.studies.mesh import picture
 
 
@@ -28,3 +29,15 @@ def test_the_section_has_the_area_and_the_surfaces_of_the_rail(name, rails):
     assert set(lines) == set(mesh.surfaces)
     walls = [name for name, found in lines.items() if found]
     assert {"contact_y", "contact_z"} <= set(walls) if name == "tiny" else len(walls) >= 6
+
+
+def test_edges_are_cut_where_the_plane_passes():
+    """An element from a square of 2 m to one of 4 m, three of whose corners are 1 m away and one 4 m: the
+    plane is 0.875 m away, in the mean of all corners."""
+    square = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    near = np.column_stack([np.zeros(4), square])
+    far = np.column_stack([[1.0, 1.0, 1.0, 4.0], 2.0 * square])
+    mesh = RailMesh(np.vstack([near, far]), np.arange(8)[None], {})
+    (polygon,), _ = picture.section(mesh)
+    expected = 1e3 * square * [[1.875], [1.875], [1.875], [1.0 + 0.875 / 4.0]]
+    np.testing.assert_allclose(polygon[np.lexsort(polygon.T)], expected[np.lexsort(expected.T)])
