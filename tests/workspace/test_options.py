@@ -6,7 +6,10 @@ from typing import Annotated
 import pytest
 import typer
 
+from tipoff import scenes
+from tipoff.mechanics.rail_compliance import MODES
 from tipoff.scenes.faults import SceneError
+from tipoff.workspace import settings
 from tipoff.workspace.options import between, require
 from tipoff.workspace.stage import csv_of
 
@@ -67,3 +70,12 @@ def test_a_record_in_a_row_has_its_own_columns_and_a_curve_none():
     record = {"x_m": 1.0, "inner": {"y_m": 2.0}, "curve": list(range(13)), "both": [3, 4]}
     rows = [{"name": "a", "of": record, "matrix": [[1.0]]}, {"name": "b", "of": None, "matrix": []}]
     assert csv_of(rows) == "name,of_x_m,of_inner_y_m,of_both_1,of_both_2\na,1.0,2.0,3,4\nb,,,,\n"
+
+
+def test_a_scene_states_the_modes_of_the_compared_surrogate():
+    """As many as a rail compliance has at most. Control: four by default."""
+    assert settings.defaults("tiny").rail_modes == 4
+    scene = scenes.load("tiny")
+    assert settings.defaults(scene.replace({"studies.rail_modes": MODES})).rail_modes == MODES
+    with pytest.raises(SceneError, match="studies.rail_modes"):
+        scene.replace({"studies.rail_modes": MODES + 1})

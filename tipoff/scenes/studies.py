@@ -11,6 +11,7 @@ from tipoff.scenes.units import Dimension, PositiveNumber
 
 ELEMENT_SIZE = 2e-3  # m, default
 _Count = Annotated[int, Field(strict=True, ge=1, le=10_000)]
+_Modes = Annotated[int, Field(strict=True, ge=1, le=20)]  # as many as a rail compliance has
 _Neighbours = Annotated[int, Field(strict=True, ge=5, le=10_000)]
 
 
@@ -28,6 +29,8 @@ class StudiesTable(Table):
     mesh_ratios: Annotated[tuple[PositiveNumber, ...], limited] | None = None
     #: Neighbours within 1 um that judge a chaotic condition.
     neighbours: _Neighbours | None = None
+    #: Modes of each rail, of the surrogate that is compared with a fixed number of them; 4 where absent.
+    rail_modes: _Modes | None = None
     #: Repeats of timed runs of the reference.
     highfi_repeats: _Count | None = None
     #: Repeats of timed runs of the surrogate.

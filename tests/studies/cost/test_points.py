@@ -80,6 +80,9 @@ def test_a_rail_without_modes_is_a_point_of_its_own(study, made):
     ]
     assert [point.error_deg_s for point in points] == pytest.approx([0.0, 1.0, 2.0, 8.0], abs=1e-4)
     assert {run.numerics.modes for run in made} == {0, 1, 2, 8}
+    assert 4 in {
+        p.modes for p in cost.points_by_modes(study, "phi15", modal._replace(modes=8), flight())
+    }
     requests = [COMPLIANT, COMPLIANT._replace(modes=0), modal]
     found = [item.request(study, "phi15") for item in requests]
     assert [run.numerics.modes for run in found] == [AUTO, 0, 4]
