@@ -109,7 +109,8 @@ def read(source, asked: Asked = AS_DRAWN) -> RailMesh:
         for key, corners in surfaces.items()
     }
     cells = numbered.reshape(cells.shape)
-    return RailMesh(points, cells, facets, (*_of_parts(name), *_warnings(points, cells)))
+    warnings = _warnings(points, cells, numbered=source is not mesh)
+    return RailMesh(points, cells, facets, (*_of_parts(name), *warnings))
 
 
 def along_x(mesh: RailMesh) -> RailMesh:
@@ -237,7 +238,9 @@ def _repeated(cells: np.ndarray) -> list[str]:
     return [f"elements that appear twice: {listed(again)}"] if len(again) else []
 
 
-def _warnings(points: np.ndarray, cells: np.ndarray) -> tuple[str, ...]:
+def _warnings(points: np.ndarray, cells: np.ndarray, numbered: bool) -> tuple[str, ...]:
+    """Properties that cost time or accuracy. Elements are named by number if those are ``numbered`` in
+    a file, and are counted in a mesh that was made here."""
     across = thickness(points, cells)
     thin = slivers(points, cells)
     warnings = []
@@ -251,10 +254,10 @@ def _warnings(points: np.ndarray, cells: np.ndarray) -> tuple[str, ...]:
             f"{np.median(across) / across[thinnest]:.3g} times the steps that the rest of the mesh "
             f"needs"
         )
-    return (*warnings, *_skewed(points, cells))
+    return (*warnings, *_skewed(points, cells, numbered))
 
 
-def _skewed(points: np.ndarray, cells: np.ndarray) -> tuple[str, ...]:
+def _skewed(points: np.ndarray, cells: np.ndarray, numbered: bool) -> tuple[str, ...]:
     """Warning of hexahedra far from bricks, which bend too stiffly. Tetrahedra of any shape bend
     correctly: their edges are quadratic."""
     if kind(cells) is not HEXAHEDRON:
@@ -263,10 +266,10 @@ def _skewed(points: np.ndarray, cells: np.ndarray) -> tuple[str, ...]:
     skewed = np.flatnonzero(scaled.min(axis=1) < _SKEW)
     if not len(skewed):
         return ()
+    which = f": {listed(skewed)}" if numbered else f", {len(skewed):,} of {len(cells):,}"
     return (
-        f"skewed elements: {listed(skewed)}; scaled Jacobian down to {scaled.min():.3g}, where one "
-        f"layer of hexahedra "
-        "is far too stiff in bending",
+        f"skewed elements{which}; scaled Jacobian down to {scaled.min():.3g}, where a wall of one "
+        "layer of hexahedra is far too stiff in bending",
     )
 
 

@@ -270,7 +270,7 @@ def test_solids_without_hexahedra_and_inner_facets_are_faults(built):
 
 
 @pytest.mark.case("X14")
-def test_slivers_and_skewed_elements_are_warned_about(built):
+def test_slivers_and_skewed_elements_are_warned_about(built, tmp_path):
     points = built.points.copy()
     plane = np.isclose(points[:, 0], GEOMETRY.x_start + 0.004)
     points[plane, 0] = GEOMETRY.x_start + 5e-6
@@ -281,10 +281,14 @@ def test_slivers_and_skewed_elements_are_warned_about(built):
     assert ", ".join(map(str, thin[:20])) in sliver and "5e-06 m" in sliver and "800" in sliver
     points = built.points.copy()
     points[:, 0] += points[:, 1]
-    (skewed,) = read(
-        meshio.Mesh(points, built.cells, field_data=built.field_data, cell_data=built.cell_data)
-    ).warnings
-    assert "skewed" in skewed and "0.707" in skewed
+    made = meshio.Mesh(points, built.cells, field_data=built.field_data, cell_data=built.cell_data)
+    (skewed,) = read(made).warnings
+    count = len(built.cells[0].data)
+    assert f"skewed elements, {count:,} of {count:,}; " in skewed and "0.707" in skewed
+    # numbers are of use in a file that the user has
+    made.write(tmp_path / "rail.msh", file_format="gmsh22", binary=False)
+    (skewed,) = read(tmp_path / "rail.msh").warnings
+    assert "skewed elements: 1, 2, 3, " in skewed
 
 
 @pytest.mark.gmsh
