@@ -103,7 +103,7 @@ def _chosen(ensemble: Ensemble) -> list[Pilot]:
         try:
             scene = ensemble.scene.replace(row)
             if is_chaotic(ensemble, scene, plain):
-                found.append(Pilot(directly(ensemble, scene, plain), True))
+                found.append(Pilot(fewest_by_direct_effect(ensemble, scene, plain), True))
                 continue
             run = solved(scene, ensemble.calibration, numerics, compliance=ensemble.compliance)
         except SceneError:
@@ -128,7 +128,7 @@ def is_chaotic(ensemble: Ensemble, scene: Scene, numerics: Numerics) -> bool:
     return bool(changed > _CHAOTIC * np.linalg.norm(rates[0]))
 
 
-def directly(ensemble: Ensemble, scene: Scene, numerics: Numerics) -> int:
+def fewest_by_direct_effect(ensemble: Ensemble, scene: Scene, numerics: Numerics) -> int:
     """The fewest modes for which the others would change the settled rates directly, without growth in
     later contacts, by at most a tenth of the total rate of a run with ``numerics``."""
     scene = ensemble.calibration.apply(scene) if ensemble.calibration is not None else scene

@@ -69,18 +69,18 @@ def test_the_direct_effect_is_relative_to_the_rates(monkeypatch):
     )
     monkeypatch.setattr(pilot, "integrated", lambda *_: run)
     monkeypatch.setattr(pilot, "SingleRun", lambda *_, **__: None)
-    assert pilot.directly(asked(), REFERENCE, Numerics(modes=0)) == 1
+    assert pilot.fewest_by_direct_effect(asked(), REFERENCE, Numerics(modes=0)) == 1
     rate[1:] = [3.0, 4.0]
-    assert pilot.directly(asked(), REFERENCE, Numerics(modes=0)) == 0
+    assert pilot.fewest_by_direct_effect(asked(), REFERENCE, Numerics(modes=0)) == 0
 
 
 def test_the_direct_effect_of_a_run():
     """The modes of the reference rail change a contact by less than a tenth of the rates. Control: a rail
     that is as stiff and a thousand times as heavy, whose modes are slow."""
     walls, plain = reference_compliance(), Numerics(modes=0)
-    assert pilot.directly(asked()._replace(compliance=walls), REFERENCE, plain) == 0
+    assert pilot.fewest_by_direct_effect(asked()._replace(compliance=walls), REFERENCE, plain) == 0
     heavy = replace(walls, frequency=walls.frequency / 30.0, shape=walls.shape / 30.0)
-    assert pilot.directly(asked()._replace(compliance=heavy), REFERENCE, plain) > 0
+    assert pilot.fewest_by_direct_effect(asked()._replace(compliance=heavy), REFERENCE, plain) > 0
 
 
 def test_a_store_keeps_the_number_and_its_reason(pilots, tmp_path):
