@@ -49,7 +49,7 @@ def test_a_case_that_a_micrometre_turns_over_chooses_by_the_direct_effect(monkey
             return SimpleNamespace(numerics={"modes": 20}, outcome=outcome)
 
         monkeypatch.setattr(pilot, "solved", solved)
-        monkeypatch.setattr(pilot, "directly", lambda *_: direct)
+        monkeypatch.setattr(pilot, "fewest_by_direct_effect", lambda *_: direct)
         return pilot.settled(asked())
 
     for direct in (0, 8):
