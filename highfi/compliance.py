@@ -41,14 +41,13 @@ from tipoff.mechanics.rail_compliance import (
 )
 from tipoff.mechanics.rail_compliance import patterns as of_degree
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
-from tipoff.mechanics.rail_compliance.patterns import DRAGGED
+from tipoff.mechanics.rail_compliance.patterns import DRAGGED, FARTHEST
 from tipoff.scenes.effects.thermal import FIELDS
 from tipoff.scenes.scene import Scene
 
 _SPACING = 2e-3  # m between stations; over an end, compliance changes within a quarter of a pad
 # of the largest eigenvalue of G; below it, patterns hardly differ on the wall that a face covers
 _SINGULAR = 1e-6
-_FARTHEST = 2.0  # in xi, of the middle of a part; a face that has left presses no more
 
 
 class Compliance(NamedTuple):
@@ -245,7 +244,7 @@ def of_rails(
         [part_of_wall(x, long, reach, patterns) for x, long in zip(middle.T, half[:, 0])], axis=1
     )
     part = (part - np.stack([middle, np.zeros_like(middle)], axis=-1)) / half[:, :1]
-    part[..., 0] = part[..., 0].clip(-_FARTHEST, _FARTHEST)
+    part[..., 0] = part[..., 0].clip(-FARTHEST, FARTHEST)
     rail_of, shape = np.full(count, -1), np.zeros((stations.size, count, patterns, modes))
     frequencies: list[np.ndarray] = []
     parts: list[joint_terms.Part] = []

@@ -42,7 +42,7 @@ class Numerics:
     #: without inertia, ``"auto"`` as many modes as matter to the run (``lowfi.modes``).
     modes: int | str = AUTO
     #: Degree of the patterns of pressure and displacement on a pad face. None means that of the rail
-    #: compliance, which may have a higher one: ``tipoff.compliance(scene, degree=4)``. ``"auto"`` means
+    #: compliance, which may have a higher one: ``tipoff.compliance(scene, degree=5)``. ``"auto"`` means
     #: the least one whose next would hardly change the run (``lowfi.degrees``).
     degree: int | str | None = None
     #: Contact cells along each edge of a pad face on compliant contact; 16, as in the reference.

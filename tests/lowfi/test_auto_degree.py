@@ -56,7 +56,7 @@ def test_where_it_has_no_meaning(fourth):
         Family(tiny(), None, numerics, fourth)
     free = lowfi.run(tiny().replace({"contact": None, "friction": None}), numerics=numerics)
     assert "degree_why" not in free.numerics
-    with pytest.raises(ValueError, match="1 to 4, or 'auto'"):
+    with pytest.raises(ValueError, match="1 to 5, or 'auto'"):
         lowfi.Numerics(degree="most")
 
 

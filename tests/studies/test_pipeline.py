@@ -184,7 +184,7 @@ def test_cost_has_three_meshes_and_three_tolerances(pipeline):
         "2 modes",
         "8 modes",
         "degree 2, 20 modes",
-        "degree 4, 20 modes",
+        "degree 5, 20 modes",
     ]
     assert len(result(pipeline[0], "cost_study")["matched"]) == 5
     assert any(point["pareto"] for point in points)

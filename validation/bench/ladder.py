@@ -28,6 +28,7 @@ RUNGS: tuple[tuple[int, int | str], ...] = (
     (3, AUTO),
     (3, MODES),
     (4, MODES),
+    (5, MODES),
 )
 _REPEATS = 5
 

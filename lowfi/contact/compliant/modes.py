@@ -19,7 +19,7 @@ a wall vibrates at 10 mm/s. So the momenta of payload and platform are conserved
 """
 
 from tipoff.kernels.jit import kernel
-from tipoff.lowfi.contact.compliant import patterns
+from tipoff.lowfi.contact.compliant import parts, patterns
 from tipoff.lowfi.state import STATE_SIZE
 
 
@@ -45,6 +45,17 @@ def evaluate(modes, rail, face, station, way, changes, state):
                     * (c[1, a] + way * (2.0 * c[2, a] + way * 3.0 * c[3, a]))
                 )
                 modes.speed[face, a] += state[rates + i] * value
+
+
+@kernel
+def to_whole(modes, face, part):
+    """Replace the values under ``face``, in the patterns of a ``part`` of it, by those of the whole
+    face."""
+    if modes is not None:
+        for i in range(modes.square.shape[1]):
+            parts.to_whole(modes.levels, part, modes.shape[face, i], 0, 1)
+        parts.vector_to_whole(modes.levels, part, modes.offset[face], modes.slope[face])
+        parts.to_whole(modes.levels, part, modes.speed[face], 0, 1)
 
 
 @kernel

@@ -33,7 +33,7 @@ from tipoff.kernels.jit import kernel
 from tipoff.kernels.memory import zeros
 from tipoff.kernels.reference import by_reference
 from tipoff.lowfi import state as slot
-from tipoff.lowfi.contact.compliant import patterns
+from tipoff.lowfi.contact.compliant import parts, patterns
 from tipoff.lowfi.contact.compliant.free_vibration import is_pressed, oscillated
 from tipoff.lowfi.contact.compliant.record import damping_of, drag_of
 from tipoff.lowfi.contact.compliant.solution import between_stations
@@ -146,12 +146,14 @@ def _press(neglected, system, loop, rail):
     body = slot.motion(payload, loop.end, slot.PAYLOAD)
     place, _ = relative_pose(system.platform, body, slot.frame(system.platform, loop.end))
     station, way, _ = between_stations(compliance, place[0] + system.faces[0, 0])
+    workspace, pressure = compliance.workspace, compliance.workspace.own
     for i in range(neglected.effect.size):
         total = 0.0
         for k in range(compliance.members.shape[1]):
             face = compliance.members[rail, k]
             if face >= 0 and loop.touching[face]:
-                c, pressure = neglected.cubic[station, face, i], compliance.workspace.force[face]
+                c, own = neglected.cubic[station, face, i], workspace.part[face]
+                parts.to_part(workspace.levels, own, workspace.force[face], pressure)
                 for a in range(size):
                     value = c[0, a] + way * (c[1, a] + way * (c[2, a] + way * c[3, a]))
                     total += value * pressure[a]

@@ -6,6 +6,7 @@ import numpy as np
 
 from tipoff.kernels.memory import zeros
 from tipoff.kernels.reference import by_reference
+from tipoff.lowfi.contact.compliant.parts import PART_SIZE
 from tipoff.mechanics import drawn_walls
 from tipoff.mechanics import rail_compliance as data
 from tipoff.mechanics.rail_compliance.patterns import count
@@ -29,6 +30,8 @@ class Workspace(NamedTuple):
     friction: np.ndarray  # (1,) coefficient of the friction that drags the walls
 
     lever: np.ndarray  # (f, LEVER_SIZE)
+    part: np.ndarray  # (f, PART_SIZE), of the face with the patterns of the tables (``parts``)
+    own: np.ndarray  # (p,) N, forces in these patterns
     displacement: np.ndarray  # (f, p) m, of the walls; the first guess of the next solution
     saved_displacement: np.ndarray  # (f, p) m, a copy
     saved_lever: np.ndarray  # (f, LEVER_SIZE), a copy
@@ -91,7 +94,7 @@ class Compliance(NamedTuple):
     """Compliant contact of f faces on r rails, with its statics at s stations."""
 
     # (s-1, f, m, 4, p p) m/N, between a face and the m members of its rail, as powers of the distance
-    # (m) from a station
+    # (m) from a station, in the patterns of the parts of the faces over the wall (``parts``)
     cubic: np.ndarray
     # (s-1, f, m, 4, d d) m/N, as ``cubic``, in the first d patterns for a coefficient of 1; None
     # without friction
@@ -102,6 +105,8 @@ class Compliance(NamedTuple):
     among: np.ndarray  # (f,) place of each face among the members of its rail
     rail: np.ndarray  # (f,) number of the rail of each face
     half: np.ndarray  # (f, 2) m, half length and half width
+    ahead: np.ndarray  # (f,) m, along X from the first face to each face
+    least: np.ndarray  # (f,) half length in xi of the shortest part
     across: np.ndarray  # (f,) m, place of the middle of each face across rail and normal, centred
     relief: np.ndarray  # (f,) m, of the crown at the edges
     interface_stiffness: float  # N/m3
@@ -176,6 +181,8 @@ def build(
         among=among,
         rail=found.rail.copy(),  # kernels have one type for arrays, that of the writable ones
         half=found.half.copy(),
+        ahead=nominal[:, 0] - nominal[0, 0],
+        least=np.ones(len(nominal)) if found.part is None else found.part[..., 1].min(axis=0),
         across=nominal[np.arange(faces.axis.size), 3 - faces.axis],
         relief=faces.relief,
         interface_stiffness=float(model.interface_stiffness),
@@ -198,7 +205,7 @@ def _thermal_offset(found: data.RailCompliance, model: Model) -> ThermalOffset |
     by_pattern = found.shape.shape[1:3]
     return ThermalOffset(
         levels=tuple(range(found.degree + 1)),
-        cubic=data.cubic(found.travel, found.moved(model.thermal.amounts)).swapaxes(-1, -2).copy(),
+        cubic=found.cubic_of(found.moved(model.thermal.amounts)).swapaxes(-1, -2).copy(),
         offset=zeros(by_pattern),
         slope=zeros(by_pattern),
     )
@@ -252,6 +259,8 @@ def _workspace(faces: int, members: int, modes: int, degree: int, model: Model) 
         levels=tuple(range(degree + 1)),
         friction=np.array([model.friction.dynamic if model.friction is not None else 0.0]),
         lever=zeros((faces, LEVER_SIZE)),
+        part=zeros((faces, PART_SIZE)),
+        own=zeros((patterns,)),
         displacement=zeros(by_pattern),
         saved_displacement=zeros(by_pattern),
         saved_lever=zeros((faces, LEVER_SIZE)),

@@ -16,9 +16,8 @@ previous displacement, moved with the pad as at the end of the last step
 import numpy as np
 
 from tipoff.kernels.jit import kernel
-from tipoff.lowfi.contact.compliant import patterns, thermal_offset
+from tipoff.lowfi.contact.compliant import modes, parts, patterns, thermal_offset
 from tipoff.lowfi.contact.compliant.cells import largest_change, press, take_lever
-from tipoff.lowfi.contact.compliant.modes import evaluate, offset
 from tipoff.lowfi.contact.compliant.record import BY_ETA, BY_XI, DEPTH
 from tipoff.mechanics.rail_compliance.patterns import DRAGGED
 
@@ -99,19 +98,11 @@ def between_stations(compliance, place):
 def take_flexibility(compliance, count, place, state):
     """Fill flexibility and slope between the first ``count`` faces in order, and the modes under
     them."""
-    workspace = compliance.workspace
+    workspace, over_end = compliance.workspace, False
     station, s, changes = between_stations(compliance, place)
     for i in range(count):
-        evaluate(
-            compliance.modes,
-            compliance.rail[workspace.order[i]],
-            workspace.order[i],
-            station,
-            s,
-            changes,
-            state,
-        )
-        thermal_offset.evaluate(compliance.thermal_offset, workspace.order[i], station, s, changes)
+        over_end = _evaluate(compliance, workspace.order[i], place, state) or over_end
+    for i in range(count):
         for j in range(count):
             c = compliance.cubic[station, workspace.order[i], compliance.among[workspace.order[j]]]
             block, slope = workspace.flexibility[i, j], workspace.slope[i, j]
@@ -119,6 +110,27 @@ def take_flexibility(compliance, count, place, state):
                 block[k] = c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k]))
                 slope[k] = changes * (c[1, k] + s * (2.0 * c[2, k] + s * 3.0 * c[3, k]))
             _add_drag(compliance.dragged, compliance.among, workspace, i, j, station, s, changes)
+            if over_end:
+                face, other = workspace.order[i], workspace.order[j]
+                parts.block_to_whole(
+                    workspace.levels, workspace.part[face], workspace.part[other], block, slope
+                )
+
+
+@kernel
+def _evaluate(compliance, face, place, state):
+    """Fill the part of a face, and thermal offset and modes under it; returns whether it is not
+    completely over the wall."""
+    station, s, changes = between_stations(compliance, place)
+    at = compliance.origin + station * compliance.spacing + s
+    over_end, part = parts.take(compliance, face, at, changes), compliance.workspace.part[face]
+    rail = compliance.rail[face]
+    modes.evaluate(compliance.modes, rail, face, station, s, changes, state)
+    thermal_offset.evaluate(compliance.thermal_offset, face, station, s, changes)
+    if over_end:
+        modes.to_whole(compliance.modes, face, part)
+        thermal_offset.to_whole(compliance.thermal_offset, face, part)
+    return over_end
 
 
 @kernel
@@ -140,14 +152,15 @@ def _add_drag(dragged, among, workspace, i, j, station, s, changes):
 
 @kernel
 def _follow_drag(dragged, among, workspace, face, other, station, s, out):
-    """Add to ``out`` the displacement of the wall under a face by the friction of another one."""
+    """Add to ``out`` the displacement of the wall under a face by the friction of another one, from the
+    forces in ``own``."""
     if dragged is not None:
         c, share = dragged[station, face, among[other]], workspace.friction[0]
         for a in range(DRAGGED):
             for b in range(DRAGGED):
                 k = a * DRAGGED + b
                 value = c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k]))
-                out[a] += share * value * workspace.force[other, b]
+                out[a] += share * value * workspace.own[b]
 
 
 @kernel
@@ -168,7 +181,7 @@ def _correct(compliance, count, share):
             workspace.right[i * size + a, 0] = total - (
                 workspace.displacement[face, a]
                 - thermal_offset.offset(compliance.thermal_offset, face, a)
-                - offset(compliance.modes, face, a)
+                - modes.offset(compliance.modes, face, a)
             )
     eliminate(workspace.matrix, workspace.right, count * size, 1)
     largest, exact = 0.0, share == 1.0
@@ -234,28 +247,23 @@ def follow(compliance, face, place, count, state, out):
     """Fill ``out`` (p,) with the displacement of the wall under a face that may not press, due to
     the ``count`` solved faces and the modes."""
     workspace, size = compliance.workspace, patterns.count(compliance.workspace.levels)
-    station, s, changes = between_stations(compliance, place)
-    evaluate(compliance.modes, compliance.rail[face], face, station, s, changes, state)
-    thermal_offset.evaluate(compliance.thermal_offset, face, station, s, changes)
-    for a in range(size):
-        out[a] = thermal_offset.offset(compliance.thermal_offset, face, a) + offset(
-            compliance.modes, face, a
+    station, s, _ = between_stations(compliance, place)
+    over_end = _evaluate(compliance, face, place, state)
+    out[:] = 0.0
+    for j in range(count):
+        other = workspace.order[j]
+        parts.to_part(
+            workspace.levels, workspace.part[other], workspace.force[other], workspace.own
         )
-        for j in range(count):
-            other = workspace.order[j]
-            c = compliance.cubic[station, face, compliance.among[other]]
+        c = compliance.cubic[station, face, compliance.among[other]]
+        for a in range(size):
             for b in range(size):
                 k = a * size + b
                 value = c[0, k] + s * (c[1, k] + s * (c[2, k] + s * c[3, k]))
-                out[a] += value * workspace.force[other, b]
-    for j in range(count):
-        _follow_drag(
-            compliance.dragged,
-            compliance.among,
-            workspace,
-            face,
-            workspace.order[j],
-            station,
-            s,
-            out,
-        )
+                out[a] += value * workspace.own[b]
+        _follow_drag(compliance.dragged, compliance.among, workspace, face, other, station, s, out)
+    if over_end:
+        parts.to_whole(workspace.levels, workspace.part[face], out, 0, 1)
+    for a in range(size):
+        out[a] += thermal_offset.offset(compliance.thermal_offset, face, a)
+        out[a] += modes.offset(compliance.modes, face, a)

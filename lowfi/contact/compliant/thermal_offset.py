@@ -3,7 +3,7 @@
 nothing."""
 
 from tipoff.kernels.jit import kernel
-from tipoff.lowfi.contact.compliant import patterns
+from tipoff.lowfi.contact.compliant import parts, patterns
 
 
 @kernel
@@ -21,6 +21,13 @@ def fill(warm, face, station, s, changes):
     for a in range(patterns.count(warm.levels)):
         warm.offset[face, a] = c[0, a] + s * (c[1, a] + s * (c[2, a] + s * c[3, a]))
         warm.slope[face, a] = changes * (c[1, a] + s * (2.0 * c[2, a] + s * 3.0 * c[3, a]))
+
+
+@kernel
+def to_whole(warm, face, part):
+    """Replace T under ``face``, in the patterns of a ``part`` of it, by that of the whole face."""
+    if warm is not None:
+        parts.vector_to_whole(warm.levels, part, warm.offset[face], warm.slope[face])
 
 
 @kernel

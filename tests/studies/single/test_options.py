@@ -48,4 +48,4 @@ def test_an_option_without_effect_is_refused(command, faults, tmp_path):
 
 
 def test_a_degree_that_no_pattern_has_is_refused():
-    assert "1, 2, 3, 4, or auto" in call("run", "--scene", "tiny", "--degree", "5").output
+    assert "1, 2, 3, 4, 5, or auto" in call("run", "--scene", "tiny", "--degree", "6").output

@@ -11,8 +11,9 @@ import numpy as np
 
 DEGREE = 3  # by default
 LOW_DEGREE = 2  # of a case of many, and the least of a compliance
-LEAST_DEGREE, MOST_DEGREE = 1, 4
+LEAST_DEGREE, MOST_DEGREE = 1, 5  # a sixth brings the surrogate no nearer to the reference
 DRAGGED = 3  # patterns of the traction of friction
+FARTHEST = 2.0  # in xi, of the middle of the part of a face with a wall; a face that has left presses no more
 
 
 def count(degree: int = DEGREE) -> int:

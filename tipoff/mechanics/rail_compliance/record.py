@@ -21,7 +21,7 @@ from tipoff.mechanics.rail_compliance import (
 )
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST, JointTerms
 from tipoff.mechanics.rail_compliance.shown import Shown
-from tipoff.mechanics.rail_compliance.stations import cubic
+from tipoff.mechanics.rail_compliance.stations import breaks, cubic
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
@@ -156,15 +156,24 @@ class RailCompliance(Shown):
     def cubic(self, modes: int = 0) -> tuple[np.ndarray, np.ndarray]:
         """Flexibility (s-1,f,m,4,p p) between each face and the ``members`` of its rail, without the
         part of the first ``modes``, and their shapes (s-1,f,n,4,p), between stations: coefficients
-        of the rising powers of the distance (m) from the one before. Raises ValueError as
-        ``residual`` does."""
+        of the rising powers of the distance (m) from the one before, in the patterns of the parts of the
+        faces that have a wall. Raises ValueError as ``residual`` does."""
         if modes not in self._cubics:
-            shape = cubic(self.travel, self.shape[..., :modes])
+            shape = self.cubic_of(self.shape[..., :modes])
             self._cubics[modes] = (
                 self._between_faces(self.residual(modes)),
                 np.ascontiguousarray(shape.transpose(0, 1, 3, 4, 2)),
             )
         return self._cubics[modes]
+
+    def cubic_of(self, moved: np.ndarray) -> np.ndarray:
+        """Displacements (s,f,p,...) of the walls between stations (s-1,f,p,...,4), in the patterns of
+        the parts of the faces that have a wall."""
+        on_part = self.on_part.swapaxes(-1, -2)
+        return self._spline(np.einsum("sfab,sfb...->sfa...", on_part, moved))
+
+    def _spline(self, values: np.ndarray) -> np.ndarray:
+        return cubic(self.travel, values, () if self.part is None else breaks(self.part))
 
     @cached_property
     def cubic_of_dragged(self) -> np.ndarray | None:
@@ -172,7 +181,10 @@ class RailCompliance(Shown):
         return None if self.dragged is None else self._between_faces(self.dragged)
 
     def _between_faces(self, table: np.ndarray) -> np.ndarray:
-        between = cubic(self.travel, table).transpose(0, 1, 2, 5, 3, 4)
+        size = table.shape[-1]
+        own = self.on_part[..., :size, :size].swapaxes(-1, -2)
+        part = pairs.on_both_sides(own, table, self.rail)
+        between = self._spline(part).transpose(0, 1, 2, 5, 3, 4)
         return np.ascontiguousarray(between.reshape(*between.shape[:4], -1))
 
     @cached_property
@@ -183,7 +195,7 @@ class RailCompliance(Shown):
     @cached_property
     def shapes(self) -> np.ndarray:
         """Shapes (s-1,f,n,4,p) of all modes between stations, as in ``cubic``."""
-        between = cubic(self.travel, self.shape)
+        between = self.cubic_of(self.shape)
         return np.ascontiguousarray(between.transpose(0, 1, 3, 4, 2))
 
     @cached_property

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-_DEGREES = ("1", "2", "3", "4")
+_DEGREES = ("1", "2", "3", "4", "5")
 
 
 def modes_of(text: str) -> int | str:
@@ -177,7 +177,7 @@ Degree = Annotated[
         metavar="N",
         parser=degree_of,
         help="Degree of the polynomials of pressure and displacement on a pad face, with --model "
-        "compliant, from 1 to 4; default: 3. A higher one is slower, and nearer to the reference; auto: "
+        "compliant, from 1 to 5; default: 3. A higher one is slower, and nearer to the reference; auto: "
         "the least one whose next would hardly change the rates.",
     ),
 ]

@@ -41,7 +41,7 @@ from tipoff.workspace.timing import timed
 from tipoff.workspace.words import counted
 
 MODES = (0, 1, 2, 4, 8)  # modes of each rail; those of the agreement study have their own point
-DEGREES = 2, 4  # of the patterns, beside the default, with all modes
+DEGREES = 2, 5  # of the patterns, beside the default, with all modes
 STIFFNESS_ALONG = f"{COMPLIANT}, mean pressure of each face by itself"
 NAME, POINTS = "cost_study", "cost.json"
 

@@ -22,7 +22,7 @@ from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance
 from tipoff.mechanics.rail_compliance.patterns import powers
 
-ELEMENT, CELLS = 4e-3, 16  # m; along each edge of a face, as in the reference
+ELEMENT, FINE, CELLS = 4e-3, 2e-3, 16  # m; along each edge of a face, as in the reference
 LENGTH = 16e-3  # m, of a pad
 FRONT, REAR = 44e-3, 204e-3  # m, travel at which these pads reach the end
 SCENE = REFERENCE.replace(SMOOTH)
@@ -59,39 +59,51 @@ POSES = 20  # of each group
 BOUNDS = {
     2: {
         "on the rail": (2.7, 1.4, 2.8),
-        "at the end": (2.2, 1.5, 2.6),
+        "at the end": (2.1, 1.4, 2.6),
         "on the rail, 0.03 deg": (3.3, 1.9, 3.2),
         "at the end, 0.03 deg": (2.6, 1.2, 2.5),
-        "on the rail, 0.5 deg": (1.8, 1.6, 5.9),
-        "at the end, 0.5 deg": (3.7, 3.3, 4.9),
+        "on the rail, 0.5 deg": (1.7, 1.6, 5.8),
+        "at the end, 0.5 deg": (3.7, 3.2, 4.8),
         "flat, on the rail": (0.4, 0.6, 1.3),
-        "flat, at the end": (0.9, 1.6, 1.5),
-        "flat, at the end, 0.03 deg": (2.2, 2.2, 2.2),
-        "flat, at the end, 0.5 deg": (5.2, 4.7, 11.0),
+        "flat, at the end": (0.8, 1.6, 1.4),
+        "flat, at the end, 0.03 deg": (2.1, 2.2, 2.1),
+        "flat, at the end, 0.5 deg": (5.0, 4.5, 10.9),
     },
     3: {
         "on the rail": (3.0, 0.8, 2.1),
-        "at the end": (2.0, 1.7, 1.5),
+        "at the end": (2.0, 0.6, 1.2),
         "on the rail, 0.03 deg": (2.5, 1.0, 2.1),
-        "at the end, 0.03 deg": (1.9, 1.0, 1.5),
+        "at the end, 0.03 deg": (1.7, 0.6, 1.5),
         "on the rail, 0.5 deg": (1.7, 1.4, 2.4),
-        "at the end, 0.5 deg": (2.3, 2.1, 3.6),
+        "at the end, 0.5 deg": (2.3, 2.1, 3.4),
         "flat, on the rail": (0.2, 0.2, 0.7),
-        "flat, at the end": (2.1, 1.7, 1.1),
-        "flat, at the end, 0.03 deg": (1.6, 1.2, 1.4),
-        "flat, at the end, 0.5 deg": (2.9, 2.6, 4.4),
+        "flat, at the end": (0.5, 0.5, 0.8),
+        "flat, at the end, 0.03 deg": (0.4, 0.6, 1.4),
+        "flat, at the end, 0.5 deg": (2.9, 2.6, 3.9),
     },
     4: {
         "on the rail": (0.9, 0.5, 0.7),
-        "at the end": (1.3, 1.2, 0.8),
+        "at the end": (0.6, 0.3, 0.6),
         "on the rail, 0.03 deg": (1.0, 0.4, 0.9),
-        "at the end, 0.03 deg": (1.4, 1.0, 0.7),
-        "on the rail, 0.5 deg": (1.2, 1.0, 1.4),
-        "at the end, 0.5 deg": (2.2, 2.1, 3.8),
+        "at the end, 0.03 deg": (0.6, 0.4, 0.5),
+        "on the rail, 0.5 deg": (1.2, 1.0, 1.3),
+        "at the end, 0.5 deg": (1.5, 1.3, 2.4),
         "flat, on the rail": (0.1, 0.2, 0.4),
-        "flat, at the end": (2.4, 1.9, 1.2),
-        "flat, at the end, 0.03 deg": (1.9, 1.5, 1.1),
-        "flat, at the end, 0.5 deg": (2.3, 2.2, 2.1),
+        "flat, at the end": (0.3, 0.3, 0.4),
+        "flat, at the end, 0.03 deg": (0.4, 0.4, 0.7),
+        "flat, at the end, 0.5 deg": (2.3, 2.2, 1.6),
+    },
+    5: {
+        "on the rail": (0.7, 0.2, 0.6),
+        "at the end": (0.5, 0.2, 0.4),
+        "on the rail, 0.03 deg": (0.6, 0.3, 0.6),
+        "at the end, 0.03 deg": (0.3, 0.3, 0.5),
+        "on the rail, 0.5 deg": (0.7, 0.7, 1.2),
+        "at the end, 0.5 deg": (1.4, 1.3, 1.6),
+        "flat, on the rail": (0.1, 0.2, 0.3),
+        "flat, at the end": (0.2, 0.3, 0.3),
+        "flat, at the end, 0.03 deg": (0.2, 0.2, 0.4),
+        "flat, at the end, 0.5 deg": (1.1, 1.1, 1.0),
     },
 }
 
@@ -170,10 +182,11 @@ def _matrix(vector: np.ndarray) -> np.ndarray:
     return np.array(rotation.matrix(rotation.exponential(tuple(vector)))).reshape(3, 3)
 
 
-def errors(name: str, found: RailCompliance) -> np.ndarray:
-    """Largest errors (3,) in % over the poses of a group, of force, moment and displacement."""
+def errors(name: str, found: RailCompliance, twin: StaticTwin | None = None) -> np.ndarray:
+    """Largest errors (3,) in % over the poses of a group, of force, moment and displacement; from a
+    ``twin`` in other elements, if given."""
     flat = GROUPS[name].flat
-    twin = twin_of(flat)
+    twin = twin or twin_of(flat)
     law, every = Law(found, flat, twin.faces[0]), []
     for place, vector in poses(name):
         turn = _matrix(vector)
@@ -194,7 +207,7 @@ def errors(name: str, found: RailCompliance) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    "degree", [DEGREE, *(pytest.param(degree, marks=pytest.mark.slow) for degree in (2, 4))]
+    "degree", [DEGREE, *(pytest.param(degree, marks=pytest.mark.slow) for degree in (2, 4, 5))]
 )
 @pytest.mark.parametrize("name", GROUPS)
 def test_the_law_is_near_its_static_twin(name, degree):
@@ -205,6 +218,19 @@ def test_the_law_is_near_its_static_twin(name, degree):
     # Control: walls that move without tilting and bending are farther from the twin.
     plain = errors(name, walls.restricted(1))
     assert plain[0] > 2.0 * BOUNDS[degree][name][0], plain
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("degree, most", [(3, 0.7), (4, 0.5), (5, 0.4)])
+def test_over_an_end_fine_elements_are_followed_too(degree, most):
+    """In elements of 2 mm. In patterns of the whole face, a cubic between stations was off by 2, 12 and
+    260 % there. Control: patterns of the second degree."""
+    name = "flat, at the end"
+    scene = SCENE.replace(FLAT)
+    walls = statics.condense(scene, FINE, degree=degree)
+    twin = StaticTwin(scene, FINE, CELLS, follow=True)
+    assert errors(name, walls, twin)[0] < most
+    assert errors(name, walls.of_degree(2), twin)[0] > most
 
 
 @pytest.mark.parametrize("name", ["on the rail", "at the end", "at the end, 0.5 deg"])
