@@ -14,6 +14,7 @@ An absent table counts as zero.
 import math
 from collections.abc import Mapping
 
+from tipoff.scenes import overrides as keys
 from tipoff.scenes import polar
 from tipoff.scenes.scene import Scene
 
@@ -41,7 +42,5 @@ def overrides(scene: Scene, changes: Mapping[str, float]) -> dict[str, float]:
 def stated(scene: Scene, key: str) -> float:
     """The number (SI) under a dotted ``key``, 0 if a table on the way is absent. An unknown key is
     left to the scene, which refuses it."""
-    found: object = scene
-    for part in key.split("."):
-        found = getattr(found, part, None)
-    return 0.0 if found is None else float(found)  # type: ignore[arg-type]
+    found = keys.held(scene, key)
+    return 0.0 if found is None else float(found)

@@ -11,11 +11,10 @@ with misalignment t at p, thrust eccentricity e at a and mass eccentricity m at 
 """
 
 from collections.abc import Mapping
-from functools import reduce
 
 import numpy as np
 
-from tipoff.scenes import polar
+from tipoff.scenes import overrides, polar
 
 Inputs = Mapping[str, np.ndarray]
 
@@ -23,7 +22,7 @@ Inputs = Mapping[str, np.ndarray]
 def column(scene, inputs: Inputs, key: str) -> np.ndarray | float:
     """The numbers (n,) under a dotted ``key`` in ``inputs``, SI. Cases without one (NaN) have the
     scene's value, zero if it has none."""
-    own = reduce(lambda table, part: getattr(table, part, None), key.split("."), scene)
+    own = overrides.held(scene, key)
     own = 0.0 if own is None else own
     values = inputs.get(key)
     return own if values is None else np.where(np.isnan(values), own, values)

@@ -55,6 +55,20 @@ def plain(value: Any) -> Any:
     return value
 
 
+def held(table: Any, key: str) -> Any:
+    """What ``table`` holds under the dotted ``key``; None where a key on the way is absent. Methods are
+    no values: one law of thrust has the key ``peak``, another one a function of this name."""
+    found = table
+    for part in key.split("."):
+        if isinstance(found, tuple):
+            place = index(part, len(found))
+            found = None if place is None else found[place]
+        else:
+            is_field = isinstance(found, Table) and part in type(found).model_fields
+            found = getattr(found, part) if is_field else None
+    return found
+
+
 def dotted(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
     """(dotted key, value) pairs of a nested mapping, so that ``a.b = 1`` and ``"a.b" = 1`` mean the
     same."""

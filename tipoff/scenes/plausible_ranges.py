@@ -10,8 +10,9 @@ Mechanical Design (moduli of polymers and elastomers); Hunt and Crossley, J. App
 
 import math
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
+from tipoff.scenes import overrides
 from tipoff.scenes.rounding import at_most, below
 
 
@@ -64,9 +65,7 @@ def _unit(own: Range) -> str:
 
 def _values(scene, key: str) -> Iterator[float]:
     """The value or values of a dotted key; none if a table is absent or has another law."""
-    found: Any = scene
-    for name in key.split("."):
-        found = getattr(found, name, None)
+    found = overrides.held(scene, key)
     if found is not None:
         yield from found if isinstance(found, tuple) else (found,)
 

@@ -14,7 +14,6 @@ k' = k p_r^(e - e'). Static friction varies in proportion to dynamic friction, u
 distribution.
 """
 
-from functools import reduce
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -174,7 +173,7 @@ def _input(
     except ValidationError as error:
         faults += [fault._replace(key=f"{place}.{fault.key}") for fault in faults_of(error, source)]
         return None
-    return Input(key, kind == "factor", distribution, _number(scene, key), unit)
+    return Input(key, kind == "factor", distribution, keys.held(scene, key), unit)
 
 
 def _idle(item: Input, scene: Scene, model: str) -> str | None:
@@ -195,19 +194,6 @@ def _idle(item: Input, scene: Scene, model: str) -> str | None:
         if item.is_factor and item.nominal == 0.0
         else None
     )
-
-
-def _number(scene: Scene, key: str) -> float | None:
-    """The number under a dotted key, or None if the scene has none."""
-
-    def inside(table: Any, part: str) -> Any:
-        if isinstance(table, tuple):
-            place = keys.index(part, len(table))
-            return None if place is None else table[place]
-        return getattr(table, part, None)
-
-    whole: Any = scene
-    return reduce(inside, key.split("."), whole)
 
 
 def _component(key: str) -> tuple[str, str] | None:
