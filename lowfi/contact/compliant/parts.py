@@ -12,6 +12,8 @@ stations does not follow them: at the end of a rail, in elements of 2 mm, forces
 fourth degree would differ from statics by up to 15 % in place of 0.5 %.
 """
 
+import numpy as np
+
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi.contact.compliant import patterns
 from tipoff.mechanics.rail_compliance.patterns import FARTHEST
@@ -39,6 +41,21 @@ def take(compliance, face, place, changes):
     if abs(part[MIDDLE]) > FARTHEST:
         part[MIDDLE], part[MIDDLE_SLOPE] = FARTHEST if part[MIDDLE] > 0.0 else -FARTHEST, 0.0
     return True
+
+
+@kernel
+def way_to_jump(compliance, face, place, speed):
+    """Way (m) of the first face from X = ``place`` (m), in the direction of ``speed``, to the next place
+    at which a face begins to leave the wall or its part becomes the shortest one, or the reverse:
+    there the compliance changes with another slope. Infinite without one."""
+    half, middle = compliance.half[face, 0], place + compliance.ahead[face]
+    until, shortest = np.inf, 2.0 * half * (1.0 - compliance.least[face])
+    for at in (compliance.end - half, compliance.start + half):
+        beyond = shortest if at == compliance.end - half else -shortest
+        for jump in (at, at + beyond):
+            way = jump - middle if speed > 0.0 else middle - jump
+            until = min(until, way) if way > 0.0 else until
+    return until
 
 
 @kernel

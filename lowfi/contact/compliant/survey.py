@@ -16,6 +16,7 @@ from tipoff.lowfi.contact.compliant.cells import (
 from tipoff.lowfi.contact.compliant.free_vibration import note_reach
 from tipoff.lowfi.contact.compliant.loads import energy as energy_of_rail
 from tipoff.lowfi.contact.compliant.modes import speed_at
+from tipoff.lowfi.contact.compliant.parts import way_to_jump
 from tipoff.lowfi.contact.compliant.record import ASIDE, MIDDLE, SHIFT
 from tipoff.lowfi.contact.compliant.solution import follow, solve, solve_unless
 from tipoff.lowfi.contact.springs import (
@@ -130,7 +131,8 @@ def survey(compliance, faces, platform, payload, touching, state, solved, out):
 @kernel
 def longest_step_at_ends(compliance, faces, platform, payload, touching, state):
     """Longest step (s) if a ``touching`` face (f,) is near an end of the rail. The force of the end
-    jumps when the face begins to overhang. No error estimate sees this. The last strip of the face
+    jumps when the face begins to overhang, and the slope of the compliance there and where the part of
+    the face with a wall stops to shrink. No error estimate sees this. The last strip of the face
     leaves at once. So a step ends there at the latest, and where a face that comes over an end is
     completely over it."""
     body, base = (
@@ -153,6 +155,8 @@ def longest_step_at_ends(compliance, faces, platform, payload, touching, state):
             if half - behind > _THERE:
                 way = min(way, half - behind + _THERE)
             longest = min(longest, way / abs(speed))
+            jump = way_to_jump(compliance, face, place[0] + faces[0, 0], drift[0]) + _THERE
+            longest = min(longest, jump / abs(drift[0]))
     return longest
 
 

@@ -170,10 +170,11 @@ class RailCompliance(Shown):
         """Displacements (s,f,p,...) of the walls between stations (s-1,f,p,...,4), in the patterns of
         the parts of the faces that have a wall."""
         on_part = self.on_part.swapaxes(-1, -2)
-        return self._spline(np.einsum("sfab,sfb...->sfa...", on_part, moved))
+        return cubic(self.travel, np.einsum("sfab,sfb...->sfa...", on_part, moved), self._breaks)
 
-    def _spline(self, values: np.ndarray) -> np.ndarray:
-        return cubic(self.travel, values, () if self.part is None else breaks(self.part))
+    @cached_property
+    def _breaks(self) -> list[tuple[int, ...]]:
+        return [()] * self.rail.size if self.part is None else breaks(self.part)
 
     @cached_property
     def cubic_of_dragged(self) -> np.ndarray | None:
@@ -182,10 +183,17 @@ class RailCompliance(Shown):
 
     def _between_faces(self, table: np.ndarray) -> np.ndarray:
         size = table.shape[-1]
-        own = self.on_part[..., :size, :size].swapaxes(-1, -2)
-        part = pairs.on_both_sides(own, table, self.rail)
-        between = self._spline(part).transpose(0, 1, 2, 5, 3, 4)
-        return np.ascontiguousarray(between.reshape(*between.shape[:4], -1))
+        turned = self.on_part[..., :size, :size].swapaxes(-1, -2)
+        part = pairs.on_both_sides(turned, table, self.rail)
+        own = [
+            tuple(sorted({*each, *(self._breaks[face] if face >= 0 else ())}))
+            for each, near in zip(self._breaks, pairs.beside(self.rail))
+            for face in near
+        ]
+        stations, faces, members = part.shape[:3]
+        between = cubic(self.travel, part.reshape(stations, faces * members, size, size), own)
+        between = between.transpose(0, 1, 4, 2, 3).reshape(stations - 1, faces, members, 4, -1)
+        return np.ascontiguousarray(between)
 
     @cached_property
     def members(self) -> np.ndarray:

@@ -8,27 +8,38 @@ import numpy as np
 _STRAIGHT = 1e-9  # in xi; smaller changes of a slope are rounding
 
 
-def cubic(travel: np.ndarray, values: np.ndarray, breaks: Sequence[int] = ()) -> np.ndarray:
-    """Cubic spline (s-1,...,4) through ``values`` (s,...) at ``travel`` (s,) m: coefficients of the
-    rising powers of the distance (m) from the station before. At the stations of these numbers
-    (``breaks``, ascending) its slope may jump."""
+def cubic(
+    travel: np.ndarray, values: np.ndarray, breaks: Sequence[tuple[int, ...]] | None = None
+) -> np.ndarray:
+    """Cubic splines (s-1,k,...,4) through ``values`` (s,k,...) at ``travel`` (s,) m: coefficients of
+    the rising powers of the distance (m) from the station before. At the stations of these numbers,
+    the ``breaks`` of each of the k, ascending, a slope may jump."""
+    found = np.zeros((len(travel) - 1, *values.shape[1:], 4))
+    if not values.size:
+        return found
+    given = breaks or [()] * values.shape[1]
+    for own in set(given):
+        same = [number for number, each in enumerate(given) if each == own]
+        found[:, same] = _between(travel, values[:, same], own)
+    return found
+
+
+def _between(travel: np.ndarray, values: np.ndarray, breaks: tuple[int, ...]) -> np.ndarray:
     from scipy.interpolate import CubicSpline
 
-    if not values.size:
-        return np.zeros((len(travel) - 1, *values.shape[1:], 4))
-    ends = [0, *breaks, len(travel) - 1]
-    found = [
+    parts = [
         CubicSpline(travel[first : last + 1], values[first : last + 1]).c[::-1]
-        for first, last in itertools.pairwise(ends)
+        for first, last in itertools.pairwise((0, *breaks, len(travel) - 1))
     ]
-    return np.ascontiguousarray(np.moveaxis(np.concatenate(found, axis=1), 0, -1))
+    return np.moveaxis(np.concatenate(parts, axis=1), 0, -1)
 
 
-def breaks(part: np.ndarray) -> list[int]:
-    """Numbers of the stations at which a face begins to leave the wall, or its part with a wall (s,f,2)
-    begins to move or stops: slopes jump there. Between two stations a jump has no number."""
+def breaks(part: np.ndarray) -> list[tuple[int, ...]]:
+    """For each face, the numbers of the stations at which it begins to leave the wall, or its part with a
+    wall (s,f,2) begins to move or stops: slopes jump there. A jump between two stations has no
+    number."""
     jumps = (np.abs(np.diff(part, 2, axis=0)) > _STRAIGHT).any(axis=2)
     alone = jumps.copy()
     alone[1:] &= ~jumps[:-1]
     alone[:-1] &= ~jumps[1:]
-    return (np.flatnonzero(alone.any(axis=1)) + 1).tolist()
+    return [tuple((np.flatnonzero(own) + 1).tolist()) for own in alone.T]
