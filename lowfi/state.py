@@ -12,6 +12,10 @@ it would be w = I^-1 R' (A - r x m v): an error of R would turn a large spin int
 of least inertia, where it is a large rate. ``reconcile`` makes h and R agree with A after each
 step.
 
+With rails at rest there is no second body and no such sum, and A is about the mass centre, A = R h.
+Of a payload that is far away under thrust, r x m v is so much larger than R h that its error would be
+an error of the rate.
+
 The work entries come next. They are quadratures of the same method, so both ledgers close to its
 accuracy. The modes of the rails, if there are any, come last (``lowfi.contact.compliant.modes``).
 """
@@ -181,9 +185,18 @@ def _set_quaternion(state, body, q):
 
 
 @kernel
-def reconcile(record, dt, state, body):
+def orbiting(platform, mass):
+    """The mass (kg) whose r x m v is part of A: zero with rails at rest."""
+    value = 0.0
+    if platform is not None:
+        value = mass
+    return value
+
+
+@kernel
+def reconcile(record, mass, dt, state, body):
     """Make attitude and spin of a body, whose slots begin at ``body``, agree with its A, to first
-    order, at the end of a step of ``dt`` (s).
+    order, at the end of a step of ``dt`` (s); ``mass`` as in ``orbiting``.
 
     The difference e = R' (A - r x m v) - h is an error of the step. Turns p of the body (rad, body
     axes) and changes d of its spin with d = e + h x p remove it. The pair that changes rates least
@@ -191,7 +204,7 @@ def reconcile(record, dt, state, body):
 
         p = dt^2 h x k,      (I^2 + dt^2 (|h|^2 - h h')) k = e
     """
-    mass, h = record.mass, triple(state, body + SPIN)
+    h = triple(state, body + SPIN)
     q, a = quaternion(state, body), triple(state, moment_of(body))
     orbit = rotation.cross(triple(state, body + PLACE), triple(state, body + VELOCITY))
     spin = rotation.unrotate(
@@ -239,7 +252,7 @@ def initial(model: Model) -> np.ndarray:
     fill(
         state,
         PAYLOAD,
-        payload.mass,
+        0.0 if platform is None else payload.mass,
         payload.inertia,
         tuple(start.place),
         tuple(start.velocity),
@@ -264,7 +277,7 @@ def initial(model: Model) -> np.ndarray:
 @entry
 def fill(state, body, mass, inertia, place, velocity, attitude, rate):
     """Fill the slots of a body, the first of which is ``body``, and those of its A in ``state``
-    (STATE_SIZE,): mass (kg), inertia (3,3) kg m2 in body axes, place (m), velocity (m/s), unit
+    (STATE_SIZE,): mass (kg) as in ``orbiting``, inertia (3,3) kg m2 in body axes, place (m), velocity (m/s), unit
     quaternion and rate (rad/s) in body axes."""
     moment = moment_of(body)
     orbit, h = rotation.cross(place, velocity), rotation.multiply(inertia, rate)

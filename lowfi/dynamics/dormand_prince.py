@@ -23,6 +23,7 @@ from tipoff.lowfi.state import (
     copy,
     modal_size,
     normalise,
+    orbiting,
     reconcile,
 )
 
@@ -85,14 +86,15 @@ def _restore(system, dt, state):
     """Restore properties that the sum of stages of a step of ``dt`` (s) does not conserve: unit
     quaternions, and rates that agree with the momenta."""
     normalise(state)
-    reconcile(system.payload, dt, state, PAYLOAD)
+    mass = orbiting(system.platform, system.payload.mass)
+    reconcile(system.payload, mass, dt, state, PAYLOAD)
     _reconcile_platform(system.platform, dt, state)
 
 
 @kernel
 def _reconcile_platform(platform, dt, state):
     if platform is not None:
-        reconcile(platform, dt, state, PLATFORM)
+        reconcile(platform, platform.mass, dt, state, PLATFORM)
 
 
 @kernel

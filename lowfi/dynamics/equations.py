@@ -2,9 +2,9 @@
 
     r' = v,   m v' = sum F,   q' = q w / 2,   A' = sum X x F,   h' = h x w + R' (A' - r x sum F)
 
-X is the point at which a force acts; h and w are in body axes (``lowfi.state``). There the products
-of h and w of a thin body cancel to rounding, even in stages of a step, where q is no unit
-quaternion.
+X is the point at which a force acts; with rails at rest, A' = sum (X - r) x F. h and w are in body
+axes (``lowfi.state``). There the products of h and w of a thin body cancel to rounding, even in stages of
+a step, where q is no unit quaternion.
 
 Every effect adds itself in one line of ``derivative``. Until ``move``, the velocity slots of the
 derivative hold forces (N). Axial power is each force's X component times the X velocity of the
@@ -64,6 +64,24 @@ def derivative(system, touching, stick, time, state, out):
     add_hold_down(system.hold_down, payload, time, bodies, state, out)
     move(payload.mass, state, PAYLOAD, bodies.payload, out)
     move_platform(platform, state, bodies.base, out)
+    about_mass_centre(platform, payload.mass, bodies, out)
+
+
+@kernel
+def about_mass_centre(platform, mass, bodies, out):
+    """With rails at rest, replace the moments about the origin of all forces, and of those from outside,
+    by those about the mass centre of the payload."""
+    if platform is None:
+        a, place = slot.triple(out, PAYLOAD + VELOCITY), bodies.payload.place
+        _carry(out, slot.moment_of(PAYLOAD), place, (mass * a[0], mass * a[1], mass * a[2]))
+        _carry(out, TURN, place, slot.triple(out, IMPULSE))
+
+
+@kernel
+def _carry(out, moment_slot, place, force):
+    moment = rotation.cross(place, force)
+    for i in range(3):
+        out[moment_slot + i] -= moment[i]
 
 
 @kernel

@@ -43,7 +43,7 @@ def observe(system, loop, row, forces):
     base = slot.frame(system.platform, state)
     row[:] = 0.0
     _place(state, body, base, row)
-    _body(payload.mass, state, PAYLOAD, body, row)
+    _body(payload.mass, slot.orbiting(system.platform, payload.mass), state, PAYLOAD, body, row)
     _platform(system.platform, state, base, row)
     row[STORED] = _observe_springs(system.contact, system, loop, body, base, forces)
     row[STORED] += _observe_compliance(system.compliance, system, loop, body, base, forces)
@@ -123,20 +123,21 @@ def _copy(state, body, row):
 @kernel
 def _platform(platform, state, base, row):
     if platform is not None:
-        _body(platform.mass, state, PLATFORM, base, row)
+        _body(platform.mass, platform.mass, state, PLATFORM, base, row)
 
 
 @kernel
-def _body(mass, state, first, body, row):
+def _body(mass, orbiting, state, first, body, row):
     """Add kinetic energy and momenta of the body whose slots begin at ``first``. The momenta come
-    from its motion, not from A, so the check of the ledger compares both."""
+    from its motion, not from A, so the check of the ledger compares both. ``orbiting`` (kg) as in
+    ``lowfi.state``."""
     orbit = rotation.cross(body.place, body.velocity)
     spin = rotation.rotate(body.turn, slot.triple(state, first + slot.SPIN))
     row[KINETIC] += slot.kinetic(mass, state, first, body)
     row[AXIAL_KINETIC] += 0.5 * mass * body.velocity[0] * body.velocity[0]
     for i in range(3):
         row[LINEAR + i] += mass * body.velocity[i]
-        row[ANGULAR + i] += mass * orbit[i] + spin[i]
+        row[ANGULAR + i] += orbiting * orbit[i] + spin[i]
 
 
 @kernel
