@@ -17,7 +17,7 @@ from tipoff.lowfi.contact import springs
 from tipoff.lowfi.contact.compliant import loads, record, solution
 from tipoff.lowfi.dynamics import equations
 from tipoff.mechanics import scene_model
-from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest, pairs
+from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest, pairs, patterns
 from tipoff.mechanics.rail_compliance.patterns import powers
 from tipoff.scenes.scene import Scene
 
@@ -190,8 +190,39 @@ def forces_of(
 
 def flexibility_at(compliance: RailCompliance, travel: float) -> np.ndarray:
     """(f,p,f,p) m/N between the stations."""
-    every = pairs.whole(compliance.flexibility, compliance.rail)
-    return CubicSpline(compliance.travel, every)(travel)
+    every, whole = (
+        pairs.whole(compliance.flexibility, compliance.rail),
+        whole_at(compliance, travel),
+    )
+    on_part = compliance.on_part
+    found = np.zeros(every.shape[1:])
+    for first, second in np.argwhere(compliance.rail[:, None] == compliance.rail):
+        values = every[:, first, :, second]
+        values = on_part[:, first].swapaxes(1, 2) @ values @ on_part[:, second]
+        own = between(compliance, values, travel, first, second)
+        found[first, :, second] = whole[first] @ own @ whole[second].T
+    return found
+
+
+def whole_at(compliance: RailCompliance, travel: float) -> np.ndarray:
+    """Matrices (f,p,p) from patterns of the parts of the faces with a wall to those of whole faces. In
+    the reference scene the parts bend at stations only."""
+    part = [
+        [np.interp(travel, compliance.travel, column) for column in face.T]
+        for face in compliance.part.swapaxes(0, 1)
+    ]
+    turned = patterns.on_part(np.array(part), compliance.degree).swapaxes(1, 2)
+    return np.linalg.inv(turned)
+
+
+def between(compliance: RailCompliance, values: np.ndarray, travel: float, *faces) -> np.ndarray:
+    """``values`` (s,...) of ``faces`` between the stations: cubic splines that end at the stations at
+    which a part bends."""
+    bends = np.abs(np.diff(compliance.part[:, list(faces)], 2, axis=0)).max(axis=(1, 2)) > 1e-9
+    ends = np.concatenate([[0], np.flatnonzero(bends) + 1, [len(values) - 1]])
+    last = int(np.clip(np.searchsorted(compliance.travel[ends], travel), 1, ends.size - 1))
+    own = slice(ends[last - 1], ends[last] + 1)
+    return CubicSpline(compliance.travel[own], values[own])(travel)
 
 
 CLEARANCE = REFERENCE.contact.clearance

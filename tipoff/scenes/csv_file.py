@@ -104,10 +104,15 @@ def quantities(
         table = [line for line in listed(path, data) if any(map(str.strip, line[1]))]
     except SceneError as error:
         return {}, error.faults
-    heads = [head(cell) for cell in table[0][1]] if table else []
+    if not table:
+        return {}, [
+            Fault(str(path), "file", "no line", f"{' and '.join(wanted)}, each once in the header")
+        ]
+    heads = [head(cell) for cell in table[0][1]]
     second = [cell.strip() for cell in table[1][1]] if len(table) > 1 else []
     body = table[2 if units.are_units(second) else 1 :]
     found, faults = places(str(path), [name for name, _ in heads], wanted)
+    faults += _too_wide(str(path), len(heads), body)
     arrays = {}
     for name, place in found.items():
         unit = heads[place][1]
@@ -119,6 +124,13 @@ def quantities(
             arrays[name] = values * factor
         faults += problems + wrong
     return arrays, faults
+
+
+def _too_wide(source: str, width: int, table: list[Line]) -> list[Fault]:
+    """The fault of lines with more cells than the header, as where decimals are after commas."""
+    wide = [number for number, row in table if any(map(str.strip, row[width:]))]
+    expected = f"{width} cells in each line, as in the header, with decimals after a point"
+    return [Fault(source, "cells", f"more in {_listed(wide)}", expected)] if wide else []
 
 
 def head(cell: str) -> tuple[str, str | None]:

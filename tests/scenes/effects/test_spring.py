@@ -96,6 +96,8 @@ TABLES = {
     "no unit": ("travel,force\n0,9\n2,8\n", "the unit of the column"),
     "other columns": ("time [s],force [N]\n0,9\n2,8\n", "once in the header"),
     "text": ("travel [mm],force [N]\n0,a\n2,8\n", "finite number"),
+    "decimal commas": ("travel [mm],force [N]\n0,34,5\n2,8\n", "more in line 2"),
+    "nothing": ("\n", "no line"),
     "empty": ("", "once in the header"),
 }
 

@@ -3,9 +3,16 @@ warm walls."""
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline
 
-from tests.lowfi.compliance import REFERENCE, SMOOTH, flexibility_at, pressed, reference_compliance
+from tests.lowfi.compliance import (
+    REFERENCE,
+    SMOOTH,
+    between,
+    flexibility_at,
+    pressed,
+    reference_compliance,
+    whole_at,
+)
 from tests.lowfi.contact.compliant.test_statics import (
     BASES,
     POSES,
@@ -87,17 +94,20 @@ def test_displacement_starts_at_the_warm_walls(heated, name):
     standing = warm_at(compliance, model, travel)
     for rail in range(len(system.compliance.members)):
         faces = workspace.order[: solved(system, model, pose, rail)].copy()
-        between = flexibility_at(compliance, travel)[
+        own = flexibility_at(compliance, travel)[
             np.ix_(faces, range(PATTERNS), faces, range(PATTERNS))
         ]
-        expected = standing[faces] + np.einsum("iajb,jb->ia", between, workspace.force[faces])
+        expected = standing[faces] + np.einsum("iajb,jb->ia", own, workspace.force[faces])
         assert workspace.displacement[faces] == pytest.approx(expected, rel=1e-9, abs=1e-15)
     assert np.abs(standing).max() > 1e-6
 
 
 def warm_at(compliance, model, travel):
     """W (f,p) m."""
-    return CubicSpline(compliance.travel, compliance.moved(model.thermal.amounts))(travel)
+    moved = compliance.moved(model.thermal.amounts)[..., None]
+    own = (compliance.on_part.swapaxes(-1, -2) @ moved)[..., 0]
+    found = [between(compliance, own[:, face], travel, face) for face in range(own.shape[1])]
+    return (whole_at(compliance, travel) @ np.array(found)[..., None])[..., 0]
 
 
 @pytest.mark.slow
