@@ -72,7 +72,7 @@ def test_a_call_from_python_may_choose_it(monkeypatch):
     monkeypatch.setattr(front, "compliance", lambda scene, degree: given.append(degree) or walls)
     given, walls = [], highfi.condense(tiny(), COARSE.element_size)
     found = tipoff.run(tiny(), modes=0, degree="auto")
-    assert given == [4] and found.numerics["degree"] in (2, 3)
+    assert given == [5] and found.numerics["degree"] in (2, 3)
 
 
 @pytest.mark.parametrize("lost", [2, 3])

@@ -38,8 +38,8 @@ def breaks(part: np.ndarray) -> list[tuple[int, ...]]:
     """For each face, the numbers of the stations at which it begins to leave the wall, or its part with a
     wall (s,f,2) begins to move or stops: slopes jump there. A jump between two stations has no
     number."""
-    jumps = (np.abs(np.diff(part, 2, axis=0)) > _STRAIGHT).any(axis=2)
-    alone = jumps.copy()
-    alone[1:] &= ~jumps[:-1]
-    alone[:-1] &= ~jumps[1:]
-    return [tuple((np.flatnonzero(own) + 1).tolist()) for own in alone.T]
+    bends = np.abs(np.diff(part, 2, axis=0)).max(axis=2) > _STRAIGHT
+    beside = np.zeros_like(bends)
+    beside[1:] |= bends[:-1]
+    beside[:-1] |= bends[1:]
+    return [tuple((np.flatnonzero(own) + 1).tolist()) for own in (bends & ~beside).T]

@@ -2,7 +2,6 @@
 
 from tipoff.studies.ensemble.sensitivity import CAUSES
 from tipoff.studies.ensemble.stage import Cost, One, Ran, Sensitive
-from tipoff.studies.ensemble.summary import Above
 from tipoff.studies.populations.instant import EXIT, Instant
 from tipoff.studies.render.document import Bullets, Part
 from tipoff.studies.render.table import Table, estimate, percent
@@ -44,23 +43,27 @@ def summary(found: Ran) -> list[Part]:
         Bullets(run),
         *_varied(found.cases.get("vary", {})),
         *([table_of_quantiles(found)] if found.quantiles else []),
-        *([_above(found.above, found.confidence)] if found.above else []),
+        *([_above(found)] if found.above else []),
         f"run time: {_time(cost)}; {(cost.peak_memory_bytes or 0) / 1e6:.0f} MB of memory at most",
         *(_sensitivity(found.sensitivity) if found.sensitivity else []),
         f"store: {found.store}",
     ]
 
 
-def _above(found: Above, confidence: float) -> str:
-    """The probability above any limit."""
+def _above(found: Ran) -> str:
+    """The probability above any limit. Cases without a rate count as above it."""
+    above = found.above
+    assert above is not None
     most = (
         ""
-        if found.low is None or found.high is None
-        else (f" ({confidence:.0%} bounds {percent(found.low)} to {percent(found.high)} %)")
+        if above.low is None or above.high is None
+        else f" ({found.confidence:.0%} bounds {percent(above.low)} to {percent(above.high)} %)"
     )
+    lost = found.counts["asked"] - found.settled
+    unknown = f"; {counted(lost, 'case')} without a rate count as above" if lost else ""
     return (
-        f"above any of the limits {', '.join(found.limits)}: {percent(found.share)} % of the cases, "
-        f"{found.count:,}{most}"
+        f"above any of the limits {', '.join(above.limits)}: {percent(above.share)} % of the cases, "
+        f"{above.count:,}{most}{unknown}"
     )
 
 
