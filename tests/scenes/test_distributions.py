@@ -142,3 +142,11 @@ def test_a_place_the_scene_does_not_have_is_found_before_any_run():
         )
     with pytest.raises(SceneError, match="paper"):
         uncertainty.load("no_such_file", load("reference"))
+
+
+def test_the_errors_of_a_scene_are_the_default():
+    """Control: a scene without errors has those of the paper, and a given file replaces both."""
+    own = load("cubesat_3u")
+    assert uncertainty.chosen(None, own) == "cubesat_3u"
+    assert uncertainty.chosen("paper", own) == "paper"
+    assert uncertainty.chosen(None, own.replace({"studies": None})) == uncertainty.DEFAULT

@@ -69,6 +69,12 @@ class Varied:
     vary: dict[str, dict]
 
 
+def chosen(vary: str | None, scene: Scene) -> str:
+    """The name or path of a file of errors: that which is given, else that of the ``scene``
+    (studies.errors), else ``DEFAULT``."""
+    return vary or (scene.studies and scene.studies.errors) or DEFAULT
+
+
 def of_scene(scene: Scene, **changed: Any) -> Uncertainty | None:
     """The random errors of ``scene`` under ``studies.errors``, read as ``load`` does; None without
     errors. Raises SceneError with every fault."""

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.options import Neighbours
+from tipoff.studies.commands.options import Neighbours, Vary
 
 
 @dataclass(frozen=True)
@@ -22,14 +22,7 @@ class Options:
             "judged as a distribution also needs runs of its neighbours.",
         ),
     ] = 8
-    vary: Annotated[
-        str,
-        typer.Option(
-            "--vary",
-            metavar="NAME_OR_FILE",
-            help="Distributions: a .toml file, or a name of the catalogue.",
-        ),
-    ] = "paper"
+    vary: Vary = None
     seed: Annotated[
         int | None,
         typer.Option(

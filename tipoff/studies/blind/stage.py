@@ -54,7 +54,7 @@ def run(study: Study, options: Options = Options()) -> dict:
         draws = options.neighbours or study.settings.neighbours
         found = judging.judge(drawn, compared, curves, draws)
         return Blind(
-            asked=options,
+            asked=replace(options, vary=uncertainty.chosen(options.vary, study.scene)),
             seed=seed_of(study, options),
             gates=verdicts.gates(study.scene),
             converged_deg_s=verdicts.CONVERGED_DEG_S,
@@ -73,7 +73,7 @@ def with_drawn_conditions(study: Study, options: Options) -> Study:
     floor and refinements, because another condition may be chaotic."""
     source = Drawn(
         uncertainty.load(
-            options.vary,
+            uncertainty.chosen(options.vary, study.scene),
             study.scene,
             cases=options.cases,
             seed=seed_of(study, options),

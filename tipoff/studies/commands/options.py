@@ -282,7 +282,13 @@ SeedOfFile = Annotated[
     ),
 ]
 Vary = Annotated[
-    str, typer.Option("--vary", metavar="NAME_OR_FILE", help="Distributions of the cases.")
+    str | None,
+    typer.Option(
+        "--vary",
+        metavar="NAME_OR_FILE",
+        help="Distributions: a .toml file, or a name of the catalogue; default: studies.errors of "
+        "the scene, else paper.",
+    ),
 ]
 Neighbours = Annotated[
     int | None,

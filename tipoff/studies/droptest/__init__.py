@@ -8,7 +8,8 @@ studies/droptest/logs/ has three examples. The arguments are the sheets:
 
   tipoff droptest test1.toml test2.toml test3.toml
 
-The simulated cases have the random errors of the paper. --vary replaces them:
+The simulated cases have the random errors of the scene, or those of the paper where it states none.
+--vary replaces them:
 
   tipoff droptest test1.toml --scene my_launcher.toml --vary my_errors.toml --condition heavy
 

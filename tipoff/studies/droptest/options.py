@@ -30,7 +30,7 @@ class Options:
             help="Named condition of the drop test; default: the scene.",
         ),
     ] = None
-    vary: Vary = "paper"
+    vary: Vary = None
     cases: Annotated[
         int, typer.Option("--cases", metavar="N", min=50, help="Simulated cases to compare with.")
     ] = 1000

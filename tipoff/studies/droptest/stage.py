@@ -1,7 +1,7 @@
 """Stage ``droptest``: logs of drop tests compared with simulated cases of the same launcher.
 
-The simulated cases vary the inputs of the given distributions (default: ``paper`` of the catalogue)
-and start at rest in free fall. ``studies.droptest.judgement`` ranks each test among them;
+The simulated cases vary the inputs of the given distributions (default: those of the scene, else
+``paper`` of the catalogue) and start at rest in free fall. ``studies.droptest.judgement`` ranks each test among them;
 ``studies.droptest.power`` gives the power of that comparison.
 """
 
@@ -62,7 +62,7 @@ def run(study: Study, options: Options = Options()) -> dict:
             **vars(compared),
             **population.answering(study, cases.model, options.condition),
             scene=study.scene.name,
-            request=options,
+            request=replace(options, vary=_vary(study, options)),
             varied=uncertainty.Varied(**drawn.uncertainty.resolved()),
             data=study.relative(data),
         )
@@ -85,8 +85,12 @@ STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, field="request", 
 def _drawn(study: Study, options: Options) -> Drawn:
     seed = {} if options.seed is None else {"seed": options.seed}
     return Drawn(
-        uncertainty.load(options.vary, _scene(study, options), cases=options.cases, **seed)
+        uncertainty.load(_vary(study, options), _scene(study, options), cases=options.cases, **seed)
     )
+
+
+def _vary(study: Study, options: Options) -> str:
+    return uncertainty.chosen(options.vary, _scene(study, options))
 
 
 def _scene(study: Study, options: Options) -> Scene:

@@ -12,6 +12,7 @@ from tipoff.studies.commands.options import (
     Export,
     Modes,
     Surrogate,
+    Vary,
     rate_limits,
 )
 
@@ -24,15 +25,7 @@ class Options:
     """None: from the file of distributions, or the default. The file is ``vary``, or the errors
     that the scene states, or the errors of the paper."""
 
-    vary: Annotated[
-        str | None,
-        typer.Option(
-            "--vary",
-            metavar="NAME_OR_FILE",
-            help="Distributions: a .toml file, or a name of the catalogue; default: studies.errors of "
-            "the scene, else paper.",
-        ),
-    ] = None
+    vary: Vary = None
     table: Annotated[
         Path | None,
         typer.Option(

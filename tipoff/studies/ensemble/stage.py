@@ -119,8 +119,7 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
             )
         source: Any = TableFile(options.table)
     else:
-        own = study.scene.studies and study.scene.studies.errors
-        vary = changed.pop("vary", None) or own or uncertainty.DEFAULT
+        vary = uncertainty.chosen(changed.pop("vary", None), study.scene)
         source = Drawn(uncertainty.load(vary, study.scene, **changed))
     springs = options.chosen.model == SPRINGS
     try:

@@ -16,9 +16,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Options:
-    """``cases`` and ``seed`` None: those of the file; ``model`` None: the default."""
+    """``vary`` None: errors of the scene; ``cases`` and ``seed`` None: those of the file; ``model`` None:
+    the default."""
 
-    vary: Vary = "paper"
+    vary: Vary = None
     cases: Annotated[
         int | None,
         typer.Option(metavar="N", min=1, help="Number of cases; default: that of the file."),

@@ -66,7 +66,7 @@ def draw(found: Flight) -> list[Part]:
         *figures(found),
         table_of_conditions(found.conditions, [item.name for item in answers.ALL], [_EXITS], ".4g"),
         *_flights(found),
-        _cases(found.cases),
+        _cases(found),
     ]
 
 
@@ -76,7 +76,7 @@ def terminal(found: Flight) -> list[Part]:
         f"{found.scene}: {_setup(found)}",
         f"Agreement of the model: {found.agreement}.",
         *_flights(found),
-        _cases(found.cases),
+        _cases(found),
         f"Store {found.cases.store}, data {found.data}.",
     ]
 
@@ -106,12 +106,13 @@ def _flights(found: Flight) -> list[Part]:
     ]
 
 
-def _cases(many: Cases) -> Table:
+def _cases(found: Flight) -> Table:
+    many = found.cases
     shares = [row.share for row in next(iter(many.quantiles.values()), ())]
     counts = many.counts
     notes = (
-        f"{counted(counts['asked'], 'case')}: {counts['ok']:,} ok, {counts['refused']:,} refused, "
-        f"{counts['failed']:,} failed; {many.settled:,} flown.{_touching(many)}",
+        f"{counted(counts['asked'], 'case')} with errors of {found.errors}: {counts['ok']:,} ok, "
+        f"{counts['refused']:,} refused, {counts['failed']:,} failed; {many.settled:,} flown.{_touching(many)}",
         "Each share of the cases is below the value of its column. In brackets: bounds at "
         f"{many.confidence:.0%} confidence ({many.bounds}).",
     )

@@ -87,9 +87,11 @@ class Cases:
 
 @dataclass(frozen=True, kw_only=True)
 class Flight(Answering):
-    """Flights of all conditions and of many cases of a ``scene``; ``data``: the file of all values."""
+    """Flights of all conditions and of many cases of a ``scene``; ``errors``: the file of distributions of
+    the cases, or its name in the catalogue; ``data``: the file of all values."""
 
     scene: str
+    errors: str
     flight: Orbit
     conditions: tuple[Condition, ...]
     curves: list[Curves]  # a list does not go to a CSV file

@@ -33,12 +33,11 @@ def run(study: Study, options: Options = Options()) -> dict:
         for name, value in (("cases", options.cases), ("seed", options.seed))
         if value is not None
     }
-    drawn = Drawn(uncertainty.load(options.vary, study.scene, **changed))
+    vary = uncertainty.chosen(options.vary, study.scene)
+    drawn = Drawn(uncertainty.load(vary, study.scene, **changed))
     if wrong := [key for key in drawn.keys if key.split(".")[0] == "flight"]:
         expected = "a key of the ejection: a flight is the same for all cases"
-        raise SceneError(
-            [Fault(options.vary, f"vary.{key}", "a distribution", expected) for key in wrong]
-        )
+        raise SceneError([Fault(vary, f"vary.{key}", "a distribution", expected) for key in wrong])
 
     def make() -> tuple[Flight, list[Path]]:
         from tipoff.studies.flight import page
@@ -53,6 +52,7 @@ def run(study: Study, options: Options = Options()) -> dict:
         found = Flight(
             **population.answering(study, whole.model),
             scene=study.scene.name,
+            errors=vary,
             flight=summary.orbit(study.scene),
             conditions=tuple(rows),
             curves=shapes,
@@ -72,7 +72,8 @@ def _inputs(study: Study, options: Options) -> list:
         name: scene.flight and scene.flight.model_dump(mode="json")
         for name, scene in study.conditions.items()
     }
-    varied = uncertainty.load(options.vary, study.scene).resolved()
+    vary = uncertainty.chosen(options.vary, study.scene)
+    varied = uncertainty.load(vary, study.scene).resolved()
     own = bodies.table_of(study.scene).model_dump(mode="json")
     return [own, tables, varied, study.settings.element_size]
 
