@@ -9,7 +9,7 @@ import tipoff
 from tests.lowfi.support import IMMOVABLE, WEIGHTLESS
 from tipoff import lowfi, scenes
 from tipoff.mechanics import unfinished
-from tipoff.scenes import SceneError, plausibility
+from tipoff.scenes import SceneError, plausibility, uncertainty
 from tipoff.studies.cli import app
 from tipoff.studies.new_scene import template
 from tipoff.studies.new_scene.template import Numbers
@@ -205,9 +205,16 @@ def test_a_rocket_has_the_given_numbers_and_the_motor_of_the_catalogue_beside_it
     assert (tmp_path / "j360_start.csv").exists() and scene.warnings == []
     for name in ("pads", "rail", "friction", "gravity", "conditions"):
         assert getattr(scene, name) == getattr(own, name)
+    # the errors of the catalogue are about 5 kg and 0.25 to 0.5 mm
+    drawn, usual = (uncertainty.of_scene(each).vary for each in (scene, own))
+    assert drawn["payload.mass"].ppf(0.5) == pytest.approx(6.0)
+    assert drawn["contact.clearance"].ppf(0.5) == pytest.approx(0.45e-3)
+    for key in usual.keys() - {"payload.mass", "contact.clearance"}:
+        assert drawn[key].ppf(0.9) == usual[key].ppf(0.9)
     # Control:
     assert call("new", "same.toml", "--rocket").exit_code == 0
     assert scenes.load("same.toml").hash == own.hash
+    assert scenes.load("same.toml").studies.errors == "rocket_rail"
 
 
 def test_a_rocket_takes_a_motor_of_its_own(tmp_path, monkeypatch):

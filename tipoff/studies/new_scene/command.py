@@ -133,7 +133,7 @@ def _from_catalogue(
     thrust_curve: Path | None,
     others: dict[str, object],
 ) -> str:
-    """The scene of a ``kind`` of the catalogue; the file that it names is written beside ``file``. Raises
+    """The scene of a ``kind`` of the catalogue; files that it names are written beside ``file``. Raises
     SceneError, every fault listed."""
     from tipoff.files import write_text
     from tipoff.scenes.faults import SceneError
@@ -155,8 +155,11 @@ def _from_catalogue(
             raise SceneError(faults)
         curve = os.path.relpath(thrust_curve.resolve(), file.parent.resolve())
     text = from_catalogue.text(file.stem, like, numbers, curve, wrong)
-    if curve is None and not file.exists():
-        for name, content in from_catalogue.files(like).items():
+    beside_it = {} if curve else from_catalogue.files(like)
+    if errors := from_catalogue.errors(like, numbers):
+        beside_it[from_catalogue.errors_file(file.stem)] = errors
+    if not file.exists():
+        for name, content in beside_it.items():
             if not (file.parent / name).exists():
                 write_text(file.parent / name, content)
     return text

@@ -2,6 +2,8 @@
 in place of its own: a CubeSat in a deployer, or a rocket on a rail.
 
 A given mass of a CubeSat is that of a homogeneous box; the inertia of a rocket is in proportion to it.
+The random errors of the catalogue are about its own numbers, so a scene with other ones gets a file of its
+own, with those errors in proportion.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -11,10 +13,12 @@ from typing import Any, NamedTuple
 import tomlkit
 
 from tipoff.files import read_input
+from tipoff.scenes import overrides
 from tipoff.scenes.faults import Fault, SceneError
-from tipoff.scenes.scene import CATALOG
+from tipoff.scenes.scene import CATALOG, load
 
 GIVEN = "given to tipoff new"
+_LEVELS = {"mean", "sd", "low", "high", "value"}  # of a distribution, with a unit
 
 
 class Quantity(NamedTuple):
@@ -106,10 +110,37 @@ def text(
             sign = "-" if key.startswith("-") else ""
             _put(document, key.removeprefix("-"), f"{sign}{value / size:.6g} {unit}")
         document["provenance"][keys[0]] = GIVEN
+    if errors(kind, given) is not None:
+        document["studies"]["errors"] = errors_file(name)
     if thrust_curve is not None:
         _put(document, "thrust.file", thrust_curve)
         document["provenance"]["thrust"] = GIVEN
     return tomlkit.dumps(document).replace(f"--scene {kind.scene} ", f"--scene {name}.toml ")
+
+
+def errors_file(name: str) -> str:
+    """Name of the file of errors beside the scene of this ``name``."""
+    return f"{name}_errors.toml"
+
+
+def errors(kind: Kind, given: Mapping[str, float | None]) -> str | None:
+    """The random errors of the catalogue with those about ``given`` numbers (SI) in proportion to them;
+    None if none is about one of these."""
+    scene = load(kind.scene)
+    assert scene.studies and scene.studies.errors
+    path = CATALOG / "vary" / f"{scene.studies.errors}.toml"
+    document = tomlkit.parse(path.read_text(encoding="utf-8"))
+    changed = False
+    for option, value in given.items():
+        key = kind.quantities[option].keys[0] if value is not None else ""
+        if value is not None and key in document["vary"]:
+            table, share = document["vary"][key], value / float(overrides.held(scene, key))
+            for name in _LEVELS & set(table):
+                number, unit = table[name].split(" ", 1)
+                table[name] = f"{share * float(number):.6g} {unit}"
+            table["provenance"] = f"in proportion to the number {GIVEN}"
+            changed = True
+    return tomlkit.dumps(document) if changed else None
 
 
 def files(kind: Kind) -> dict[str, str]:
