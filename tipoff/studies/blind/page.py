@@ -20,7 +20,7 @@ def draw(found: Blind) -> list[Part]:
         else ""
     )
     note = (
-        f"Drawn from the distributions “{found.asked.vary}” with seed {found.seed}{origin}. "
+        f"Drawn from the distributions “{found.errors}” with seed {found.seed}{origin}. "
         "Every condition has its own floor and its own uncertainty of the reference by mesh, "
         "step and contact cells. A condition is judged as a distribution if its reference is "
         "not converged, or if 1 µm changes a settled rate by more than the limit of agreement."

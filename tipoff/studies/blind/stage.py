@@ -30,9 +30,11 @@ _CODE = ("tipoff.highfi", "tipoff.lowfi", "tipoff.calibration")
 @dataclass(frozen=True, kw_only=True)
 class Blind:
     """Rows of ``calibrated`` springs and of ``compliant`` contact, ``growth`` of a 1 um disturbance
-    and ``distributions``, as in the agreement study, and the drawn ``conditions``: overrides in SI."""
+    and ``distributions``, as in the agreement study, and the drawn ``conditions``: overrides in SI, from
+    the distributions ``errors``: a file, or its name in the catalogue."""
 
     asked: Options
+    errors: str
     seed: int
     gates: Gates
     converged_deg_s: float
@@ -54,7 +56,8 @@ def run(study: Study, options: Options = Options()) -> dict:
         draws = options.neighbours or study.settings.neighbours
         found = judging.judge(drawn, compared, curves, draws)
         return Blind(
-            asked=replace(options, vary=uncertainty.chosen(options.vary, study.scene)),
+            asked=options,
+            errors=uncertainty.chosen(options.vary, study.scene),
             seed=seed_of(study, options),
             gates=verdicts.gates(study.scene),
             converged_deg_s=verdicts.CONVERGED_DEG_S,

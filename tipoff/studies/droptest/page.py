@@ -58,7 +58,7 @@ def terminal(found: Droptest) -> list[Part]:
     condition = f" of condition {request.condition}" if request.condition else ""
     return [
         f"{found.scene}: {len(found.tests)} drop tests, {cases.settled:,} settled of "
-        f"{cases.asked:,} simulated cases{condition}; errors of {request.vary}, seed "
+        f"{cases.asked:,} simulated cases{condition}; errors of {found.errors}, seed "
         f"{found.varied.seed}",
         population.model_line(found),
         *_warning(found),
@@ -85,7 +85,7 @@ def figures(found: Droptest) -> tuple[Figure, Figure]:
     words = _CLOUD.format(
         share=100.0 * found.regions[0].share,
         shown="" if shown == settled else f", the first {shown:,} of {settled:,},",
-        vary=found.request.vary,
+        vary=found.errors,
     )
     return (
         Figure(Chart("droptest-rates", panels, columns=2, height=250), _RATES),

@@ -149,9 +149,11 @@ class Compared:
 
 @dataclass(frozen=True, kw_only=True)
 class Droptest(Compared, Answering):
-    """The result of the study of a ``scene``; ``data``: the file of all signals."""
+    """The result of the study of a ``scene``; ``errors``: the file of distributions of the cases, or its
+    name in the catalogue; ``data``: the file of all signals."""
 
     scene: str
     request: Options
+    errors: str
     varied: Varied
     data: str

@@ -62,7 +62,8 @@ def run(study: Study, options: Options = Options()) -> dict:
             **vars(compared),
             **population.answering(study, cases.model, options.condition),
             scene=study.scene.name,
-            request=replace(options, vary=_vary(study, options)),
+            request=options,
+            errors=_vary(study, options),
             varied=uncertainty.Varied(**drawn.uncertainty.resolved()),
             data=study.relative(data),
         )
