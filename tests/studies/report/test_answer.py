@@ -73,6 +73,39 @@ def test_limits_that_the_user_gave(page):
     assert "<b>pass</b>" not in html(answer.draw(page))
 
 
+def test_limits_are_judged_at_the_exit_where_a_motor_burns_on(page):
+    """As in ensembles. Control: 0.5 % of the impulse after the exit, and a condition without values
+    there."""
+    rows = page.documents["highfi"]["conditions"]
+    for one in rows:
+        exit_ = {"velocity_m_s": [1.0, 0.0, 0.0], "rate_deg_s": [2.0, 0.0, 0.0]}
+        one |= {"impulse_after_exit": 0.7, "at_exit": exit_}
+    shown = html(answer.draw(page))
+    assert "<b>pass</b>" in shown and "limits at the exit: " in shown
+    rows[1]["at_exit"] = None
+    assert "above or without a rate there: phi60" in html(answer.draw(page))
+    for one in rows:
+        one["impulse_after_exit"] = 0.005
+    shown = html(answer.draw(page))
+    assert "above or not settled: phi15" in shown and "at the exit: " not in shown
+
+
+def test_limits_are_judged_by_the_range_that_replaces_a_value(page):
+    """A neighbour of phi60 is above the limit, its own rate is not."""
+    rates = [[1.0, 0.3, 0.4], [7.0, 0.3, 0.4]]
+    page.documents["agreement"]["distributions"] = [
+        {
+            "condition": "phi60",
+            "neighbours": 2,
+            "further": 16,
+            "limit_deg_s": 0.1,
+            "reference_deg_s": rates,
+            "models": {},
+        }
+    ]
+    assert "above or not settled: all 2 conditions" in html(answer.draw(page))
+
+
 def test_agreement_speed_and_trust(page):
     shown = html(answer.draw(page))
     assert "<b>1 of 2</b><span>conditions agree, 1 cannot be judged, 0 miss: surr" in shown

@@ -20,6 +20,8 @@ from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.nominal import page as nominal_page
 from tipoff.studies.nominal import stage as nominal_stage
 from tipoff.studies.populations.exceedance import TOTAL, Limit
+from tipoff.studies.populations.instant import EXIT, Instant, chosen
+from tipoff.studies.populations.instant import where as instant_words
 from tipoff.studies.render.document import Bullets, Heading, KeyFigures, Part
 from tipoff.studies.render.table import Column, Table
 from tipoff.studies.render.uncertain import (
@@ -75,7 +77,7 @@ def draw(page: "Page") -> list[Part]:
     compared = {row.condition: row for row in agreement.compliant} if agreement else {}
     spreads = _spreads(agreement)
     rates = [*_speed(page, rows), *_largest(rows, compared, spreads)]
-    figures = [*rates, *_limits(rows, page.limits), *_models(page, agreement)]
+    figures = [*rates, *_limits(rows, page.limits, spreads), *_models(page, agreement)]
     over_all = [KeyFigures(figures)]
     return [
         *first,
@@ -88,15 +90,30 @@ def draw(page: "Page") -> list[Part]:
     ]
 
 
-def above(settled: Settled, limits: Sequence[Limit]) -> list[str]:
-    """The axes on which the rates of a condition are above a limit."""
-    rates = settled.rate_deg_s
+def above(
+    row: Row, limits: Sequence[Limit], at: str, spread: Distribution | None = None
+) -> list[str] | None:
+    """The axes on which a rate of a condition at an instant is above a limit; of the settled rates of any
+    neighbour, if a ``spread`` replaces them. None without a rate."""
+    values = row.at_exit if at == EXIT else row.settled
+    if values is None:
+        return None
+    every = spread.settled_deg_s if spread is not None and at != EXIT else [values.rate_deg_s]
     return [
         limit.axis
         for limit in limits
-        if (math.hypot(*rates) if limit.axis == TOTAL else abs(rates["xyz".index(limit.axis)]))
-        > limit.deg_s
+        if any(
+            (math.hypot(*rates) if limit.axis == TOTAL else abs(rates["xyz".index(limit.axis)]))
+            > limit.deg_s
+            for rates in every
+        )
     ]
+
+
+def _instant(rows: Sequence[Row]) -> Instant:
+    """The instant of the limits: at the exit if any payload gets much of its impulse after it."""
+    shares = [row.impulse_after_exit for row in rows if row.impulse_after_exit is not None]
+    return chosen(None, max(shares, default=None))
 
 
 def _spreads(agreement: Agreement | None) -> dict[str, Distribution]:
@@ -168,14 +185,23 @@ def _uncertainty(row: verdicts.Row | None) -> float | None:
     return None if row is None else row.reference_uncertainty_deg_s
 
 
-def _limits(rows: Sequence[Row], limits: Sequence[Limit]) -> list[tuple[str, str]]:
+def _limits(
+    rows: Sequence[Row], limits: Sequence[Limit], spreads: dict[str, Distribution]
+) -> list[tuple[str, str]]:
     if not limits:
         return []
-    asked = ", ".join(limit.words for limit in limits)
-    failed = [row.condition for row in rows if not row.settled or above(row.settled, limits)]
+    asked, at = ", ".join(limit.words for limit in limits), _instant(rows).at
+    failed = [
+        row.condition for row in rows if above(row, limits, at, spreads.get(row.condition)) != []
+    ]
     where = f"all {len(rows)} conditions" if len(failed) == len(rows) else ", ".join(failed)
-    words = f"limits: {asked}" + (f"; above or not settled: {where}" if failed else "")
+    lost = "without a rate there" if at == EXIT else "not settled"
+    words = f"limits{_there(at)}: {asked}" + (f"; above or {lost}: {where}" if failed else "")
     return [("fail" if failed else "pass", words)]
+
+
+def _there(at: str) -> str:
+    return f" {instant_words(at)}" if at == EXIT else ""
 
 
 def _models(page: "Page", agreement: Agreement | None) -> list[tuple[str, str]]:
@@ -199,6 +225,7 @@ def _conditions(
     compared: dict[str, verdicts.Row],
     spreads: dict[str, Distribution],
 ) -> Table:
+    at = _instant(rows).at
     columns: tuple[Column | str, ...] = (
         "condition",
         "what it changes",
@@ -209,26 +236,23 @@ def _conditions(
         *(["by hand: roll, transverse (deg/s)"] if _by_hand(rows) else []),
         Column("off axis", "deg", ".2g"),
         Column("surrogate error", "deg/s"),
-        *(["limits"] if page.limits else []),
+        *([f"limits{_there(at)}"] if page.limits else []),
         "verdict",
     )
     found, kinds = [], []
     for row in rows:
         settled, other = row.settled, compared.get(row.condition)
+        spread = spreads.get(row.condition)
         found.append(
             [
                 row.condition,
                 stated(page, row.condition),
-                *(
-                    _rates(settled, _uncertainty(other), spreads.get(row.condition))
-                    if settled
-                    else [None] * 3
-                ),
+                *(_rates(settled, _uncertainty(other), spread) if settled else [None] * 3),
                 *(_at_exit(row) if _burns_on(rows) else []),
                 *([_hand(row)] if _by_hand(rows) else []),
                 settled and settled.direction_error_deg,
                 other and Measured(other.settled_rate_error_deg_s, other.floor_deg_s, apart=True),
-                *([_words(settled, page.limits)] if page.limits else []),
+                *([_words(above(row, page.limits, at, spread))] if page.limits else []),
                 other.verdict if other else row.status,
             ]
         )
@@ -278,10 +302,9 @@ def _hand(row: Row) -> str | None:
     return f"{uncertain(roll(rate))}, {uncertain(transverse(rate))}"
 
 
-def _words(settled: Settled | None, limits: Sequence[Limit]) -> str:
-    if settled is None:
-        return "✗ not settled"
-    over = above(settled, limits)
+def _words(over: list[str] | None) -> str:
+    if over is None:
+        return "✗ no rate"
     return f"✗ {', '.join(over)}".replace(" ", "\u00a0") if over else "✓ pass"
 
 
