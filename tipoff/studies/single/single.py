@@ -107,8 +107,8 @@ def chosen(
     measured = cost.stored(whole)
     if measured is None:
         raise StudyError(
-            "there is no cost study of this scene with this code: run tipoff cost --scene "
-            f"{study.scene.name} first"
+            f"there is no cost study of {study.scene.name} with this code: run tipoff cost with the "
+            "same --scene and --out first"
         )
     table = cost.STAGE.read(measured)
     found = choice.choose(table, condition, compare.stored(whole), accuracy, budget)
