@@ -69,3 +69,17 @@ def test_two_pads_are_not_counted_by_hand():
     force = np.zeros((601, 16, 3))
     force[100:200, 2, 1] = force[300, 6, 1] = 50.0
     assert hand_calculation.rates(load("tiny"), flight(pad_force=force)) is None
+
+
+@pytest.mark.parametrize("near", [False, True])
+def test_a_spring_whose_lever_grows_is_not_counted_by_hand(near):
+    """A spring 0.17 m behind the mass centre and 0.1 mm beside the axis: its lever grows by the turn of the
+    payload, and the rate seven times. Control: a spring 1 mm beside the axis and 0.1 mm behind."""
+    place = {"thrust.springs.0.z": 1e-3 if near else 1e-4, "thrust.arm": 1e-4 if near else 0.17}
+    one = load("cubesat_3u").replace({**FREE, "mass_offset": None, **place})
+    run = lowfi.run(one, "springs")
+    found = hand_calculation.rates(one, run)
+    assert (found is not None) == near
+    if near:
+        size = np.linalg.norm(run.outcome.rate)
+        assert found.rate == pytest.approx(run.outcome.rate, abs=0.1 * size) and size > 1e-2

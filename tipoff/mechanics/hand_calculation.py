@@ -4,21 +4,28 @@
 
 with the inertia J, the impulse I of the thrust along d at r from the mass centre, and the force f
 on the only pad that touches, at c; all in body axes. The gyroscopic term w x J w and the effect of
-a second pad are left out. So the result is valid if no pad or one pad touches.
+a second pad are left out. So the result is valid if no pad or one pad touches. A spring pushes in a
+direction of the platform, so its lever grows while the payload turns: by about the angle times the
+distance of the spring, which must be small beside the moment.
 """
 
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from tipoff.kernels import rotation
 from tipoff.mechanics import scene_model
+from tipoff.mechanics.outcome import relative_motion
 from tipoff.scenes import ends
 from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.scene import Scene
 
 if TYPE_CHECKING:
     from tipoff.mechanics.trajectory import Trajectory
+
+
+_GROWTH = 0.1  # of the moment of the springs
 
 
 class ByHand(NamedTuple):
@@ -36,7 +43,8 @@ class ByHand(NamedTuple):
 
 def rates(scene: Scene, run: "Trajectory") -> ByHand | None:
     """Rates of a settled ``run`` of ``scene`` by hand; None if more than one pad touches in its
-    samples, or if it did not settle."""
+    samples, if the payload turns so far on its springs that their levers change, or if it did not
+    settle."""
     if run.outcome.rate is None:
         return None
     model = scene_model.build(scene)
@@ -46,8 +54,11 @@ def rates(scene: Scene, run: "Trajectory") -> ByHand | None:
         return None
     moment = np.zeros(3)
     if model.pushers is not None:
-        pushes = model.pushers
-        moment += ends.spring_impulses(scene) @ np.cross(pushes.point, pushes.direction)
+        pushes, impulses = model.pushers, ends.spring_impulses(scene)
+        moment += impulses @ np.cross(pushes.point, pushes.direction)
+        grown = _turned(run, pushes.travel.max()) * impulses @ np.linalg.norm(pushes.point, axis=1)
+        if grown > _GROWTH * np.linalg.norm(moment):
+            return None
     elif model.thrust_offset is not None:
         offset, impulse = model.thrust_offset, thrust_law.impulse(model.thrust, scene.time_limit)
         moment += impulse * np.cross(offset.arm, offset.direction)
@@ -57,3 +68,11 @@ def rates(scene: Scene, run: "Trajectory") -> ByHand | None:
         moment += np.cross(model.faces.centre[face], np.trapezoid(force, run.time, axis=0))
     begun = np.array(model.initial.rate)
     return ByHand(begun + model.payload.inverse_inertia @ moment, pads[0] if pads else None)
+
+
+def _turned(run: "Trajectory", stroke: float) -> float:
+    """Angle (rad) by which the payload has turned once it has travelled by ``stroke`` (m)."""
+    travel = relative_motion(run)["relative_position"][:, 0]
+    end = min(int(np.searchsorted(travel - travel[0], stroke)), len(travel) - 1)
+    cosine = abs(float(run.quaternion[0] @ run.quaternion[end]))
+    return 2.0 * math.acos(min(cosine, 1.0))
