@@ -211,3 +211,19 @@ def test_the_motion_of_a_platform_that_is_not_there_is_named():
     assert not any("no effect" in words for words in load("tiny").replace(moving).warnings)
     rest = {"initial": {"velocity": {"x": 0.1}}, "platform": None}
     assert not any("no effect" in words for words in load("tiny").replace(rest).warnings)
+
+
+@pytest.mark.parametrize(
+    "way, outside", [(0.062, True), (0.058, False), (-0.018, True), (-0.014, False)]
+)
+def test_pads_that_begin_beyond_an_end_of_the_rail(way, outside):
+    """Of 16 mm, with the middle 52 mm before the open end and 8 mm from the other one. Control: the same
+    place without contact."""
+    scene = load("reference").replace({"initial.position.x": way})
+    ends = {0.08 + way - 0.008 > scene.rail.end, -0.08 + way + 0.008 < scene.rail.start}
+    assert (True in ends) == outside
+    found = [words for words in scene.warnings if "outside the rail" in words]
+    assert len(found) == outside
+    assert all(words.startswith("pads, rail.start, rail.end: at ignition pads ") for words in found)
+    free = scene.replace({"contact": None, "friction": None})
+    assert not any("outside the rail" in words for words in free.warnings)

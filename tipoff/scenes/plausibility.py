@@ -10,6 +10,7 @@ from tipoff.scenes import plausible_ranges, sinking, thrust_plausibility
 from tipoff.scenes.effects.thermal import fields
 from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.rail_base import HeldBySpans
+from tipoff.scenes.rounding import below
 from tipoff.scenes.sections.outline import SAME
 
 _WAVE_SPEED = (100.0, 10_000.0)
@@ -47,7 +48,7 @@ def warnings(scene) -> list[str]:
     found += _of_length(scene.rail)
     found += _of_joints(scene.rail.mount_stiffness) + thrust_plausibility.warnings(scene)
     if scene.contact is not None:
-        found += sinking.warnings(scene) + _of_interface(scene.contact)
+        found += sinking.warnings(scene) + _of_interface(scene.contact) + _of_pads(scene)
     if scene.thermal is not None:
         found += _of_temperature(scene)
     if scene.initial is not None and scene.platform is None:
@@ -136,6 +137,24 @@ def _of_length(rail) -> list[str]:
         f"rail.section, rail.start, rail.end: the solid is {drawn:.6g} m long, the rail "
         f"{rail.end - rail.start:.6g} m from start to end, which counts"
     ]
+
+
+def _of_pads(scene) -> list[str]:
+    """Pads that begin beyond an end of the rail. Beyond the open end they never touch it."""
+    begun = scene.initial.position.x if scene.initial is not None else 0.0
+    for end, way in ((scene.rail.end, 1.0), (scene.rail.start, -1.0)):
+        outside = [
+            number
+            for number, pad in enumerate(scene.pads)
+            if below(way * end, way * (pad.position[0] + begun) - 0.5 * pad.length)
+        ]
+        if outside:
+            listed = ", ".join(map(str, outside))
+            return [
+                f"pads, rail.start, rail.end: at ignition pads {listed} are outside the rail, "
+                f"{scene.rail.start:.4g} to {scene.rail.end:.4g} m along X"
+            ]
+    return []
 
 
 def _of_fixed_platform(initial) -> list[str]:
