@@ -194,6 +194,23 @@ def orbiting(platform, mass):
 
 
 @kernel
+def about_mass_centre(platform, mass, place, out):
+    """With rails at rest, replace the moments about the origin of all forces in ``out``, and of those from
+    outside, by those about the payload of ``mass`` (kg) at ``place`` (m)."""
+    if platform is None:
+        a = triple(out, PAYLOAD + VELOCITY)
+        _carry(out, MOMENT, place, (mass * a[0], mass * a[1], mass * a[2]))
+        _carry(out, TURN, place, triple(out, IMPULSE))
+
+
+@kernel
+def _carry(out, moment, place, force):
+    carried = rotation.cross(place, force)
+    for i in range(3):
+        out[moment + i] -= carried[i]
+
+
+@kernel
 def reconcile(record, mass, dt, state, body):
     """Make attitude and spin of a body, whose slots begin at ``body``, agree with its A, to first
     order, at the end of a step of ``dt`` (s); ``mass`` as in ``orbiting``.

@@ -64,9 +64,10 @@ class RailMesh:
     drawn: dict[str, float] | None = None  # m2, areas on the solid, None for a mesh made elsewhere
 
 
-def read(source, asked: Asked = AS_DRAWN) -> RailMesh:
+def read(source, asked: Asked = AS_DRAWN, made_here: bool = False) -> RailMesh:
     """Check and convert a meshio mesh, or the path of a file in a format of ``files.opened``;
-    ``asked`` says how the file differs from the scene, and which of its parts are the rail.
+    ``asked`` says how the file differs from the scene, and which of its parts are the rail. Warnings
+    about a mesh that was ``made_here`` do not list numbers of elements.
 
     Unused points are dropped. Raises MeshError for a file that cannot be read. Else the error has
     one line per fault: no elements of a supported type, two types or others beside them, missing
@@ -109,7 +110,7 @@ def read(source, asked: Asked = AS_DRAWN) -> RailMesh:
         for key, corners in surfaces.items()
     }
     cells = numbered.reshape(cells.shape)
-    warnings = _warnings(points, cells, numbered=source is not mesh)
+    warnings = _warnings(points, cells, numbered=not made_here)
     return RailMesh(points, cells, facets, (*_of_parts(name), *warnings))
 
 

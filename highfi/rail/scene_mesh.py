@@ -22,15 +22,15 @@ def make_mesh(scene: Scene, element_size: float) -> RailMesh:
     """Rails of ``scene`` in scene axes, their elements about ``element_size`` (m). Raises
     SceneError, MeshError or, for a solid, GmshUnavailable."""
     if isinstance(scene.rail, SectionTable):
-        return read(l_rail.build(l_section(scene, scene.rail), element_size))
+        return read(l_rail.build(l_section(scene, scene.rail), element_size), made_here=True)
     if isinstance(scene.rail, ProfileTable):
-        mesh = read(_profile(scene, scene.rail, element_size))
+        mesh = read(_profile(scene, scene.rail, element_size), made_here=True)
         return step_cost.with_run_time(mesh, scene, element_size)
     if not scene.rail.is_as_found():
         raise MeshError(f"{scene.rail.path()} has changed since the scene was read")
     if isinstance(scene.rail, GeometryTable):
         meshed, areas = solid_process.mesh_of(scene, scene.rail, element_size)
-        mesh = replace(read(meshed), drawn=areas)
+        mesh = replace(read(meshed, made_here=True), drawn=areas)
         check_areas(scene.rail, mesh)
         check_held(scene.rail, mesh)
         mesh = along_x(mesh)

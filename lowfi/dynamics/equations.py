@@ -64,24 +64,7 @@ def derivative(system, touching, stick, time, state, out):
     add_hold_down(system.hold_down, payload, time, bodies, state, out)
     move(payload.mass, state, PAYLOAD, bodies.payload, out)
     move_platform(platform, state, bodies.base, out)
-    about_mass_centre(platform, payload.mass, bodies, out)
-
-
-@kernel
-def about_mass_centre(platform, mass, bodies, out):
-    """With rails at rest, replace the moments about the origin of all forces, and of those from outside,
-    by those about the mass centre of the payload."""
-    if platform is None:
-        a, place = slot.triple(out, PAYLOAD + VELOCITY), bodies.payload.place
-        _carry(out, slot.moment_of(PAYLOAD), place, (mass * a[0], mass * a[1], mass * a[2]))
-        _carry(out, TURN, place, slot.triple(out, IMPULSE))
-
-
-@kernel
-def _carry(out, moment_slot, place, force):
-    moment = rotation.cross(place, force)
-    for i in range(3):
-        out[moment_slot + i] -= moment[i]
+    slot.about_mass_centre(platform, payload.mass, bodies.payload.place, out)
 
 
 @kernel

@@ -282,7 +282,7 @@ def test_slivers_and_skewed_elements_are_warned_about(built, tmp_path):
     points = built.points.copy()
     points[:, 0] += points[:, 1]
     made = meshio.Mesh(points, built.cells, field_data=built.field_data, cell_data=built.cell_data)
-    (skewed,) = read(made).warnings
+    (skewed,) = read(made, made_here=True).warnings
     count = len(built.cells[0].data)
     assert f"skewed elements, {count:,} of {count:,}; " in skewed and "0.707" in skewed
     # numbers are of use in a file that the user has

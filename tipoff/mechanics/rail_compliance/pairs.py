@@ -76,3 +76,12 @@ def of_whole(table: np.ndarray, rail: np.ndarray) -> np.ndarray:
     near = beside(rail)
     found = table.transpose(1, 3, 0, 2, 4)[np.arange(rail.size)[:, None], near]
     return np.where((near >= 0)[:, :, None, None], found.transpose(2, 0, 1, 3, 4), 0.0)
+
+
+def is_positive(matrices: np.ndarray) -> bool:
+    """Whether all symmetric matrices (s,n,n) are positive definite. A number that is not finite
+    passes through a factorisation without an error."""
+    try:
+        return bool(np.isfinite(np.linalg.cholesky(matrices)).all())
+    except np.linalg.LinAlgError:
+        return False

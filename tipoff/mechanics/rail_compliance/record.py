@@ -21,7 +21,7 @@ from tipoff.mechanics.rail_compliance import (
 )
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST, JointTerms
 from tipoff.mechanics.rail_compliance.shown import Shown
-from tipoff.mechanics.rail_compliance.stations import breaks, cubic
+from tipoff.mechanics.rail_compliance.stations import between_faces, breaks, cubic
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
@@ -182,18 +182,7 @@ class RailCompliance(Shown):
         return None if self.dragged is None else self._between_faces(self.dragged)
 
     def _between_faces(self, table: np.ndarray) -> np.ndarray:
-        size = table.shape[-1]
-        turned = self.on_part[..., :size, :size].swapaxes(-1, -2)
-        part = pairs.on_both_sides(turned, table, self.rail)
-        own = [
-            tuple(sorted({*each, *(self._breaks[face] if face >= 0 else ())}))
-            for each, near in zip(self._breaks, pairs.beside(self.rail))
-            for face in near
-        ]
-        stations, faces, members = part.shape[:3]
-        between = cubic(self.travel, part.reshape(stations, faces * members, size, size), own)
-        between = between.transpose(0, 1, 4, 2, 3).reshape(stations - 1, faces, members, 4, -1)
-        return np.ascontiguousarray(between)
+        return between_faces(self.travel, table, self.rail, self.on_part, self._breaks)
 
     @cached_property
     def members(self) -> np.ndarray:
@@ -225,7 +214,7 @@ class RailCompliance(Shown):
             left, every = (pairs.of_rail(table, own) for table in (rest, flexibility))
             norm = np.linalg.norm(every, axis=(1, 2))
             allowed = _ROUNDING * np.where(norm > 0.0, norm, 1.0)
-            if not _is_positive(left + allowed[:, None, None] * np.eye(left.shape[1])):
+            if not pairs.is_positive(left + allowed[:, None, None] * np.eye(left.shape[1])):
                 words = "with more compliance than the wall has, expected modes of the same rail"
                 raise ValueError(f"modes: given {modes} {words}")
         return rest
@@ -384,15 +373,6 @@ def content(compliance: RailCompliance) -> bytes:
     known = compliance.__getstate__()
     known.pop("find_joints")
     return stored.content(known)
-
-
-def _is_positive(matrices: np.ndarray) -> bool:
-    """Whether all symmetric matrices (s,n,n) are positive definite. A number that is not finite
-    passes through a factorisation without an error."""
-    try:
-        return bool(np.isfinite(np.linalg.cholesky(matrices)).all())
-    except np.linalg.LinAlgError:
-        return False
 
 
 def _factor(scene: Scene) -> float:

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tipoff.mechanics.rail_compliance import pairs
+
 _STRAIGHT = 1e-9  # in xi; smaller changes of a slope are rounding
 
 
@@ -22,6 +24,28 @@ def cubic(
         same = [number for number, each in enumerate(given) if each == own]
         found[:, same] = _between(travel, values[:, same], own)
     return found
+
+
+def between_faces(
+    travel: np.ndarray,
+    table: np.ndarray,
+    rail: np.ndarray,
+    on_part: np.ndarray,
+    breaks: Sequence[tuple[int, ...]],
+) -> np.ndarray:
+    """Splines (s-1,f,m,4,p p) through a ``table`` (s,f,m,p,p) between the faces on each ``rail``
+    (``pairs``), in the patterns of the parts that ``on_part`` (s,f,q,q) turns those of whole faces into.
+    A slope may jump at the ``breaks`` of either face."""
+    stations, faces, members, size, _ = table.shape
+    part = pairs.on_both_sides(on_part[..., :size, :size].swapaxes(-1, -2), table, rail)
+    own = [
+        tuple(sorted({*each, *(breaks[face] if face >= 0 else ())}))
+        for each, near in zip(breaks, pairs.beside(rail))
+        for face in near
+    ]
+    found = cubic(travel, part.reshape(stations, faces * members, size, size), own)
+    found = found.transpose(0, 1, 4, 2, 3).reshape(stations - 1, faces, members, 4, -1)
+    return np.ascontiguousarray(found)
 
 
 def _between(travel: np.ndarray, values: np.ndarray, breaks: tuple[int, ...]) -> np.ndarray:
