@@ -42,6 +42,8 @@ from tipoff.lowfi.contact.wall_ends import (
 from tipoff.lowfi.faces import LAST_STRIP, NORMAL_Y, NORMAL_Z, SIDE_MIDDLE
 
 _THERE = 1e-9  # m, excess of a step beyond its target
+# A step to a jump of a slope ends before it, and from ``_NEAR`` (m) just beyond, for the speed changes on the way.
+_NEAR, _MOST_OF_IT, _BEYOND = 1e-7, 0.99, 1e-11
 
 
 @kernel
@@ -155,7 +157,8 @@ def longest_step_at_ends(compliance, faces, platform, payload, touching, state):
             if half - behind > _THERE:
                 way = min(way, half - behind + _THERE)
             longest = min(longest, way / abs(speed))
-            jump = way_to_jump(compliance, face, place[0] + faces[0, 0], drift[0]) + _THERE
+            jump = way_to_jump(compliance, face, place[0] + faces[0, 0], drift[0])
+            jump = jump + _BEYOND if jump < _NEAR else _MOST_OF_IT * jump
             longest = min(longest, jump / abs(drift[0]))
     return longest
 
