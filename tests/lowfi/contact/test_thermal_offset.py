@@ -30,8 +30,11 @@ def standing_away(scene, distance, flexible=None):
     travel = np.linspace(0.0, 0.23, len(distance))
     warm = np.zeros((FIELDS, travel.size, compliance.rail.size, PATTERNS))
     warm[0, :, :, 0] = np.asarray(distance)[:, None]
-    flexibility = np.repeat(compliance.flexibility[:1], travel.size, axis=0)
-    found = replace(compliance, travel=travel, flexibility=flexibility, warm=warm)
+    flexibility, shape = (
+        np.repeat(table[:1], travel.size, axis=0)
+        for table in (compliance.flexibility, compliance.shape)
+    )
+    found = replace(compliance, travel=travel, flexibility=flexibility, shape=shape, warm=warm)
     return found if flexible else found.rigid()
 
 
