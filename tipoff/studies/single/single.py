@@ -14,6 +14,7 @@ from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.mechanics.rail_compliance import DEGREE
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.faults import Fault, InputError, SceneError
+from tipoff.scenes.scene import catalog
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.render.uncertain import uncertain
@@ -106,9 +107,10 @@ def chosen(
     whole = study.unrestricted()  # stored results are of all conditions
     measured = cost.stored(whole)
     if measured is None:
+        name = study.scene.name
         raise StudyError(
-            f"there is no cost study of {study.scene.name} with this code: run tipoff cost with the "
-            "same --scene and --out first"
+            "there is no cost study of this scene with this code: run tipoff cost --scene "
+            f"{name if name in catalog() else 'with its file'} first"
         )
     table = cost.STAGE.read(measured)
     found = choice.choose(table, condition, compare.stored(whole), accuracy, budget)
