@@ -205,7 +205,7 @@ def test_nothing_is_chosen_without_measured_cost(tmp_path):
     with pytest.raises(StudyError, match="tipoff cost --scene tiny"):
         single.chosen(study, "phi15", 0.1, None)
     own = Study(scenes.load("tiny").replace({"name": "mine"}), tmp_path / "mine", Settings())
-    with pytest.raises(StudyError, match="tipoff cost --scene with its file first"):
+    with pytest.raises(StudyError, match="tipoff cost --scene FILE first"):
         single.chosen(own, "phi15", 0.1, None)
 
 

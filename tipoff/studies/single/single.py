@@ -110,7 +110,7 @@ def chosen(
         name = study.scene.name
         raise StudyError(
             "there is no cost study of this scene with this code: run tipoff cost --scene "
-            f"{name if name in catalog() else 'with its file'} first"
+            f"{name if name in catalog() else 'FILE'} first"
         )
     table = cost.STAGE.read(measured)
     found = choice.choose(table, condition, compare.stored(whole), accuracy, budget)
