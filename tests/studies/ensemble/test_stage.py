@@ -2,6 +2,7 @@
 
 import errno
 import json
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -161,6 +162,9 @@ def test_the_probability_above_limits(tmp_path):
     assert 0 < count < 300 and above["count"] == count and above["share"] == count / 300
     assert above["low"] < above["share"] < above["high"]
     assert "above any of the limits rate about x 0.5 deg/s, total rate 3 deg/s: " in first.stdout
+    assert "without a rate" not in first.stdout
+    lost = replace(TypeAdapter(stage.Ran).validate_python(found), settled=297)
+    assert "; 3 cases without a rate count as above" in str(page.summary(lost))
     # Control:
     lower = call("--cases", 300, "--out", tmp_path, "--limit", "1 deg/s", "--json")
     assert json.loads(lower.stdout)["above"]["count"] > count
