@@ -12,9 +12,9 @@ it would be w = I^-1 R' (A - r x m v): an error of R would turn a large spin int
 of least inertia, where it is a large rate. ``reconcile`` makes h and R agree with A after each
 step.
 
-With rails at rest there is no second body and no such sum, and A is about the mass centre, A = R h.
-Of a payload that is far away under thrust, r x m v is so much larger than R h that its error would be
-an error of the rate.
+Bodies that are *apart* have A about their own mass centres, A = R h: with rails at rest from ignition
+on, and two free bodies after the exit. Of a payload that is far away under thrust, r x m v is so much
+larger than R h that its error would be an error of the rate.
 
 The work entries come next. They are quadratures of the same method, so both ledgers close to its
 accuracy. The modes of the rails, if there are any, come last (``lowfi.contact.compliant.modes``).
@@ -185,35 +185,35 @@ def _set_quaternion(state, body, q):
 
 
 @kernel
-def orbiting(platform, mass):
-    """The mass (kg) whose r x m v is part of A: zero with rails at rest."""
-    value = 0.0
-    if platform is not None:
-        value = mass
-    return value
+def orbit(mass, apart, state, body):
+    """The part r x m v (kg m2/s) of A of the body of ``mass`` (kg) whose slots begin at ``body``: zero if
+    the bodies are ``apart``."""
+    if apart:
+        return (0.0, 0.0, 0.0)
+    place, v = triple(state, body + PLACE), triple(state, body + VELOCITY)
+    return rotation.cross(place, (mass * v[0], mass * v[1], mass * v[2]))
 
 
 @kernel
-def about_mass_centre(platform, mass, place, out):
-    """With rails at rest, replace the moments about the origin of all forces in ``out``, and of those from
-    outside, by those about the payload of ``mass`` (kg) at ``place`` (m)."""
-    if platform is None:
-        a = triple(out, PAYLOAD + VELOCITY)
-        _carry(out, MOMENT, place, (mass * a[0], mass * a[1], mass * a[2]))
-        _carry(out, TURN, place, triple(out, IMPULSE))
+def take_apart(mass, state, body):
+    """Refer A of the body whose slots begin at ``body`` to its mass centre. The moment from outside
+    changes as much, so that their balance holds."""
+    carry(state, body, orbit(mass, False, state, body))
 
 
 @kernel
-def _carry(out, moment, place, force):
-    carried = rotation.cross(place, force)
+def carry(values, body, moment):
+    """Take the ``moment`` of m v, or of its derivative, about the origin from A of the body whose slots
+    begin at ``body``, and from the moment from outside."""
     for i in range(3):
-        out[moment + i] -= carried[i]
+        values[moment_of(body) + i] -= moment[i]
+        values[TURN + i] -= moment[i]
 
 
 @kernel
-def reconcile(record, mass, dt, state, body):
+def reconcile(record, apart, dt, state, body):
     """Make attitude and spin of a body, whose slots begin at ``body``, agree with its A, to first
-    order, at the end of a step of ``dt`` (s); ``mass`` as in ``orbiting``.
+    order, at the end of a step of ``dt`` (s); ``apart``: A is about its mass centre.
 
     The difference e = R' (A - r x m v) - h is an error of the step. Turns p of the body (rad, body
     axes) and changes d of its spin with d = e + h x p remove it. The pair that changes rates least
@@ -223,10 +223,9 @@ def reconcile(record, mass, dt, state, body):
     """
     h = triple(state, body + SPIN)
     q, a = quaternion(state, body), triple(state, moment_of(body))
-    orbit = rotation.cross(triple(state, body + PLACE), triple(state, body + VELOCITY))
+    carried = orbit(record.mass, apart, state, body)
     spin = rotation.unrotate(
-        rotation.matrix(q),
-        (a[0] - mass * orbit[0], a[1] - mass * orbit[1], a[2] - mass * orbit[2]),
+        rotation.matrix(q), (a[0] - carried[0], a[1] - carried[1], a[2] - carried[2])
     )
     e = (spin[0] - h[0], spin[1] - h[1], spin[2] - h[2])
     g = (dt * h[0], dt * h[1], dt * h[2])
@@ -269,7 +268,6 @@ def initial(model: Model) -> np.ndarray:
     fill(
         state,
         PAYLOAD,
-        0.0 if platform is None else payload.mass,
         payload.inertia,
         tuple(start.place),
         tuple(start.velocity),
@@ -281,27 +279,35 @@ def initial(model: Model) -> np.ndarray:
         fill(
             state,
             PLATFORM,
-            platform.mass,
             platform.inertia,
             tuple(start.platform_place),
             tuple(start.platform_velocity),
             (1.0, 0.0, 0.0, 0.0),
             first.platform_rate,
         )
+        put_together(payload.mass, platform.mass, state)
     return state
 
 
 @entry
-def fill(state, body, mass, inertia, place, velocity, attitude, rate):
-    """Fill the slots of a body, the first of which is ``body``, and those of its A in ``state``
-    (STATE_SIZE,): mass (kg) as in ``orbiting``, inertia (3,3) kg m2 in body axes, place (m), velocity (m/s), unit
+def fill(state, body, inertia, place, velocity, attitude, rate):
+    """Fill the slots of a body that is apart from others, the first of which is ``body``, and those of its A
+    in ``state`` (STATE_SIZE,): inertia (3,3) kg m2 in body axes, place (m), velocity (m/s), unit
     quaternion and rate (rad/s) in body axes."""
-    moment = moment_of(body)
-    orbit, h = rotation.cross(place, velocity), rotation.multiply(inertia, rate)
+    moment, h = moment_of(body), rotation.multiply(inertia, rate)
     spin = rotation.rotate(rotation.matrix(attitude), h)
     for i in range(3):
         state[body + PLACE + i], state[body + VELOCITY + i] = place[i], velocity[i]
         state[body + SPIN + i] = h[i]
-        state[moment + i] = mass * orbit[i] + spin[i]
+        state[moment + i] = spin[i]
     for i in range(4):
         state[body + QUATERNION + i] = attitude[i]
+
+
+@entry
+def put_together(mass, platform_mass, state):
+    """Refer A of payload and platform, of these masses (kg), to the origin."""
+    for body, m in ((PAYLOAD, mass), (PLATFORM, platform_mass)):
+        carried = orbit(m, False, state, body)
+        for i in range(3):
+            state[moment_of(body) + i] += carried[i]

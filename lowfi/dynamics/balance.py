@@ -8,6 +8,7 @@ from tipoff.lowfi import state
 from tipoff.lowfi.dynamics import audit
 from tipoff.lowfi.dynamics.loop import Loop
 from tipoff.lowfi.dynamics.sample import (
+    APART,
     AXIAL_KINETIC,
     GIVEN,
     KINETIC,
@@ -102,16 +103,15 @@ def checks(
 def _sums(rows: np.ndarray, moved: Motion, forces: np.ndarray, model: Model) -> momenta.Sums:
     """Momenta and impulses of both bodies, and the sums of the magnitudes of their terms."""
     payload, platform = model.payload, model.platform
-    # with rails at rest, angular momentum is about the mass centre of the payload
-    place = moved.position if platform is not None else np.zeros_like(moved.position)
-    bodies = [(payload.mass, place, moved.velocity, moved.rate @ payload.inertia)]
+    together = 1.0 - rows[:, APART, None]  # afterwards angular momentum is about the mass centres
+    places = (together * moved.position, together * moved.platform_position)
+    bodies = [(payload.mass, places[0], moved.velocity, moved.rate @ payload.inertia)]
     if platform is not None:
         spin = moved.platform_rate @ platform.inertia
-        bodies.append((platform.mass, moved.platform_position, moved.platform_velocity, spin))
+        bodies.append((platform.mass, places[1], moved.platform_velocity, spin))
     given = rows[:, GIVEN : GIVEN + 6]
     weight = sum(mass for mass, *_ in bodies) * math.hypot(*(model.body_force or ()))
     levers = (*momenta.size(model.faces.centre), abs(model.thrust_arm))
-    places = (place, moved.platform_position)
     return momenta.Sums(
         values=rows[:, LINEAR : LINEAR + 6],
         given=given,

@@ -23,7 +23,6 @@ from tipoff.lowfi.state import (
     copy,
     modal_size,
     normalise,
-    orbiting,
     reconcile,
 )
 
@@ -69,12 +68,13 @@ def attempt(system, loop, stretch, time, dt, fresh):
         _combine(stage, dt, start, stages, end)
         _combine_modes(stage, dt, start, stages, modal_size(system.compliance), end)
         if stage == STAGES - 1:
-            _restore(system, dt, end)
+            _restore(system, loop.counts.apart, dt, end)
             advance_free_modes(system.compliance, loop.touching, dt, start, end, True)
         derivative(
             system,
             loop.touching,
             loop.stick,
+            loop.counts.apart,
             min(max(time + NODES[stage] * dt, stretch[0]), stretch[1]),
             end,
             stages[stage],
@@ -82,19 +82,18 @@ def attempt(system, loop, stretch, time, dt, fresh):
 
 
 @kernel
-def _restore(system, dt, state):
+def _restore(system, apart, dt, state):
     """Restore properties that the sum of stages of a step of ``dt`` (s) does not conserve: unit
     quaternions, and rates that agree with the momenta."""
     normalise(state)
-    mass = orbiting(system.platform, system.payload.mass)
-    reconcile(system.payload, mass, dt, state, PAYLOAD)
-    _reconcile_platform(system.platform, dt, state)
+    reconcile(system.payload, apart, dt, state, PAYLOAD)
+    _reconcile_platform(system.platform, apart, dt, state)
 
 
 @kernel
-def _reconcile_platform(platform, dt, state):
+def _reconcile_platform(platform, apart, dt, state):
     if platform is not None:
-        reconcile(platform, platform.mass, dt, state, PLATFORM)
+        reconcile(platform, apart, dt, state, PLATFORM)
 
 
 @kernel
@@ -205,7 +204,7 @@ def interpolate(system, loop, dt, theta, size, out):
             + b5 * stages[5, j]
             + b6 * stages[6, j]
         )
-    _restore(system, dt, out)
+    _restore(system, loop.counts.apart, dt, out)
     advance_free_modes(system.compliance, loop.touching, h, start, out, size == STATE_SIZE)
 
 

@@ -2,8 +2,8 @@
 
     r' = v,   m v' = sum F,   q' = q w / 2,   A' = sum X x F,   h' = h x w + R' (A' - r x sum F)
 
-X is the point at which a force acts; with rails at rest, A' = sum (X - r) x F. h and w are in body
-axes (``lowfi.state``). There the products of h and w of a thin body cancel to rounding, even in stages of
+X is the point at which a force acts; of bodies that are apart (``lowfi.state``), A' = sum (X - r) x F.
+h and w are in body axes. There the products of h and w of a thin body cancel to rounding, even in stages of
 a step, where q is no unit quaternion.
 
 Every effect adds itself in one line of ``derivative``. Until ``move``, the velocity slots of the
@@ -43,9 +43,10 @@ class Bodies(NamedTuple):
 
 
 @kernel
-def derivative(system, touching, stick, time, state, out):
+def derivative(system, touching, stick, apart, time, state, out):
     """Fill ``out`` with the time derivative of ``state`` (both STATE_SIZE,). ``touching`` (f,) are
-    the faces with load, ``stick`` (f, ROW_SIZE) their stick-slip states or None."""
+    the faces with load, ``stick`` (f, ROW_SIZE) their stick-slip states or None; ``apart``: A is about
+    the mass centres."""
     payload, platform = system.payload, system.platform
     bodies = Bodies(
         payload=slot.motion(payload, state, PAYLOAD),
@@ -62,15 +63,15 @@ def derivative(system, touching, stick, time, state, out):
     add_compliant_contact(system.compliance, system.faces, touching, bodies, state, out)
     add_pusher_inertia(system.pushing, payload, bodies, state, out)
     add_hold_down(system.hold_down, payload, time, bodies, state, out)
-    move(payload.mass, state, PAYLOAD, bodies.payload, out)
-    move_platform(platform, state, bodies.base, out)
-    slot.about_mass_centre(platform, payload.mass, bodies.payload.place, out)
+    move(payload.mass, apart, state, PAYLOAD, bodies.payload, out)
+    move_platform(platform, apart, state, bodies.base, out)
 
 
 @kernel
-def move(mass, state, first, body, out):
+def move(mass, apart, state, first, body, out):
     """Convert the force in the velocity slots of the body whose slots begin at ``first`` to an
-    acceleration, and add the kinematics and the change of spin."""
+    acceleration, and add the kinematics and the change of spin; of bodies ``apart``, refer moments to
+    their mass centres."""
     w = body.body_rate
     turning = rotation.product(
         slot.quaternion(state, first), (0.0, 0.5 * w[0], 0.5 * w[1], 0.5 * w[2])
@@ -87,13 +88,15 @@ def move(mass, state, first, body, out):
         out[first + SPIN + i] = gyroscopic[i] + about_centre[i]
     for i in range(4):
         out[first + QUATERNION + i] = turning[i]
+    if apart:
+        slot.carry(out, first, carried)
 
 
 @kernel
-def move_platform(platform, state, base, out):
+def move_platform(platform, apart, state, base, out):
     """``move`` of the platform, if it is free."""
     if platform is not None:
-        move(platform.mass, state, PLATFORM, base, out)
+        move(platform.mass, apart, state, PLATFORM, base, out)
 
 
 @kernel

@@ -39,6 +39,7 @@ COUNTS = np.dtype(
         ("evaluations", "i8"),  # of the right-hand side
         ("samples", "i8"),  # taken so far; -1 before the run has begun
         ("striking_face", "i8"),  # face that strikes an edge of its wall, or -1
+        ("apart", "?"),  # whether A of each body is about its mass centre (``lowfi.state``)
     ],
     align=True,
 )

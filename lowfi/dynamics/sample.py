@@ -31,7 +31,8 @@ from tipoff.lowfi.state import (
 RATE = slot.SPIN  # a sample has the rate where the state has the spin
 KINETIC, AXIAL_KINETIC, STORED, STRAIN, WORKS = 26, 27, 28, 29, 30
 LINEAR, ANGULAR, GIVEN = WORKS + WORK_SIZE, WORKS + WORK_SIZE + 3, WORKS + WORK_SIZE + 6
-SAMPLE_SIZE = GIVEN + 6
+APART = GIVEN + 6  # 1 if ANGULAR is about the mass centres, else 0
+SAMPLE_SIZE = APART + 1
 
 
 @kernel
@@ -43,8 +44,10 @@ def observe(system, loop, row, forces):
     base = slot.frame(system.platform, state)
     row[:] = 0.0
     _place(state, body, base, row)
-    _body(payload.mass, slot.orbiting(system.platform, payload.mass), state, PAYLOAD, body, row)
-    _platform(system.platform, state, base, row)
+    apart = loop.counts.apart
+    _body(payload.mass, apart, state, PAYLOAD, body, row)
+    _platform(system.platform, apart, state, base, row)
+    row[APART] = 1.0 if apart else 0.0
     row[STORED] = _observe_springs(system.contact, system, loop, body, base, forces)
     row[STORED] += _observe_compliance(system.compliance, system, loop, body, base, forces)
     _rails(system.compliance, state, row)
@@ -121,23 +124,22 @@ def _copy(state, body, row):
 
 
 @kernel
-def _platform(platform, state, base, row):
+def _platform(platform, apart, state, base, row):
     if platform is not None:
-        _body(platform.mass, platform.mass, state, PLATFORM, base, row)
+        _body(platform.mass, apart, state, PLATFORM, base, row)
 
 
 @kernel
-def _body(mass, orbiting, state, first, body, row):
+def _body(mass, apart, state, first, body, row):
     """Add kinetic energy and momenta of the body whose slots begin at ``first``. The momenta come
-    from its motion, not from A, so the check of the ledger compares both. ``orbiting`` (kg) as in
-    ``lowfi.state``."""
-    orbit = rotation.cross(body.place, body.velocity)
+    from its motion, not from A, so the check of the ledger compares both."""
+    orbit = slot.orbit(mass, apart, state, first)
     spin = rotation.rotate(body.turn, slot.triple(state, first + slot.SPIN))
     row[KINETIC] += slot.kinetic(mass, state, first, body)
     row[AXIAL_KINETIC] += 0.5 * mass * body.velocity[0] * body.velocity[0]
     for i in range(3):
         row[LINEAR + i] += mass * body.velocity[i]
-        row[ANGULAR + i] += orbiting * orbit[i] + spin[i]
+        row[ANGULAR + i] += orbit[i] + spin[i]
 
 
 @kernel

@@ -41,7 +41,7 @@ def forces(common, cases, loop, state, out):
     reset(system, state, 1.0, loop)
     for i in range(loop.touching.size):
         loop.touching[i] = loop.engaged[i]
-    derivative(system, loop.touching, loop.stick, LONG_AGO, loop.end, out)
+    derivative(system, loop.touching, loop.stick, loop.counts.apart, LONG_AGO, loop.end, out)
 
 
 def rest(name: str, common: System, cases: Cases, model: Model) -> np.ndarray:
@@ -81,7 +81,7 @@ class _Rest:
         )
         at_rest, inertia = (0.0, 0.0, 0.0), self.cases.inertia[0]
         unit = rotation.normalised(attitude)
-        slot.fill(found, slot.PAYLOAD, self.mass, inertia, tuple(place), at_rest, unit, at_rest)
+        slot.fill(found, slot.PAYLOAD, inertia, tuple(place), at_rest, unit, at_rest)
         found[slot.STATE_SIZE : slot.STATE_SIZE + self.modes] = moved[_RIGID:]
         return found
 

@@ -19,6 +19,7 @@ from tipoff.lowfi.dynamics.events import first_event
 from tipoff.lowfi.dynamics.local_error import error_ratio
 from tipoff.lowfi.dynamics.survey import keeps_law, survey, update_engaged, update_touching
 from tipoff.lowfi.dynamics.vibration import longest_step, shortened
+from tipoff.mechanics.ending import EXIT
 
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 5.0
 # Steps that error control proposes are powers of 2^(1/16). Error estimates of steps in which cells
@@ -165,7 +166,25 @@ def _begin(system, plan, loop):
     _release(system.is_compliant, system, loop, left, -1.0)
     if counts.steps == 0:
         audit.open_books(system.ledger, system.is_compliant, system, loop)
-    return changed or left or fresh or clock.kept < 1.0
+    parted = _part(system, loop)
+    return changed or left or fresh or parted or clock.kept < 1.0
+
+
+@kernel
+def _part(system, loop):
+    """After the exit, refer A of both bodies to their own mass centres; True in that step."""
+    parts = loop.book[EXIT] < np.inf and not loop.counts.apart
+    if parts:
+        loop.counts.apart = True
+        slot.take_apart(system.payload.mass, loop.start, slot.PAYLOAD)
+        _take_platform_apart(system.platform, loop.start)
+    return parts
+
+
+@kernel
+def _take_platform_apart(platform, state):
+    if platform is not None:
+        slot.take_apart(platform.mass, state, slot.PLATFORM)
 
 
 @kernel
