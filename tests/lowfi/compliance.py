@@ -117,13 +117,13 @@ def state_of(model, pose: Pose, twist: np.ndarray = np.zeros(12)) -> np.ndarray:
         slot.fill(
             state,
             first,
-            body.mass,
             body.inertia,
             tuple(place),
             tuple(motion[:3]),
             attitude,
             tuple(motion[3:]),
         )
+    slot.put_together(model.payload.mass, model.platform.mass, state)
     return state
 
 

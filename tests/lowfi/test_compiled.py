@@ -43,7 +43,7 @@ from tipoff.scenes import load
 from tipoff.scenes.effects.friction import coefficient_over_speed
 @numba.njit
 def call(records, felt, begin, out):
-    equations.derivative(records, felt, None, 0.0, begin, out)
+    equations.derivative(records, felt, None, False, 0.0, begin, out)
     step_limit.fastest_rate(records.contact, records, felt, None, begin, 0.0)
 def evaluate(scene):
     built = scene_model.build(scene)

@@ -29,7 +29,7 @@ WRONG = [
     "١",
     "x" * 65,
 ]
-RIGHT = ["a", "phi15", "0", "A-b_c.d", "x" * 64, "nominal"]
+RIGHT = ["a", "phi15", "0", "A-b_c.d", "x" * 64]
 EXPECTED = (
     'expected at most 64 letters a-z, A-Z, digits, "-", "_" and ".", the first a letter or digit'
 )
@@ -51,6 +51,15 @@ def test_names_that_are_none_of_files_are_faults_of_the_scene(name):
     for override in ({"name": name}, {"conditions": {name: {"duration": 0.02}}}):
         with pytest.raises(SceneError, match="at most 64 letters"):
             parse(small()).replace(override)
+
+
+@pytest.mark.parametrize("name", ["nominal", "Nominal"])
+def test_no_condition_has_the_name_of_the_scene_itself(name):
+    """It took the place of the scene in `tipoff run SCENE`."""
+    with pytest.raises(SceneError, match="this one is of the scene itself") as fault:
+        parse(small(conditions={name: {"duration": "20 ms"}}))
+    assert [(item.key, item.given) for item in fault.value.faults] == [("conditions", repr(name))]
+    assert parse(small(name=name)).condition("nominal").name == name
 
 
 @pytest.mark.parametrize("name", RIGHT)

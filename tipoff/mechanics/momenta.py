@@ -6,8 +6,8 @@
 
 Parts are the bodies, and the nodes of elastic rails. Momenta may cancel: between payload and
 platform, two rails, or the nodes of a body that turns. So the scale is the sum of magnitudes, not
-the magnitude of the sum. An angular momentum is split into orbits about the origin, which bodies that are apart leave out, and
-spins.
+the magnitude of the sum. An angular momentum is split into spins and, for bodies
+that are not apart, orbits about the origin.
 
 Impulses from outside that cancel, such as weight and reaction of the ground, cause rounding; so do
 moments about the origin. The sums of magnitudes of all of these enter the lower bound of the scale

@@ -47,6 +47,7 @@ from tipoff.scenes.effects.thermal import ThermalTable
 from tipoff.scenes.effects.thrust import ThrustTable
 from tipoff.scenes.effects.thrust_offset import ThrustOffsetTable
 from tipoff.scenes.faults import Fault, SceneError, close, faults_of, within
+from tipoff.scenes.names import NOMINAL
 from tipoff.scenes.rail import RailTable
 from tipoff.scenes.studies import StudiesTable
 from tipoff.scenes.table import MOST, Table, at_least_one, is_absent, limited
@@ -54,7 +55,6 @@ from tipoff.scenes.tables import MOST_SAMPLES, AgreementTable, OutputTable, PadT
 from tipoff.scenes.units import Duration
 
 CATALOG = reading.CATALOG
-NOMINAL = "nominal"  # the scene itself, named like a condition
 _BESIDE = ("conditions", "agreement", "provenance")
 # the flight after the exit does not change the ejection, and no solver reads [studies]
 _NOT_PHYSICS = {"name", "description", "flight", "hand_over", "studies", *_BESIDE}
@@ -202,7 +202,7 @@ class Scene(shown.Shown, ends.Timed, Table):
             False
         """
         is_text = isinstance(name, str)
-        if is_text and name == NOMINAL and name not in self.conditions:
+        if is_text and name == NOMINAL:
             return self
         if not is_text or name not in self.conditions:
             known = ", ".join(self.conditions) or "none are defined"

@@ -21,7 +21,8 @@ from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import plausibility
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
-from tipoff.scenes.scene import NOMINAL, Scene
+from tipoff.scenes.names import NOMINAL
+from tipoff.scenes.scene import Scene
 from tipoff.workspace import words
 from tipoff.workspace.errors import StudyError as StudyError
 from tipoff.workspace.kernel_process import compiled_beside

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes.calibration import Calibration
-from tipoff.scenes.scene import NOMINAL
+from tipoff.scenes.names import NOMINAL
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.verdicts import Row
 from tipoff.workspace.errors import StudyError

@@ -19,7 +19,7 @@ from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
-from tipoff.scenes.scene import NOMINAL
+from tipoff.scenes.names import NOMINAL
 from tipoff.studies.calibration import compliance, forecast
 from tipoff.workspace.progress import Board, say
 from tipoff.workspace.run import Run

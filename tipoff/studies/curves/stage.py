@@ -12,7 +12,7 @@ from tipoff.comparison.curves import Curves
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError, together
-from tipoff.scenes.scene import NOMINAL
+from tipoff.scenes.names import NOMINAL
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.commands.running import quantity
 from tipoff.studies.curves import page

@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.mechanics.model_names import FINITE_ELEMENTS
-from tipoff.scenes.scene import NOMINAL, Scene
+from tipoff.scenes.names import NOMINAL
+from tipoff.scenes.scene import Scene
 from tipoff.studies.limits.options import Options
 from tipoff.studies.limits.within import Cases
 from tipoff.studies.populations import draws, exceedance, stratified

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes import uncertainty
-from tipoff.scenes.scene import NOMINAL
+from tipoff.scenes.names import NOMINAL
 from tipoff.studies.nominal import spread
 from tipoff.studies.nominal.spread import Spread
 from tipoff.studies.runs import stage as runs

@@ -21,7 +21,8 @@ from tipoff.lowfi.ensemble.threads import completed
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.scenes.scene import NOMINAL, Scene
+from tipoff.scenes.names import NOMINAL
+from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import growth
 from tipoff.studies.populations import instant
 from tipoff.studies.populations.population import TOLERANCE, Surrogate

@@ -86,6 +86,7 @@ def run(
     """
     from tipoff.mechanics.model_names import COMPLIANT
     from tipoff.scenes.faults import Fault, SceneError, together
+    from tipoff.scenes.names import NOMINAL
     from tipoff.studies.runs import page
     from tipoff.studies.single import single
     from tipoff.workspace import models
@@ -113,9 +114,7 @@ def run(
         expected = "none: --range is that of compliant contact with its defaults"
         without(own | chosen | usual, expected)
     options, quiet = models.Options(model, calibration, modes, degree, cells), request.json_
-    study = request.study(
-        condition or ["nominal"], checkpoint_every=checkpoint_every, resume=resume
-    )
+    study = request.study(condition or [NOMINAL], checkpoint_every=checkpoint_every, resume=resume)
     names = list(study.conditions)
 
     if export:
