@@ -1,5 +1,5 @@
-"""Advice for a run that reached the end of its scene before the payload left the rail, or before
-its rates settled (status ``time_limit``).
+"""Advice for a run whose payload is jammed, or that reached the end of its scene before the payload
+left the rail, or before its rates settled (status ``time_limit``).
 
 The definitions of exit and settled window are those of ``mechanics.outcome``.
 """
@@ -7,6 +7,9 @@ The definitions of exit and settled window are those of ``mechanics.outcome``.
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from tipoff.mechanics import ledger
 from tipoff.mechanics.outcome import SETTLE_DELAY, SETTLE_WINDOW, relative_motion
 from tipoff.scenes import ends
 from tipoff.scenes.effects import thrust_law
@@ -19,12 +22,15 @@ _HORIZON = 100.0  # durations of the scene in which the end of the thrust is sea
 _BURNT = 1e-3  # of the peak, as in ``mechanics.outcome``
 _SLOW = 0.01  # m/s, as for a jam
 _STEP = 1e-5  # s, durations are rounded up to it
+_TELLING = 1e-3  # of the energy that a payload had: smaller parts are not named
 _MARGIN = 1e-3  # s: a payload that turns leaves the rail later than its mass centre suggests
 
 
 def advice(scene: Scene, run: "Trajectory") -> str:
-    """Reason why a ``run`` of ``scene`` has the status ``time_limit``, and a sufficient duration;
+    """Reason why a ``run`` of ``scene`` is jammed or has the status ``time_limit``, and what helps;
     empty for any other status."""
+    if run.status == "jammed":
+        return _jammed(scene, run)
     if run.status != "time_limit":
         return ""
     burnt = thrust_law.burnout(scene.thrust.record(), _BURNT, _HORIZON * scene.time_limit)
@@ -72,10 +78,39 @@ def _before_settling(exit_time: float, thrust_ends: float) -> str:
     return f"{cause}; settling needs a duration of {_ms(_up(start + SETTLE_WINDOW))}"
 
 
-def _on_the_rail(scene: Scene, run: "Trajectory", thrust_ends: float) -> str:
+def _jammed(scene: Scene, run: "Trajectory") -> str:
+    way, whole, speeds = _progress(scene, run)
+    work = dict(zip(ledger.ENTRIES, run.energy[-1].tolist(), strict=True))
+    weight = work[ledger.BODY_FORCE]
+    given = {
+        "of the thrust": work["thrust"],
+        "of its start": float(run.energy[0, ledger.STATE].sum()),
+        "of the body forces": max(weight, 0.0),
+    }
+    spent = {"friction": work["friction"], "its weight": max(-weight, 0.0)}
+    least = _TELLING * sum(given.values())
+    energy, taken = (
+        " and ".join(f"{joule:.3g} J {name}" for name, joule in each.items() if joule > least)
+        for each in (given, {f"by {name}": joule for name, joule in spent.items()})
+    )
+    return (
+        f"stuck on the rail: {1e3 * way:.3g} of {1e3 * whole:.3g} mm, {speeds.max():.2g} m/s at most; it"
+        f" had {energy or 'no energy'} and lost {taken or 'none'}: it needs less friction, or more thrust"
+        " that presses the pads no harder"
+    )
+
+
+def _progress(scene: Scene, run: "Trajectory") -> tuple[float, float, np.ndarray]:
+    """Way (m) of the payload along the rail, the whole way to the exit (m), and its axial speeds (n,)
+    m/s."""
     moved = relative_motion(run)
-    place, speed = moved["relative_position"][:, 0], float(moved["relative_velocity"][-1, 0])
-    way, whole = float(place[-1] - place[0]), way_to_exit(scene)
+    place = moved["relative_position"][:, 0]
+    return float(place[-1] - place[0]), way_to_exit(scene), moved["relative_velocity"][:, 0]
+
+
+def _on_the_rail(scene: Scene, run: "Trajectory", thrust_ends: float) -> str:
+    way, whole, speeds = _progress(scene, run)
+    speed = float(speeds[-1])
     text = f"still on the rail: {1e3 * way:.3g} of {1e3 * whole:.3g} mm"
     if speed < _SLOW:
         lasts = f" (it lasts until {_ms(thrust_ends)})" if thrust_ends > scene.time_limit else ""

@@ -9,8 +9,8 @@ import pytest
 from tests.exact import contact as collisions
 from tests.exact import friction as exact
 from tests.lowfi.support import G, numerics, scene
-from tipoff import lowfi
-from tipoff.mechanics import ledger
+from tipoff import lowfi, scenes
+from tipoff.mechanics import ledger, unfinished
 
 FEET = [{"position": (x, y, -0.02), "normals": ["-z"]} for x in (-0.1, 0.1) for y in (-0.1, 0.1)]
 GROUND = {"law": "linear", "clearance": 0.0, "stiffness": 1e8, "damping": 4e4}
@@ -54,6 +54,9 @@ def test_stopping_distance_and_time(tolerance):
     assert run.checks["friction_power_max"] <= 0.0 and run.checks["energy_error"] <= 1e-6
     rubbed = run.energy[-1, ledger.ENTRIES.index("friction")]
     assert rubbed == pytest.approx(0.5 * 20.0 * 2.0**2, rel=2e-3)
+    words = unfinished.advice(scenes.parse(run.scene, bare_numbers_are_si=True), run)
+    assert words.startswith("stuck on the rail: 680 of ") and "2 m/s at most" in words
+    assert "it had 40 J of its start and lost 40 J by friction" in words
 
 
 @pytest.mark.case("O25")

@@ -220,6 +220,8 @@ def lines(row: Single, made_with: str, study: Study) -> list[str]:
     text = [f"{study.scene.name} / {row.condition}, model {made_with}: {row.status}{said}"]
     if row.thrust:
         text.append(f"  thrust        {row.thrust['text']}")
+    if row.advice and not row.failed:
+        text.append(f"  advice        {row.advice}")
     if row.exit_time_s is not None:
         text.append(f"  exit          {1e3 * row.exit_time_s:.4g} ms after ignition{_after(row)}")
         text.append(f"  at exit       {_at_exit(row)}")
