@@ -18,6 +18,7 @@ All cases have the same equations, and each can be run again alone with this num
 the number with its reason, so an ensemble with a store has one pilot.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -50,17 +51,22 @@ class Pilot(NamedTuple):
     chaotic: bool
 
 
-def settled(ensemble: Ensemble, store: str | Path | None = None) -> Ensemble:
+def settled(
+    ensemble: Ensemble,
+    store: str | Path | None = None,
+    progress: Callable[[float], None] = lambda share: None,
+) -> Ensemble:
     """``ensemble`` with a number of modes, and the reason as its ``modes_why``, which is empty if
     the number was given or the model has no modes. No case is run if the ``store`` at this path
-    belongs to the same ensemble and has the number."""
+    belongs to the same ensemble and has the number. ``progress`` is called with the share of pilot cases
+    done."""
     if ensemble.numerics.modes != AUTO:
         return ensemble
     if not may_vibrate(ensemble.scene, ensemble.compliance):
         return _with(ensemble, 0, "")
     if store is not None and (found := _kept(ensemble, Path(store))) is not None:
         return found
-    pilots = _chosen(ensemble)
+    pilots = _chosen(ensemble, progress)
     chosen = sorted(each.modes for each in pilots)
     count = chosen[int(_ENOUGH_FOR * (len(chosen) - 1))] if chosen else 0
     above = sum(number > count for number in chosen)
@@ -91,14 +97,15 @@ def _kept(ensemble: Ensemble, path: Path) -> Ensemble | None:
     return found if stores.plain(found.identity()) == there["identity"] else None
 
 
-def _chosen(ensemble: Ensemble) -> list[Pilot]:
+def _chosen(ensemble: Ensemble, progress: Callable[[float], None]) -> list[Pilot]:
     """The pilot cases, without those that the scene refuses."""
     found: list[Pilot] = []
     source = ensemble.source
     numerics = ensemble.numerics.accurate()
     plain = replace(numerics, modes=0)
     last, count = source.asked - 1, min(PILOT, source.asked)
-    for number in np.linspace(0, last, count).round().astype(int).tolist():
+    for done, number in enumerate(np.linspace(0, last, count).round().astype(int).tolist()):
+        progress(done / count)
         (row,) = source.rows(number, number + 1)
         try:
             scene = ensemble.scene.replace(row)

@@ -1,5 +1,5 @@
 """Progress of several runs: bars with the remaining time on a terminal, else one line for each
-finished run."""
+finished run, and in long work a line now and then."""
 
 import threading
 import time
@@ -19,6 +19,9 @@ from rich.progress import (
 
 console = Console(stderr=True, highlight=False)
 _SHOWN_AFTER = 2.0  # s; shorter work gets no bar
+# s, of the first line off a terminal, and the longest time between two; each is at twice the time of the last
+_NOTED_AFTER, _NOTED_EVERY = 10.0, 60.0
+_LEAST_KNOWN = 0.02  # share done from which the time left is stated
 
 
 class Interrupted(Exception):
@@ -35,7 +38,7 @@ class Board:
         self._fractions: dict[str, float] = {}
         self._bars: Progress | None = None
         self._tasks: dict[str, TaskID] = {}
-        self._started = time.monotonic()
+        self._started, self._next_note = time.monotonic(), _NOTED_AFTER
 
     def __enter__(self) -> "Board":
         if console.is_terminal:
@@ -82,7 +85,11 @@ class Board:
             self._draw()
 
     def _draw(self) -> None:
-        if self._bars is None or time.monotonic() - self._started < _SHOWN_AFTER:
+        taken = time.monotonic() - self._started
+        if self._bars is None:
+            self._note(taken)
+            return
+        if taken < _SHOWN_AFTER:
             return
         self._bars.start()
         if "" not in self._tasks and self._total > 1:
@@ -93,6 +100,22 @@ class Board:
             if label not in self._tasks:
                 self._tasks[label] = self._bars.add_task(f"  {label}", total=1.0)
             self._bars.update(self._tasks[label], completed=fraction)
+
+    def _note(self, taken: float) -> None:
+        """A line about the runs in progress after ``taken`` s, if one is due."""
+        if taken < self._next_note or not self._fractions:
+            return
+        self._next_note = taken + min(taken, _NOTED_EVERY)
+        done = (self._done + sum(self._fractions.values())) / self._total
+        left = f", {_duration(taken * (1.0 / done - 1.0))} left" if done > _LEAST_KNOWN else ""
+        under_way = ", ".join(f"{label} {share:.0%}" for label, share in self._fractions.items())
+        say(
+            f"  {self._title} {self._done}/{self._total}  {under_way} after {_duration(taken)}{left}"
+        )
+
+
+def _duration(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 90.0 else f"{seconds / 60.0:.0f} min"
 
 
 @contextmanager

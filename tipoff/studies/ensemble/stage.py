@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from tipoff.files import write_json
-from tipoff.lowfi.ensemble import columns, pilot, twins
+from tipoff.lowfi.ensemble import columns, twins
 from tipoff.lowfi.ensemble.batch import Case
 from tipoff.lowfi.ensemble.fill import fill
 from tipoff.lowfi.ensemble.request import Ensemble
@@ -29,7 +29,7 @@ from tipoff.studies.ensemble import sensitivity, summary
 from tipoff.studies.ensemble.options import Options
 from tipoff.studies.ensemble.sensitivity import Sensitivity
 from tipoff.studies.ensemble.summary import Statistics
-from tipoff.studies.populations import exceedance, instant
+from tipoff.studies.populations import exceedance, instant, population
 from tipoff.studies.populations.instant import Instant
 from tipoff.workspace import kernel_marks, machine, words
 from tipoff.workspace.progress import Board, say
@@ -146,7 +146,7 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
         "lowfi", "ensemble", scene=scene, numerics=numerics, calibration=fitted, compliance=found
     )
     with kernel_marks.first_use(like, many=True):
-        ensemble = pilot.settled(asked, path)
+        ensemble = population.chosen_modes("ensemble", asked, path)
     if ensemble.modes_why:
         say(f"modes of each rail {ensemble.modes_why}")
     return ensemble, path

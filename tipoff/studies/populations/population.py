@@ -11,6 +11,7 @@ population, so two results never differ by modes.
 """
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -211,6 +212,12 @@ def model_line(found: Answering) -> str:
     return f"model {model_words(found)}; agreement: {found.agreement}; rates {at}"
 
 
+def chosen_modes(name: str, ensemble: Ensemble, store: Path | None = None) -> Ensemble:
+    """``lowfi.ensemble.pilot.settled`` with progress under the ``name`` of a study."""
+    with Board(name, 1) as board:
+        return pilot.settled(ensemble, store, board.callback("pilot cases"))
+
+
 def run(
     study: Study, name: str, model: Surrogate, source, tolerance: float = TOLERANCE
 ) -> Population:
@@ -228,7 +235,7 @@ def run(
         compliance=model.compliance,
     )
     with kernel_marks.first_use(like, many=True):
-        ensemble = pilot.settled(asked, path)
+        ensemble = chosen_modes(name, asked, path)
     try:
         store = ensemble.store(path)
         label = f"{name}, {store.asked:,} cases"

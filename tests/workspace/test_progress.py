@@ -1,0 +1,42 @@
+"""Progress off a terminal: a line for each finished run, and in long work a line now and then."""
+
+import time
+
+from tipoff.workspace.progress import Board
+
+
+def test_long_work_off_a_terminal_says_how_far_it_is(monkeypatch, capsys):
+    """Without a terminal there is no bar. Studies of minutes were silent there until their end."""
+    now = [100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    with Board("limits", 2) as board:
+        report = board.callback("search")
+        for taken, share in (
+            (0.0, 0.0),
+            (9.9, 0.1),
+            (10.0, 0.25),
+            (15.0, 0.5),
+            (20.0, 0.75),
+            (85.0, 0.8),
+        ):
+            now[0] = 100.0 + taken
+            report(share)
+        board.finished("search", "done")
+        for taken in (130.0, 145.0, 206.0):
+            now[0] = 100.0 + taken
+            board.callback("check")(0.5)
+    assert capsys.readouterr().err.splitlines() == [
+        "  limits 0/2  search 25% after 10 s, 70 s left",
+        "  limits 0/2  search 75% after 20 s, 33 s left",
+        "  limits 0/2  search 80% after 85 s, 2 min left",
+        "  limits 1/2  search: done",
+        "  limits 1/2  check 50% after 2 min, 48 s left",
+        "  limits 1/2  check 50% after 3 min, 69 s left",
+    ]
+
+
+def test_short_work_says_nothing_but_its_end(capsys):
+    with Board("run", 1) as board:
+        board.callback("nominal")(0.5)
+        board.finished("nominal", "exited")
+    assert capsys.readouterr().err == "  run 1/1  nominal: exited\n"
