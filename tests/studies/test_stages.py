@@ -38,6 +38,23 @@ def test_area_of_curved_triangles():
     assert area(points, np.array([[0, 1, 2, 3, 4, 5]])) == pytest.approx(np.pi, rel=0.02)
 
 
+def test_ablation_of_a_settled_scene_leaves_out_what_holds_its_payload():
+    """Without weight or walls nothing rests. Both lines were refused, and with them the whole study."""
+    resting = {"platform": None, "gravity.z": "-9.81 m/s**2", "initial.settled": True}
+    scene = scenes.load("tiny").condition("phi15").replace(resting)
+    lines = ablation.variants(scene)
+    settled = {line: scene.replace(changes).initial for line, changes in lines.items()}
+    assert {line for line in lines if line.endswith(", not settled")} == {
+        "without contact, not settled",
+        "without gravity, not settled",
+    }
+    assert all(
+        start is None or start.settled != line.endswith(", not settled")
+        for line, start in settled.items()
+    )
+    assert settled["without initial"] is None and settled["no effect"] is None
+
+
 def test_ablation_takes_every_effect_away_once():
     # a hold-down is added to no scene: its release depends on the thrust
     scene = scenes.load("tiny").condition("phi15").replace({"hold_down.release": "500 N"})

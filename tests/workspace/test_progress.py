@@ -15,24 +15,39 @@ def test_long_work_off_a_terminal_says_how_far_it_is(monkeypatch, capsys):
             (0.0, 0.0),
             (9.9, 0.1),
             (10.0, 0.25),
-            (15.0, 0.5),
-            (20.0, 0.75),
-            (85.0, 0.8),
+            (29.0, 0.5),
+            (30.0, 0.75),
+            (69.0, 0.8),
         ):
             now[0] = 100.0 + taken
             report(share)
+        now[0] = 180.0
         board.finished("search", "done")
-        for taken in (130.0, 145.0, 206.0):
+        for taken, share in ((119.0, 0.0), (120.0, 0.0), (179.0, 0.5), (180.0, 0.5)):
             now[0] = 100.0 + taken
-            board.callback("check")(0.5)
+            board.callback("check")(share)
     assert capsys.readouterr().err.splitlines() == [
         "  limits 0/2  search 25% after 10 s, 70 s left",
-        "  limits 0/2  search 75% after 20 s, 33 s left",
-        "  limits 0/2  search 80% after 85 s, 2 min left",
+        "  limits 0/2  search 75% after 30 s, 50 s left",
         "  limits 1/2  search: done",
-        "  limits 1/2  check 50% after 2 min, 48 s left",
-        "  limits 1/2  check 50% after 3 min, 69 s left",
+        "  limits 1/2 after 2 min, 2 min left",
+        "  limits 1/2  check 50% after 3 min, 60 s left",
     ]
+
+
+def test_a_line_names_a_few_of_many_runs(monkeypatch, capsys):
+    now = [0.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    with Board("kernels", 8) as board:
+        for name in "abcde":
+            board.callback(name)(0.5)
+        board.callback("waiting")(0.0)
+        now[0] = 12.0
+        board.callback("e")(0.5)
+    assert (
+        capsys.readouterr().err
+        == "  kernels 0/8  a 50%, b 50%, c 50% and 2 more after 12 s, 26 s left\n"
+    )
 
 
 def test_short_work_says_nothing_but_its_end(capsys):

@@ -19,9 +19,10 @@ from rich.progress import (
 
 console = Console(stderr=True, highlight=False)
 _SHOWN_AFTER = 2.0  # s; shorter work gets no bar
-# s, of the first line off a terminal, and the longest time between two; each is at twice the time of the last
+# s without a line off a terminal, at first and at most; it doubles with each line
 _NOTED_AFTER, _NOTED_EVERY = 10.0, 60.0
 _LEAST_KNOWN = 0.02  # share done from which the time left is stated
+_NAMED = 3  # runs in such a line
 
 
 class Interrupted(Exception):
@@ -38,7 +39,8 @@ class Board:
         self._fractions: dict[str, float] = {}
         self._bars: Progress | None = None
         self._tasks: dict[str, TaskID] = {}
-        self._started, self._next_note = time.monotonic(), _NOTED_AFTER
+        self._started = self._said = time.monotonic()
+        self._silence = _NOTED_AFTER  # s, until the next line without a bar
 
     def __enter__(self) -> "Board":
         if console.is_terminal:
@@ -81,15 +83,17 @@ class Board:
             self._fractions.pop(label, None)
             if self._bars is not None and label in self._tasks:
                 self._bars.remove_task(self._tasks.pop(label))
+            self._said = time.monotonic()
             say(f"  {self._title} {self._done}/{self._total}  {label}: {note}")
             self._draw()
 
     def _draw(self) -> None:
-        taken = time.monotonic() - self._started
+        now = time.monotonic()
         if self._bars is None:
-            self._note(taken)
+            if now - self._said >= self._silence:
+                self._note(now)
             return
-        if taken < _SHOWN_AFTER:
+        if now - self._started < _SHOWN_AFTER:
             return
         self._bars.start()
         if "" not in self._tasks and self._total > 1:
@@ -101,17 +105,16 @@ class Board:
                 self._tasks[label] = self._bars.add_task(f"  {label}", total=1.0)
             self._bars.update(self._tasks[label], completed=fraction)
 
-    def _note(self, taken: float) -> None:
-        """A line about the runs in progress after ``taken`` s, if one is due."""
-        if taken < self._next_note or not self._fractions:
-            return
-        self._next_note = taken + min(taken, _NOTED_EVERY)
-        done = (self._done + sum(self._fractions.values())) / self._total
+    def _note(self, now: float) -> None:
+        """A line about the runs in progress."""
+        self._said, self._silence = now, min(2.0 * self._silence, _NOTED_EVERY)
+        taken, begun = now - self._started, sum(self._fractions.values())
+        done = (self._done + begun) / self._total
         left = f", {_duration(taken * (1.0 / done - 1.0))} left" if done > _LEAST_KNOWN else ""
-        under_way = ", ".join(f"{label} {share:.0%}" for label, share in self._fractions.items())
-        say(
-            f"  {self._title} {self._done}/{self._total}  {under_way} after {_duration(taken)}{left}"
-        )
+        shares = [f"{label} {share:.0%}" for label, share in self._fractions.items() if share > 0.0]
+        more = f" and {len(shares) - _NAMED} more" if len(shares) > _NAMED else ""
+        under_way = f"  {', '.join(shares[:_NAMED])}{more}" if shares else ""
+        say(f"  {self._title} {self._done}/{self._total}{under_way} after {_duration(taken)}{left}")
 
 
 def _duration(seconds: float) -> str:

@@ -18,7 +18,9 @@ from typing import Annotated
 import numpy as np
 
 from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes import settled
 from tipoff.scenes.effects.registry import EFFECTS
+from tipoff.scenes.faults import SceneError
 from tipoff.scenes.scene import Scene
 from tipoff.studies.render.column import Column
 from tipoff.workspace import machine
@@ -73,8 +75,20 @@ def variants(scene: Scene) -> dict[str, dict]:
     lines = {"all effects": everything}
     for effect in present:
         kept = {key: value for key, value in everything.items() if not key.startswith(f"{effect}.")}
-        lines[f"without {effect}"] = kept | {effect: None}
+        lines |= _without(scene, effect, kept | {effect: None})
     return lines | {"as the scene asks": {}, "no effect": dict.fromkeys(present)}
+
+
+def _without(scene: Scene, effect: str, changes: dict) -> dict[str, dict]:
+    """The line of ``scene`` with ``changes`` that leave out an ``effect``. A payload that cannot rest on
+    its rails without it starts at its nominal place, and the line says so."""
+    line = f"without {effect}"
+    if effect != "initial" and settled.is_settled(scene):
+        try:
+            settled.require(scene.replace(changes))
+        except SceneError:
+            return {f"{line}, not settled": changes | {"initial.settled": False}}
+    return {line: changes}
 
 
 def run(study: Study) -> dict:
