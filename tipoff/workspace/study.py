@@ -24,6 +24,7 @@ from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.names import NOMINAL
 from tipoff.scenes.scene import Scene
 from tipoff.workspace import words
+from tipoff.workspace.errors import NotAsked as NotAsked
 from tipoff.workspace.errors import StudyError as StudyError
 from tipoff.workspace.kernel_process import compiled_beside
 from tipoff.workspace.progress import say
@@ -75,18 +76,14 @@ class Study:
         return self.scene.condition(name)
 
     def fitted(self) -> list[str]:
-        """Names of the fitted conditions. Raises SceneError if there are none."""
+        """Names of the fitted conditions. Raises NotAsked if there are none."""
         if not self.scene.agreement.fitted:
-            raise SceneError(
-                [
-                    Fault(
-                        self.scene.name,
-                        "agreement.fitted",
-                        "nothing",
-                        "at least one condition to calibrate on",
-                    )
-                ]
+            known = ", ".join(self.scene.conditions) or "none yet: state [conditions.NAME]"
+            expected = (
+                'at least one condition on which springs are calibrated, as in [agreement] fitted = ["NAME"]; '
+                f"conditions of this scene: {known}"
             )
+            raise NotAsked([Fault(self.scene.name, "agreement.fitted", "nothing", expected)])
         return list(self.scene.agreement.fitted)
 
     def highfi(

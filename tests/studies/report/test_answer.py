@@ -117,6 +117,8 @@ def test_agreement_speed_and_trust(page):
     equal = replace(made.EQUAL, surer=False, element_size_m=4e-3)
     page.documents["convergence"] = stub.document(equal=equal)
     assert "at least, at equal accuracy (mesh of 4 mm)" in html(answer.draw(page))
+    del page.documents["agreement"]
+    assert "Model: surrogate and finite elements were not compared" in html(answer.draw(page))
 
 
 def test_conditions_judged_as_distributions_are_said_apart(page):

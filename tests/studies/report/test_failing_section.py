@@ -1,5 +1,7 @@
 """A section, a result or a figure that fails leaves the others, and the command exits with 1."""
 
+import re
+
 import pytest
 import typer
 from markupsafe import Markup
@@ -133,6 +135,31 @@ def test_a_result_that_the_scene_does_not_allow_leaves_the_page(
         assert caught.value.exit_code == code and page.exists() == (code == 1)
     assert "calibration: 1 fault in the scene" in capsys.readouterr().err
     assert "agreement.fitted: given nothing" in page.read_text()
+
+
+def test_a_scene_without_conditions_to_compare_has_a_page_without_faults(
+    tmp_path, monkeypatch, quick, capsys
+):
+    """Its page began with three faults about agreement.fitted, and the command ended with 1."""
+    alone = {"agreement.fitted": [], "agreement.held_out": [], "conditions": None}
+    scene = scenes.load("tiny").replace({"agreement.floor": [], "agreement.refined": []} | alone)
+    study = Study(scene, tmp_path / "tiny", defaults("tiny"))
+    comparing = [
+        item
+        for item in registry.results()
+        if item.name in ("calibration", "agreement", "cost_study")
+    ]
+
+    def made(_):
+        study.path("highfi.json").parent.mkdir(exist_ok=True)
+        study.path("highfi.json").write_text("{}")
+        return {"key": "k", "conditions": [], "failed": []}
+
+    monkeypatch.setattr(stage, "results", lambda: [Result("highfi", made), *comparing])
+    found, html = stage.run(study), study.path("report.html").read_text()
+    assert len(comparing) == 3 and found["failed"] == [] and "agreement.fitted" not in html
+    assert re.search(r"Not made: [^.]*\bcalibrate\b", html)
+    assert capsys.readouterr().err.count("since the scene has no [agreement]") == 3
 
 
 def test_figures_that_fail_lose_no_result(tmp_path):

@@ -370,6 +370,8 @@ def _model(compared: dict[str, verdicts.Row]) -> list[str]:
         f"{number(max(errors), '.2g', LEAST)} deg/s of the finite elements; "
         if errors
         else "model: no condition can be judged as a curve; "
+        if compared
+        else "model: surrogate and finite elements were not compared (tipoff compare); "
     )
     if chaotic:
         found += f"as distributions {alike} of {len(chaotic)} conditions agree; "

@@ -19,7 +19,7 @@ from tipoff.studies.runs import stage as runs
 from tipoff.workspace.attempt import attempt
 from tipoff.workspace.progress import say
 from tipoff.workspace.run import Run
-from tipoff.workspace.study import Study, StudyError
+from tipoff.workspace.study import NotAsked, Study, StudyError
 
 
 def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict:
@@ -27,7 +27,8 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
     of text, ``verdict`` is one sentence on the agreement of both models, ``failed`` contains the
     failures of all stages and sections.
 
-    The page has all other results and sections if one fails, or if the scene does not allow one.
+    The page has all other results and sections if one fails, or if the scene does not allow one. The
+    comparison of both models is made if the scene asks for it.
     Raises InputError, before a result is made, if the scene does not allow a required one. With
     ``every``, each study without a present result is made too; the page gives the reason if the
     scene does not allow a study. The page states whether the rates are within ``limits``.
@@ -39,9 +40,13 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
     for name, make_result, stored, _ in listed:
         if make_result is None or stored is not None:
             continue
-        passing = () if any(documents.values()) else InputError
-        documents[name], reason = attempt(name, partial(make_result, study), passing)
-        problems |= {name: reason} if reason else {}
+        passing = NotAsked if any(documents.values()) else InputError
+        try:
+            documents[name], reason = attempt(name, partial(make_result, study), passing)
+            problems |= {name: reason} if reason else {}
+        except NotAsked:
+            documents[name] = None
+            say(f"{name}: not made, since the scene has no [agreement] with fitted conditions")
     absent, failed = _made(study, listed, asked) if every else ({}, {})
     problems |= failed
     there: dict[str, Any] = {}
