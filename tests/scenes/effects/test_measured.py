@@ -8,7 +8,7 @@ from tipoff.scenes import csv_file, parse
 pytestmark = pytest.mark.case("X19")
 
 CURVES = {
-    "unsorted": ("time_s,force_N\n0,0\n2,5\n1,0\n", "increasing order"),
+    "unsorted": ("time_s,force_N\n0,0\n2,5\n1,0\n", "increasing order (line 4)"),
     "one time": ("time_s,force_N\n0,0\n0,5\n", "at least two different times"),
     "one time thrice": ("time_s,force_N\n0,0\n1,5\n1,6\n1,7\n2,0\n", "at most two rows"),
     "one row": ("time_s,force_N\n0,0\n", "at least two different times"),

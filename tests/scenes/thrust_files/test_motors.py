@@ -115,9 +115,15 @@ def test_several_motors_without_a_name_are_listed(tmp_path):
         (M1670.replace("M1670-BS 75 757 0", "M1670-BS 75 757"), "first (line 1"),
         (M1670.replace("0.15 2200", "0.15 2200 5"), "line 5: '0.15 2200 5'"),
         (M1670.replace("0.15 2200", "0.15 2,200"), "line 5"),
-        (M1670.replace("0.15 2200", "0.15 nan"), "finite"),
-        (M1670.replace("0.15 2200", "0.05 2200"), "increasing order"),
-        (M1670.replace("0.055 100", "-0.055 100"), "not negative"),
+        (
+            M1670.replace("0.15 2200", "0.15 abc").replace("3.3 530", "3.3 530 N"),
+            "(line 5: '0.15 abc', line 14: '3.3 530 N')",
+        ),
+        (M1670.replace("0.15 2200", "0.15 nan"), "finite numbers (line 5)"),
+        (M1670.replace("0.15 2200", "0.05 2200"), "increasing order (line 5)"),
+        (M1670.replace("0.055 100", "-0.055 100"), "scene begins (line 2)"),
+        (M1670.replace("0.5 1950", "0.5 -1950"), "of a motor that are not negative (line 7)"),
+        (M1670.replace("0.2 1800", "0.15 1800\n0.15 1700"), "two rows for a jump (line 7)"),
         ("M1670-BS 75 757 0 3.101 5.231 CTI\n", "at least two different times"),
     ],
 )
@@ -166,7 +172,8 @@ OUTSIDE = """<!DOCTYPE x [<!ENTITY e SYSTEM "file:///etc/hostname">]>
         ('<?xml version="1.0" encoding="no-such"?>' + E18, "encoding"),
         (E18.replace('f="30."', 'f="thirty"'), "each eng-data (line 14: t='0.4' f='thirty')"),
         (E18.replace('f="30."', ""), "f=''"),
-        (E18.replace('f="30."', 'f="inf"'), "finite"),
+        (E18.replace('f="30."', 'f="inf"'), "finite numbers (line 14)"),
+        (E18.replace('f="30."', 'f="-3"').replace('f="8."', 'f="-8."'), "negative (lines 14, 17)"),
     ],
 )
 def test_rocksim_files_that_cannot_be_are_refused(tmp_path, text, words):

@@ -186,7 +186,7 @@ REFUSED = {
         {},
         "3 cells in every row (line 4",
     ),
-    "times before zero": ("Time [s],Force [N]\n-1,0\n1,5\n", {}, "or thrust.ignition"),
+    "times before zero": ("Time [s],Force [N]\n-1,0\n1,5\n", {}, "scene begins (line 2)"),
     "ignition outside": (
         "Time [s],Force [N]\n-1,0\n1,5\n",
         {"ignition": "1 s"},

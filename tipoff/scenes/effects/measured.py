@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -11,7 +12,7 @@ import scipy  # its submodules load at their first use
 
 from tipoff.files import read_input
 from tipoff.scenes.thrust_files import reader
-from tipoff.scenes.thrust_files.record import ANYTHING, SECTION, Choice
+from tipoff.scenes.thrust_files.record import ANYTHING, SECTION, Choice, Record
 
 FIT_IMPULSE = 0.02  # of the impulse of a curve: largest error of its fit by default
 
@@ -66,22 +67,32 @@ def read_record(
 def _parsed(
     path: str, data: bytes, choice: Choice, may_begin_early: bool
 ) -> tuple[MeasuredCurve, str]:
-    time, force, words, faults = reader.read(path, data, choice)
-    wrong = list(faults)
-    if not wrong and not (np.isfinite(time).all() and np.isfinite(force).all()):
-        wrong.append("finite numbers")
+    found = reader.read(path, data, choice)
+    time, wrong = found.time, list(found.faults)
+    for is_wrong, expected in _expected(found, may_begin_early):
+        if is_wrong.any():
+            wrong.append(f"{expected} ({found.where(is_wrong)})")
     if np.unique(time).size < 2:
         wrong.append("at least two different times")
-    if (time < 0.0).any() and not may_begin_early:
-        wrong.append("times that are not negative, or thrust.ignition, where a scene begins")
-    steps = np.diff(time[np.isfinite(time)])
-    if (steps < 0.0).any():
-        wrong.append("times in increasing order")
-    if ((steps[1:] == 0.0) & (steps[:-1] == 0.0)).any():
-        wrong.append("each time in at most two rows (two are a jump)")
     if wrong:
         raise ValueError(f"a curve with {', '.join(wrong)}; {SECTION}")
-    return MeasuredCurve(time, force), words
+    return MeasuredCurve(time, found.force), found.words
+
+
+def _expected(found: Record, may_begin_early: bool) -> Iterator[tuple[np.ndarray, str]]:
+    """Points (n,) of a record that are wrong, and what is expected of them."""
+    time, force = found.time, found.force
+    if not found.faults:  # which name numbers that could not be read
+        yield ~(np.isfinite(time) & np.isfinite(force)), "finite numbers"
+    if not may_begin_early:
+        yield time < 0.0, "times that are not negative, or thrust.ignition where a scene begins"
+    steps = np.diff(time, prepend=-np.inf)
+    yield steps < 0.0, "times in increasing order"
+    repeats = steps == 0.0
+    again = repeats & np.append(False, repeats[:-1])
+    yield again, "each time in at most two rows for a jump"
+    if found.is_motor:
+        yield force < 0.0, "thrusts of a motor that are not negative"
 
 
 def from_ignition(curve: MeasuredCurve, ignition: float | None) -> MeasuredCurve:

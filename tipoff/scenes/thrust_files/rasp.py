@@ -12,6 +12,7 @@ import numpy as np
 from tipoff.scenes.thrust_files.record import SECTION, Choice, Record, chosen
 
 _WORDS = 7  # of a header; a maker may have several words
+_SHOWN = 5  # wrong lines in a message
 _LAYOUT = "'name diameter length delays propellant_mass total_mass maker'"
 
 
@@ -19,6 +20,7 @@ class _Motor(NamedTuple):
     header: list[str]
     time: list[float]
     force: list[float]
+    lines: list[int]
 
 
 def read(data: bytes, choice: Choice) -> Record:
@@ -27,27 +29,39 @@ def read(data: bytes, choice: Choice) -> Record:
     motors = _motors(data)
     motor = motors[chosen([(m.header[0], m.header[6]) for m in motors], choice.motor)]
     name, maker, propellant = motor.header[0], " ".join(motor.header[6:]), motor.header[4]
-    time, force = np.array(motor.time), np.array(motor.force)
+    time, force, lines = np.array(motor.time), np.array(motor.force), motor.lines
     if time.size and time[0] > 0.0:
-        time, force = np.insert(time, 0, 0.0), np.insert(force, 0, 0.0)
-    return Record(time, force, f"RASP, motor {name} of {maker}, propellant {propellant} kg")
+        time, force, lines = np.insert(time, 0, 0.0), np.insert(force, 0, 0.0), [lines[0], *lines]
+    words = f"RASP, motor {name} of {maker}, propellant {propellant} kg"
+    return Record(time, force, words, tuple(lines), is_motor=True)
 
 
 def _motors(data: bytes) -> list[_Motor]:
     found: list[_Motor] = []
+    wrong: list[str] = []
     for number, line in enumerate(_text(data).splitlines(), start=1):
         words = line.partition(";")[0].split()
         if not words:
             continue
         point = _numbers(words)
         if len(words) >= _WORDS and (len(words) > len(point) or not found):
-            found.append(_Motor(words, [], []))
+            found.append(_Motor(words, [], [], []))
         elif len(words) == len(point) == 2 and found:
             found[-1].time.append(point[0])
             found[-1].force.append(point[1])
+            found[-1].lines.append(number)
+        elif not found:
+            raise ValueError(
+                f"a RASP file with {_LAYOUT} first (line {number}: {line[:80]!r}); {SECTION}"
+            )
         else:
-            wanted = f"a point 'time thrust' or a header {_LAYOUT}" if found else f"{_LAYOUT} first"
-            raise ValueError(f"a RASP file with {wanted} (line {number}: {line[:80]!r}); {SECTION}")
+            wrong.append(f"line {number}: {line[:80]!r}")
+    if wrong:
+        more = f" and {len(wrong) - _SHOWN} more lines" if len(wrong) > _SHOWN else ""
+        raise ValueError(
+            f"a RASP file with a point 'time thrust' or a header {_LAYOUT} in each line "
+            f"({', '.join(wrong[:_SHOWN])}{more}); {SECTION}"
+        )
     return found
 
 

@@ -10,6 +10,7 @@ from tipoff.scenes.instrument_table import PAGE
 
 SECTION = f"see {PAGE}, section Thrust"
 _LISTED = 20  # names of motors in a message
+_SHOWN = 5  # lines in a message
 
 
 class Choice(NamedTuple):
@@ -33,13 +34,21 @@ ANYTHING = Choice()
 
 
 class Record(NamedTuple):
-    """time (n,) s and force (n,) N; what was read in words, empty for the layout of tipoff; what is
-    wrong with the numbers."""
+    """time (n,) s and force (n,) N; what was read in words, empty for the layout of tipoff; the line of
+    each point in its file; what is wrong with the numbers; whether it is a motor, which cannot pull."""
 
     time: np.ndarray
     force: np.ndarray
     words: str
+    lines: tuple[int, ...]
     faults: tuple[str, ...] = ()
+    is_motor: bool = False
+
+    def where(self, wrong: np.ndarray) -> str:
+        """The lines of the ``wrong`` points (n,)."""
+        lines = [str(line) for line, is_wrong in zip(self.lines, wrong, strict=True) if is_wrong]
+        more = f" and {len(lines) - _SHOWN} more" if len(lines) > _SHOWN else ""
+        return f"line{'s' if len(lines) > 1 else ''} {', '.join(lines[:_SHOWN])}{more}"
 
 
 def chosen(names: Sequence[tuple[str, str]], wanted: str | None) -> int:

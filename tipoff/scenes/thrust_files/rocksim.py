@@ -36,7 +36,8 @@ def read(data: bytes, choice: Choice) -> Record:
     time, force = np.array(points).reshape(-1, 2).T
     stated = engine.attributes.get("Itot")
     impulse = f", {stated} N s by the file" if stated else ""
-    return Record(time, force, f"RockSim, motor {code} of {maker}{impulse}")
+    lines = tuple(line for line, *_ in engine.points)
+    return Record(time, force, f"RockSim, motor {code} of {maker}{impulse}", lines, is_motor=True)
 
 
 def _engines(data: bytes) -> list[_Engine]:

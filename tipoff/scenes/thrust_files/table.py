@@ -50,7 +50,7 @@ def read(path: str, data: bytes, choice: Choice) -> Record:
     wrong = tuple(f"{f.expected} ({f.key}: {f.given})" for f in faults)
     if any("," in fault.given for fault in faults):
         wrong += ("a comma only as decimal comma, which cannot be a mark of thousands",)
-    return Record(time, force, said, wrong)
+    return Record(time, force, said, tuple(number for number, _ in table.rows), wrong)
 
 
 def _candidates(table: Written, kind: str, name: str | None) -> list[int]:
