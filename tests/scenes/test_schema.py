@@ -98,6 +98,12 @@ def test_quantities_are_text_with_examples_in_their_unit():
     for table in ROOT["$defs"].values():
         for item in table.get("properties", {}).values():
             assert all(re.match(item["pattern"], text) for text in item.get("examples", ()))
+            # examples were chosen by the name of the key alone: "-0.10 m" for a rate about x
+            unit = item.get("description", "").removeprefix("quantity in ")
+            for text in item.get("examples", ()) if unit != "its unit" else ():
+                to_si(text, unit)
+    rate = ROOT["$defs"]["AngularRate"]["properties"]["x"]
+    assert rate["examples"] == ["5 deg/s"]
     condition = ROOT["properties"]["conditions"]["additionalProperties"]["anyOf"][1]
     assert "thrust_offset.misalignment.radial" in condition["properties"]
     json.dumps(ROOT, allow_nan=False)

@@ -11,6 +11,7 @@ from typing import Any
 
 from tipoff.scenes import overrides, suggestions
 from tipoff.scenes.scene import Scene
+from tipoff.scenes.units import to_si
 
 _NUMBER = r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?"
 QUANTITY = rf"^(absent|\s*{_NUMBER}\s*[^\s\d.+-].*)$"
@@ -75,7 +76,7 @@ def _of_file(node: Any, name: str = "") -> Any:
 
 def _quantity(node: dict, name: str) -> dict:
     unit = node.get("unit", "its unit")
-    examples = [text for text in _written(name) if re.match(QUANTITY, text)]
+    examples = _examples(name, unit)
     described = {"description": f"quantity in {unit}"} | (
         {"examples": examples} if examples else {}
     )
@@ -90,15 +91,28 @@ def _quantity(node: dict, name: str) -> dict:
     }
 
 
-def _written(name: str) -> list[str]:
-    """Texts in scenes of the catalogue under keys of this ``name``."""
-    return list(
-        dict.fromkeys(
-            text
-            for key, text in suggestions.written().items()
-            if name and key.rpartition(".")[2] == name
-        )
-    )[:3]
+def _examples(name: str, unit: str) -> list[str]:
+    """Texts in scenes of the catalogue under keys of this ``name`` with the dimension of ``unit``, or a
+    common one."""
+    found = dict.fromkeys(
+        text
+        for key, text in suggestions.written().items()
+        if name and key.rpartition(".")[2] == name and _has_dimension(text, unit)
+    )
+    common = suggestions.COMMON.get(unit)
+    return list(found)[:3] or ([common] if name and common else [])
+
+
+def _has_dimension(text: str, unit: str) -> bool:
+    if not re.match(QUANTITY, text):
+        return False
+    if unit == "its unit":
+        return True
+    try:
+        to_si(text, unit)
+    except ValueError:
+        return False
+    return True
 
 
 def _pattern(pad: dict) -> dict:

@@ -16,7 +16,18 @@ from tipoff.scenes.table import Table
 
 _EXAMPLE = re.compile('for example "[^"]*"')
 # for keys that are in no scene of the catalogue
-_WRITTEN = {"m": "1 mm", "rad": "0.1 deg", "rad/s": "5 deg/s", "s": "1 ms", "Pa": "70 GPa"}
+COMMON = {
+    "m": "1 mm",
+    "m/s": "1 m/s",
+    "rad": "0.1 deg",
+    "rad/s": "5 deg/s",
+    "s": "1 ms",
+    "K/m": "10 K/m",
+    "N": "100 N",
+    "N/m": "100 N/mm",
+    "N*s/m": "10 N*s/m",
+    "Pa": "70 GPa",
+}
 
 
 def expected(annotation: Any, key: str, words: str) -> str:
@@ -73,7 +84,7 @@ def _example(annotation: Any, key: str) -> str | None:
     key = _bare(key)
     if (found := written().get(key)) is not None:
         return found
-    return _WRITTEN.get(overrides.unit(annotation, key) or "")
+    return COMMON.get(overrides.unit(annotation, key) or "")
 
 
 @functools.cache

@@ -21,6 +21,7 @@ console = Console(stderr=True, highlight=False)
 _SHOWN_AFTER = 2.0  # s; shorter work gets no bar
 # s without a line off a terminal, at first and at most; it doubles with each line
 _NOTED_AFTER, _NOTED_EVERY = 10.0, 60.0
+_LOOKED_EVERY = 1.0  # s, whether a line is due, since a run that compiles reports nothing
 _LEAST_KNOWN = 0.02  # share done from which the time left is stated
 _NAMED = 3  # runs in such a line
 
@@ -41,6 +42,7 @@ class Board:
         self._tasks: dict[str, TaskID] = {}
         self._started = self._said = time.monotonic()
         self._silence = _NOTED_AFTER  # s, until the next line without a bar
+        self._over = threading.Event()
 
     def __enter__(self) -> "Board":
         if console.is_terminal:
@@ -54,9 +56,12 @@ class Board:
                 console=console,
                 transient=True,
             )
+        else:
+            threading.Thread(target=self._look, daemon=True).start()
         return self
 
     def __exit__(self, *_) -> None:
+        self._over.set()
         if self._bars is not None:
             self._bars.stop()
 
@@ -86,6 +91,11 @@ class Board:
             self._said = time.monotonic()
             say(f"  {self._title} {self._done}/{self._total}  {label}: {note}")
             self._draw()
+
+    def _look(self) -> None:
+        while not self._over.wait(_LOOKED_EVERY):
+            with self._lock:
+                self._draw()
 
     def _draw(self) -> None:
         now = time.monotonic()
