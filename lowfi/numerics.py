@@ -109,8 +109,8 @@ class Numerics:
         cls, relative_tolerance: float, modes: int | str = AUTO, model: str = COMPLIANT
     ) -> "Numerics":
         """Numerics of each of many cases of a ``model``: at a tolerance above the default, compliant
-        contact has fewer cells and patterns, whose error is as large. Raises ValueError for values
-        out of range."""
+        contact has fewer cells and patterns, whose errors are in docs/howto/ensembles.md. Raises
+        ValueError for values out of range."""
         made = cls(relative_tolerance=relative_tolerance, modes=modes)
         if relative_tolerance <= _TOLERANCE or model != COMPLIANT:
             return made

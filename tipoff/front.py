@@ -248,7 +248,7 @@ def compliance(
         scene: the scene; only its rail and pads matter.
         element_size: size of the elements (m, or text with a unit); by default that of the
             reference, which the scene may state (``[studies]``).
-        degree: of the polynomials of pressure and displacement on a pad face, 2 to 4. A run may
+        degree: of the polynomials of pressure and displacement on a pad face, 2 to 5. A run may
             have a lower one.
 
     Returns:

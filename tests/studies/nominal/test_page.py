@@ -23,7 +23,7 @@ def answered(*rate) -> dict:
     outcome = flight().outcome._replace(
         rate=np.radians(rate).tolist(), velocity=[13.64567, 0.1, 0.0], exit_time=0.0123
     )
-    return answer(row("nominal", flight(outcome=outcome, cost=COSTS), ""))
+    return answer(row("nominal", flight(outcome=outcome, cost=COSTS), ""), "settled")
 
 
 def ends(name) -> Range:
@@ -66,6 +66,28 @@ def test_what_the_numbers_are_is_said(found):
     assert len(lines) == 9 and "m/s; 95 % of launches: 1.00 to 10.40 m/s" in lines[5]
 
 
+def test_rates_of_a_motor_that_burns_on_are_those_at_the_exit(found):
+    """Those after burnout are those of the thrust. Control: the settled ones of the same runs differ."""
+    outcome = flight().outcome._replace(
+        rate=np.radians([9.0, 9.0, 9.0]).tolist(),
+        velocity=[30.0, 0.0, 0.0],
+        exit_time=0.0123,
+        exit_rate=np.radians([0.0, 3.0, 4.0]).tolist(),
+        exit_velocity=[6.0, 0.0, 0.0],
+    )
+    burning = row("nominal", flight(outcome=outcome, cost=COSTS), "")
+    at_exit, settled = (answer(burning, at) for at in ("exit", "settled"))
+    assert at_exit["rate_deg_s"] == pytest.approx(5.0) and at_exit["velocity_x_m_s"] == 6.0
+    assert settled["rate_deg_s"] == pytest.approx(9.0 * 3.0**0.5)
+    answers = dict.fromkeys(found.answer, at_exit)
+    spread_ = replace(found.spread, at="exit")
+    shown = replace(found, answer=answers, spread=spread_, at="exit", at_why="because it burns on")
+    said = html(page.draw(shown))
+    assert "after the exit, because it burns on, rates inertial" in said and "burnout" not in said
+    assert page.lines(shown)[0] == "The scene itself, at the exit, because it burns on:"
+    assert ", at the exit. The ends of" in said
+
+
 def test_without_errors_no_range_is_claimed(found):
     found = replace(found, spread=None)
     assert page.figures(found)[0] == ("3.00 deg/s", "total rate")
@@ -78,7 +100,7 @@ def test_a_run_that_does_not_settle_is_no_number(found):
     said = html(page.draw(found))
     assert "The scene itself, by compliant contact" in said
     assert "The run of finite-elements did not settle: jammed" in said
-    found.answer["compliant"] = answer(replace(found.rows[0], settled=None))
+    found.answer["compliant"] = answer(replace(found.rows[0], settled=None), "settled")
     found = replace(found, rows=ended("jammed", "time_limit"))
     assert page.figures(found)[0][0] == "–"
     assert (

@@ -12,7 +12,7 @@ import tipoff
 from tests.studies import free_flight
 from tests.studies.shown import html
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
-from tipoff.scenes.scene import NOMINAL
+from tipoff.scenes.names import NOMINAL
 from tipoff.studies.cli import app
 from tipoff.studies.nominal import page, spread, stage
 from tipoff.studies.single import single
@@ -117,8 +117,9 @@ def test_answer_and_range_of_a_small_launcher_are_those_of_its_runs(tmp_path):
     rate = math.degrees(np.linalg.norm(reference.rate))
     assert found["answer"][FINITE_ELEMENTS]["rate_deg_s"] == pytest.approx(rate, rel=1e-9)
     ends, cases = found["spread"]["ranges"]["rate_deg_s"], found["spread"]["cases"]
+    coarse = {"cells": 10, "degree": 2}  # as populations have
     same = tipoff.ensemble(
-        scene, "paper", compliance=compliance, count=cases, seed=found["spread"]["seed"]
+        scene, "paper", compliance=compliance, count=cases, seed=found["spread"]["seed"], **coarse
     )
     quantiles = np.quantile(total_rates(same), [0.025, 0.975])
     # With the tolerance of steps that populations have, rates are within 0.2 % of these.

@@ -3,8 +3,10 @@
 import math
 
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
+from tipoff.mechanics.outcome import EXIT_WINDOW, SETTLE_WINDOW
 from tipoff.studies.nominal.spread import QUANTITIES, Range, Spread
 from tipoff.studies.nominal.stage import Nominal
+from tipoff.studies.populations import instant
 from tipoff.studies.populations.answers import RATES, TOTAL_RATE, Quantity
 from tipoff.studies.render.document import Caption, KeyFigures, Part
 from tipoff.studies.render.uncertain import LEAST, SHARE, STEPS, number, range_of, rounded
@@ -81,11 +83,12 @@ def notes(found: Nominal) -> list[str]:
     of = "finite elements" if reference else "compliant contact" if surrogate else ""
     if not of:
         words = ", ".join(f"{model}: {status}" for model, status in statuses.items())
-        said = [f"The scene itself does not settle ({words})"]
+        ends = "leave" if found.at == instant.EXIT else "settle"
+        said = [f"The scene itself does not {ends} ({words})"]
     else:
         said = [
-            f"The scene itself, by {of}: means over 2 ms after exit and burnout, rates inertial in "
-            "payload body axes, velocity in the initial scene axes"
+            f"The scene itself, by {of}: means {_when(found)}, rates inertial in payload body axes, "
+            "velocity in the initial scene axes"
         ]
     if reference and surrogate:
         apart = max(abs(reference[item.name] - surrogate[item.name]) for item in RATES)
@@ -96,6 +99,12 @@ def notes(found: Nominal) -> list[str]:
     return [*said, *_of_spread(found.spread)]
 
 
+def _when(found: Nominal) -> str:
+    if found.at == instant.EXIT:
+        return f"over {1e3 * EXIT_WINDOW:g} ms after the exit, {found.at_why}"
+    return f"over {1e3 * SETTLE_WINDOW:g} ms after exit and burnout"
+
+
 def _of_spread(spread: Spread | None) -> list[str]:
     if spread is None:
         return [_NO_ERRORS]
@@ -104,7 +113,8 @@ def _of_spread(spread: Spread | None) -> list[str]:
     errors = f"{cases:,} launches of compliant contact with the errors {spread.errors} ({keys})"
     if spread.ranges is None:
         return [f"No range: {counted(spread.settled, 'case')} of {errors} settled"]
-    said = [f"95 % of launches: between the 2.5 and 97.5 % quantiles of {errors}"]
+    at = f", {instant.where(spread.at)}" if spread.at == instant.EXIT else ""
+    said = [f"95 % of launches: between the 2.5 and 97.5 % quantiles of {errors}{at}"]
     if lost:
         said.append(
             f"{lost:,} of them, {number(100.0 * lost / cases, '.2g')} %, did not leave and settle; "
@@ -127,7 +137,8 @@ def lines(found: Nominal) -> list[str]:
         f"  {_meaning(item):<22}{_shown(item, found)} {item.unit}{_under(found.spread, item)}"
         for item in QUANTITIES
     ]
-    return ["The scene itself:", *own, *_of_spread(found.spread)]
+    at = f", {instant.where(found.at)}, {found.at_why}" if found.at == instant.EXIT else ""
+    return [f"The scene itself{at}:", *own, *_of_spread(found.spread)]
 
 
 def ranges(spread: Spread | None) -> list[str]:

@@ -66,8 +66,9 @@ class Range:
 
 @dataclass(frozen=True, kw_only=True)
 class Spread:
-    """``errors``: the file of distributions as named in the scene; ``vary``: its keys; ``ranges``
-    by the names of ``QUANTITIES``, None if fewer than 100 of the ``cases`` settled."""
+    """``errors``: the file of distributions as named in the scene; ``vary``: its keys; ``at``: the
+    instant of velocity and rates; ``ranges`` by the names of ``QUANTITIES``, None if fewer than 100 of
+    the ``cases`` settled."""
 
     errors: str
     vary: tuple[str, ...]
@@ -75,20 +76,21 @@ class Spread:
     cases: int
     settled: int
     model: str
+    at: str
     shares: tuple[float, float]
     ranges: dict[str, Range] | None
     store: str
 
 
 def of(study: Study, scene: Scene) -> Spread | None:
-    """Ranges of ``QUANTITIES`` of ``scene`` by compliant contact; None if the scene states no
-    errors.
+    """Ranges of ``QUANTITIES`` of ``scene`` by compliant contact, at the exit or settled by the rule of
+    ``populations.instant``; None if the scene states no errors.
 
     Raises SceneError for distributions that do not fit the scene, StudyError when the store fails.
     """
     if (stated := uncertainty.of_scene(scene)) is None:
         return None
-    model = Surrogate(scene, None, study.rail_compliance(scene))
+    model = Surrogate(scene, None, study.rail_compliance(scene)).watched(None)
     for cases in CASES:
         asked = Drawn(stated._replace(cases=cases, sampling="random"))
         found = population.run(study, "errors", model, asked)
@@ -103,6 +105,7 @@ def of(study: Study, scene: Scene) -> Spread | None:
         cases=cases,
         settled=int(found.settled.sum()),
         model=COMPLIANT,
+        at=model.instant.at,
         shares=SHARES,
         ranges=ranges,
         store=found.store,

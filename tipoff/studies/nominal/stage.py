@@ -10,6 +10,7 @@ from tipoff.scenes import uncertainty
 from tipoff.scenes.names import NOMINAL
 from tipoff.studies.nominal import spread
 from tipoff.studies.nominal.spread import Spread
+from tipoff.studies.populations import instant
 from tipoff.studies.runs import stage as runs
 from tipoff.studies.runs.results import Row
 from tipoff.workspace.run import Run
@@ -30,11 +31,14 @@ def requests(study: Study) -> dict[str, Run]:
 
 @dataclass(frozen=True, kw_only=True)
 class Nominal:
-    """The scene itself: ``rows`` of both models; ``answer`` of each, the values of
-    ``spread.QUANTITIES`` by name, None if its run did not settle; ``spread`` under random errors,
-    None if the scene states none; ``failed``, a line for each run without success."""
+    """The scene itself: ``rows`` of both models; ``at``: the instant of velocity and rates, and why;
+    ``answer`` of each model, the values of ``spread.QUANTITIES`` by name, None if its run has none
+    there; ``spread`` under random errors, None if the scene states none; ``failed``, a line for each run
+    without success."""
 
     rows: tuple[Row, ...]
+    at: str
+    at_why: str
     answer: dict[str, dict[str, float] | None]
     spread: Spread | None
     failed: tuple[str, ...]
@@ -58,9 +62,14 @@ def run(study: Study) -> dict:
             for model, each in requested.items()
             for line in runs.failure(NOMINAL, each, found[model])
         ]
+        shares = [each.outcome.impulse_after_exit for each in found.values()]
+        share = next((share for share in shares if share is not None), None)
+        taken = instant.chosen(None, share)
         made = Nominal(
             rows=tuple(rows.values()),
-            answer={model: answer(row) for model, row in rows.items()},
+            at=taken.at,
+            at_why=taken.why,
+            answer={model: answer(row, taken.at) for model, row in rows.items()},
             spread=spread.of(study, scene),
             failed=tuple(failed),
         )
@@ -78,11 +87,12 @@ def _inputs(study: Study, _: None) -> list:
 STAGE = Stage(NAME, __name__, inputs=_inputs, result=Nominal)
 
 
-def answer(row: Row) -> dict[str, float] | None:
-    """Values by the names of ``spread.QUANTITIES`` from the row of a run; None if it did not
-    settle."""
-    if (settled := row.settled) is None or row.exit_time_s is None:
+def answer(row: Row, at: str) -> dict[str, float] | None:
+    """Values by the names of ``spread.QUANTITIES`` from the row of a run at an instant; None if it has
+    none there."""
+    seen = row.at_exit if at == instant.EXIT else row.settled
+    if seen is None or row.exit_time_s is None:
         return None
-    rates = settled.rate_deg_s
-    values = (math.hypot(*rates), *rates, settled.velocity_m_s[0], 1e3 * row.exit_time_s)
+    rates = seen.rate_deg_s
+    values = (math.hypot(*rates), *rates, seen.velocity_m_s[0], 1e3 * row.exit_time_s)
     return {item.name: value for item, value in zip(spread.QUANTITIES, values, strict=True)}
