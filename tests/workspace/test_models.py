@@ -20,7 +20,7 @@ from tipoff.studies.commands import options
 from tipoff.studies.single import single
 from tipoff.workspace import models
 from tipoff.workspace.settings import defaults
-from tipoff.workspace.study import Study, StudyError
+from tipoff.workspace.study import Study, StudyError, numerics_faults
 
 UNKNOWN = replace(
     ROW,
@@ -229,3 +229,13 @@ def test_a_chaotic_condition_rejects_the_default_model_where_its_own_distributio
     compared(replace(chaotic, judged_as="curve", judgement="misses"))
     with pytest.raises(StudyError, match="h8: "):
         kept.require_accepted(study, None)
+
+
+def test_bad_numerics_are_faults_of_their_options():
+    """Each once, with its own value. The text of the exception was the expected value of one fault."""
+    with pytest.raises(ValueError) as caught:
+        Numerics(relative_tolerance=1.0, modes=25)
+    assert list(map(str, numerics_faults(caught.value))) == [
+        "--tolerance: value: given 1.0, expected 1e-13 to 0.01",
+        "--modes: value: given 25, expected a whole number from 0 to 20, or 'auto'",
+    ]

@@ -10,7 +10,7 @@ import csv
 import io
 import itertools
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TextIO
 
@@ -95,66 +95,12 @@ def between_blanks(line: str) -> list[str]:
     return _WORD.findall(line)
 
 
-def quantities(
-    path: str | Path, wanted: dict[str, str], data: bytes | None = None
-) -> tuple[dict[str, np.ndarray], list[Fault]]:
-    """Columns (n,) in SI by name, and the faults of the file (see ``lines`` for ``data``).
-    ``wanted`` gives the SI unit of each column by name. A column with a fault is left out."""
-    try:
-        table = [line for line in listed(path, data) if any(map(str.strip, line[1]))]
-    except SceneError as error:
-        return {}, error.faults
-    if not table:
-        return {}, [
-            Fault(str(path), "file", "no line", f"{' and '.join(wanted)}, each once in the header")
-        ]
-    heads = [head(cell) for cell in table[0][1]]
-    second = [cell.strip() for cell in table[1][1]] if len(table) > 1 else []
-    body = table[2 if units.are_units(second) else 1 :]
-    found, faults = places(str(path), [name for name, _ in heads], wanted)
-    faults += _too_wide(str(path), len(heads), body)
-    arrays = {}
-    for name, place in found.items():
-        unit = heads[place][1]
-        if unit is None and units.are_units(second):
-            unit = _cell(second, place)
-        values, wrong = numbers(str(path), name, place, body)
-        factor, problems = factor_to_si(str(path), name, unit, wanted[name])
-        if not problems + wrong:
-            arrays[name] = values * factor
-        faults += problems + wrong
-    return arrays, faults
-
-
-def _too_wide(source: str, width: int, table: list[Line]) -> list[Fault]:
-    """The fault of lines with more cells than the header, as where decimals are after commas."""
-    wide = [number for number, row in table if any(map(str.strip, row[width:]))]
-    expected = f"{width} cells in each line, as in the header, with decimals after a point"
-    return [Fault(source, "cells", f"more in {_listed(wide)}", expected)] if wide else []
-
-
 def head(cell: str) -> tuple[str, str | None]:
     """Name and unit of a column from its cell in a header: ``Time [ms]`` or ``Time (ms)``."""
     text = " ".join(cell.split())  # a quoted cell may hold line breaks
     if (found := _HEAD.fullmatch(text)) is None:
         return text, None
     return found[1], (found[2] if found[2] is not None else found[3]).strip()
-
-
-def places(
-    source: str, header: list[str], wanted: Iterable[str]
-) -> tuple[dict[str, int], list[Fault]]:
-    """The place of each wanted column in the header, and a fault for each column that is not there
-    exactly once."""
-    shown = ", ".join(filter(None, header)) or "nothing"
-    found, faults = {}, []
-    for name in wanted:
-        if header.count(name) == 1:
-            found[name] = header.index(name)
-        else:
-            given = "twice" if name in header else "no such column"
-            faults.append(Fault(source, name, given, f"once in the header, which has {shown}"))
-    return found, faults
 
 
 def numbers(

@@ -306,13 +306,23 @@ def require_success(runs: dict[str, Trajectory], purpose: str) -> None:
 
 
 def _numerics(kind: type, **values: Any) -> Any:
-    """The numerics of a fidelity. Raises SceneError for a bad value."""
+    """The numerics of a fidelity. Raises SceneError with a fault for each bad value."""
     try:
         return kind(**values)
-    except ValueError as fault:
-        options = ", ".join(f"--{name.replace('_', '-')}" for name in values)
-        given = ", ".join(map(str, values.values()))
-        raise SceneError([Fault(options, "value", given, str(fault))]) from None
+    except ValueError as error:
+        raise SceneError(numerics_faults(error)) from None
+
+
+def numerics_faults(error: ValueError) -> list[Fault]:
+    """The faults in the text of an ``error`` of numerics, which has for each ``name: given value, expected
+    ...``, as faults of options."""
+    found = []
+    for text in str(error).split("; "):
+        name, _, rest = text.partition(": given ")
+        given, _, expected = rest.partition(", expected ")
+        option = "tolerance" if name == "relative_tolerance" else name.replace("_", "-")
+        found.append(Fault(f"--{option}", "value", given, expected))
+    return found
 
 
 def _digest(path: Path) -> str:

@@ -9,6 +9,7 @@ from tests.scenes.support import refused, small, write
 from tipoff.mechanics import scene_model
 from tipoff.scenes import ends, parse
 from tipoff.scenes.effects import thrust_law
+from tipoff.scenes.effects.push_file import read_push
 from tipoff.scenes.effects.pusher_law import energy_given_up
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.variation import Variations
@@ -84,6 +85,23 @@ def test_springs_that_cannot_work_are_refused(name):
     (fault,) = refused(spring(**changes))
     assert fault.key == key
     assert expected in fault.expected
+
+
+SPREADSHEETS = {
+    "semicolons and decimal commas": "travel [mm];force [N]\n0;60\n40,5;45,25\n100;21\n",
+    "tabs and a line of units": "travel\tforce\nmm\tN\n0\t60\n40.5\t45.25\n100\t21\n",
+    "a comment above": "# bench 3\ntravel [mm],force [N]\n0,60\n40.5,45.25\n100,21\n",
+    "UTF-16": "travel [mm];force [N]\n0;60\n40,5;45,25\n100;21\n".encode("utf-16"),
+}
+
+
+@pytest.mark.parametrize("name", SPREADSHEETS)
+def test_tables_of_spreadsheets_of_any_country_are_read(tmp_path, name):
+    """Semicolons were refused as one column with the name of both."""
+    text, path = SPREADSHEETS[name], tmp_path / "push.csv"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    travel, force = read_push(str(path))
+    assert travel == pytest.approx([0.0, 0.0405, 0.1]) and force.tolist() == [60.0, 45.25, 21.0]
 
 
 TABLES = {

@@ -6,8 +6,7 @@ on the platform.
 """
 
 from collections.abc import Iterator
-from functools import lru_cache
-from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from pydantic import (
@@ -19,8 +18,7 @@ from pydantic import (
     model_validator,
 )
 
-from tipoff.files import read_input
-from tipoff.scenes import csv_file
+from tipoff.scenes.effects.push_file import Push, read_push
 from tipoff.scenes.effects.pusher_law import Pushers
 from tipoff.scenes.effects.thrust_law import Thrust
 from tipoff.scenes.effects.thrust_offset import Misalignment
@@ -35,53 +33,6 @@ from tipoff.scenes.units import (
     PushFriction,
     SpringRate,
 )
-
-_COLUMNS = {"travel": "m", "force": "N"}
-
-
-class Push(NamedTuple):
-    """Force of one pusher over its travel, at k knots."""
-
-    travel: np.ndarray  # (k,) m, rising from zero
-    force: np.ndarray  # (k,) N
-
-    def energy(self) -> np.ndarray:
-        """Energy (k,) J that is given up from zero travel to each knot."""
-        steps = 0.5 * (self.force[1:] + self.force[:-1]) * np.diff(self.travel)
-        return np.concatenate([[0.0], np.cumsum(steps)])
-
-
-def read_push(path: str) -> Push:
-    """Read a CSV with the columns ``travel`` and ``force`` and their units. Raises ValueError with
-    every fault of the table."""
-    try:
-        data = read_input(path)
-    except OSError as error:
-        raise ValueError(f"a readable CSV file ({error.strerror or error})") from error
-    return Push(*(values.copy() for values in _parsed(path, data)))
-
-
-# Each condition and each variation of a scene reads its table. Equal bytes give an equal table.
-@lru_cache(maxsize=4)
-def _parsed(path: str, data: bytes) -> Push:
-    columns, faults = csv_file.quantities(path, _COLUMNS, data)
-    wrong = [f"{fault.expected} ({fault.key}: {fault.given})" for fault in faults]
-    travel, force = columns.get("travel"), columns.get("force")
-    if travel is not None:
-        if travel.size < 2:
-            wrong.append("at least two points")
-        elif travel[0] != 0.0:
-            wrong.append(f"a travel that begins at 0 (it begins at {travel[0]:g} m)")
-        if falls := np.flatnonzero(np.diff(travel) <= 0.0).tolist():
-            wrong.append(f"a travel that rises from point to point (point {falls[0] + 2} does not)")
-    if force is not None and (force < 0.0).any():
-        wrong.append("forces that are not negative, because a pusher does not pull")
-    if force is not None and force.size and not force[0] > 0.0:
-        wrong.append("a force above 0 at zero travel, without which nothing starts")
-    if wrong:
-        raise ValueError("a table with " + ", ".join(wrong))
-    assert travel is not None and force is not None
-    return Push(travel, force)
 
 
 class Spring(Table):

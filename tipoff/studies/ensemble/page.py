@@ -1,5 +1,7 @@
 """An ensemble for the terminal: quantiles with bounds, and the distributions of the inputs."""
 
+from tipoff.scenes import overrides
+from tipoff.scenes.scene import Scene
 from tipoff.studies.ensemble.sensitivity import CAUSES
 from tipoff.studies.ensemble.stage import Cost, One, Ran, Sensitive
 from tipoff.studies.populations.instant import EXIT, Instant
@@ -118,6 +120,12 @@ def table_of_quantiles(found: Ran) -> Table:
     return Table(heads, rows, notes=(f"{found.confidence:.0%} bounds: {found.bounds}.",))
 
 
+def _named(key: str) -> str:
+    """An input with the unit of its numbers."""
+    unit = overrides.unit(Scene, key)
+    return f"{key} ({unit})" if unit and unit != "dimensionless" else key
+
+
 def case(one: One) -> list[Part]:
     """One case: status, inputs, velocity and rate with all digits, and the comparison with the
     store."""
@@ -125,7 +133,7 @@ def case(one: One) -> list[Part]:
     message, outcome = f" ({found.message})" if found.message else "", found.outcome
     parts: list[Part] = [
         f"case {one.case}: {found.status}{message}",
-        Table(["input", "value"], list(one.inputs.items())),
+        Table(["input", "value"], [(_named(key), text) for key, text in one.inputs.items()]),
     ]
     if outcome.rate is not None and outcome.velocity is not None:
         vectors = (

@@ -34,7 +34,7 @@ from tipoff.studies.populations.instant import Instant
 from tipoff.workspace import kernel_marks, machine, words
 from tipoff.workspace.progress import Board, say
 from tipoff.workspace.run import Run
-from tipoff.workspace.study import Study, StudyError
+from tipoff.workspace.study import Study, StudyError, numerics_faults
 from tipoff.workspace.words import counted
 
 
@@ -126,9 +126,8 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
         numerics = Numerics.of_many(
             options.tolerance, options.chosen.asked, SPRINGS if springs else COMPLIANT
         )
-    except ValueError as fault:
-        given = f"{options.tolerance:g}, {options.chosen.modes}"
-        raise SceneError([Fault("--tolerance, --modes", "numerics", given, str(fault))]) from None
+    except ValueError as error:
+        raise SceneError(numerics_faults(error)) from None
     if options.store is not None and options.store.exists() and not options.store.is_dir():
         raise SceneError([Fault("--store", "path", str(options.store), "a folder")])
     kept.require_accepted(study, options.chosen.name)

@@ -84,8 +84,12 @@ STAGE = Stage(NAME, __name__, options=Options, inputs=_inputs, result=Flight)
 def _require(study: Study) -> None:
     scenes = study.conditions | {study.scene.name: study.scene}
     expected = 'a table [flight], or --set flight.altitude="500 km" --set flight.range="100 m"'
+    from_ground = (
+        "a launch in orbit; after one from the ground, `tipoff run --export` hands the state at exit to a "
+        "code of flight"
+    )
     faults = [
-        Fault(name, "flight", "nothing", expected)
+        Fault(name, "flight", "nothing", from_ground if body_forces(scene) else expected)
         for name, scene in scenes.items()
         if scene.flight is None
     ]
