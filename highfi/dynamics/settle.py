@@ -4,6 +4,10 @@ Bodies and rails fall onto each other without thrust and friction. All velocitie
 whenever the kinetic energy has passed a peak (kinetic damping: Cundall 1976; Papadrakakis, Comput.
 Methods Appl. Mech. Eng. 36 (1983) 217). At a peak the forces nearly balance, so the energy of the
 peaks tends to zero. The travel is held.
+
+Where nothing holds a payload, such as along Y under a weight along Z, the tilt of its pads leaves a small
+force, with which it would slide for seconds to the next wall. It stays if that force is within the accuracy
+of the others, or if friction holds it.
 """
 
 from dataclasses import replace
@@ -20,6 +24,9 @@ from tipoff.scenes.settled import no_rest
 # Energy of a peak over that of the first one in contact: forces then differ from the weight by the root
 # of it, relative.
 AT_REST = 1e-12
+_SLIDING = 20_000  # steps in which the energy only grows
+# Acceleration over that of the weight: without and with friction. It moves nothing during a launch.
+_SLOW, _HELD = 1e-5, 1e-3
 _STEPS = 20  # between two looks at the kinetic energy
 _MOST = 5_000_000  # steps
 
@@ -31,7 +38,8 @@ def settle(stepper: Stepper) -> int:
     resting = Stepper(_alone(setup))
     body, weight = resting.state.payload, setup.system.model.body_force
     body.position[:] = lowered(setup.system.faces, body.position, body.quaternion, weight)
-    _relax(resting, setup.scene.name)
+    law = setup.system.model.friction
+    _relax(resting, setup.scene.name, 0.0 if law is None else law.static)
     found, state = resting.state, stepper.state
     state.payload.position[:] = found.payload.position
     state.payload.quaternion[:] = found.payload.quaternion
@@ -56,28 +64,47 @@ def _alone(setup: Setup) -> Setup:
     return replace(setup, system=setup.system._replace(model=still, hold_down=held))
 
 
-def _relax(stepper: Stepper, name: str) -> None:
+def _relax(stepper: Stepper, name: str, friction: float) -> None:
+    """Let the payload fall until it is at rest, or slides as slowly as ``_is_held`` allows by its
+    coefficient of static ``friction``."""
     place = float(stepper.state.payload.position[0])
     stepper.evaluate()
     _stop(stepper, place)
-    before, first, touched = 0.0, 0.0, False
+    before, first, touched, begun = 0.0, 0.0, False, 0
     while stepper.steps < _MOST:
         stepper.advance(_STEPS)
+        # held before the energy is taken: a payload that would slide has gained speed in these steps
+        stepper.state.payload.position[0] = place
+        stepper.state.payload.velocity[0] = 0.0
         energy = _kinetic_energy(stepper)
         touched = touched or bool(stepper.state.face_force.any())
         if not np.isfinite(energy):
             raise no_rest(name, "a state that is not finite")
         if energy < before:
             _stop(stepper, place)
+            begun = stepper.steps
             if touched:
                 first = max(first, before)
                 if before <= AT_REST * first:
                     return
             energy = 0.0
+        elif touched and _is_held(stepper, energy, stepper.steps - begun, friction):
+            _stop(stepper, place)
+            return
         before = energy
-        stepper.state.payload.position[0] = place
-        stepper.state.payload.velocity[0] = 0.0
     raise no_rest(name, f"motion after {_MOST:,} steps")
+
+
+def _is_held(stepper: Stepper, energy: float, steps: int, friction: float) -> bool:
+    """Whether the payload, whose energy (J) has grown for so many ``steps``, has an acceleration that
+    ``friction`` holds."""
+    if steps < _SLIDING:
+        return False
+    model = stepper.setup.system.model
+    acceleration = np.sqrt(2.0 * energy / model.payload.mass) / (steps * stepper.step)
+    assert model.body_force is not None  # since settled.require
+    weight = float(np.linalg.norm(model.body_force))
+    return bool(acceleration <= max(_SLOW, min(friction, _HELD)) * weight)
 
 
 def _kinetic_energy(stepper: Stepper) -> float:

@@ -49,3 +49,37 @@ def test_a_payload_rests_on_an_inclined_rail_that_holds_it():
     assert np.degrees(np.abs(run.rate[before]).max()) < 1e-3
     force = run.pad_force.sum(axis=1)[before] / asked.payload.mass
     np.testing.assert_allclose(force[:, 1:], [[0.1 * G, 0.4 * G]] * before.sum(), rtol=1e-3)
+
+
+@pytest.mark.slow
+def test_a_payload_that_nothing_holds_along_its_rail_rests_across_it():
+    """Down a slope, without a latch: it slides from ignition on. Each look at its energy had the speed of
+    the steps since the last one, so it never came to rest."""
+    steep = {"gravity": {"x": 0.7 * G, "y": -0.3 * G, "z": -0.6 * G}}
+    asked = tiny(**CHANGED | steep, friction=None, initial={"settled": True})
+    run = highfi.run(asked, COARSE)
+    before = run.time < START
+    assert run.cost["settling_steps"] < 200_000
+    assert run.velocity[before, 0] == pytest.approx(0.7 * G * run.time[before], abs=1e-4)
+    assert np.abs(run.velocity[before, 1:]).max() < 1e-5
+    force = run.pad_force.sum(axis=1)[before] / asked.payload.mass
+    np.testing.assert_allclose(force[:, 1:], [[0.3 * G, 0.6 * G]] * before.sum(), rtol=1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", [True, False])
+def test_a_payload_that_is_free_to_slide_across_its_rail_stays(friction):
+    """Under a weight along Z, on rails that are warmer on one side: the tilt of its pads would let it slide
+    along Y for seconds, and it was refused after five million steps."""
+    offset = {"eccentricity": {"axial": 1e-4, "radial": np.radians(120.0)}}
+    warm = {"thermal": {"mean": 5.0, "gradient": {"y": 20.0}}, "rail__material__expansion": 23.6e-6}
+    flat = {"gravity": {"z": -G}, "mass_offset": offset} | warm
+    changed = {} if friction else {"friction": None}
+    asked = tiny(**CHANGED | flat | changed, initial={"settled": True})
+    run = highfi.run(asked, COARSE)
+    before = run.time < START
+    assert run.cost["settling_steps"] < 200_000
+    assert np.abs(run.velocity[before]).max() < 1e-5
+    force = run.pad_force.sum(axis=1)[before] / asked.payload.mass
+    np.testing.assert_allclose(force[:, 2], G, rtol=1e-3)
+    assert np.abs(force[:, 1]).max() < 1e-4 * G
