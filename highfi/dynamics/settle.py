@@ -6,8 +6,8 @@ Methods Appl. Mech. Eng. 36 (1983) 217). At a peak the forces nearly balance, so
 peaks tends to zero. The travel is held.
 
 Where nothing holds a payload, such as along Y under a weight along Z, the tilt of its pads leaves a small
-force, with which it would slide for seconds to the next wall. It stays if that force is within the accuracy
-of the others, or if friction holds it.
+force, with which it would slide for seconds to the next wall. It stays in its place: friction holds it
+there, or it slides from ignition on.
 """
 
 from dataclasses import replace
@@ -25,8 +25,7 @@ from tipoff.scenes.settled import no_rest
 # of it, relative.
 AT_REST = 1e-12
 _SLIDING = 20_000  # steps in which the energy only grows
-# Acceleration over that of the weight: without and with friction. It moves nothing during a launch.
-_SLOW, _HELD = 1e-5, 1e-3
+_SLOW = 1e-3  # acceleration over that of the weight, of a payload that slides
 _STEPS = 20  # between two looks at the kinetic energy
 _MOST = 5_000_000  # steps
 
@@ -38,8 +37,7 @@ def settle(stepper: Stepper) -> int:
     resting = Stepper(_alone(setup))
     body, weight = resting.state.payload, setup.system.model.body_force
     body.position[:] = lowered(setup.system.faces, body.position, body.quaternion, weight)
-    law = setup.system.model.friction
-    _relax(resting, setup.scene.name, 0.0 if law is None else law.static)
+    _relax(resting, setup.scene.name)
     found, state = resting.state, stepper.state
     state.payload.position[:] = found.payload.position
     state.payload.quaternion[:] = found.payload.quaternion
@@ -64,9 +62,8 @@ def _alone(setup: Setup) -> Setup:
     return replace(setup, system=setup.system._replace(model=still, hold_down=held))
 
 
-def _relax(stepper: Stepper, name: str, friction: float) -> None:
-    """Let the payload fall until it is at rest, or slides as slowly as ``_is_held`` allows by its
-    coefficient of static ``friction``."""
+def _relax(stepper: Stepper, name: str) -> None:
+    """Let the payload fall until it is at rest, or only slides slowly."""
     place = float(stepper.state.payload.position[0])
     stepper.evaluate()
     _stop(stepper, place)
@@ -88,23 +85,22 @@ def _relax(stepper: Stepper, name: str, friction: float) -> None:
                 if before <= AT_REST * first:
                     return
             energy = 0.0
-        elif touched and _is_held(stepper, energy, stepper.steps - begun, friction):
+        elif touched and _slides(stepper, energy, stepper.steps - begun):
             _stop(stepper, place)
             return
         before = energy
     raise no_rest(name, f"motion after {_MOST:,} steps")
 
 
-def _is_held(stepper: Stepper, energy: float, steps: int, friction: float) -> bool:
-    """Whether the payload, whose energy (J) has grown for so many ``steps``, has an acceleration that
-    ``friction`` holds."""
+def _slides(stepper: Stepper, energy: float, steps: int) -> bool:
+    """Whether the payload, whose energy (J) has grown for so many ``steps``, only slides slowly."""
     if steps < _SLIDING:
         return False
     model = stepper.setup.system.model
     acceleration = np.sqrt(2.0 * energy / model.payload.mass) / (steps * stepper.step)
     assert model.body_force is not None  # since settled.require
     weight = float(np.linalg.norm(model.body_force))
-    return bool(acceleration <= max(_SLOW, min(friction, _HELD)) * weight)
+    return bool(acceleration <= _SLOW * weight)
 
 
 def _kinetic_energy(stepper: Stepper) -> float:

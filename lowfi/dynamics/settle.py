@@ -30,6 +30,10 @@ _MOST = 400  # corrections
 _NUDGE = 1e-9  # m, of a derivative
 _LONGEST = 2e-5  # m, of a correction
 _FIRST, _LAST = 1e-4, 1.0  # s, times of the damping
+# Weights per metre, less than which holds nothing in its place; and largest force over the weight with which
+# a payload slides, as in the reference
+_LOOSE, _SLOW = 10.0, 1e-3
+_FIRM = 1e-8  # largest force over the weight where something holds it, beside such a force
 _RIGID = 5  # place along Y and Z, turns about X, Y and Z
 
 
@@ -106,11 +110,24 @@ class _Rest:
 
     def _left(self, force: np.ndarray) -> float:
         """Largest force over the weight."""
-        scale = self.pull * np.concatenate([[1.0, 1.0], [self.reach] * 3, np.ones(self.modes)])
-        return float(np.abs(force / scale).max())
+        return float(np.abs(force / self._scale()).max())
+
+    def _scale(self) -> np.ndarray:
+        """The weight, and its moment at the reach of the payload, as the sizes of forces."""
+        return self.pull * np.concatenate([[1.0, 1.0], [self.reach] * 3, np.ones(self.modes)])
+
+    def _slides(self, slopes: np.ndarray, force: np.ndarray) -> bool:
+        """Whether the forces that are left only let the payload slide slowly where nothing holds it, such
+        as across a wall by the tilt of its pads. It slides from ignition on, if friction lets it."""
+        scale = self._scale()
+        stiffness = -slopes * self.sizes / scale[:, None]  # weights per m
+        directions, sizes, _ = np.linalg.svd(stiffness)
+        left, loose = np.abs(directions.T @ (force / scale)), sizes < _LOOSE
+        return bool(left[~loose].max(initial=0.0) <= _FIRM)
 
     def found(self, name: str) -> np.ndarray:
         moved, over = np.zeros(self.masses.size), _FIRST
+        sliding = None  # where only a small force along free directions was left
         force = self.force(moved)
         for _ in range(_MOST):
             left = self._left(force)
@@ -118,7 +135,10 @@ class _Rest:
                 break
             if left <= AT_REST:
                 return self.state(moved)
-            matrix = np.diag(self.masses / over**2) - self._slopes(moved, force)
+            slopes = self._slopes(moved, force)
+            if sliding is None and left <= _SLOW and self._slides(slopes, force):
+                sliding = moved
+            matrix = np.diag(self.masses / over**2) - slopes
             change = np.linalg.solve(matrix, force)
             longest = float(np.abs(change / self.sizes).max())
             if longest > _LONGEST:
@@ -127,4 +147,6 @@ class _Rest:
             force = self.force(moved)
             closer = self._left(force) <= left  # as in a fall
             over = min(2.0 * over, _LAST) if closer else max(0.5 * over, _FIRST)
+        if sliding is not None:
+            return self.state(sliding)
         raise no_rest(name, f"a force of {self._left(force):.2g} of the weight is left")

@@ -79,7 +79,7 @@ def test_a_payload_that_is_free_to_slide_across_its_rail_stays(friction):
     run = highfi.run(asked, COARSE)
     before = run.time < START
     assert run.cost["settling_steps"] < 200_000
-    assert np.abs(run.velocity[before]).max() < 1e-5
+    assert np.abs(run.velocity[before]).max() < 1e-3 * G * START
     force = run.pad_force.sum(axis=1)[before] / asked.payload.mass
     np.testing.assert_allclose(force[:, 2], G, rtol=1e-3)
-    assert np.abs(force[:, 1]).max() < 1e-4 * G
+    assert np.abs(force[:, 1]).max() < 1e-3 * G

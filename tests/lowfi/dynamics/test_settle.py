@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+import tipoff
 from tests.lowfi.compliance import REFERENCE, reference_compliance
 from tests.lowfi.support import PAPER_PAD, G, corners, scene
-from tipoff import lowfi
+from tipoff import lowfi, scenes
 from tipoff.lowfi import Numerics
 from tipoff.scenes import SceneError
 
@@ -128,3 +129,22 @@ def test_a_payload_on_compliant_rails_stays_at_rest(modes):
     np.testing.assert_allclose(sums(run, asked)[0, 1:], [0.4 * G, G], rtol=1e-8)
     falling = lowfi.run(REFERENCE.replace(changed), compliance=reference_compliance())
     assert np.abs(falling.velocity[before, 2]).max() > 0.01
+
+
+@pytest.mark.parametrize("gradient", [None, {"y": 20.0}])
+def test_a_payload_that_is_free_to_slide_across_its_rail_stays(gradient):
+    """Under a weight along Z, with its mass centre to one side: the tilt of its pads leaves a small force along
+    Y. Corrections followed it from wall to wall, and the scene was refused."""
+    warm = {"thermal": {"mean": 5.0, "gradient": gradient}, "rail.material.expansion": 23.6e-6}
+    beside = {"eccentricity": {"axial": 1e-4, "radial": np.radians(120.0)}}
+    changed = FIXED | {"gravity": {"z": -G}, "mass_offset": beside, "rail.mount_stiffness": None}
+    asked = scenes.load("tiny").replace(changed | SETTLED | (warm if gradient else {}))
+    run = lowfi.run(asked, compliance=tipoff.compliance(asked, 0.016), numerics=Numerics(modes=0))
+    before = before_thrust(run)
+    # its pads stay where they are across the rail, so the mass centre is to their side
+    assert run.message == "" and run.position[0, 1] == pytest.approx(
+        1e-4 * np.sin(np.radians(60.0)), abs=5e-6
+    )
+    np.testing.assert_allclose(sums(run, asked)[:, 2], G, rtol=1e-5)
+    assert np.abs(run.velocity[before, 1]).max() < 1e-3 * G * START
+    assert np.abs(run.velocity[before, 2]).max() < 1e-7
