@@ -2,10 +2,11 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from tests.scenes.support import CONTACT, small
-from tipoff.scenes import SceneError, catalog, load, parse, plausibility, sinking
+from tipoff.scenes import SceneError, catalog, load, parse, plausibility, sinking, uncertainty
 
 DENSITY = 2810.0
 
@@ -227,3 +228,22 @@ def test_pads_that_begin_beyond_an_end_of_the_rail(way, outside):
     assert all(words.startswith("pads, rail.start, rail.end: at ignition pads ") for words in found)
     free = scene.replace({"contact": None, "friction": None})
     assert not any("outside the rail" in words for words in free.warnings)
+
+
+def test_errors_far_from_the_values_of_the_scene_are_told():
+    """Distributions replace the values of a scene, so those of another one make it another payload. A rocket of
+    12 kg flew as one of 5 kg. Control: the mass at the edge of its range, and errors of angles and sizes
+    that begin at those of the scene."""
+    rocket = load("rocket_rail")
+    assert plausibility.of_all_conditions(rocket) == []
+    heavy = rocket.replace(
+        {"payload.mass": 12.0, "payload.inertia": {"xx": 0.02, "yy": 2.0, "zz": 2.0}}
+    )
+    told = plausibility.of_all_conditions(heavy)
+    (mass,) = [words for words in told if words.startswith("vary.")]
+    assert mass.startswith("vary.payload.mass: 4.") and "and 12 kg in the scene" in mass
+    drawn = uncertainty.of_scene(rocket)
+    edge = float(drawn.vary["payload.mass"].ppf(np.array(0.999)))
+    assert uncertainty.far_from_scene(drawn, rocket.replace({"payload.mass": edge})) == []
+    without = rocket.replace({"payload.mass": 12.0, "studies.errors": None})
+    assert not any(words.startswith("vary.") for words in plausibility.of_all_conditions(without))

@@ -64,7 +64,19 @@ def of_all_conditions(scene) -> list[str]:
             found.setdefault(
                 words.partition(":")[0], words if name is None else f"{words} (condition {name})"
             )
-    return list(found.values())
+    return [*found.values(), *_of_errors(scene)]
+
+
+def _of_errors(scene) -> list[str]:
+    """Messages on the errors that the scene states, if they can be read."""
+    from tipoff.scenes import uncertainty  # which needs scenes
+    from tipoff.scenes.faults import SceneError
+
+    try:
+        stated = uncertainty.of_scene(scene)
+    except SceneError:  # with its faults where the errors are used
+        return []
+    return uncertainty.far_from_scene(stated, scene) if stated else []
 
 
 def _of_inertia(scene) -> list[str]:

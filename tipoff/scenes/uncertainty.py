@@ -31,6 +31,8 @@ from tipoff.scenes.table import Table, at_least_one
 
 CATALOG = reading.CATALOG / "vary"
 DEFAULT = "paper"
+_RARE = 1e-5  # probability beyond each end of a range
+_FAR = 0.5  # of the width of a range
 
 
 class _File(Table):
@@ -133,6 +135,24 @@ def parse(
             [fault._replace(source=f"{source}, medians") for fault in error.faults]
         ) from None
     return Uncertainty(file.cases, file.seed, file.sampling, varied)
+
+
+def far_from_scene(found: Uncertainty, scene: Scene) -> list[str]:
+    """Messages on distributions whose range is far from the value of ``scene``, by more than half of its
+    width: those of another scene, perhaps. A fixed value is meant."""
+    messages = []
+    for key, item in found.vary.items():
+        own = keys.held(scene, key)
+        if not isinstance(own, float) or item.distribution == "fixed":
+            continue
+        low, high = (float(item.ppf(np.array(share))) for share in (_RARE, 1.0 - _RARE))
+        if max(low - own, own - high) > _FAR * (high - low):
+            unit = keys.unit(Scene, key) or ""
+            messages.append(
+                f"vary.{key}: {low:.4g} to {high:.4g} {unit} in nearly all cases, and {own:.4g} {unit} in the "
+                "scene; the errors may be those of another scene"
+            )
+    return messages
 
 
 def _tables(vary: Any) -> dict[str, dict[str, Any]]:

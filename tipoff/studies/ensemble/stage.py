@@ -120,7 +120,11 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
         source: Any = TableFile(options.table)
     else:
         vary = uncertainty.chosen(changed.pop("vary", None), study.scene)
-        source = Drawn(uncertainty.load(vary, study.scene, **changed))
+        drawn = uncertainty.load(vary, study.scene, **changed)
+        if options.vary is not None:  # those of the scene are among its warnings
+            for words in uncertainty.far_from_scene(drawn, study.scene):
+                say(f"warning: {words}")
+        source = Drawn(drawn)
     springs = options.chosen.model == SPRINGS
     try:
         numerics = Numerics.of_many(
