@@ -27,6 +27,8 @@ def test_the_section_has_the_area_and_the_surfaces_of_the_rail(name, rails):
     boxes = sum(np.ptp(polygon, axis=0).prod() for polygon in polygons)
     assert (boxes > 1.1e6 * volume / length) == (name == "rocket_rail")
     assert set(lines) == set(mesh.surfaces)
+    colours = picture.colours_of(mesh)  # the four walls of a slot had three colours
+    assert set(colours) == set(mesh.surfaces) and len(set(colours.values())) == len(colours)
     walls = [name for name, found in lines.items() if found]
     assert {"contact_y", "contact_z"} <= set(walls) if name == "tiny" else len(walls) >= 6
 

@@ -10,7 +10,8 @@ import numpy as np
 from tipoff.files import replacing
 from tipoff.studies.render.palette import AMBER, DARK, GREY, INK, NAVY, TEAL, VERMILION
 
-_WALLS = (VERMILION, AMBER, NAVY)  # taken in turn by surfaces that pads touch
+# taken in turn by surfaces that pads touch
+_WALLS = (VERMILION, AMBER, NAVY, "#7b4b94", "#8c6d46", "#5f9ed1", "#c98bb9")
 _METAL = "#c6cbd1"
 _LIGHT = np.array([0.35, 0.5, 0.8])
 
@@ -26,7 +27,7 @@ def draw_mesh(mesh, path: Path, dark: bool = False) -> None:
     FigureCanvasAgg(figure)
     left, right = figure.subplots(1, 2, width_ratios=[1.9, 1.0])
     ink = DARK[INK] if dark else INK
-    colours = {name: DARK[colour] if dark else colour for name, colour in _colours(mesh).items()}
+    colours = {name: DARK[colour] if dark else colour for name, colour in colours_of(mesh).items()}
     _oblique(left, mesh, colours, ink)
     _section(right, mesh, colours, ink)
     figure.legend(
@@ -44,7 +45,7 @@ def draw_mesh(mesh, path: Path, dark: bool = False) -> None:
         figure.savefig(temporary, format="png", transparent=True)
 
 
-def _colours(mesh) -> dict[str, str]:
+def colours_of(mesh) -> dict[str, str]:
     """Colour of each named surface, walls first."""
     compliance = sorted(name for name in mesh.surfaces if name != "mount")
     return {name: _WALLS[place % len(_WALLS)] for place, name in enumerate(compliance)} | {
