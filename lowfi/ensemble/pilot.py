@@ -58,8 +58,10 @@ def settled(
 ) -> Ensemble:
     """``ensemble`` with a number of modes, and the reason as its ``modes_why``, which is empty if
     the number was given or the model has no modes. No case is run if the ``store`` at this path
-    belongs to the same ensemble and has the number. ``progress`` is called with the share of pilot cases
-    done."""
+    belongs to the same ensemble and has the number. ``progress`` is called with the share of pilot
+    cases done. Raises ValueError for a degree that is not chosen: all cases have one."""
+    if ensemble.numerics.degree == AUTO:
+        raise ValueError("degree: given 'auto', expected the number that all cases have")
     if ensemble.numerics.modes != AUTO:
         return ensemble
     if not may_vibrate(ensemble.scene, ensemble.compliance):

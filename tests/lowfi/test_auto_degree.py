@@ -86,3 +86,11 @@ def test_a_run_that_does_not_settle_leaves_the_default(lost):
     found, why = degrees.choose(run, 4)
     assert found == 3 and f"patterns of degree {lost} did not settle" in why
     assert degrees.choose(lambda degree: run(1), 4)[0] == 2
+
+
+def test_an_ensemble_has_one_degree():
+    """It was refused after the pilot, with words about modes."""
+    with pytest.raises(
+        ValueError, match="^degree: given 'auto', expected the number that all cases"
+    ):
+        tipoff.ensemble(tiny(), "paper", count=2, degree="auto")
