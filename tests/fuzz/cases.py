@@ -27,7 +27,7 @@ from tipoff.lowfi.ensemble.table import TableFile
 from tipoff.mechanics import scene_model
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.meshes import generator
-from tipoff.scenes import plausibility, reading, uncertainty
+from tipoff.scenes import implausible, reading, uncertainty
 from tipoff.scenes.faults import InputError
 from tipoff.scenes.rail import SectionTable
 from tipoff.studies.calibration.files import constants
@@ -160,7 +160,7 @@ def _override(rng: random.Random, folder: Path) -> None:
         for _ in range(rng.randint(1, 3))
     }
     found = scene.replace(text)
-    plausibility.of_all_conditions(found)
+    implausible.of_all_conditions(found)
     scene_model.build(found)
 
 
@@ -284,7 +284,7 @@ def _thrust_file(rng: random.Random, folder: Path) -> None:
         thrust = mutants.of_plain(rng, thrust)
     found = scenes.parse(raw | {"thrust": thrust})
     found.thrust.describe(found.duration)
-    plausibility.of_all_conditions(found)
+    implausible.of_all_conditions(found)
 
 
 def _reference_curve(rng: random.Random, folder: Path) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.scenes.support import CONTACT, small
-from tipoff.scenes import SceneError, catalog, load, parse, plausibility, sinking, uncertainty
+from tipoff.scenes import SceneError, catalog, implausible, load, parse, sinking, uncertainty
 
 DENSITY = 2810.0
 
@@ -192,7 +192,7 @@ def test_an_implausible_condition_is_reported_once():
     )
     scene = parse(slip, bare_numbers_are_si=True)
     assert scene.warnings == []
-    (text,) = plausibility.of_all_conditions(scene)
+    (text,) = implausible.of_all_conditions(scene)
     assert text.startswith("contact.stiffness: ") and text.endswith("(condition a)")
 
 
@@ -235,15 +235,15 @@ def test_errors_far_from_the_values_of_the_scene_are_told():
     12 kg flew as one of 5 kg. Control: the mass at the edge of its range, and errors of angles and sizes
     that begin at those of the scene."""
     rocket = load("rocket_rail")
-    assert plausibility.of_all_conditions(rocket) == []
+    assert implausible.of_all_conditions(rocket) == []
     heavy = rocket.replace(
         {"payload.mass": 12.0, "payload.inertia": {"xx": 0.02, "yy": 2.0, "zz": 2.0}}
     )
-    told = plausibility.of_all_conditions(heavy)
+    told = implausible.of_all_conditions(heavy)
     (mass,) = [words for words in told if words.startswith("vary.")]
     assert mass.startswith("vary.payload.mass: 4.") and "and 12 kg in the scene" in mass
     drawn = uncertainty.of_scene(rocket)
     edge = float(drawn.vary["payload.mass"].ppf(np.array(0.999)))
     assert uncertainty.far_from_scene(drawn, rocket.replace({"payload.mass": edge})) == []
     without = rocket.replace({"payload.mass": 12.0, "studies.errors": None})
-    assert not any(words.startswith("vary.") for words in plausibility.of_all_conditions(without))
+    assert not any(words.startswith("vary.") for words in implausible.of_all_conditions(without))

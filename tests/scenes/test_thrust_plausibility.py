@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.scenes.support import refused, small
-from tipoff.scenes import load, parse, plausibility
+from tipoff.scenes import implausible, load, parse
 from tipoff.scenes.effects import thrust_law
 
 BURN, PEAK = (0.2, 0.8), 200.0  # s, N
@@ -195,7 +195,7 @@ def test_a_fit_whose_impulse_is_off_is_refused_unless_told_otherwise(tmp_path):
 def test_all_faults_of_one_record_are_said(tmp_path):
     """Each has a key of its own, by which conditions are told apart."""
     scene = written(tmp_path, TIME, 1e3 * (half_sine(TIME) + 4.0))
-    keys = [words.partition(":")[0] for words in plausibility.of_all_conditions(scene)]
+    keys = [words.partition(":")[0] for words in implausible.of_all_conditions(scene)]
     assert [key for key in keys if key.startswith("thrust")] == [
         "thrust, payload.mass",
         "thrust.baseline",

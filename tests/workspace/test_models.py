@@ -106,7 +106,7 @@ def test_the_command_line_has_the_names_of_the_models():
         ),
         (["--model", "springs", "--modes", "4"], "option of compliant"),
         (["--model", "springs", "--cells", "16"], "--cells: given 16, expected none with --model"),
-        (["--modes", "21", "--cells", "16"], "--modes, --cells: value"),
+        (["--modes", "21", "--cells", "16"], "--modes: value: given 21, expected a whole"),
         (["--checkpoint-every", "5 s"], "option of finite-elements"),
         (["--modes", "21"], "a whole number from 0 to 20"),
     ],

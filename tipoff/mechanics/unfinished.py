@@ -93,10 +93,12 @@ def _jammed(scene: Scene, run: "Trajectory") -> str:
         " and ".join(f"{joule:.3g} J {name}" for name, joule in each.items() if joule > least)
         for each in (given, {f"by {name}": joule for name, joule in spent.items()})
     )
+    stuck = f"stuck on the rail: {1e3 * way:.3g} of {1e3 * whole:.3g} mm"
+    if not energy:
+        return f"{stuck}; nothing moved it: it needs thrust, or less friction"
     return (
-        f"stuck on the rail: {1e3 * way:.3g} of {1e3 * whole:.3g} mm, {speeds.max():.2g} m/s at most; it"
-        f" had {energy or 'no energy'} and lost {taken or 'none'}: it needs less friction, or more thrust"
-        " that presses the pads no harder"
+        f"{stuck}, {speeds.max():.2g} m/s at most; it had {energy} and lost {taken or 'none'}: it needs less"
+        " friction, or more thrust that presses the pads no harder"
     )
 
 

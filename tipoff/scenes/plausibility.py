@@ -56,29 +56,6 @@ def warnings(scene) -> list[str]:
     return found
 
 
-def of_all_conditions(scene) -> list[str]:
-    """Messages on a scene, and those on its conditions with other keys."""
-    found: dict[str, str] = {}
-    for name in (None, *scene.conditions):
-        for words in scene.warnings if name is None else scene.condition(name).warnings:
-            found.setdefault(
-                words.partition(":")[0], words if name is None else f"{words} (condition {name})"
-            )
-    return [*found.values(), *_of_errors(scene)]
-
-
-def _of_errors(scene) -> list[str]:
-    """Messages on the errors that the scene states, if they can be read."""
-    from tipoff.scenes import uncertainty  # which needs scenes
-    from tipoff.scenes.faults import SceneError
-
-    try:
-        stated = uncertainty.of_scene(scene)
-    except SceneError:  # with its faults where the errors are used
-        return []
-    return uncertainty.far_from_scene(stated, scene) if stated else []
-
-
 def _of_inertia(scene) -> list[str]:
     """Moments of inertia that are impossible or implausible for a body of this mass in a box with
     sides a, b and c.

@@ -18,7 +18,7 @@ from tipoff import cache, sources
 from tipoff.files import content_hash, read_json
 from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.scenes import plausibility
+from tipoff.scenes import implausible
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.names import NOMINAL
@@ -236,7 +236,7 @@ class Study:
                 "scene": self.scene.name,
                 "key": key,
                 "quantities": words.QUANTITIES,
-                "implausible": plausibility.of_all_conditions(self.scene),
+                "implausible": implausible.of_all_conditions(self.scene),
                 **result,
                 "files": {self.relative(file): _digest(file) for file in files},
             },

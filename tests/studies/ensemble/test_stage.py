@@ -197,7 +197,7 @@ def test_bad_rows_are_refused_alone(tmp_path):
     [
         (["--vary", "no_such_file"], "paper"),
         (["--table", "missing.csv"], "missing.csv"),
-        (["--tolerance", "0.5"], "relative_tolerance"),
+        (["--tolerance", "0.5"], "--tolerance: value: given 0.5, expected 1e-13 to 0.01"),
         (["--table", "missing.csv", "--seed", "2"], "the table lists its cases"),
         (["--sampling", "latin-hypercube", "--cases", "10000000"], "at most"),
         (["--set", "payload.mass=-1 kg"], "payload.mass"),

@@ -9,7 +9,7 @@ import tipoff
 from tests.lowfi.support import IMMOVABLE, WEIGHTLESS
 from tipoff import lowfi, scenes
 from tipoff.mechanics import unfinished
-from tipoff.scenes import SceneError, plausibility, uncertainty
+from tipoff.scenes import SceneError, implausible, uncertainty
 from tipoff.studies.cli import app
 from tipoff.studies.new_scene import template
 from tipoff.studies.new_scene.template import Numbers
@@ -45,7 +45,7 @@ def test_it_holds_the_numbers_and_is_plausible(launcher):
     assert scene.contact.clearance == pytest.approx(numbers.clearance, rel=1e-5)
     assert scene.thrust.peak == numbers.thrust
     assert unfinished.way_to_exit(scene) == pytest.approx(numbers.rail_length, rel=1e-5)
-    assert plausibility.of_all_conditions(scene) == []
+    assert implausible.of_all_conditions(scene) == []
 
 
 @pytest.mark.parametrize("name", LAUNCHERS)
@@ -69,7 +69,7 @@ def test_a_scene_refers_to_the_curve_of_its_thrust(tmp_path, monkeypatch):
     scene = scenes.load(file)
     assert scene.thrust.requested() == pytest.approx(0.5 * (1.2 * 8 + 7.1 * 4 + 3.1 * 12))
     assert tomllib.loads(file.read_text())["thrust"]["file"] == '../data/my "firing".csv'
-    assert plausibility.of_all_conditions(scene) == []
+    assert implausible.of_all_conditions(scene) == []
     run = lowfi.run(scene.replace({"gravity": WEIGHTLESS}), "springs")  # no kernel of its own
     assert run.status == "exited", unfinished.advice(scene, run)
 
@@ -120,7 +120,7 @@ def test_four_long_pads_reach_as_far_as_eight_and_hold_the_payload(tmp_path):
     Control: pads as short as those of two stations let it turn by more."""
     four, eight = (_scene(Numbers(pads=count), tmp_path) for count in (4, 8))
     assert unfinished.way_to_exit(four) == pytest.approx(unfinished.way_to_exit(eight), rel=1e-9)
-    assert plausibility.of_all_conditions(four) == []
+    assert implausible.of_all_conditions(four) == []
     held = 2.0 * four.contact.clearance / four.pads[0].length
     tilted = four.replace({"thrust_offset.misalignment.axial": "2 deg"})
     short = tilted.replace({f"pads.{pad}.length": 0.016 for pad in range(4)})
@@ -180,7 +180,7 @@ def test_a_deployer_has_the_given_numbers_and_the_rest_of_the_catalogue(tmp_path
     assert scene.contact.clearance == pytest.approx(0.3e-3, rel=1e-12)
     assert scene.payload.inertia.xx == pytest.approx(4.5 * 0.02 / 12.0, rel=1e-5)
     assert scene.provenance["payload.mass"] == "given to tipoff new"
-    assert plausibility.of_all_conditions(scene) == []
+    assert implausible.of_all_conditions(scene) == []
     for name in ("pads", "rail", "platform", "friction", "mass_offset", "conditions"):
         assert getattr(scene, name) == getattr(own, name)
     text = (tmp_path / "own.toml").read_text()

@@ -150,5 +150,7 @@ def test_a_scene_that_never_leaves_is_refused_before_thousands_of_cases(
     still = moving.replace({"thrust.peak": 0.0})
     with pytest.raises(Began):
         study_of(Study(moving, tmp_path / "moving", Settings(workers=1)))
-    with pytest.raises(StudyError, match=r"does not leave the rail and settle \(jammed\)"):
+    with pytest.raises(
+        StudyError, match=r"does not leave the rail and settle \(jammed: stuck.*nothing moved"
+    ):
         study_of(Study(still, tmp_path / "still", Settings(workers=1)))

@@ -220,6 +220,8 @@ def test_the_scene_itself_comes_first(page):
     values = rates | {"velocity_x_m_s": 13.6457, "exit_time_ms": 19.1}
     page.documents["nominal"] = {
         "rows": [],
+        "at": "settled",
+        "at_why": "because no impulse after the exit is known",
         "answer": {"finite-elements": values, "compliant": values},
         "spread": None,
         "failed": [],

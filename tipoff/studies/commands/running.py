@@ -45,7 +45,7 @@ def study_of(
     fault listed.
     """
     from tipoff import scenes
-    from tipoff.scenes import plausibility, reading
+    from tipoff.scenes import implausible, reading
     from tipoff.scenes.faults import Fault, SceneError
     from tipoff.workspace.progress import say
     from tipoff.workspace.settings import defaults
@@ -72,7 +72,7 @@ def study_of(
     # a bad override or an unknown condition, before anything runs
     asked = {"source": "--condition", "key": "name"} if names else {}
     _of_option(asked, lambda: study.conditions)
-    doubtful = plausibility.of_all_conditions(found)
+    doubtful = implausible.of_all_conditions(found)
     if doubtful and strict:
         raise SceneError(
             [

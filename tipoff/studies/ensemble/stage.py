@@ -21,7 +21,7 @@ from tipoff.lowfi.ensemble.table import TableFile
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics import hand_over
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
-from tipoff.scenes import plausibility, uncertainty
+from tipoff.scenes import implausible, uncertainty
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
@@ -180,7 +180,7 @@ def run(study: Study, options: Options) -> Ran:
         **vars(summary.of(ensemble, store, calibrated, at, limits)),
         scene=study.scene.name,
         quantities=words.QUANTITIES,
-        implausible=plausibility.of_all_conditions(study.scene),
+        implausible=implausible.of_all_conditions(study.scene),
         store=str(path),
         sensitivity=told,
         agreement=_agreement(study, options),

@@ -5,7 +5,7 @@ import datetime
 from collections.abc import Sequence
 
 from tipoff.mechanics.trajectory import versions
-from tipoff.scenes import plausibility
+from tipoff.scenes import implausible
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.question import Section
@@ -74,7 +74,7 @@ def render(page: Page) -> str:
 
 def _warnings(page: Page) -> list[str]:
     """Warnings that the reader must know before the answer."""
-    found = [f"Implausible: {warning}" for warning in plausibility.of_all_conditions(page.scene)]
+    found = [f"Implausible: {warning}" for warning in implausible.of_all_conditions(page.scene)]
     found += [f"{stage}: {reason}" for stage, reason in page.problems.items()]
     return found + [f"Section {name} failed: {reason}" for name, reason in page.failures.items()]
 
