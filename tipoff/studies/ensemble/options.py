@@ -74,8 +74,9 @@ class Options:
         typer.Option(
             "--tolerance",
             metavar="X",
-            help="Relative error of a step. In 95 % of 20 reference cases the error of the rate is "
-            "below 0.2 % with 1e-2, and below 0.1 % with 1e-4.",
+            help="Relative error of a step. Alone it changes the rates of 95 % of reference cases by less "
+            "than 0.2 % with 1e-2, and 0.1 % with 1e-4; above 2e-7 a case also has fewer contact cells and "
+            "patterns than tipoff run, which change 95 % of them by up to 1.3 %.",
         ),
     ] = 1e-2
     model: Surrogate = None
