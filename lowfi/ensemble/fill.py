@@ -24,7 +24,7 @@ def fill(
     """Run the cases missing in ``store`` and return their number, in ``workers`` threads or on the
     Dask cluster at ``scheduler``.
 
-    ``progress`` is called with the number of cases stored. Raises StoreError when it cannot go on;
+    ``progress`` is called with the number of cases done. Raises StoreError when it cannot go on;
     stored cases stay, and the next call runs the rest.
     """
     pending = store.pending()
@@ -33,21 +33,29 @@ def fill(
         return 0
     requested = ((number, ensemble.source.rows(*store.bounds(number))) for number in pending)
     stored = store.asked - missing
+
+    def tell(more: int = 0) -> None:
+        if progress:
+            progress(stored + more)
+
     for chunk in (
         cluster.made(ensemble, store, requested, scheduler)
         if scheduler is not None
-        else _here(ensemble, requested, workers)
+        else _here(ensemble, requested, workers, tell)
     ):
         store.write(chunk)
         stored += len(chunk.rows)
-        if progress:
-            progress(stored)
+        tell()
     return missing
 
 
 def _here(
-    ensemble: Ensemble, requested: Iterable[tuple[int, _Rows]], workers: int | None
+    ensemble: Ensemble,
+    requested: Iterable[tuple[int, _Rows]],
+    workers: int | None,
+    tell: Callable[[int], None],
 ) -> Iterator[Chunk]:
+    """Chunks made here; ``tell`` is called with the number of cases done of the next one."""
     begun: deque[tuple[int, _Rows]] = deque()
 
     def pieces() -> Iterator[_Rows]:
@@ -62,3 +70,5 @@ def _here(
             number, rows = begun.popleft()
             yield Chunk(number, rows, columns.of(cases), [case.message for case in cases])
             cases = []
+        else:
+            tell(len(cases))

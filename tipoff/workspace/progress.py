@@ -120,7 +120,9 @@ class Board:
         self._said, self._silence = now, min(2.0 * self._silence, _NOTED_EVERY)
         taken, begun = now - self._started, sum(self._fractions.values())
         done = (self._done + begun) / self._total
-        left = f", {_duration(taken * (1.0 / done - 1.0))} left" if done > _LEAST_KNOWN else ""
+        left = (
+            f", {_duration(taken * (1.0 / done - 1.0))} left" if _LEAST_KNOWN < done < 1.0 else ""
+        )
         shares = [f"{label} {share:.0%}" for label, share in self._fractions.items() if share > 0.0]
         more = f" and {len(shares) - _NAMED} more" if len(shares) > _NAMED else ""
         under_way = f"  {', '.join(shares[:_NAMED])}{more}" if shares else ""

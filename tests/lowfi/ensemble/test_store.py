@@ -90,6 +90,15 @@ def test_a_killed_process_is_resumed_to_the_same_bits(tmp_path, digest):
     assert store.digest() == digest and fill(ensemble(), store) == 0
 
 
+def test_progress_is_that_of_the_cases_done(tmp_path, monkeypatch):
+    """A chunk of 4,096 slow cases took minutes, without a word. Its pieces are told."""
+    monkeypatch.setattr("tipoff.lowfi.ensemble.fill.PIECE", 5)
+    told, asked = [], ensemble()
+    fill(asked, asked.store(tmp_path / "store"), workers=1, progress=told.append)
+    assert told == sorted(set(told)) and told[-1] == CASES
+    assert told[:4] == [5, 10, 15, CHUNK] and {CHUNK, 2 * CHUNK} <= set(told)
+
+
 @pytest.mark.parametrize(
     "harm",
     [
