@@ -33,6 +33,7 @@ _FIRST, _LAST = 1e-4, 1.0  # s, times of the damping
 # Weights per metre, less than which holds nothing in its place; and largest force over the weight with which
 # a payload slides, as in the reference
 _LOOSE, _SLOW = 10.0, 1e-3
+_HALVINGS, _NEAR = 30, 1e-2  # of a correction, and largest force over the weight near rest
 _FIRM = 1e-8  # largest force over the weight where something holds it, beside such a force
 _RIGID = 5  # place along Y and Z, turns about X, Y and Z
 
@@ -126,6 +127,17 @@ class _Rest:
         return bool(left[~loose].max(initial=0.0) <= _FIRM)
 
     def found(self, name: str) -> np.ndarray:
+        """The state at rest. Where a pad is about to press, full corrections go to and fro; then each one
+        near rest is halved until the force is smaller."""
+        force = np.zeros(0)
+        for halves in (False, True):
+            state, force = self._searched(halves)
+            if state is not None:
+                return state
+        raise no_rest(name, f"a force of {self._left(force):.2g} of the weight is left")
+
+    def _searched(self, halves: bool) -> tuple[np.ndarray | None, np.ndarray]:
+        """The state at rest, None if none is found, and the forces that are left."""
         moved, over = np.zeros(self.masses.size), _FIRST
         sliding = None  # where only a small force along free directions was left
         force = self.force(moved)
@@ -134,7 +146,7 @@ class _Rest:
             if not np.isfinite(left):
                 break
             if left <= AT_REST:
-                return self.state(moved)
+                return self.state(moved), force
             slopes = self._slopes(moved, force)
             if sliding is None and left <= _SLOW and self._slides(slopes, force):
                 sliding = moved
@@ -143,10 +155,13 @@ class _Rest:
             longest = float(np.abs(change / self.sizes).max())
             if longest > _LONGEST:
                 change *= _LONGEST / longest
-            moved = moved + change
-            force = self.force(moved)
+            before = moved
+            for _ in range(_HALVINGS if halves and left <= _NEAR else 1):
+                moved = before + change
+                force = self.force(moved)
+                if self._left(force) <= left:
+                    break
+                change = 0.5 * change
             closer = self._left(force) <= left  # as in a fall
             over = min(2.0 * over, _LAST) if closer else max(0.5 * over, _FIRST)
-        if sliding is not None:
-            return self.state(sliding)
-        raise no_rest(name, f"a force of {self._left(force):.2g} of the weight is left")
+        return (None if sliding is None else self.state(sliding)), force

@@ -148,3 +148,12 @@ def test_a_payload_that_is_free_to_slide_across_its_rail_stays(gradient):
     np.testing.assert_allclose(sums(run, asked)[:, 2], G, rtol=1e-5)
     assert np.abs(run.velocity[before, 1]).max() < 1e-3 * G * START
     assert np.abs(run.velocity[before, 2]).max() < 1e-7
+
+
+def test_a_button_that_hardly_presses_rests_too():
+    """A rocket on two buttons, one of which carries nearly nothing: full corrections went to and fro about
+    its first contact, and the scene was refused."""
+    asked = scenes.load("rocket_rail").replace({"initial.settled": True, "duration": 1e-3})
+    run = lowfi.run(asked, compliance=tipoff.compliance(asked, 0.02), numerics=Numerics(modes=0))
+    across = run.pad_force[0].sum(axis=0)[2] / asked.payload.mass
+    assert across == pytest.approx(0.8547, rel=1e-6)
