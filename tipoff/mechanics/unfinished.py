@@ -83,15 +83,15 @@ def _jammed(scene: Scene, run: "Trajectory") -> str:
     work = dict(zip(ledger.ENTRIES, run.energy[-1].tolist(), strict=True))
     weight = work[ledger.BODY_FORCE]
     given = {
-        "of the thrust": work["thrust"],
-        "of its start": float(run.energy[0, ledger.STATE].sum()),
-        "of the body forces": max(weight, 0.0),
+        "from the thrust": work["thrust"],
+        "from its start": float(run.energy[0, ledger.STATE].sum()),
+        "from the body forces": max(weight, 0.0),
     }
     spent = {"friction": work["friction"], "its weight": max(-weight, 0.0)}
     least = _TELLING * sum(given.values())
     energy, taken = (
         " and ".join(f"{joule:.3g} J {name}" for name, joule in each.items() if joule > least)
-        for each in (given, {f"by {name}": joule for name, joule in spent.items()})
+        for each in (given, {f"to {name}": joule for name, joule in spent.items()})
     )
     stuck = f"stuck on the rail: {1e3 * way:.3g} of {1e3 * whole:.3g} mm"
     if not energy:

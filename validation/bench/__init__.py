@@ -13,4 +13,4 @@ def _load() -> Contents:
     )
 
 
-ENTRY = Entry((command.bench, command.waits, command.ladder), _load)
+ENTRY = Entry((command.bench, command.waits, command.ladder, command.cells), _load)

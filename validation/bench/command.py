@@ -1,4 +1,4 @@
-"""``python -m validation bench``, ``waits`` and ``ladder``."""
+"""``python -m validation bench``, ``waits``, ``ladder`` and ``cells``."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -118,5 +118,32 @@ def ladder(
         names = tuple(name for text in condition or () for name in text.split(","))
         found = ladder.run(out, scene, names, 1e-3 * element_size)
         return Output(found, lambda found: [ladder.table(found)])
+
+    guarded(work, json_)
+
+
+def cells(
+    out: Out = Path("out"),
+    scene: SceneName = "reference",
+    cases: Annotated[int, typer.Option(metavar="N", min=2, help="Cases of each row.")] = 100,
+    element_size: Annotated[
+        float,
+        typer.Option(
+            "--element-size",
+            metavar="LENGTH",
+            parser=in_millimetres,
+            help='Element size of the rails, "4 mm" or 4.',
+        ),
+    ] = 4.0,
+    json_: Json = False,
+) -> None:
+    """Measure what the contact cells and patterns of tipoff ensemble change in its rates; writes
+    bench/cells.json."""
+
+    def work() -> Output:
+        from validation.bench import cells
+
+        found = cells.run(out, scene, cases, 1e-3 * element_size)
+        return Output(found, lambda found: [cells.table(found)])
 
     guarded(work, json_)

@@ -56,7 +56,7 @@ def test_stopping_distance_and_time(tolerance):
     assert rubbed == pytest.approx(0.5 * 20.0 * 2.0**2, rel=2e-3)
     words = unfinished.advice(scenes.parse(run.scene, bare_numbers_are_si=True), run)
     assert words.startswith("stuck on the rail: 680 of ") and "2 m/s at most" in words
-    assert "it had 40 J of its start and lost 40 J by friction" in words
+    assert "it had 40 J from its start and lost 40 J to friction" in words
 
 
 @pytest.mark.case("O25")
