@@ -51,7 +51,7 @@ for line in sys.stdin:
     print("ended", os.waitpid(child, 0)[1], flush=True)
 """
 # Numba's own cache: all kernels in one place, distinguished by their own code alone.
-STAMP = "    return hashlib.sha256(settings.encode()).hexdigest()[:16]"
+STAMP = '    return hashlib.sha256("\\n".join([repr(of_all), *parts]).encode()).hexdigest()[:16]'
 PRIVATE = '                function.linkage = "private"'
 
 
@@ -233,10 +233,10 @@ def test_comments_compile_nothing(project):
 def test_without_the_digest_the_old_callee_is_used(project):
     """Control: the wrong result that the digest prevents. The digest is not needed any more if
     Numba changes this."""
-    source = project / "tipoff" / "kernels" / "cached.py"
+    source = project / "tipoff" / "kernels" / "called.py"
     text = source.read_text()
     assert STAMP in text
-    source.write_text(text.replace(STAMP, '    return "fixed" if settings else ""'))
+    source.write_text(text.replace(STAMP, '    return "fixed" if parts else ""'))
     found = []
     for value in (1.0, 3.0):
         write_callee(project, value)

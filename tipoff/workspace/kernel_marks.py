@@ -14,7 +14,7 @@ from typing import Any
 
 from tipoff import cache, sources
 from tipoff.files import content_hash
-from tipoff.kernels.cached import kernel_digest
+from tipoff.kernels import called
 from tipoff.lowfi.numerics import AUTO
 from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.scenes.effects.registry import EFFECTS
@@ -108,7 +108,7 @@ def mark(run: Run, chosen: bool = False, many: bool = False) -> tuple[Path, str]
     """The file of the mark of the kernels of ``run``, or of ``many`` cases like it, and its key."""
     return _mark(
         sources.cache_folder() / "kernels",
-        kernel_digest(f"tipoff.{run.fidelity}"),
+        _code(run.fidelity),
         run.model,
         _not_compiled(run.scene),
         _vibrates(run, chosen),
@@ -123,6 +123,17 @@ def mark(run: Run, chosen: bool = False, many: bool = False) -> tuple[Path, str]
 def _mark(folder: Path, *kernels: Any) -> tuple[Path, str]:
     key = content_hash(*kernels)
     return cache.file(folder, "compiled", key, ".json"), key
+
+
+@functools.cache
+def _code(fidelity: str) -> str:
+    """Digest of the code of a time loop."""
+    loop: Any
+    if fidelity == "highfi":
+        from tipoff.highfi.dynamics.step import perform as loop
+    else:
+        from tipoff.lowfi.dynamics.integrate import integrate as loop
+    return called.digest(loop)
 
 
 def _not_compiled(scene: Scene) -> tuple[str, ...]:
