@@ -1,21 +1,27 @@
 """``python -m tipoff`` and the command ``tipoff``."""
 
 import atexit
+import codecs
 import gc
+import io
 import os
 import signal
 import sys
 import threading
+import unicodedata
 
 # New objects before a collection of garbage, and collections of each older generation. The modules of
 # a command make 100,000 objects that stay: to look through them takes a tenth of a short command.
 _RARE = 20_000, 50, 50
+# Plain spellings of the characters that this program prints, for encodings that lack them.
+_PLAIN = {"µ": "u", "±": "+-", "×": "x", "·": "*", "√": "sqrt ", "✓": "yes", "✗": "no", "°": " deg"}
 
 
 def main() -> None:
     """Run the command line. The exit code is 130 after Ctrl-C, and 1 if the machine refuses a file,
     even while modules load."""
     _one_thread_of_blas()
+    _print_in_any_encoding()
     gc.set_threshold(*_RARE)
     atexit.register(_end)
     sys.unraisablehook = _keep_interrupts
@@ -29,6 +35,35 @@ def main() -> None:
     except OSError as error:
         print(f"tipoff: {error}", file=sys.stderr)
         sys.exit(1)
+
+
+def _print_in_any_encoding() -> None:
+    """Let both output streams spell a character that their encoding lacks. Python raises an error
+    instead, after all work is done."""
+    codecs.register_error("tipoff", _spelled)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # None if it is closed
+            stream.reconfigure(errors="tipoff")
+
+
+def _spelled(fault: UnicodeError) -> tuple[str | bytes, int]:
+    """The first character that cannot be encoded in plain letters, and the place after it. A byte of
+    a file name that is not text stays that byte."""
+    if not isinstance(fault, UnicodeEncodeError):
+        raise fault
+    character, after = fault.object[fault.start], fault.start + 1
+    if "\udc80" <= character <= "\udcff":
+        return bytes([ord(character) - 0xDC00]), after
+    if character in _PLAIN:
+        return _PLAIN[character], after
+    name = unicodedata.name(character, "")
+    if name.startswith("BOX DRAWINGS"):
+        ends = any(word in name for word in ("AND", "ARC", "DIAGONAL"))
+        return "+" if ends else "|" if "VERTICAL" in name else "-", after
+    if "DASH" in name or "MINUS" in name:
+        return "-", after
+    letters = unicodedata.normalize("NFKD", character).encode("ascii", "ignore").decode()
+    return letters or "?", after
 
 
 def _end() -> None:
