@@ -13,7 +13,7 @@ BASE = load("clamped").condition("phi15")
 ENDS = {
     "exited": ({}, {}),
     "time_limit": ({"duration": "5 ms"}, {}),
-    "jammed": ({"thrust.peak": 5.0}, {}),
+    "jammed": ({"thrust.peak": 0.05}, {}),
     "spent": ({}, {"maximum_steps": 20}),
     "overflow": ({"thrust.peak": 1e200, "thrust_offset.misalignment.axial": 0.0}, {}),
 }

@@ -115,3 +115,36 @@ def test_a_thrust_that_outlasts_every_run_is_refused(interval, refused):
     short = parse(raw | {"thrust": raw["thrust"] | {"duration": "1 s"}})
     with pytest.raises(SceneError, match="output.interval"):
         short.replace({"thrust.duration": 200.0})
+
+
+@pytest.mark.parametrize(
+    "change, speed",
+    [
+        # held by friction: it would be faster than 10 mm/s without
+        ({}, 0.01),
+        ({"initial": {"velocity": {"x": 0.02}}, "thrust.peak": 0.0, "thrust.width": "1 ms"}, 0.01),
+        ({"gravity": {"x": 1e-3}, "platform": None, "thrust.peak": 1.0}, 0.01),
+        ({"gravity": {"x": -1.0, "z": -6.0}, "platform": None}, 0.01),
+        # it coasts, or only its weight moves it
+        ({"thrust.peak": 5.0}, 0.224 / 3600.0),
+        ({"friction": None}, 0.224 / 3600.0),
+        ({"friction": None, "gravity": {"x": -1.0}, "platform": None}, 0.0),
+        ({"gravity": {"x": -1.0, "z": -4.0}, "platform": None}, 0.224 / 3600.0),
+    ],
+)
+def test_the_speed_below_which_a_payload_is_jammed(change, speed):
+    """Friction of 0.2 holds a payload on a slope of less than atan(0.2)."""
+    assert ends.jam_speed(load("tiny").replace(change)) == pytest.approx(speed, rel=1e-12)
+
+
+def test_the_limit_of_a_payload_that_is_slow_without_friction():
+    """From rest under its weight it takes sqrt(2 way / g), after a gentle push way / v. Control: the limit
+    of a fast one, at which both are still on the rail."""
+    free = ALONE.replace({"output.interval": "1 ms"})
+    push = {"kind": "constant", "force": 0.5, "duration": 0.1}
+    for change, exits in (
+        ({"thrust": PUSH | {"force": 0.0}, "gravity": {"x": 1e-4}}, math.sqrt(2.0 * 0.224 / 1e-4)),
+        ({"thrust": push}, 0.1 + 0.224 / (0.05 / 10.0) - 0.05),
+    ):
+        assert exits < free.replace(change).time_limit < 2.0 * (exits + 0.1)
+        assert exits > free.time_limit

@@ -7,6 +7,7 @@ import pytest
 
 from tests.scenes.support import CONTACT, small
 from tipoff.scenes import SceneError, catalog, implausible, load, parse, sinking, uncertainty
+from tipoff.scenes.variation import Variations
 
 DENSITY = 2810.0
 
@@ -228,6 +229,26 @@ def test_pads_that_begin_beyond_an_end_of_the_rail(way, outside):
     assert all(words.startswith("pads, rail.start, rail.end: at ignition pads ") for words in found)
     free = scene.replace({"contact": None, "friction": None})
     assert not any("outside the rail" in words for words in free.warnings)
+
+
+@pytest.mark.parametrize("others", [{}, {"contact": None, "friction": None}])
+def test_a_rail_that_ends_behind_every_pad_is_refused(others):
+    """By a wrong sign of its end. The rear edges of the rear pads are at -88 mm. A case of an ensemble is
+    refused in the same words. Control: a rail that ends 0.1 mm beyond them."""
+    held = {"rail.start": -0.3, "rail.mounts": [{"start": 0.008, "end": 0.024}]}
+    scene = load("tiny").replace(held | others)
+    beyond, behind = {"rail.end": -0.0879}, {"rail.end": -0.0881}
+    with pytest.raises(SceneError) as error:
+        scene.replace(behind)
+    (fault,) = error.value.faults
+    assert (fault.key, fault.given) == ("rail.end", "-0.0881 m")
+    assert fault.expected.startswith("more than -0.088 m")
+    variations = Variations(scene)
+    for _ in range(2):  # the first row of its keys, and a later one
+        assert variations.of(beyond).rail.end == -0.0879
+        with pytest.raises(SceneError) as refused:
+            variations.of(behind)
+        assert str(refused.value) == str(error.value)
 
 
 def test_errors_far_from_the_values_of_the_scene_are_told():

@@ -7,8 +7,11 @@ definitions.
   peak; settled values are means over it.
 * **Impulse after the exit**: its share of the impulse of the whole thrust, or of the part before
   the exit if that is larger.
-* **Jammed**: relative axial speed below the friction transition speed (10 mm/s if friction has
-  none) for 5 ms, after the thrust fell below 1 % of its peak or under a strong constant thrust.
+* **Jammed**: relative axial speed below the jam speed for 5 ms, after the thrust fell below 1 % of
+  its peak or under a strong constant thrust. The jam speed is the friction transition speed (10 mm/s
+  if friction has none) of a payload that would be faster without friction: friction holds it. A payload
+  that is as slow without friction coasts. Its jam speed is that of a payload at rest: at it, the rail
+  lasts an hour. It is zero, and no payload is jammed, if the weight pulls along rails without friction.
 
 All values come from the steps of a run (``mechanics.ending``), independent of the sampling
 interval.
@@ -23,10 +26,9 @@ from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
 from tipoff.scenes import ends
 from tipoff.scenes.effects import thrust
-from tipoff.scenes.effects.friction import Friction
 from tipoff.scenes.ends import EXIT_WINDOW as EXIT_WINDOW
 from tipoff.scenes.ends import JAM_DURATION as JAM_DURATION
-from tipoff.scenes.ends import JAM_SPEED, SETTLE_DELAY
+from tipoff.scenes.ends import SETTLE_DELAY
 from tipoff.scenes.ends import SETTLE_WINDOW as SETTLE_WINDOW
 from tipoff.scenes.scene import Scene
 
@@ -134,18 +136,13 @@ def burnouts(scene: Scene, model) -> tuple[float, float]:
 def milestones(scene: Scene, model, burnt: tuple[float, float] | None = None) -> Milestones:
     """Milestones of a run of ``scene``; ``burnt``: its ``burnouts``, if known."""
     settled, spent = burnt or burnouts(scene, model)
-    slow = jam_speed(model)
+    slow = ends.slow(scene)
     return Milestones(
         settled_thrust=settled,
         spent_thrust=max(spent, ends.slides(scene, slow)),
-        jam_speed=slow,
+        jam_speed=ends.jam_speed(scene),
         constant_thrust=ends.starts_briskly(scene, slow),
     )
-
-
-def jam_speed(model) -> float:
-    """Relative axial speed (m/s) below which a payload may be jammed."""
-    return model.friction.static_speed if isinstance(model.friction, Friction) else JAM_SPEED
 
 
 def relative_motion(motion) -> dict[str, np.ndarray]:

@@ -14,13 +14,14 @@ from tipoff.mechanics.outcome import SETTLE_DELAY, SETTLE_WINDOW, relative_motio
 from tipoff.scenes import ends
 from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.scene import Scene
+from tipoff.scenes.tables import MOST_SAMPLES
+from tipoff.scenes.units import LONGEST
 
 if TYPE_CHECKING:
     from tipoff.mechanics.trajectory import Trajectory
 
 _HORIZON = 100.0  # durations of the scene in which the end of the thrust is searched
 _BURNT = 1e-3  # of the peak, as in ``mechanics.outcome``
-_SLOW = 0.01  # m/s, as for a jam
 _STEP = 1e-5  # s, durations are rounded up to it
 _TELLING = 1e-3  # of the energy that a payload had: smaller parts are not named
 _MARGIN = 1e-3  # s: a payload that turns leaves the rail later than its mass centre suggests
@@ -95,7 +96,9 @@ def _jammed(scene: Scene, run: "Trajectory") -> str:
     )
     stuck = f"stuck on the rail: {1e3 * way:.3g} of {1e3 * whole:.3g} mm"
     if not energy:
-        return f"{stuck}; nothing moved it: it needs thrust, or less friction"
+        return f"{stuck}; nothing moved it: it needs thrust{_rubbed(scene)}"
+    if not work["friction"] > least:
+        return f"{stuck}, {speeds.max():.2g} m/s at most; it had {energy}: it needs more thrust"
     return (
         f"{stuck}, {speeds.max():.2g} m/s at most; it had {energy} and lost {taken or 'none'}: it needs less"
         " friction, or more thrust that presses the pads no harder"
@@ -112,16 +115,22 @@ def _progress(scene: Scene, run: "Trajectory") -> tuple[float, float, np.ndarray
 
 def _on_the_rail(scene: Scene, run: "Trajectory", thrust_ends: float) -> str:
     way, whole, speeds = _progress(scene, run)
-    speed = float(speeds[-1])
+    speed, now = float(speeds[-1]), float(run.time[-1])
     text = f"still on the rail: {1e3 * way:.3g} of {1e3 * whole:.3g} mm"
-    if speed < _SLOW:
+    exit_time = now + (whole - way) / speed if speed > 0.0 else math.inf
+    if exit_time > LONGEST:
         lasts = f" (it lasts until {_ms(thrust_ends)})" if thrust_ends > scene.time_limit else ""
-        back = ", its weight pulls it back" if speed < -_SLOW else ""
-        return f"{text}, at {speed:.2g} m/s{back}: it needs more thrust{lasts}, or less friction"
-    exit_time = float(run.time[-1]) + (whole - way) / speed
+        return f"{text}, at {speed:.2g} m/s: it needs more thrust{lasts}{_rubbed(scene)}"
     settled = max(exit_time + SETTLE_DELAY, thrust_ends) + SETTLE_WINDOW + _MARGIN
     enough = f"at this speed a duration of {_ms(_up(settled))} is enough"
+    if scene.duration is None and settled > ends.longest(scene):
+        enough += f", with output.interval of at least {_ms(settled / MOST_SAMPLES)}"
     return f"{text}, at {speed:.3g} m/s; {enough}{_without(scene)}"
+
+
+def _rubbed(scene: Scene) -> str:
+    """The remedy of friction, if there is any."""
+    return ", or less friction" if scene.friction is not None else ""
 
 
 def _up(time: float) -> float:

@@ -1,15 +1,16 @@
 """End of a run of a scene: the time limit without a stated duration, the expected end, and the
 earliest time at which rates can be settled.
 
-A run ends once its rates have settled or the payload is jammed (``mechanics.outcome``). After the
-thrust a payload is either faster than the jam speed and leaves within rail length / jam speed, or
-slower and jammed. So without a stated duration a run ends at the latest at::
+A run ends once its rates have settled or the payload is jammed (``mechanics.outcome``). Without a
+stated duration it ends at the latest at::
 
-    end of thrust + way / v + jam + settled window,     v = max(jam speed, 10 mm/s)
+    end of thrust + way / v + jam + settled window
 
-rounded up to a power of two of 1 ms, so that variations of a scene share one limit. Gravity that
-pulls a payload back on fixed rails ends its forward motion after v_max / g, with v_max from the
-impulse alone.
+with v the slower one of two speeds: the friction transition speed, at least 10 mm/s, and the speed after
+the thrust of a payload without friction. A weight along fixed rails that is too small for this speed
+takes sqrt(2 way / g) from rest. The limit is rounded up to a power of two of 1 ms, so that variations of
+a scene share one limit. Gravity that pulls a payload back on fixed rails ends its forward motion after
+v_max / g, with v_max from the impulse alone.
 """
 
 import math
@@ -25,13 +26,15 @@ from tipoff.scenes.effects.spring import PushedTable
 from tipoff.scenes.faults import within
 from tipoff.scenes.rounding import at_most, below
 from tipoff.scenes.tables import MOST_SAMPLES, OutputTable
+from tipoff.scenes.travel import ends_behind_the_pads, nominal_way, strokes_too_long
+from tipoff.scenes.travel import way as way
 from tipoff.scenes.units import LONGEST
 
 EXIT_WINDOW = 2e-4  # s, from the exit on
 SETTLE_DELAY = 1e-3  # s, from the exit to the settled window
 SETTLE_WINDOW = 2e-3  # s
 JAM_DURATION = 5e-3  # s
-JAM_SPEED = 0.01  # m/s, where friction has no transition speed
+_SLOW = 0.01  # m/s, where friction has no transition speed
 _AFTER = 1e-3  # s, duration of a run after its end
 _BURNT = 1e-3  # of the peak
 _UNIT = 1e-3  # s
@@ -70,14 +73,20 @@ def limit(scene: Any) -> float:
     if scene.duration is not None:
         return scene.duration
     record = scene.thrust.record()
-    slowest = JAM_SPEED
-    if scene.friction is not None:
-        slowest = max(slowest, getattr(scene.friction, "static_speed", 0.0))
-    coasting = max(way(scene), 0.0) / slowest
-    if (pull := -_pull(scene)) > 0.0:
+    slowest = max(_SLOW, slow(scene))
+    distance = max(way(scene), 0.0)
+    coasting = distance / slowest
+    if (pull := _pull(scene)) < 0.0:
         pushed_on = _pushed(_law(scene, _fixed_gain(scene), 0.0))
         fastest = max(_begun(scene), 0.0) + pushed_on / scene.payload.mass
-        coasting = min(coasting, 2.0 * fastest / pull)
+        coasting = min(coasting, 2.0 * fastest / -pull)
+    else:
+        own = _coasts_at(scene)
+        alone = distance / own if own > _at_rest(scene) else 0.0
+        if pull > 0.0:
+            falling = math.sqrt(2.0 * distance / pull)
+            alone = min(alone, falling) if alone else falling
+        coasting = max(coasting, alone)
     # A payload that springs push is faster than this soon, or jammed.
     start = slides(scene, slowest) if isinstance(scene.thrust, PushedTable) else 0.0
     end = (
@@ -120,9 +129,9 @@ def require(tables: dict[str, Any], output: OutputTable) -> None:
 
 
 def fits(scene: Any) -> bool:
-    """Whether the sampling interval fits the duration, or the thrust without one, and strokes end on
-    the rail."""
-    if strokes_too_long(scene):
+    """Whether the rail does not end behind every pad, the sampling interval fits the duration, or the
+    thrust without one, and strokes end on the rail."""
+    if ends_behind_the_pads(scene) or strokes_too_long(scene):
         return False
     if scene.duration is None:
         return burns_too_long(scene) is None
@@ -203,43 +212,37 @@ def is_too_short(scene: Any) -> bool:
     return scene.duration is not None and below(scene.duration, earliest(scene))
 
 
-def way(scene: Any) -> float:
-    """Travel (m) along the rail from ignition to the exit: the trailing edge of the rearmost pad
-    reaches the end of the rail. A payload that turns has a little more or less."""
-    begun = scene.initial.position.x if scene.initial is not None else 0.0
-    return nominal_way(scene) - begun
+def slow(scene: Any) -> float:
+    """Relative axial speed (m/s) below which friction may hold a payload: the transition speed of its
+    friction, 10 mm/s if that has none."""
+    return getattr(scene.friction, "static_speed", _SLOW)
 
 
-def nominal_way(scene: Any) -> float:
-    """``way`` (m) of a payload that begins at its nominal place. ``scene`` needs pads and rail."""
-    return scene.rail.end - min(pad.position[0] - 0.5 * pad.length for pad in scene.pads)
+def jam_speed(scene: Any) -> float:
+    """Relative axial speed (m/s) below which a payload counts as jammed (``mechanics.outcome``)."""
+    force, pull, rests = registry.body_force(scene), _pull(scene), _at_rest(scene)
+    if not (scene.friction and scene.contact and scene.friction.static > 0.0):
+        return rests if pull == 0.0 else 0.0
+    if force is not None and pull < 0.0:  # friction of the weight holds it, or it slides back
+        holds = scene.friction.static * math.hypot(force.y, force.z) >= -pull
+        return slow(scene) if holds else rests
+    driven = pull > 0.0 or starts_briskly(scene, slow(scene))
+    return slow(scene) if driven or _coasts_at(scene) > slow(scene) else rests
 
 
-def with_strokes_on_the_rail(thrust: Any, tables: dict[str, Any]) -> Any:
-    """The table ``thrust``; refuses springs with a stroke that ends beyond the exit. ``tables`` are
-    the tables of a scene that are valid so far."""
-    if not {"pads", "rail"} <= tables.keys():  # these have other faults
-        return thrust
-    if wrong := strokes_too_long(SimpleNamespace(**tables, thrust=thrust)):
-        strokes = {key: spring.push().travel[-1] for key, spring in thrust.named()}
-        raise within(
-            ".".join(filter(None, [wrong[0][0].rstrip("."), "stroke"])),
-            ", ".join(f"{strokes[key]:g} m" for key, _ in wrong),
-            f"at most {wrong[0][1]:.6g} m, the way to the exit: a pusher reaches its stop on the rail",
-        )
-    return thrust
+def _at_rest(scene: Any) -> float:
+    """Speed (m/s) of a payload that does not leave its rail in the longest run."""
+    return min(nominal_way(scene) / LONGEST, slow(scene))
 
 
-def strokes_too_long(scene: Any) -> list[tuple[str, float]]:
-    """Keys of the springs whose stroke (m) is longer than the way to the exit, and that way."""
-    if not isinstance(scene.thrust, PushedTable):
-        return []
-    whole = nominal_way(scene)
-    return [
-        (key, whole)
-        for key, spring in scene.thrust.named()
-        if below(whole, float(spring.push().travel[-1]))
-    ]
+def _coasts_at(scene: Any) -> float:
+    """Estimate (m/s) of the axial speed after the thrust of a payload without friction and body
+    forces, on a platform that does not turn."""
+    gain, begun = _fixed_gain(scene), _begun(scene)
+    if isinstance(scene.thrust, PushedTable):
+        energy = max(0.0, scene.thrust.energy() - scene.thrust.friction_loss())
+        return math.sqrt(max(begun, 0.0) ** 2 + 2.0 * gain * energy)
+    return begun + gain * thrust_law.impulse(scene.thrust.record(), math.inf)
 
 
 def starts_briskly(scene: Any, speed: float) -> bool:

@@ -17,6 +17,7 @@ from pydantic import (
     ValidationError,
     ValidationInfo,
     field_validator,
+    model_validator,
 )
 
 from tipoff.files import content_hash
@@ -30,6 +31,7 @@ from tipoff.scenes import (
     roles,
     shown,
     suggestions,
+    travel,
     unchanged,
 )
 from tipoff.scenes import overrides as keys
@@ -121,7 +123,7 @@ class Scene(shown.Shown, ends.Timed, Table):
     @field_validator("thrust")
     @classmethod
     def _within_the_rail(cls, thrust: ThrustTable, info: ValidationInfo):
-        return ends.with_strokes_on_the_rail(thrust, info.data)
+        return travel.with_strokes_on_the_rail(thrust, info.data)
 
     @field_validator("thermal")
     @classmethod
@@ -150,6 +152,11 @@ class Scene(shown.Shown, ends.Timed, Table):
                 f"the duration of {duration:g} s",
             )
         return output
+
+    @model_validator(mode="after")
+    def _ends_beyond_a_pad(self):
+        travel.require_way(self)
+        return self
 
     def replace(self, overrides: Mapping[str, Any]) -> "Scene":
         """A new scene with dotted keys set.
@@ -259,7 +266,8 @@ class Scene(shown.Shown, ends.Timed, Table):
 
     def agrees(self) -> bool:
         """Whether valid tables fit each other: rails have an expansion if there is a temperature,
-        the sampling interval fits the duration, and strokes end on the rail."""
+        the rail does not end behind every pad, the sampling interval fits the duration, and strokes
+        end on the rail."""
         expands = self.thermal is None or self.rail.material.expansion is not None
         return expands and ends.fits(self)
 

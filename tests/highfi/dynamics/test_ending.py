@@ -9,16 +9,21 @@ import scipy.integrate
 import scipy.optimize
 
 from tests.highfi.support import COARSE, Stopped, begun, tiny, whole
-from tipoff import highfi
+from tipoff import highfi, lowfi
 from tipoff.highfi.dynamics.checkpoint import Checkpoint, restore
 from tipoff.highfi.numerics import Numerics
 from tipoff.mechanics.ending import DONE
+from tipoff.scenes import ends
 
 
 def assert_same(found, expected) -> None:
     """Status and every number of the outcome, bit for bit."""
     assert found.status == expected.status and found.outcome == expected.outcome
     assert found.cost["dt_s"] == expected.cost["dt_s"]
+
+
+def springs_of(scene):
+    return lowfi.run(scene, "springs")
 
 
 @functools.cache
@@ -128,13 +133,27 @@ def test_long_steps_of_a_straight_flight():
 @pytest.mark.parametrize("interval", ["0.1 ms", "25 ms"])
 def test_a_jam_is_found_with_few_samples(interval):
     """5 ms after the thrust fell below 1 % of its peak the run ends, whatever is sampled."""
-    found = highfi.run(tiny(thrust__peak="5 N", output__interval=interval), COARSE)
+    found = highfi.run(tiny(thrust__peak="10 mN", output__interval=interval), COARSE)
     spent = 4.5e-3 + 1.5e-3 * np.sqrt(2.0 * np.log(100.0))
     assert found.status == "jammed" and found.outcome.exit_time is None
     # to the next check
     assert (
         0.0 <= found.cost["steps"] * found.cost["dt_s"] - (spent + 5e-3) < 250 * found.cost["dt_s"]
     )
+
+
+@pytest.mark.parametrize("solve", [lambda scene: highfi.run(scene, COARSE), springs_of])
+def test_a_payload_that_coasts_slowly_leaves(solve):
+    """A push of 5 N gives it 2 mm/s, which no friction takes away. 0.1 mm before the exit it leaves after 50
+    ms, in both models. Control: the same friction holds a payload that would be faster than 10 mm/s
+    without (``scenes.test_ends``)."""
+    asked = tiny(thrust__peak="5 N", thrust_offset="absent", duration="absent")
+    asked = asked.replace({"initial.position.x": ends.way(asked) - 1e-4})
+    push, masses = asked.thrust, (asked.payload.mass, asked.platform.mass)
+    speed = push.peak * push.width * np.sqrt(2.0 * np.pi) * sum(1.0 / mass for mass in masses)
+    found = solve(asked)
+    # the cut of the pulse at three widths takes 0.3 % of the impulse
+    assert found.outcome.exit_time == pytest.approx(push.centre + 1e-4 / speed, rel=4e-3)
 
 
 class _StopAt:

@@ -1,0 +1,61 @@
+"""Travel along the rail from ignition to the exit, and the rails and strokes that do not fit it."""
+
+from types import SimpleNamespace
+from typing import Any
+
+from tipoff.scenes.effects.spring import PushedTable
+from tipoff.scenes.faults import within
+from tipoff.scenes.rounding import below
+
+
+def way(scene: Any) -> float:
+    """Travel (m) along the rail from ignition to the exit: the trailing edge of the rearmost pad
+    reaches the end of the rail. A payload that turns has a little more or less."""
+    begun = scene.initial.position.x if scene.initial is not None else 0.0
+    return nominal_way(scene) - begun
+
+
+def nominal_way(scene: Any) -> float:
+    """``way`` (m) of a payload that begins at its nominal place. ``scene`` needs pads and rail."""
+    return scene.rail.end - min(pad.position[0] - 0.5 * pad.length for pad in scene.pads)
+
+
+def require_way(scene: Any) -> None:
+    """Refuse a ``scene`` whose rail ends behind every pad."""
+    if not ends_behind_the_pads(scene):
+        return
+    end = scene.rail.end
+    least = f"more than {end - nominal_way(scene):.6g} m, the rear edge of the rearmost pad"
+    raise within("rail.end", f"{end:.6g} m", f"{least}: the rail is behind every pad")
+
+
+def ends_behind_the_pads(scene: Any) -> bool:
+    """Whether the rail ends behind every pad of a payload at its nominal place."""
+    return not below(0.0, nominal_way(scene), scene.rail.end)
+
+
+def with_strokes_on_the_rail(thrust: Any, tables: dict[str, Any]) -> Any:
+    """The table ``thrust``; refuses springs with a stroke that ends beyond the exit. ``tables`` are
+    the tables of a scene that are valid so far."""
+    if not {"pads", "rail"} <= tables.keys():  # these have other faults
+        return thrust
+    if wrong := strokes_too_long(SimpleNamespace(**tables, thrust=thrust)):
+        strokes = {key: spring.push().travel[-1] for key, spring in thrust.named()}
+        raise within(
+            ".".join(filter(None, [wrong[0][0].rstrip("."), "stroke"])),
+            ", ".join(f"{strokes[key]:g} m" for key, _ in wrong),
+            f"at most {wrong[0][1]:.6g} m, the way to the exit: a pusher reaches its stop on the rail",
+        )
+    return thrust
+
+
+def strokes_too_long(scene: Any) -> list[tuple[str, float]]:
+    """Keys of the springs whose stroke (m) is longer than the way to the exit, and that way."""
+    if not isinstance(scene.thrust, PushedTable):
+        return []
+    whole = nominal_way(scene)
+    return [
+        (key, whole)
+        for key, spring in scene.thrust.named()
+        if below(whole, float(spring.push().travel[-1]))
+    ]
