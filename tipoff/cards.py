@@ -59,3 +59,9 @@ def card(title: str, facts: Mapping[str, str]) -> str:
             _TABLE, _CELL, title, rows
         )
     )
+
+
+def fixed(value: float, decimals: int, sign: str = "") -> str:
+    """``value`` with so many ``decimals``, never minus zero; ``sign`` "+" also marks a positive one."""
+    shown = round(value, decimals) + 0.0
+    return f"{shown:{sign if shown else ''}.{decimals}f}"

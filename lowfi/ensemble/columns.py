@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.lowfi.ensemble.batch import Case
+from tipoff.mechanics import instant
 
 # a status is stored as its place in this list
 STATUSES = ("exited", "time_limit", "jammed", "diverged", "refused")
@@ -85,3 +86,16 @@ def counts(status: np.ndarray) -> dict[str, int]:
         "refused": refused,
         "failed": failed,
     }
+
+
+def seen(found: Columns, at: str) -> Columns:
+    """``found`` with the velocity, its lateral part and direction, and the rate of the instant ``at``
+    (``mechanics.instant``) under the names of the settled ones."""
+    if at != instant.EXIT:
+        return found
+    return found._replace(
+        velocity=found.exit_velocity,
+        rate=found.exit_rate,
+        lateral_velocity=instant.lateral(found.exit_velocity),
+        direction_error=instant.off(found.exit_velocity),
+    )

@@ -18,7 +18,7 @@ from tipoff.calibration.search import Plan
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes import Calibration, SceneError
 from tipoff.studies.cli import app
-from tipoff.studies.single import disturbed
+from tipoff.workspace import disturbed
 from validation.recovery.draws import LOCAL
 
 CONDITIONS = ("phi15", "phi35", "phi60")

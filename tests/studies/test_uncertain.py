@@ -2,7 +2,7 @@
 
 import pytest
 
-from tipoff.studies.render.uncertain import uncertain
+from tipoff.studies.render.uncertain import number, uncertain
 
 
 @pytest.mark.parametrize(
@@ -29,3 +29,14 @@ def test_rounding(value, uncertainty, shown):
 
 def test_another_least_step():
     assert uncertain(13.6457, 2e-6, 1e-4) == "13.6457 ± <0.0001"
+
+
+@pytest.mark.parametrize("form", [".4f", "+.3f", ".0f", ",.1f", ".3g", "+.2f"])
+def test_a_number_that_rounds_to_zero_has_no_sign(form):
+    """Control: Python writes one."""
+    for value in (-1e-9, 1e-9, -0.0):
+        shown = number(value, form)
+        assert not shown.startswith(("-0", "+0")), shown
+    if form != ".3g":
+        assert format(-1e-9, form).startswith("-0")
+    assert number(-1.5, form).startswith("-") and number(-1e-9, ".3g") == "-1e-09"

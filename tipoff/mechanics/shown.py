@@ -4,7 +4,11 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from tipoff.mechanics import hand_calculation, unfinished
+import numpy as np
+
+from tipoff.cards import fixed
+from tipoff.mechanics import hand_calculation, instant, unfinished
+from tipoff.mechanics.outcome import Outcome
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.scene import parse
 
@@ -13,22 +17,23 @@ if TYPE_CHECKING:
 
 
 def line(run: "Trajectory") -> str:
-    """One line: model, status, samples, settled velocity and rates."""
+    """One line: model, status, samples, velocity and rates at the instant that counts."""
     end = (
         f"{len(run.time)} samples to {1e3 * run.time[-1]:.4g} ms" if len(run.time) else "no samples"
     )
-    found = run.outcome
-    settled = (
-        f": v_x {found.velocity[0]:.5g} m/s, rates {_rates(found.rate)} deg/s"
-        if found.rate is not None and found.velocity is not None
+    at = instant.of(run.outcome)
+    velocity, rate = instant.velocity(run.outcome, at), instant.rate(run.outcome, at)
+    found = (
+        f": v_x {velocity[0]:.5g} m/s, rates {_rates(rate)} deg/s{_where(at)}"
+        if rate is not None and velocity is not None
         else ""
     )
-    return f"Trajectory({run.model}, {run.status}, {end}{settled})"
+    return f"Trajectory({run.model}, {run.status}, {end}{found})"
 
 
 def facts(run: "Trajectory") -> dict[str, str]:
-    """The main results as text by title."""
-    found = run.outcome
+    """The main results as text by title, at the instant that counts and then at the other one."""
+    found, at = run.outcome, instant.of(run.outcome)
     text = {"scene": str(run.scene.get("name", "")), "model": run.model, "status": run.status}
     if run.message:
         text["message"] = run.message
@@ -36,22 +41,44 @@ def facts(run: "Trajectory") -> dict[str, str]:
         text["exit"] = f"{1e3 * found.exit_time:.4g} ms after ignition"
         if found.impulse_after_exit is not None:
             text["exit"] += f", {100.0 * found.impulse_after_exit:.3g} % of the impulse after it"
-    if found.exit_rate is not None and found.exit_velocity is not None:
-        speed = f"v_x {found.exit_velocity[0]:.4f} m/s"
-        text["at exit"] = f"{_rates(found.exit_rate)} deg/s (x, y, z), {speed}"
-    if found.rate is not None and found.velocity is not None:
-        across, error = found.lateral_velocity, found.direction_error
+    if at == instant.SETTLED:
+        text |= _beyond("at exit", found, instant.EXIT)
+    velocity, rate = instant.velocity(found, at), instant.rate(found, at)
+    if rate is not None and velocity is not None:
         text |= {
-            "velocity": ", ".join(f"{value + 0.0:.4f}" for value in found.velocity)
-            + " m/s (x, y, z)",
-            "rate": f"{_rates(found.rate)} deg/s (x, y, z)",
+            "velocity": f"{_vector(velocity)} m/s (x, y, z){_where(at)}",
+            "rate": f"{_rates(rate)} deg/s (x, y, z)",
+            "direction": _direction(velocity),
         }
-        if across is not None and error is not None:
-            words = f"{math.degrees(error):.3g} deg off axis, {1e3 * across:.3g} mm/s across"
-            text["direction"] = words
+    if at == instant.EXIT:
+        text |= _beyond("burnt out", found, instant.SETTLED)
     return (
         text | _beside(run) | _checks(run.checks) | {"took": f"{run.cost.get('wall_s', 0.0):.3g} s"}
     )
+
+
+def _beyond(title: str, found: Outcome, at: str) -> dict[str, str]:
+    """Rates and speed at the other instant, if there are any."""
+    velocity, rate = instant.velocity(found, at), instant.rate(found, at)
+    if rate is None or velocity is None:
+        return {}
+    words = f"{_rates(rate)} deg/s (x, y, z), v_x {fixed(velocity[0], 4)} m/s"
+    return {title: words + (f", {instant.IN_A_VACUUM}" if at == instant.SETTLED else "")}
+
+
+def _where(at: str) -> str:
+    """The instant, where it is not the usual one."""
+    return f", {instant.where(at)}" if at == instant.EXIT else ""
+
+
+def _direction(velocity: list[float]) -> str:
+    moved = np.array([velocity])
+    off, across = instant.off(moved)[0], instant.lateral(moved)[0]
+    return f"{math.degrees(off):.3g} deg off axis, {1e3 * across:.3g} mm/s across"
+
+
+def _vector(values: list[float]) -> str:
+    return ", ".join(fixed(value, 4) for value in values)
 
 
 def _beside(run: "Trajectory") -> dict[str, str]:
@@ -72,8 +99,15 @@ def _beside(run: "Trajectory") -> dict[str, str]:
 def _checks(checks: Mapping[str, float]) -> dict[str, str]:
     named = {"energy_error": "energy", "linear_momentum_error": "momentum"}
     words = [f"{name} to {checks[key]:.1g}" for key, name in named.items() if key in checks]
-    return {"balances": ", ".join(words)} if words else {}
+    found = {"balances": ", ".join(words)} if words else {}
+    causes = {"clearance": "1 µm of clearance", "tolerance": "a tighter tolerance"}
+    changes = [
+        f"{checks[key]:.2g} deg/s by {words}"
+        for cause, words in causes.items()
+        if (key := f"rate_change_by_{cause}_deg_s") in checks
+    ]
+    return found | ({"sensitivity": ", ".join(changes)} if changes else {})
 
 
 def _rates(rate: list[float]) -> str:
-    return ", ".join(f"{round(math.degrees(value), 3) + 0.0:.3f}" for value in rate)
+    return ", ".join(fixed(math.degrees(value), 3) for value in rate)

@@ -237,6 +237,17 @@ def test_where_no_gaussian_fits(tmp_path):
         fit_gaussian(MeasuredCurve(np.linspace(0.0, 1.0, 9), np.zeros(9)))
 
 
+def test_a_needle_between_two_points_is_no_fit(tmp_path):
+    """Least squares put it beside the highest point. Control: a Gaussian at the same times."""
+    time = np.array([0.0, 0.162, 0.857, 1.15, 1.225, 1.546, 2.415, 2.424])
+    force = np.array([0.0, 3377.0, 578.0, 599.0, 635.0, 512.0, 611.0, 0.0])
+    file = curve_file(tmp_path, time, force)
+    assert "no Gaussian fits" in table(kind="measured", file=file).describe(DURATION)["text"]
+    smooth = 3377.0 * np.exp(-0.5 * ((time - 1.15) / 0.3) ** 2)
+    found = table(kind="measured", file=curve_file(tmp_path, time, smooth)).fit()
+    assert found is not None and found.peak == pytest.approx(3377.0)
+
+
 def test_a_measured_curve_counts_by_its_points(tmp_path):
     time, force = np.linspace(0.0, 0.02, 9), np.linspace(1.0, 9.0, 9)
     hashes = []

@@ -1,18 +1,30 @@
 """Studies take velocity and rates at the exit or settled: the rule, and the values of both."""
 
 import json
+import re
 
 import numpy as np
 import pytest
+from pydantic import TypeAdapter
 from typer.testing import CliRunner
 
+import tipoff
 from tests.studies import free_flight
+from tests.studies.synthetic import flight
 from tipoff.lowfi.ensemble.rows import Listed
+from tipoff.mechanics import instant
+from tipoff.mechanics.outcome import Outcome
+from tipoff.scenes.names import NOMINAL
 from tipoff.studies.cli import app
 from tipoff.studies.droptest import stage as droptest
 from tipoff.studies.limits.within import Cases
-from tipoff.studies.populations import answers, instant, population
+from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Surrogate
+from tipoff.studies.render import document
+from tipoff.studies.runs import page
+from tipoff.studies.runs import stage as runs
+from tipoff.studies.runs.results import Row
+from tipoff.studies.single import single
 from tipoff.studies.sweeps import stage as sweeps
 from tipoff.studies.sweeps.options import Options
 from tipoff.workspace.settings import Settings
@@ -59,6 +71,45 @@ def test_a_population_has_the_rates_of_its_instant(tmp_path, asked):
     assert results.velocity[0, 0] == pytest.approx(FORCE * time / 10.0, rel=1e-5)
     said = population.Answering(**population.answering(study, found.model))
     assert f"rates {instant.where(watched.instant.at)}, " in population.model_line(said)
+
+
+@pytest.mark.parametrize("lasts, at", [(LASTS, "exit"), (0.02, "settled")])
+def test_a_single_run_answers_with_its_instant(tmp_path, capsys, lasts, at):
+    """What the command, the table of conditions and Python print as the answer: rates under the thrust at the
+    exit, and after them those of the whole push. Control: a push that ends on the rail."""
+    scene = burning().replace({"thrust.duration": lasts} | ROW)
+    made = single.run(Study(scene, tmp_path, Settings(workers=1)), NOMINAL)
+    printed = dict(line.strip().split(None, 1) for line in capsys.readouterr().out.splitlines())
+    leaves = made["exit_time_s"]
+    time = leaves + 1e-4 if at == "exit" else lasts
+    rate, speed = TURNING * time, FORCE * time / 10.0
+    numbers = [float(each) for each in re.findall(r"-?\d+\.\d+", printed["rate"])]
+    assert numbers[-1] == pytest.approx(rate, rel=5e-3)
+    assert float(printed["velocity"].split(",")[0]) == pytest.approx(speed, rel=1e-5)
+    assert (", at the exit" in printed["rate"]) is ("burnt" in printed) is (at == "exit")
+    if at == "exit":
+        assert "by hand" not in printed and f"{TURNING * lasts:.3f}" in printed["burnt"]
+        assert "in a vacuum" in printed["burnt"]
+    (row,) = TypeAdapter(tuple[Row, ...]).validate_python([made])
+    shown = dict(zip(page.settled([row]).heads, page.settled([row]).rows[0]))
+    assert shown["values"] == instant.where(at)
+    assert shown["v_x (m/s)"] == pytest.approx(speed, rel=1e-5)
+    run = tipoff.run(scene, sensitivity=False)
+    summary = dict(line.split(None, 1) for line in run.summary().splitlines())
+    for text in (summary["rate"], repr(run).partition("rates")[2]):
+        found = [float(each) for each in re.findall(r"-?\d+\.\d+", text)]
+        assert np.linalg.norm(found[:3]) == pytest.approx(rate, rel=5e-3)
+    assert float(summary["velocity"].split(",")[0]) == pytest.approx(speed, rel=1e-4)
+
+
+def test_no_number_is_minus_zero():
+    tiny = [-1e-9, -1e-9, -1e-9]
+    found = Outcome(1e-2, 1e-2, tiny, tiny, 0.0, 0.0, tiny, exit_velocity=tiny, exit_rate=tiny)
+    for outcome in (found, found._replace(impulse_after_exit=1.0)):
+        run = flight(model="compliant", outcome=outcome)
+        table = page.settled([runs.row("one", run, "")])
+        text = f"{run.summary()} {run!r} {document.terminal([table])} {document.markdown([table])}"
+        assert "0.000" in text and "-0.0" not in text and "+0.0" not in text
 
 
 def test_cases_within_tolerances_have_the_rates_of_the_instant(tmp_path):

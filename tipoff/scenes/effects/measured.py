@@ -15,6 +15,7 @@ from tipoff.scenes.thrust_files import reader
 from tipoff.scenes.thrust_files.record import ANYTHING, SECTION, Choice, Record
 
 FIT_IMPULSE = 0.02  # of the impulse of a curve: largest error of its fit by default
+_HIGHEST = 2.0  # times the largest measured force: the peak of a Gaussian that describes a curve
 
 
 class MeasuredCurve(NamedTuple):
@@ -169,6 +170,11 @@ def _fitted(times: bytes, forces: bytes) -> GaussianFit | str:
         return (
             f"a curve that a Gaussian fits (found centre {centre:.4g} s, width {width:.4g} s, "
             f"for a curve from {time[0]:.4g} to {time[-1]:.4g} s)"
+        )
+    if not 0.0 < peak <= _HIGHEST * force.max():  # a needle between two points
+        return (
+            f"a curve that a Gaussian fits (found a peak of {peak:.4g} N, for a curve up to "
+            f"{force.max():.4g} N)"
         )
     residual = np.linalg.norm(force - gaussian(time, peak, centre, width)) / np.linalg.norm(force)
     return GaussianFit(

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from tipoff.lowfi.ensemble.rows import Drawn
+from tipoff.mechanics.instant import MOST, SETTLED, Instant
 from tipoff.scenes import uncertainty
 from tipoff.scenes.faults import Fault, SceneError, together
 from tipoff.scenes.scene import Scene
@@ -24,7 +25,6 @@ from tipoff.studies.droptest.options import Options
 from tipoff.studies.droptest.reduction import COVERAGE
 from tipoff.studies.droptest.results import Cases, Compared, Curve, Droptest, Row, Together
 from tipoff.studies.populations import answers, population, spread
-from tipoff.studies.populations.instant import MOST, SETTLED, Instant
 from tipoff.studies.populations.population import Population
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study, StudyError

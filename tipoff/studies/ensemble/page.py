@@ -1,10 +1,10 @@
 """An ensemble for the terminal: quantiles with bounds, and the distributions of the inputs."""
 
+from tipoff.mechanics.instant import EXIT, Instant
 from tipoff.scenes import overrides
 from tipoff.scenes.scene import Scene
 from tipoff.studies.ensemble.sensitivity import CAUSES
 from tipoff.studies.ensemble.stage import Cost, One, Ran, Sensitive
-from tipoff.studies.populations.instant import EXIT, Instant
 from tipoff.studies.render.document import Bullets, Part
 from tipoff.studies.render.table import Table, estimate, percent
 from tipoff.studies.render.uncertain import LEAST, number

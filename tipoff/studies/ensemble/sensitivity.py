@@ -1,7 +1,7 @@
 """How many cases of an ensemble are sensitive: 1 um more of every clearance, or a tighter tolerance,
 changes a settled rate by more than the limit of agreement, or the case does not settle.
 
-``studies.single.disturbed`` does the same for one run. Chaos is the usual cause.
+``workspace.disturbed`` does the same for one run. Chaos is the usual cause.
 """
 
 from collections.abc import Mapping

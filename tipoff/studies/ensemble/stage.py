@@ -19,7 +19,8 @@ from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.lowfi.ensemble.store import Store, StoreError
 from tipoff.lowfi.ensemble.table import TableFile
 from tipoff.lowfi.numerics import Numerics
-from tipoff.mechanics import hand_over
+from tipoff.mechanics import hand_over, instant
+from tipoff.mechanics.instant import Instant
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.scenes import implausible, uncertainty
 from tipoff.scenes.faults import Fault, SceneError
@@ -29,8 +30,7 @@ from tipoff.studies.ensemble import sensitivity, summary
 from tipoff.studies.ensemble.options import Options
 from tipoff.studies.ensemble.sensitivity import Sensitivity
 from tipoff.studies.ensemble.summary import Statistics
-from tipoff.studies.populations import exceedance, instant, population
-from tipoff.studies.populations.instant import Instant
+from tipoff.studies.populations import exceedance, population
 from tipoff.workspace import kernel_marks, machine, words
 from tipoff.workspace.progress import Board, say
 from tipoff.workspace.run import Run

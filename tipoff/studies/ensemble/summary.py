@@ -10,9 +10,10 @@ from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.lowfi.ensemble.store import Store
-from tipoff.studies.populations import exceedance, instant, spread
+from tipoff.mechanics import instant
+from tipoff.mechanics.instant import Instant
+from tipoff.studies.populations import exceedance, spread
 from tipoff.studies.populations.exceedance import Limit
-from tipoff.studies.populations.instant import Instant
 from tipoff.studies.populations.spread import Quantile
 from tipoff.workspace import words
 

@@ -21,7 +21,7 @@ from tipoff.lowfi.ensemble.derived import Derived, Numbers, around_zero, frictio
 from tipoff.lowfi.ensemble.threads import PIECE, completed
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
-from tipoff.studies.populations import answers, instant
+from tipoff.studies.populations import answers
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.populations.random_factors import ERRORS, pointing
 from tipoff.workspace.study import Study
@@ -153,7 +153,7 @@ class Cases:
             found = columns.of(
                 [case for piece in completed(ensemble.family(), pieces, workers) for case in piece]
             )
-            shown = instant.seen(found, self._model.instant.at)
+            shown = columns.seen(found, self._model.instant.at)
             return np.column_stack([quantity.of(shown) for quantity in answers.ALL])
 
         sizes = {name: scale * size for name, size in self._tolerances.items()}

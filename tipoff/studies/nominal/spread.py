@@ -84,7 +84,7 @@ class Spread:
 
 def of(study: Study, scene: Scene) -> Spread | None:
     """Ranges of ``QUANTITIES`` of ``scene`` by compliant contact, at the exit or settled by the rule of
-    ``populations.instant``; None if the scene states no errors.
+    ``mechanics.instant``; None if the scene states no errors.
 
     Raises SceneError for distributions that do not fit the scene, StudyError when the store fails.
     """

@@ -5,12 +5,12 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
+from tipoff.mechanics import instant
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes import uncertainty
 from tipoff.scenes.names import NOMINAL
 from tipoff.studies.nominal import spread
 from tipoff.studies.nominal.spread import Spread
-from tipoff.studies.populations import instant
 from tipoff.studies.runs import stage as runs
 from tipoff.studies.runs.results import Row
 from tipoff.workspace.run import Run

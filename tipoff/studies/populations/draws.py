@@ -24,7 +24,6 @@ from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.names import NOMINAL
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import growth
-from tipoff.studies.populations import instant
 from tipoff.studies.populations.population import TOLERANCE, Surrogate
 from tipoff.workspace import kernel_marks
 from tipoff.workspace.announcing import announce
@@ -163,7 +162,7 @@ class Kept(NamedTuple):
 
 def results(runs: Sequence[Kept], at: str) -> Columns:
     """Results of runs as columns, with velocity and rate of the instant ``at``."""
-    return instant.seen(columns.of([each.case for each in runs]), at)
+    return columns.seen(columns.of([each.case for each in runs]), at)
 
 
 @dataclass(frozen=True)

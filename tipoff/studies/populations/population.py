@@ -23,7 +23,8 @@ from tipoff.lowfi.ensemble.fill import fill
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.store import StoreError
 from tipoff.lowfi.numerics import AUTO, Numerics
-from tipoff.mechanics import unfinished
+from tipoff.mechanics import instant, unfinished
+from tipoff.mechanics.instant import Instant
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
@@ -32,8 +33,6 @@ from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import kept
 from tipoff.studies.agreement.kept import require_accepted
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.populations import instant
-from tipoff.studies.populations.instant import Instant
 from tipoff.workspace import kernel_marks, words
 from tipoff.workspace.progress import Board
 from tipoff.workspace.run import Run
@@ -253,7 +252,7 @@ def run(
         raise StudyError(str(fault)) from fault
     return Population(
         by_key,
-        instant.seen(results, model.instant.at),
+        columns.seen(results, model.instant.at),
         study.relative(path),
         columns.counts(results.status),
         model.with_modes_of(ensemble),

@@ -50,6 +50,8 @@ def number(value: float | None, form: str = ".3g", least: float = 0.0) -> str:
         return _fixed(value, _decimals(least), "+" if form.startswith("+") else "")
     if form.endswith("g") and "e+" in shown and abs(value) < 1e6:
         return format(value, form.partition(".")[0] + ".0f")
+    if not any(digit in shown for digit in "123456789"):  # rounded to zero, which has no sign
+        return format(0.0, form.removeprefix("+"))
     return shown
 
 

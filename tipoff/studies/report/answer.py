@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup
 
+from tipoff.mechanics.instant import EXIT, Instant, chosen
+from tipoff.mechanics.instant import where as instant_words
 from tipoff.scenes import provenance
 from tipoff.scenes.overrides import is_drop
 from tipoff.studies.agreement import distribution_page, verdicts
@@ -20,8 +22,6 @@ from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.nominal import page as nominal_page
 from tipoff.studies.nominal import stage as nominal_stage
 from tipoff.studies.populations.exceedance import TOTAL, Limit
-from tipoff.studies.populations.instant import EXIT, Instant, chosen
-from tipoff.studies.populations.instant import where as instant_words
 from tipoff.studies.render.document import Bullets, Heading, KeyFigures, Part
 from tipoff.studies.render.table import Column, Table
 from tipoff.studies.render.uncertain import (

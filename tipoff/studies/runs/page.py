@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from tipoff.mechanics import instant
 from tipoff.studies.render.document import Figure, Part
 from tipoff.studies.render.table import Column, Table
 from tipoff.studies.runs import figures
@@ -21,28 +22,28 @@ _CURVES = (
 
 
 def settled(rows: Sequence[Row]) -> Table:
-    """Velocity and rates of each condition for the terminal."""
+    """Velocity and rates of each condition for the terminal, at the instant that counts."""
     under = [row.rail_compliance["words"] for row in rows if row.rail_compliance]
     notes = tuple(dict.fromkeys(under))
     return Table.of_records(rows, *_SETTLED, notes=notes, kind=Row)
 
 
-def _of_settled(head: Column, cell: Callable[[Settled], float]) -> tuple[Column, Callable]:
-    return head, lambda row: row.settled and cell(row.settled)
-
-
-def _of_exit(head: Column, cell: Callable[[AtExit], Any]) -> tuple[Column, Callable]:
-    return head, lambda row: row.at_exit and cell(row.at_exit)
+def _of_taken(head: Column, cell: Callable[[Settled | AtExit], Any]) -> tuple[Column, Callable]:
+    return head, lambda row: row.taken and cell(row.taken)
 
 
 _SETTLED = (
     *("condition", "model", "status"),
-    _of_settled(Column("v_x", "m/s", ".4f"), lambda own: own.velocity_m_s[0]),
-    _of_settled(Column("rate x", "deg/s", "+.3f"), lambda own: own.rate_deg_s[0]),
-    _of_settled(Column("rate y", "deg/s", "+.3f"), lambda own: own.rate_deg_s[1]),
-    _of_settled(Column("rate z", "deg/s", "+.3f"), lambda own: own.rate_deg_s[2]),
-    _of_settled(Column("off axis", "deg", ".3g"), lambda own: own.direction_error_deg),
-    _of_exit(Column("rate at exit x, y, z", "deg/s", "+.3f"), lambda own: own.rate_deg_s),
+    (Column("values"), lambda row: instant.where(row.at) if row.taken else None),
+    _of_taken(Column("v_x", "m/s", ".4f"), lambda own: own.velocity_m_s[0]),
+    _of_taken(Column("rate x", "deg/s", "+.3f"), lambda own: own.rate_deg_s[0]),
+    _of_taken(Column("rate y", "deg/s", "+.3f"), lambda own: own.rate_deg_s[1]),
+    _of_taken(Column("rate z", "deg/s", "+.3f"), lambda own: own.rate_deg_s[2]),
+    _of_taken(Column("off axis", "deg", ".3g"), lambda own: own.direction_error_deg),
+    (
+        Column("rate at exit x, y, z", "deg/s", "+.3f"),
+        lambda row: row.at_exit and row.at_exit.rate_deg_s,
+    ),
     (Column("impulse after exit", "%", ".2g", 100.0), lambda row: row.impulse_after_exit),
     "wall_s",
 )

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
+from tipoff.mechanics import instant
 from tipoff.studies.render.column import Column
 
 Vector = tuple[float, float, float]  # along or about x, y, z
@@ -26,6 +27,16 @@ class AtExit:
 
     velocity_m_s: Vector
     rate_deg_s: Vector
+
+    @property
+    def lateral_velocity_m_s(self) -> float:
+        """Speed across the rail."""
+        return math.hypot(*self.velocity_m_s[1:])
+
+    @property
+    def direction_error_deg(self) -> float:
+        """Angle of the velocity to the X axis."""
+        return math.degrees(math.atan2(self.lateral_velocity_m_s, self.velocity_m_s[0]))
 
 
 @dataclass(frozen=True)
@@ -90,6 +101,16 @@ class Row:
     largest_strain: Annotated[float | None, Column("largest strain", "%", ".2g", 100.0)] = None
     largest_rotation_rad: float | None = None
     warnings: tuple[str, ...] = ()
+
+    @property
+    def at(self) -> str:
+        """The instant that counts, by ``mechanics.instant``."""
+        return instant.chosen(None, self.impulse_after_exit).at
+
+    @property
+    def taken(self) -> Settled | AtExit | None:
+        """Velocity and rates at that instant; None if there are none."""
+        return self.at_exit if self.at == instant.EXIT else self.settled
 
 
 @dataclass(frozen=True, kw_only=True)

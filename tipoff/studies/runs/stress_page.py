@@ -63,7 +63,7 @@ def _of_yield(row: Row) -> float | None:
 
 
 def _place(row: Row) -> str:
-    return ", ".join(f"{1e3 * value:.5g}" for value in row.peak_stress_place_m or ())
+    return ", ".join(f"{1e3 * value + 0.0:.5g}" for value in row.peak_stress_place_m or ())
 
 
 def _rotation(row: Row) -> float | None:

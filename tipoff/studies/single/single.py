@@ -9,7 +9,7 @@ from pathlib import Path
 from pydantic import TypeAdapter
 
 from tipoff.lowfi.numerics import AUTO, Numerics
-from tipoff.mechanics import hand_over
+from tipoff.mechanics import hand_over, instant
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.mechanics.rail_compliance import DEGREE
 from tipoff.mechanics.trajectory import Trajectory
@@ -20,10 +20,9 @@ from tipoff.studies.calibration.files import constants
 from tipoff.studies.render.uncertain import uncertain
 from tipoff.studies.runs.results import Row
 from tipoff.studies.runs.stage import failure, row
-from tipoff.studies.single import disturbed
-from tipoff.studies.single.disturbed import Disturbed
-from tipoff.workspace import models, words
+from tipoff.workspace import disturbed, models, words
 from tipoff.workspace.attempt import attempt
+from tipoff.workspace.disturbed import Disturbed
 from tipoff.workspace.progress import say
 from tipoff.workspace.run import Run
 from tipoff.workspace.study import Study, StudyError
@@ -224,8 +223,7 @@ def lines(row: Single, made_with: str, study: Study) -> list[str]:
         text.append(f"  advice        {row.advice}")
     if row.exit_time_s is not None:
         text.append(f"  exit          {1e3 * row.exit_time_s:.4g} ms after ignition{_after(row)}")
-        text.append(f"  at exit       {_at_exit(row)}")
-    text += _settled(row)
+    text += _answer(row)
     text += _stress(row)
     if row.disturbed:
         limit = verdicts.gates(study.scene).settled_rate_error_deg_s
@@ -247,39 +245,59 @@ def _after(row: Row) -> str:
     return "" if share is None else f", {100.0 * share:.3g} % of the impulse after it"
 
 
-def _at_exit(row: Row) -> str:
-    """Speed and rates at exit, or why they are not known."""
-    if row.at_exit is None:
-        return f"not known: {row.no_exit_values}"
-    rates = ", ".join(map(uncertain, row.at_exit.rate_deg_s))
-    return f"{rates} deg/s (x, y, z), v_x {uncertain(row.at_exit.velocity_m_s[0], least=1e-4)} m/s"
-
-
-def _settled(row: Row) -> list[str]:
-    found = row.settled
-    if found is None:
-        return []
-    velocity = ", ".join(uncertain(value, least=1e-4) for value in found.velocity_m_s)
-    rates = ", ".join(map(uncertain, found.rate_deg_s))
-    total = uncertain(math.hypot(*found.rate_deg_s))
-    text = [
-        f"  velocity      {velocity} m/s (x, y, z)",
-        f"  rate          {rates} deg/s (x, y, z), {total} in total",
-    ]
-    if hand := row.by_hand:
-        rates = ", ".join(map(uncertain, hand.rate_deg_s))
-        text.append(f"  by hand       {rates} deg/s: {hand.words}")
-    text.append(
-        f"  direction     {found.direction_error_deg:.4g} deg off axis, "
-        f"{1e3 * found.lateral_velocity_m_s:.4g} mm/s across"
-    )
+def _answer(row: Row) -> list[str]:
+    """Velocity and rates at the instant that counts, and before them or after them those at the other
+    one."""
+    at_exit = row.at == instant.EXIT
+    where = f", {instant.where(row.at)}" if at_exit else ""
+    text = [] if at_exit and row.taken else _at_exit(row)
+    if (found := row.taken) is not None:
+        rates = ", ".join(map(uncertain, found.rate_deg_s))
+        total = uncertain(math.hypot(*found.rate_deg_s))
+        text += [
+            f"  velocity      {_vector(found.velocity_m_s)} m/s (x, y, z){where}",
+            f"  rate          {rates} deg/s (x, y, z), {total} in total{where}",
+            *([] if at_exit else _by_hand(row)),
+            f"  direction     {found.direction_error_deg:.4g} deg off axis, "
+            f"{1e3 * found.lateral_velocity_m_s:.4g} mm/s across",
+        ]
+    if at_exit and row.settled is not None:
+        rates = ", ".join(map(uncertain, row.settled.rate_deg_s))
+        text += [
+            f"  burnt out     {rates} deg/s (x, y, z), {_vector(row.settled.velocity_m_s)} m/s, "
+            f"{instant.IN_A_VACUUM}",
+            *_by_hand(row),
+        ]
     return text
+
+
+def _by_hand(row: Row) -> list[str]:
+    """The settled rates by hand."""
+    if row.by_hand is None:
+        return []
+    rates = ", ".join(map(uncertain, row.by_hand.rate_deg_s))
+    return [f"  by hand       {rates} deg/s: {row.by_hand.words}"]
+
+
+def _at_exit(row: Row) -> list[str]:
+    """Speed and rates at exit, or why they are not known; nothing without an exit."""
+    if row.exit_time_s is None:
+        return []
+    if row.at_exit is None:
+        return [f"  at exit       not known: {row.no_exit_values}"]
+    rates = ", ".join(map(uncertain, row.at_exit.rate_deg_s))
+    speed = uncertain(row.at_exit.velocity_m_s[0], least=1e-4)
+    return [f"  at exit       {rates} deg/s (x, y, z), v_x {speed} m/s"]
+
+
+def _vector(values: Sequence[float]) -> str:
+    return ", ".join(uncertain(value, least=1e-4) for value in values)
 
 
 def _stress(row: Row) -> list[str]:
     if row.peak_stress_pa is None or row.peak_stress_time_s is None:
         return []
-    place = ", ".join(f"{1e3 * value:.4g}" for value in row.peak_stress_place_m or ())
+    place = ", ".join(f"{1e3 * value + 0.0:.4g}" for value in row.peak_stress_place_m or ())
     return [
         f"  peak stress   {1e-6 * row.peak_stress_pa:.4g} MPa (von Mises) at x, y, z = "
         f"{place} mm, rail {row.peak_stress_rail}, "

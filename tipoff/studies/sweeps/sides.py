@@ -12,8 +12,8 @@ import numpy as np
 
 from tipoff import lowfi
 from tipoff.lowfi.numerics import Numerics
+from tipoff.mechanics import instant
 from tipoff.scenes.scene import Scene
-from tipoff.studies.populations import instant
 from tipoff.studies.populations.population import TOLERANCE, Surrogate
 
 NONE = -1  # no face touched

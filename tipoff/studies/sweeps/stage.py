@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
+from tipoff.mechanics.instant import EXIT
 from tipoff.mechanics.outcome import EXIT_WINDOW
 from tipoff.studies import published
 from tipoff.studies.populations import answers, population
-from tipoff.studies.populations.instant import EXIT
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render.document import with_figures
 from tipoff.studies.sweeps import burnout, factors, knee, sides

@@ -1,19 +1,20 @@
-"""The instant at which the studies take velocity and rates: the exit, or settled.
+"""The instant at which velocity and rates are taken: the exit, or settled.
 
 The thrust after the exit moves a free payload. It changes velocity and rates until burnout, and settled
 values then are those of the thrust more than those of the rail. Rule: at the exit if more than ``MOST``
 of the impulse comes after the exit of the scene itself, else settled. ``mechanics.outcome`` defines both.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.mechanics.outcome import Outcome
 
 EXIT, SETTLED = "exit", "settled"
 MOST = 0.01  # of the impulse, after the exit
+IN_A_VACUUM = "in a vacuum"  # said of values after a flight under thrust
 
 
 class Instant(NamedTuple):
@@ -53,6 +54,28 @@ def rate(found: Outcome, at: str) -> list[float] | None:
     return found.exit_rate if at == EXIT else found.rate
 
 
+def velocity(found: Outcome, at: str) -> list[float] | None:
+    """Velocity (m/s) of one run at the instant; None where it has none."""
+    return found.exit_velocity if at == EXIT else found.velocity
+
+
+def of(found: Outcome) -> str:
+    """The instant that counts for one run: ``EXIT`` or ``SETTLED``. A run without values at its exit
+    counts as settled, and so does one that has settled values alone."""
+    at = chosen(None, found.impulse_after_exit).at
+    return at if rate(found, at) is not None else SETTLED
+
+
+def change(found: Outcome, other: Outcome) -> float | None:
+    """Largest change of a rate (deg/s) from ``found`` to ``other``, at the instant of ``found``; None
+    where one of them has no rate then."""
+    at = of(found)
+    first, second = rate(found, at), rate(other, at)
+    if first is None or second is None:
+        return None
+    return math.degrees(np.abs(np.subtract(second, first)).max())
+
+
 def lateral(velocity: np.ndarray) -> np.ndarray:
     """Lateral part (n,) of a velocity (n,3)."""
     return np.hypot(velocity[:, 1], velocity[:, 2])
@@ -61,16 +84,3 @@ def lateral(velocity: np.ndarray) -> np.ndarray:
 def off(velocity: np.ndarray) -> np.ndarray:
     """Angle (n,) in rad of a velocity (n,3) to the X axis."""
     return np.arctan2(lateral(velocity), velocity[:, 0])
-
-
-def seen(found: Columns, at: str) -> Columns:
-    """``found`` with the velocity, its lateral part and direction, and the rate of the instant under
-    the names of the settled ones."""
-    if at != EXIT:
-        return found
-    return found._replace(
-        velocity=found.exit_velocity,
-        rate=found.exit_rate,
-        lateral_velocity=lateral(found.exit_velocity),
-        direction_error=off(found.exit_velocity),
-    )

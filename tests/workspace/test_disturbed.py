@@ -7,7 +7,7 @@ import pytest
 
 from tipoff import lowfi, scenes
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.studies.single import disturbed
+from tipoff.workspace import disturbed
 from tipoff.workspace.run import Run
 from tipoff.workspace.store import Store
 

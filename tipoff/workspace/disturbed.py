@@ -1,4 +1,5 @@
-"""Change of the settled rates of one surrogate run by 1 um of clearance and by a tighter tolerance.
+"""Change of the rates of one surrogate run by 1 um of clearance and by a tighter tolerance, at the
+instant that counts for it (``mechanics.instant``).
 
 In a chaotic ejection both changes grow from contact to contact (``studies.agreement.growth``). They limit
 the accuracy of any single run of such a case. The changes are stored beside the run, ``lowfi/*.disturbed.json``.
@@ -8,15 +9,15 @@ from dataclasses import asdict, dataclass, fields, replace
 
 from tipoff import cache, sources
 from tipoff.files import content_hash
+from tipoff.mechanics import instant
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.studies.agreement.verdicts import largest, settled_change
 from tipoff.workspace.run import Run, execute, with_modes_of
 from tipoff.workspace.store import Store
 
 
 @dataclass(frozen=True, kw_only=True)
 class Disturbed:
-    """Largest changes of a settled rate, None if the disturbed run does not settle: at a tighter
+    """Largest changes of a rate, None if the disturbed run does not settle: at a tighter
     ``tolerance``, and by plus or minus ``clearance_change_m`` of every clearance, None without
     contact."""
 
@@ -62,29 +63,60 @@ def of(run: Run, nominal: Trajectory, clearance_change: float) -> Disturbed:
         _change(nominal, replace(run, scene=run.scene.replace(changed)))
         for changed in run.scene.contact.either_way(clearance_change).values()
     ]
-    worst = None if None in changes else largest(changes)
+    known = [change for change in changes if change is not None]
+    worst = max(known) if len(known) == len(changes) and known else None
     return replace(found, clearance_change_m=clearance_change, by_clearance_deg_s=worst)
 
 
 def _change(nominal: Trajectory, changed: Run) -> float | None:
-    return settled_change(nominal, execute(changed))
+    return instant.change(nominal.outcome, execute(changed).outcome)
 
 
 def lines(found: Disturbed, limit: float) -> list[str]:
     """The result as text, with a warning if a change is above ``limit`` (deg/s) or the run does not
     settle."""
+    words = [
+        f"{cause}: does not settle" if value is None else f"{value:.2g} deg/s by {cause}"
+        for cause, value in _changes(found).items()
+    ]
+    told = [f"  warning       {warning}" for warning in warnings(found, limit)]
+    return [f"  sensitivity   {', '.join(words)}", *told]
+
+
+def warnings(found: Disturbed, limit: float) -> list[str]:
+    """A warning for each change above ``limit`` (deg/s), or after which the run does not settle."""
+    told = []
+    for cause, value in _changes(found).items():
+        if value is None or value > limit:
+            how = (
+                "prevents the run from settling"
+                if value is None
+                else f"changes a rate by {value:.2g} deg/s"
+            )
+            told.append(f"sensitive: {cause} {how}. Use an ensemble instead of a single run")
+    return told
+
+
+def told(run: Run, nominal: Trajectory, limit: float) -> Trajectory:
+    """``nominal``, which is of ``run``, with its changes among its checks and the ``warnings`` in its
+    message; unchanged if it does not settle."""
+    from tipoff.lowfi.ensemble import twins  # slow to load
+
+    if nominal.outcome.rate is None:
+        return nominal
+    found = of(run, nominal, twins.CLEARANCE_CHANGE)
+    changes = {
+        "rate_change_by_tolerance_deg_s": found.by_tolerance_deg_s,
+        "rate_change_by_clearance_deg_s": found.by_clearance_deg_s,
+    }
+    checks = nominal.checks | {key: each for key, each in changes.items() if each is not None}
+    message = "; ".join(filter(None, [nominal.message, *warnings(found, limit)]))
+    return replace(nominal, checks=checks, message=message)
+
+
+def _changes(found: Disturbed) -> dict[str, float | None]:
+    """The changes by their causes."""
     changes = {f"tolerance {found.tolerance:g}": found.by_tolerance_deg_s}
     if found.clearance_change_m is not None:
         changes[f"{1e6 * found.clearance_change_m:g} µm of clearance"] = found.by_clearance_deg_s
-    words, warnings = [], []
-    for cause, value in changes.items():
-        lost = value is None
-        words.append(f"{cause}: does not settle" if lost else f"{value:.2g} deg/s by {cause}")
-        if value is None or value > limit:
-            how = (
-                "prevents the run from settling" if lost else f"changes a rate by {value:.2g} deg/s"
-            )
-            warnings.append(
-                f"  warning       sensitive: {cause} {how}. Use an ensemble instead of a single run"
-            )
-    return [f"  sensitivity   {', '.join(words)}", *warnings]
+    return changes
