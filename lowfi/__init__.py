@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from tipoff.lowfi.compiled import compiled_effects
     from tipoff.lowfi.ensemble.many import run_many
-    from tipoff.lowfi.numerics import Numerics
+    from tipoff.lowfi.numerics import OF_MANY, Numerics
     from tipoff.lowfi.simulation import run
 
-__all__ = ["Numerics", "compiled_effects", "run", "run_many"]
+__all__ = ["OF_MANY", "Numerics", "compiled_effects", "run", "run_many"]
 
 
 def __getattr__(name: str) -> Any:
     module: Any
     match name:
-        case "Numerics":
+        case "Numerics" | "OF_MANY":
             from tipoff.lowfi import numerics as module
         case "compiled_effects":
             from tipoff.lowfi import compiled as module

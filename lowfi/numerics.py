@@ -21,6 +21,7 @@ _FEW_CELLS = 10
 _TOLERANCE = 2e-7
 # A relative error of 0.1 % per step gives no solution; below 1e-13 there is only rounding.
 _COARSEST, _FINEST = 1e-2, 1e-13
+OF_MANY = 1e-2  # tolerance of each of many cases, by default
 
 
 @dataclass(frozen=True)
@@ -106,7 +107,7 @@ class Numerics:
 
     @classmethod
     def of_many(
-        cls, relative_tolerance: float, modes: int | str = AUTO, model: str = COMPLIANT
+        cls, relative_tolerance: float = OF_MANY, modes: int | str = AUTO, model: str = COMPLIANT
     ) -> "Numerics":
         """Numerics of each of many cases of a ``model``: at a tolerance above the default, compliant
         contact has fewer cells and patterns, whose errors are in docs/howto/ensembles.md. Raises

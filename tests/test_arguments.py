@@ -44,7 +44,7 @@ WRONG = {
         ["relative_tolerance", "a number"],
     ),
     "no case": (lambda: tipoff.ensemble(TINY, [], "springs"), ["cases", "no case"]),
-    "no cases": (lambda: tipoff.ensemble(TINY, None, "springs"), ["cases", "None"]),
+    "cases by number": (lambda: tipoff.ensemble(TINY, 8, "springs"), ["cases", "given a int"]),
     "a case of text": (lambda: tipoff.ensemble(TINY, [{}, "x"], "springs"), ["as case 1"]),
     "unequal columns": (
         lambda: tipoff.ensemble(TINY, {"payload.mass": [1.0, 2.0], "friction.static": [0.1]}),
@@ -202,5 +202,5 @@ def test_a_scene_may_be_a_name_or_a_path(given, monkeypatch, tmp_path):
     Path("own.toml").write_text('extends = "tiny"\n')
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     monkeypatch.setattr(lowfi, "run", lambda scene, *_, **__: asked.append(scene))
-    tipoff.run(given, "springs")
+    tipoff.run(given, "springs", sensitivity=False)
     assert asked[0].hash == TINY.hash

@@ -1,14 +1,25 @@
 """What ``import tipoff`` offers: which solver answers, and options that are refused before any work."""
 
+import re
+from dataclasses import fields, replace
+from inspect import signature
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import typer
 
 import tipoff
 from tests.in_memory import memory
 from tipoff import highfi, lowfi
 from tipoff.calibration import rail_compliance
+from tipoff.lowfi.ensemble.rows import Drawn
+from tipoff.scenes import uncertainty
+from tipoff.studies import cli
+from tipoff.studies.ensemble.options import Options
+
+ROOT = Path(__file__).resolve().parent.parent
 
 SCENE = tipoff.load("tiny")
 CALIBRATION = tipoff.Calibration(
@@ -24,8 +35,11 @@ def solvers(monkeypatch, tmp_path):
     """What the solvers were asked for, in place of their runs."""
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))  # nothing is compiled
     asked = []
+    unsettled = SimpleNamespace(outcome=SimpleNamespace(rate=None))
     monkeypatch.setattr(highfi, "run", lambda *given: asked.append(("highfi", *given)))
-    monkeypatch.setattr(lowfi, "run", lambda *given, **more: asked.append((*given, more)))
+    monkeypatch.setattr(
+        lowfi, "run", lambda *given, **more: asked.append((*given, more)) or unsettled
+    )
     monkeypatch.setattr(lowfi, "run_many", lambda *given, **more: asked.append((*given, more)))
     return asked
 
@@ -113,7 +127,7 @@ def test_kernels_of_chosen_modes_are_announced_before_they_are_used(
             said.append(capsys.readouterr().err)
 
     monkeypatch.setattr(lowfi, "run", run)
-    tipoff.run(SCENE)
+    tipoff.run(SCENE, sensitivity=False)
     assert ["with modes of the rails" in text for text in said] == ([True, False] if chosen else [])
 
 
@@ -139,8 +153,102 @@ def test_options_of_another_model_are_refused_before_any_work(solvers, found, mo
     assert solvers == [] and found == []
 
 
+def test_an_ensemble_is_that_of_the_command(solvers, found):
+    """By default it has the errors that the scene states, and the tolerance of the command. Control: the errors
+    of the paper, which the scene does not state, and numerics that the caller gives."""
+    scene = tipoff.load("cubesat_3u")
+    assert scene.studies.errors not in (None, "paper")
+    tipoff.ensemble(scene)
+    (_, cases, model, more) = solvers[-1]
+    assert cases == uncertainty.load(scene.studies.errors, scene)
+    assert cases.vary.keys() != uncertainty.load("paper", scene).vary.keys()
+    numerics = lowfi.Numerics.of_many(Options().tolerance)
+    assert (model, more["numerics"]) == ("compliant", numerics)
+    assert numerics != lowfi.Numerics(relative_tolerance=Options().tolerance)
+    tipoff.ensemble(scene, "paper", cells=12, sampling="sobol")
+    (_, cases, _, more) = solvers[-1]
+    assert cases == uncertainty.load("paper", scene, sampling="sobol")
+    assert more["numerics"] == replace(numerics, cells=12)
+    tipoff.ensemble(scene, relative_tolerance=1e-8)
+    assert solvers[-1][3]["numerics"] == lowfi.Numerics(relative_tolerance=1e-8)
+
+
+def test_elements_of_the_compliance_may_be_given(solvers, found):
+    tipoff.run(SCENE, element_size="4 mm")
+    tipoff.ensemble(SCENE, [{}], element_size=5e-3)
+    assert found == [4e-3, 5e-3]
+    for given, words in (
+        ({"compliance": tipoff.RailCompliance.__new__(tipoff.RailCompliance)}, "has its elements"),
+        ({"model": "springs"}, "another model"),
+    ):
+        with pytest.raises(tipoff.SceneError, match=words):
+            tipoff.run(SCENE, **given, element_size="4 mm")
+    free = SCENE.replace({"contact": None, "friction": None})
+    with pytest.raises(tipoff.SceneError, match="without contact"):
+        tipoff.run(free, element_size="4 mm")
+
+
+@pytest.mark.parametrize("condition, warned", [("phi60", False), ("h8", True)])
+def test_a_sensitive_run_warns(condition, warned):
+    """As the command does. Control: a run that is not sensitive, and one without its three further runs."""
+    scene = tipoff.load("reference").condition(condition)
+    run = tipoff.run(scene, "springs")
+    change = run.checks["rate_change_by_clearance_deg_s"]
+    assert (change > 0.1) is warned
+    words = f"1 µm of clearance changes a rate by {change:.2g} deg/s"
+    assert (words in run.message) is (words in run.summary()) is warned
+    assert f"{change:.2g} deg/s by 1 µm of clearance" in run.summary()
+    alone = tipoff.run(scene, "springs", sensitivity=False)
+    assert alone.message == "" and "sensitivity" not in alone.summary()
+    assert alone.outcome == run.outcome
+
+
+@pytest.mark.parametrize("stored", [False, True])
+def test_a_data_set_has_the_inputs_of_its_cases(tmp_path, stored):
+    """In SI under the dotted keys; a case without a key has the value of the scene."""
+    store = {"store": tmp_path / "cases"} if stored else {}
+    rows = [{"payload.mass": "10 kg"}, {"friction.dynamic": 0.1, "contact.law": "linear"}]
+    cases = tipoff.ensemble(SCENE, rows, "springs", **store)
+    assert cases["payload.mass"].values.tolist() == [10.0, SCENE.payload.mass]
+    assert cases["payload.mass"].dims == ("case",) and cases["payload.mass"].units == "kg"
+    assert cases["friction.dynamic"].values.tolist() == [SCENE.friction.dynamic, 0.1]
+    assert cases["contact.law"].values.tolist() == [SCENE.contact.law, "linear"]
+    drawn = tipoff.ensemble(SCENE, "paper", "springs", count=3, seed=5)
+    expected = Drawn(uncertainty.load("paper", SCENE, cases=3, seed=5))
+    for key in expected.keys:
+        assert drawn[key].values.tolist() == [row[key] for row in expected.rows(0, 3)]
+
+
+def test_scenes_are_keys_of_dictionaries():
+    again = tipoff.load("tiny")
+    assert again == SCENE and hash(again) == hash(SCENE)
+    assert len({SCENE, again, SCENE.condition("phi15"), SCENE.replace({"payload.mass": 9.0})}) == 3
+
+
+def test_every_option_of_command_and_function_is_in_the_table():
+    """Control: the table has no option that neither has."""
+    page = (ROOT / "docs/reference/python.md").read_text(encoding="utf-8")
+    rows = page.split("| meaning |")[1].split("\n\n")[0]
+    named = set(re.findall(r"`(-{0,2}[a-z][a-z_-]*)`", rows))
+    commands = typer.main.get_command(cli.app).commands
+    options = {item.opts[0] for name in ("run", "ensemble") for item in commands[name].params} - {
+        "--help"
+    }
+    arguments = {
+        name
+        for function in (tipoff.run, tipoff.ensemble)
+        for name, item in signature(function).parameters.items()
+        if item.kind is not item.VAR_KEYWORD
+    }
+    arguments |= {
+        item.name for numerics in (lowfi.Numerics, highfi.Numerics) for item in fields(numerics)
+    }
+    assert options | arguments <= named
+    assert {name for name in named if name.startswith("--")} <= options
+
+
 def test_listed_cases_are_not_drawn(solvers):
-    with pytest.raises(tipoff.SceneError, match="count, seed"):
+    with pytest.raises(tipoff.SceneError, match="count, seed, sampling"):
         tipoff.ensemble(SCENE, [{}], "springs", count=7)
     with pytest.raises(tipoff.SceneError, match="one of compliant, springs"):
         tipoff.ensemble(SCENE, [{}], "finite-elements")

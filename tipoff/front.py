@@ -1,11 +1,12 @@
 """The Python interface: scenes, runs in any model, ensembles, calibration, comparison."""
 
+import math
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tipoff import scenes, sources
+from tipoff import scenes
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
 from tipoff.mechanics.rail_compliance import DEGREE, LOW_DEGREE, MOST_DEGREE, RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
@@ -17,11 +18,9 @@ from tipoff.scenes import (
     arguments,
     reading,
     studies,
-    uncertainty,
 )
 from tipoff.scenes import catalog as catalog
 from tipoff.scenes import parse as parse
-from tipoff.scenes.uncertainty import Uncertainty
 
 _EXPECTED = {
     "compliance": arguments.kind(
@@ -78,6 +77,7 @@ def run(
     compliance: RailCompliance | None = None,
     calibration: Calibration | None = None,
     progress: Callable[[float], None] | None = None,
+    sensitivity: bool = True,
     **numerics: Any,
 ) -> Trajectory:
     """Solve a scene in a model.
@@ -89,9 +89,12 @@ def run(
         compliance: rail compliance, for the model ``compliant``; computed by default.
         calibration: constants that were fitted on the same model.
         progress: called with the completed fraction of the expected time, 0 to 1.
-        numerics: fields of ``lowfi.Numerics`` or ``highfi.Numerics``, such as ``element_size=2e-3``
-            (m), ``element_size="2 mm"`` or ``modes=4``. The scene may state the size of elements
-            (``[studies]``).
+        sensitivity: whether a surrogate runs three times more, with 1 um more and less of every
+            clearance and with a tolerance of 1e-10. ``checks`` has the changes of the rates (deg/s),
+            and ``message`` warns of a change above the limit of the scene's ``[agreement]``.
+        numerics: fields of ``lowfi.Numerics`` or ``highfi.Numerics``, such as ``modes=4``, and
+            ``element_size=2e-3`` (m) or ``"2 mm"``, of the reference and of the computed rail
+            compliance. The scene may state the size of elements (``[studies]``).
 
     Returns:
         Trajectory: motion over time. A failure of the run is its ``status``.
@@ -109,44 +112,45 @@ def run(
         [5, 2, 9]
     """
     from tipoff import highfi, lowfi
-    from tipoff.workspace import kernel_marks
+    from tipoff.workspace import asked, disturbed, kernel_marks
     from tipoff.workspace.run import Run
 
     scene = arguments.scene_of(scene)
-    _require(scene, model, MODELS)
+    asked.require_model(scene, model, MODELS)
     if model == FINITE_ELEMENTS:
         arguments.require_none(scene, model, compliance=compliance, calibration=calibration)
-    arguments.require(_EXPECTED, compliance=compliance, calibration=calibration, progress=progress)
+    arguments.require(
+        _EXPECTED,
+        compliance=compliance,
+        calibration=calibration,
+        progress=progress,
+        sensitivity=sensitivity,
+    )
     if model == FINITE_ELEMENTS:
         given = {"element_size": studies.element_size(scene.studies)} | numerics
         sizes = arguments.numerics(highfi.Numerics, given, lowfi.Numerics, model)
         with kernel_marks.first_use(Run("highfi", scene.name, scene, sizes)):
             return highfi.run(scene, sizes, progress)
-    chosen = arguments.numerics(lowfi.Numerics, numerics, highfi.Numerics, model)
-    found = _pressed(scene, model, compliance, calibration, chosen.needed_degree)
-    asked = Run(
-        fidelity="lowfi",
-        label=scene.name,
-        scene=scene,
-        numerics=chosen,
-        calibration=calibration,
-        compliance=found,
-    )
-    with kernel_marks.first_use(asked), kernel_marks.chosen_modes(asked) as vibrates:
-        return lowfi.run(
+    request = asked.run(scene, model, numerics, compliance, calibration)
+    with kernel_marks.first_use(request), kernel_marks.chosen_modes(request) as vibrates:
+        found = lowfi.run(
             scene,
             model,
-            compliance=found,
+            compliance=request.compliance,
             calibration=calibration,
-            numerics=chosen,
+            numerics=request.numerics,
             progress=progress,
             vibrates=vibrates,
         )
+        if not sensitivity:
+            return found
+        limit = math.degrees(scene.agreement.settled_limit)
+        return disturbed.told(request, found, limit)
 
 
 def ensemble(
     scene: Scene | str | Path,
-    cases: Any = "paper",
+    cases: Any = None,
     model: str = COMPLIANT,
     *,
     compliance: RailCompliance | None = None,
@@ -162,7 +166,8 @@ def ensemble(
         scene: as in ``run``.
         cases: rows of dotted overrides as in ``Scene.replace``: a list of mappings, a mapping of
             columns, a table of pandas, a data set of xarray or a structured array; or
-            distributions, by the name or path of their file.
+            distributions, by the name or path of their file. None: the errors that the scene states
+            (``studies.errors``), else those of the paper.
         model: ``compliant`` or ``springs``.
         compliance: as in ``run``.
         calibration: as in ``run``.
@@ -170,12 +175,14 @@ def ensemble(
         store: folder for results, so that an interrupted ensemble continues.
         sensitivity: add the change of the settled rates of each case (rad/s) for 1 um more of every
             clearance and for a tolerance of 1e-10.
-        options: ``count`` and ``seed``, which replace those of the file of distributions, and the
-            numerics of ``run``.
+        options: ``count``, ``seed`` and ``sampling``, which replace those of the file of
+            distributions, ``element_size`` of the rail compliance, and fields of ``lowfi.Numerics``.
+            ``relative_tolerance`` is 1e-2 by default; above 2e-7 a case on compliant contact has fewer
+            contact cells and patterns than a run (``lowfi.Numerics.of_many``).
 
     Returns:
-        xarray.Dataset: inputs and results with the dimension ``case``; each variable has its unit
-        in ``attrs["units"]``.
+        xarray.Dataset: inputs by their dotted key, and results, with the dimension ``case``; each
+        variable has its unit in ``attrs["units"]``.
 
     Raises:
         SceneError: every fault of scene, distributions and options.
@@ -186,16 +193,17 @@ def ensemble(
         >>> cases = tipoff.ensemble(tipoff.load("tiny"), "paper", "springs", count=8)
         >>> cases.rate.dims, cases.rate.attrs["units"]
         (('case', 'axis'), 'rad/s')
+        >>> cases["contact.clearance"].dims, cases["contact.clearance"].attrs["units"]
+        (('case',), 'm')
         >>> heavier = [{"payload.mass": "10 kg"}, {"payload.mass": "11 kg"}]
         >>> tipoff.ensemble(tipoff.load("tiny"), heavier, "springs").sizes["case"]
         2
     """
-    from tipoff import highfi, lowfi
-    from tipoff.workspace import kernel_marks
-    from tipoff.workspace.run import Run
+    from tipoff import lowfi
+    from tipoff.workspace import asked, kernel_marks
 
     scene = arguments.scene_of(scene)
-    _require(scene, model, SURROGATES)
+    asked.require_model(scene, model, SURROGATES)
     arguments.require(
         _EXPECTED,
         compliance=compliance,
@@ -204,32 +212,16 @@ def ensemble(
         store=store,
         sensitivity=sensitivity,
     )
-    drawn = {"cases": options.pop("count", None), "seed": options.pop("seed", None)}
-    drawn = {key: arguments.plain(value) for key, value in drawn.items() if value is not None}
-    if isinstance(cases, (str, Path)):
-        cases = uncertainty.load(cases, scene, **drawn)
-    elif drawn:
-        raise SceneError([Fault(scene.name, "count, seed", "given", "none with a list of cases")])
-    if not isinstance(cases, Uncertainty):
-        cases = arguments.rows(cases)
-    chosen = arguments.numerics(lowfi.Numerics, options, highfi.Numerics, model)
-    found = _pressed(scene, model, compliance, calibration, chosen.needed_degree)
-    like = Run(
-        fidelity="lowfi",
-        label=scene.name,
-        scene=scene,
-        numerics=chosen,
-        calibration=calibration,
-        compliance=found,
-    )
+    rows = asked.cases(cases, scene, options)
+    like = asked.run(scene, model, options, compliance, calibration, many=True)
     with kernel_marks.first_use(like, many=True):
         return lowfi.run_many(
             scene,
-            cases,
+            rows,
             model,
-            compliance=found,
+            compliance=like.compliance,
             calibration=calibration,
-            numerics=chosen,
+            numerics=like.numerics,
             workers=workers,
             store=store,
             sensitivity=sensitivity,
@@ -262,16 +254,12 @@ def compliance(
         >>> tipoff.compliance(tipoff.load("tiny"), element_size=8e-3).travel.size
         121
     """
-    from tipoff.calibration import rail_compliance
-    from tipoff.workspace.progress import say
+    from tipoff.workspace import asked
 
     scene = arguments.scene_of(scene)
-    size = studies.element_size(scene.studies)
-    if element_size is not None:
-        size = arguments.length("element_size", element_size)
+    size = None if element_size is None else arguments.length("element_size", element_size)
     arguments.require(_EXPECTED, degree=degree)
-    folder = sources.cache_folder() / "compliance"
-    return rail_compliance.kept(scene, folder, size, say, degree)
+    return asked.compliance(scene, size, degree)
 
 
 def calibrate(
@@ -315,15 +303,16 @@ def calibrate(
     """
     from tipoff import calibration
     from tipoff.lowfi import models
+    from tipoff.workspace import asked
 
     scene = arguments.scene_of(scene)
     if model is None:
         model = SPRINGS if fit is None else COMPLIANT
-    _require(scene, model, SURROGATES)
+    asked.require_model(scene, model, SURROGATES)
     arguments.require(_EXPECTED, progress=progress, seed=seed, compliance=compliance, fit=fit)
     seed = arguments.plain(seed)
     calibration.require_model(scene, model, fit)
-    found = _pressed(scene, model, compliance)
+    found = asked.walls(scene, model, compliance)
     models.require(scene, model, found, None, None)
     return calibration.run(
         scene,
@@ -362,32 +351,3 @@ def compare(reference: "Trajectory | Curves", surrogate: "Trajectory | Curves") 
             expected = "a Trajectory, which tipoff.run returns, or Curves"
             raise SceneError([Fault("arguments", name, kind, expected)])
     return metrics.compare(reference, surrogate)
-
-
-def _pressed(
-    scene: Scene,
-    model: str,
-    given: RailCompliance | None,
-    calibration: Calibration | None = None,
-    degree: int = DEGREE,
-) -> RailCompliance | None:
-    """The rail compliance that ``model`` needs; rigid walls for springs at warm walls or walls from
-    a file."""
-    if scene.contact is None:
-        return given
-    if model == COMPLIANT:
-        if calibration is not None and calibration.is_of_springs:  # before the statics, for speed
-            arguments.require_none(scene, model, calibration=calibration)
-        return given or compliance(scene, degree=degree)
-    if given is not None:
-        return given
-    if scene.thermal is not None:
-        return compliance(scene).rigid()
-    from tipoff.calibration import rail_compliance  # slow to load
-
-    return rail_compliance.walls(scene)
-
-
-def _require(scene: Scene, model: str, models: Sequence[str]) -> None:
-    if not isinstance(model, str) or model not in models:
-        raise SceneError([Fault(scene.name, "model", repr(model), f"one of {', '.join(models)}")])

@@ -13,12 +13,13 @@ from tipoff.lowfi.ensemble.batch import Case
 from tipoff.lowfi.ensemble.fill import fill
 from tipoff.lowfi.ensemble.pilot import settled
 from tipoff.lowfi.ensemble.request import Ensemble
-from tipoff.lowfi.ensemble.rows import Drawn, Listed
+from tipoff.lowfi.ensemble.rows import Drawn, Listed, numbers
 from tipoff.lowfi.ensemble.threads import PIECE, completed
 from tipoff.lowfi.models import require
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.scenes import overrides as keys
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
@@ -52,8 +53,9 @@ def run_many(
     or once per draw of an Uncertainty.
 
     The values are those of ``lowfi.run`` to the last bit, with its ``model``, ``compliance`` and
-    ``calibration``; there are no curves. A row that the scene refuses has the status ``refused``
-    and the reason as its message; the others run. Settled values are NaN if a run has none.
+    ``calibration``; there are no curves. The inputs of a case stand under their dotted keys. A row
+    that the scene refuses has the status ``refused`` and the reason as its message; the others run.
+    Settled values are NaN if a run has none.
     ``wall_s`` of a case is its share of the time of its group. The attributes count ``asked = ok +
     refused + failed``; failed means diverged.
 
@@ -77,7 +79,39 @@ def run_many(
     asked = Ensemble(scene, source, calibration, numerics, compliance)
     ensemble = settled(asked, chosen.store)
     why = {"modes_why": ensemble.modes_why} if ensemble.modes_why else {}
-    return _found(ensemble, chosen).assign_attrs(modes=ensemble.numerics.modes, **why)
+    found = _found(ensemble, chosen).assign(_inputs(scene, source))
+    return found.assign_attrs(modes=ensemble.numerics.modes, **why)
+
+
+def _inputs(scene: Scene, source: Any) -> dict[str, tuple[str, np.ndarray, dict[str, str]]]:
+    """The input of each case by its dotted key: numbers in SI with their unit, or text. A case that
+    does not give a key has the value of the ``scene``."""
+    pieces = (
+        source.rows(begin, min(begin + PIECE, source.asked))
+        for begin in range(0, source.asked, PIECE)
+    )
+    names = list(source.keys)
+    units = {name: keys.unit(Scene, name) for name in names}
+    own = {name: keys.held(scene, name) for name in names}
+    values: dict[str, list] = {name: [] for name in names}
+    for rows in pieces:
+        found = numbers(names, rows)
+        for name, column in zip(names, found.T):
+            given = np.array([name in row for row in rows])
+            if units[name] is None:
+                text = [str(row.get(name, scene.given(name))) for row in rows]
+                values[name].append(np.array(text, dtype=object))
+            else:
+                unchanged = own[name] if isinstance(own[name], (int, float)) else np.nan
+                values[name].append(np.where(given, column, unchanged))
+    return {
+        name: (
+            "case",
+            np.concatenate(values[name]),
+            {} if units[name] is None else {"units": units[name] or "dimensionless"},
+        )
+        for name in names
+    }
 
 
 def _found(ensemble: Ensemble, chosen: Execution) -> "xarray.Dataset":

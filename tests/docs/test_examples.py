@@ -139,7 +139,8 @@ def test_an_ejection_that_does_not_settle_says_so(scene, compliance):
 def test_disturbed_bounds_what_an_ensemble_finds(scene, compliance, run):
     """``ensemble`` widens every clearance and has no run of a smaller one."""
     found, modes = answer.disturbed(scene, compliance, run), run.numerics["modes"]
-    cases = tipoff.ensemble(scene, [{}], compliance=compliance, modes=modes, sensitivity=True)
+    alike = {"modes": modes, "relative_tolerance": run.numerics["relative_tolerance"]}
+    cases = tipoff.ensemble(scene, [{}], compliance=compliance, sensitivity=True, **alike)
     wider = np.degrees(cases.rate_change_by_clearance.values[0])
     tighter = np.degrees(cases.rate_change_by_tolerance.values[0])
     assert 0.0 < wider <= found.by_clearance * (1.0 + 1e-6)

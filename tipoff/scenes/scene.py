@@ -264,6 +264,10 @@ class Scene(shown.Shown, ends.Timed, Table):
         """Values that are allowed but implausible, by field name."""
         return plausibility.warnings(self)
 
+    def __hash__(self) -> int:
+        """For sets and dictionaries: equal scenes have equal physical inputs."""
+        return hash(self.hash)
+
     def agrees(self) -> bool:
         """Whether valid tables fit each other: rails have an expansion if there is a temperature,
         the rail does not end behind every pad, the sampling interval fits the duration, and strokes

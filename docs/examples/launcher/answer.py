@@ -29,13 +29,13 @@ def compliance(scene: tipoff.Scene) -> tipoff.RailCompliance | None:
 def quick(scene: tipoff.Scene, found: tipoff.RailCompliance | None) -> tipoff.Trajectory:
     """The ejection of ``scene`` from rails without inertia, a tenth of the time of ``run`` where the
     rails vibrate. Raises SceneError."""
-    return tipoff.run(scene, compliance=found, modes=0)
+    return tipoff.run(scene, compliance=found, sensitivity=False, modes=0)
 
 
 def run(scene: tipoff.Scene, found: tipoff.RailCompliance | None) -> tipoff.Trajectory:
     """The ejection of ``scene``, with as many modes of the rails as its rates need. Raises
     SceneError."""
-    return tipoff.run(scene, compliance=found)
+    return tipoff.run(scene, compliance=found, sensitivity=False)
 
 
 def disturbed(
@@ -45,7 +45,8 @@ def disturbed(
     exited. The rails keep their number of modes, so that nothing else moves the rates."""
 
     def change(of: tipoff.Scene, **numerics: float) -> float | None:
-        moved = tipoff.run(of, compliance=found, modes=nominal.numerics["modes"], **numerics)
+        modes = nominal.numerics["modes"]
+        moved = tipoff.run(of, compliance=found, sensitivity=False, modes=modes, **numerics)
         if moved.outcome.rate is None:
             return None
         return math.degrees(np.abs(np.subtract(moved.outcome.rate, nominal.outcome.rate)).max())
