@@ -16,7 +16,7 @@ from tipoff.studies.droptest.sheet import Sheet
 
 class Drop(NamedTuple):
     """A drop test: its sheet, calibrated samples, filtered rate (n,3) rad/s, ``doubtful`` samples
-    (n,) that are missing or clipped, events, windows, change of rate, largest rate (rad/s) in the
+    (n,) that are missing, frozen or clipped, events, windows, change of rate, largest rate (rad/s) in the
     window at rest. ``notes`` state in words what was repaired, assumed or left out."""
 
     name: str
@@ -41,8 +41,11 @@ def of(sheet: Sheet, log: Log, source: str) -> Drop:
     """The same for a log that is already read."""
     samples = calibrated(sheet, log)
     smooth = filtered(samples.rate, sheet.channel_class, log.interval)
-    events = finding.find(sheet, samples, source)
-    spans = finding.spans(sheet, samples, events, source)
+    try:
+        events = finding.find(sheet, samples, source)
+        spans = finding.spans(sheet, samples, events, source)
+    except SceneError as error:  # an event may not show in a frozen acceleration
+        raise SceneError([*(each.fault for each in log.frozen), *error.faults]) from error
     _require_whole(log, spans, source)
     result = reduced(sheet, samples, spans, source)
     unrest = float(np.abs(smooth[inside(log.time, spans.rest)]).max())
@@ -51,7 +54,9 @@ def of(sheet: Sheet, log: Log, source: str) -> Drop:
         sheet,
         samples=samples,
         filtered=smooth,
-        doubtful=log.doubtful | log.clipped,
+        doubtful=np.any(
+            [log.doubtful, log.clipped, *(held.covers(log.time) for held in log.frozen)], 0
+        ),
         events=events,
         spans=spans,
         reduced=result,
@@ -61,9 +66,14 @@ def of(sheet: Sheet, log: Log, source: str) -> Drop:
 
 
 def _require_whole(log: Log, spans: Spans, source: str) -> None:
-    """Check that no window has a gap, a clipped rate, or a clipped acceleration that compensates
-    the rate. Raises SceneError otherwise."""
-    faults = []
+    """Check that no window has a gap, a frozen channel, a clipped rate, or a clipped acceleration
+    that compensates the rate. Raises SceneError otherwise."""
+    ends = [getattr(spans, name) for name in WINDOWS]
+    faults = [
+        held.fault
+        for held in log.frozen
+        if any(held.begin <= last and held.end >= first for first, last in ends)
+    ]
     for name in WINDOWS:
         places = inside(log.time, getattr(spans, name))
         if bad := int((log.doubtful | log.clipped)[places].sum()):
@@ -81,6 +91,10 @@ def _require_whole(log: Log, spans: Spans, source: str) -> None:
 
 def _notes(sheet: Sheet, log: Log, events: Events, unrest: float) -> list[str]:
     notes = [*log.notes, *missing_information(sheet, log)]
+    notes += [
+        f"{held.fault.key}: {held.fault.given}: the channel is frozen there, outside of every window"
+        for held in log.frozen
+    ]
     if sheet.channel_class is None:
         notes.append(f"no channel class: {1.0 / log.interval:.4g} Hz, nothing is filtered")
     if events.given:

@@ -3,8 +3,9 @@
 Every sample belongs to an instant of an even grid. Samples whose time jitters by less than half an
 interval are interpolated onto the grid. One or two samples that are missing or not a number are bridged
 by a straight line. Longer gaps and clipped rates are marked, and a window that contains them is refused.
-A temperature drifts slowly, so it is interpolated over gaps of any length. Each repair adds a note;
-anything worse is a fault. Raw samples then become rates in payload body axes by the inverse of the sensor
+A channel that repeats one value more often than its noise allows is not measured either. A temperature
+drifts slowly, so it is interpolated over gaps of any length. Each repair adds a note; anything worse is
+a fault. Raw samples then become rates in payload body axes by the inverse of the sensor
 model:
 
     raw = (1 + diag s)(1 + E) w + b + G f + c (T - T0)          sensor axes
@@ -22,6 +23,7 @@ import numpy as np
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.droptest import columns, sampling
 from tipoff.studies.droptest import sheet as sheets
+from tipoff.studies.droptest.frozen import frozen
 from tipoff.studies.droptest.saturation import saturated
 from tipoff.studies.droptest.sheet import Sheet
 from tipoff.workspace.words import counted
@@ -32,10 +34,23 @@ _UNEVEN = 0.45  # of an interval: with more jitter the instant of a sample is no
 _MOST_MISSING = 10.0  # instants of the even grid per sample; a wrong time would make billions
 
 
+class Frozen(NamedTuple):
+    """First and last instant (s) of samples in which a channel repeats one value, as a ``fault``."""
+
+    begin: float
+    end: float
+    fault: Fault
+
+    def covers(self, time: np.ndarray) -> np.ndarray:
+        """Whether each instant (n,) of ``time`` (s) is in the stretch."""
+        return (time >= self.begin) & (time <= self.end)
+
+
 class Log(NamedTuple):
     """time (n,) s, even; raw rate (n,3) rad/s, acceleration (n,3) m/s2 or None, in sensor axes;
     temperature (n,) K or None; samples that are ``doubtful`` (n,): not measured, or the rate
-    clipped; those with ``clipped`` acceleration (n,); ``notes``."""
+    clipped; those with ``clipped`` acceleration (n,); ``notes``; stretches in which a channel is
+    ``frozen``."""
 
     time: np.ndarray
     rate: np.ndarray
@@ -44,6 +59,7 @@ class Log(NamedTuple):
     doubtful: np.ndarray
     clipped: np.ndarray
     notes: list[str]
+    frozen: tuple[Frozen, ...] = ()
 
     @property
     def interval(self) -> float:
@@ -73,7 +89,7 @@ def _even(sheet: Sheet, source: str, values: dict[str, np.ndarray], notes: list[
         )
     else:
         time = grid[place]
-    filled, doubtful = {"time": grid}, np.zeros(grid.size, dtype=bool)
+    filled, doubtful, held = {"time": grid}, np.zeros(grid.size, dtype=bool), []
     for name, found in values.items():
         if name == "temperature":
             filled[name] = _drifting(values["time"][:, 0], found[:, 0], grid, source, notes)
@@ -81,7 +97,39 @@ def _even(sheet: Sheet, source: str, values: dict[str, np.ndarray], notes: list[
             every = sampling.every(found, place) if name == "acceleration" else 1
             filled[name], gone = _bridged((time, place), found, grid, name, every, notes)
             doubtful |= gone
-    return _marked(sheet, filled, doubtful, notes)
+            held += _held(sheet, source, name, (values["time"][:, 0], found))
+    return _marked(sheet, filled, doubtful, notes)._replace(frozen=tuple(held))
+
+
+def _held(
+    sheet: Sheet, source: str, name: str, samples: tuple[np.ndarray, np.ndarray]
+) -> list[Frozen]:
+    """Where the rates or the accelerations, ``samples`` with their times, are frozen. A value at
+    which a channel is saturated is not frozen."""
+    known = np.isfinite(samples[1]).all(axis=1)
+    time, values = samples[0][known], samples[1][known]
+    if name == "rate":
+        names, unit, shown = sheet.columns.rate, "deg/s", values * np.degrees(1.0)
+        largest, step = sheet.gyro.range, sheet.gyro.resolution
+    else:
+        assert sheet.columns.acceleration is not None and sheet.accelerometer is not None
+        names, unit, shown = sheet.columns.acceleration, "m/s2", values
+        largest, step = sheet.accelerometer.range, 0.0
+    at_end = saturated(values, largest, step)
+    found = []
+    for run in frozen(values, step):
+        if not at_end[run.begin, run.axis]:
+            begin, end = float(time[run.begin]), float(time[run.end - 1])
+            given = (
+                f"{shown[run.begin, run.axis]:.6g} {unit} in each of "
+                f"{run.end - run.begin} samples, {begin:.6g} to {end:.6g} s"
+            )
+            expected = (
+                f"a value that changes: noise as elsewhere in the log allows at most "
+                f"{run.allowed} equal samples in a row"
+            )
+            found.append(Frozen(begin, end, Fault(source, names[run.axis], given, expected)))
+    return found
 
 
 def _places(

@@ -3,7 +3,7 @@ axes.
 
 Rates and specific forces are stored twice: filtered by the channel frequency class of the log, as in the
 figures, and calibrated without a filter, as used for the change of rate. ``doubtful`` is 1 for a sample
-that is missing or clipped.
+that is missing, frozen or clipped.
 """
 
 from pathlib import Path
