@@ -38,6 +38,7 @@ class Recorded:
     damping: float = 0.0  # largest step * friction damping / mass of a node
     parts: int = 0  # long steps or substeps
     block_steps: int = 0  # blocks that were stepped
+    node_steps: int = 0  # nodes that were stepped, summed over long steps and substeps
     most_substeps: int = 1  # of a step
     divided_steps: int = 0
     wall: float = 0.0  # s
@@ -63,14 +64,20 @@ class Recorded:
         """Add the cost of the steps that were ``taken`` just now."""
         self.damping = max(self.damping, stepper.step * taken.damping)
         self.parts += taken.parts
-        self.block_steps += taken.whole * int(stepper.state.stepped.in_use[0])
+        stepped, first = stepper.state.stepped, stepper.setup.system.rail.blocks
+        blocks = stepped.block[: stepped.in_use[0]]
+        self.block_steps += taken.whole * blocks.size
+        self.node_steps += taken.parts * int((first[blocks + 1] - first[blocks]).sum())
         self.most_substeps = max(self.most_substeps, stepper.substeps)
         self.divided_steps += taken.whole if stepper.substeps > 1 else 0
         self.other_cpu += taken.other_cpu
 
     def cost(self, stepper: Stepper) -> dict[str, float]:
-        """Steps, savings and neglected vibration of rails at rest, and the cost of friction."""
+        """Steps, savings and neglected vibration of rails at rest, and the cost of friction.
+        ``element_steps``: elements that were stepped, summed over long steps and substeps."""
+        system = stepper.setup.system
         whole = max(stepper.steps, 1) * stepper.state.stepped.block.size
+        elements, nodes = len(system.operator.cells), int(system.rail.blocks[-1])
         settled = {"settling_steps": self.settling_steps} if self.settling_steps else {}
         return settled | {
             "steps": stepper.steps,
@@ -78,5 +85,6 @@ class Recorded:
             "friction_substeps": self.most_substeps,
             "friction_divided_steps": self.divided_steps,
             "stepped_share": self.block_steps / whole,
+            "element_steps": round(self.node_steps * elements / nodes),
             "left_out_m": float(stepper.jolts.most[0]),
         }

@@ -109,17 +109,24 @@ def run(
         kept.resume(loop, saved)
     loop.integrate(progress, kept, observer)
     elements, recorded = int(system.operator.cells.shape[0]), loop.recorded
+    counted = recorded.cost(loop.stepper)
     cost = {
         "wall_s": (compiling - began) + recorded.wall,
         "compile_s": compiled - compiling,
         "kernel_s": recorded.wall,
         "cpu_s": set_up_cpu + recorded.cpu + recorded.other_cpu,
-        **recorded.cost(loop.stepper),
+        **counted,
         **stepping.as_dict(),
         "elements": elements,
+        # per element of the model and step, those that rest included
         "ns_per_element_step": 1e9 * recorded.wall / max(loop.stepper.steps * elements, 1),
+        "ns_per_element_stepped": _per(1e9 * recorded.wall, counted["element_steps"]),
     }
     return loop.trajectory(cost, numerics)
+
+
+def _per(amount: float, count: float) -> float | None:
+    return amount / count if count else None
 
 
 def _threads_for(system: System) -> int:

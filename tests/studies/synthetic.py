@@ -20,6 +20,7 @@ COSTS = {  # of a run of the reference
     "dt_s": 1e-6,
     "elements": 1,
     "ns_per_element_step": 1.0,
+    "ns_per_element_stepped": 2.0,
 }
 
 

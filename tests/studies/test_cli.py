@@ -111,7 +111,7 @@ def test_json_is_the_stage_file_on_standard_output(tmp_path, stub):
     printed = json.loads(result.stdout)
     assert printed == json.loads((tmp_path / "tiny" / "highfi.json").read_text())
     assert [row["condition"] for row in printed["conditions"]] == ["phi15", "h1"]
-    keys = RUN_ROW | {"elements", "ns_per_element_step"}
+    keys = RUN_ROW | {"elements", "ns_per_element_step", "ns_per_element_stepped"}
     assert all(keys <= set(row) for row in printed["conditions"])
     assert set(printed["conditions"][0]["settled"]) >= {"velocity_m_s", "rate_deg_s"}
     assert (

@@ -84,7 +84,11 @@ def test_second_call_does_nothing_and_is_quick(pipeline):
 def test_runs_hold_the_keys_other_tools_read(pipeline, fidelity):
     rows = result(pipeline[0], fidelity)["conditions"]
     assert [row["condition"] for row in rows] == ["phi15", "phi60", "h1", "h2"]
-    extra = {"elements", "ns_per_element_step"} if fidelity == "highfi" else set()
+    extra = (
+        {"elements", "ns_per_element_step", "ns_per_element_stepped"}
+        if fidelity == "highfi"
+        else set()
+    )
     for row in rows:
         assert RUN_ROW | extra <= set(row)
         assert row["status"] == "exited"

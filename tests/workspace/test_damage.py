@@ -34,7 +34,8 @@ def engine(monkeypatch):
     def execute(run, progress=None, threads=None, **kept):
         calls.append(run.label)
         found = flight(lambda t: np.full((t.size, 3), RATE))
-        found.cost.update(wall_s=float(len(calls)), elements=8, ns_per_element_step=1.0)
+        times = {"ns_per_element_step": 1.0, "ns_per_element_stepped": 1.0}
+        found.cost.update(wall_s=float(len(calls)), elements=8, **times)
         return found
 
     monkeypatch.setattr(store_module, "execute", execute)

@@ -2,6 +2,8 @@
 
 from tipoff.scenes.faults import SceneError
 
+FAILED = ("diverged", "refused")  # statuses of a run that cannot be used
+
 
 class NotAsked(SceneError):
     """A result for which the scene states no inputs; a page of many results goes on without it."""

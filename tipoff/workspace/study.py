@@ -24,6 +24,7 @@ from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.names import NOMINAL
 from tipoff.scenes.scene import Scene
 from tipoff.workspace import words
+from tipoff.workspace.errors import FAILED as FAILED
 from tipoff.workspace.errors import NotAsked as NotAsked
 from tipoff.workspace.errors import StudyError as StudyError
 from tipoff.workspace.kernel_process import compiled_beside
@@ -32,7 +33,6 @@ from tipoff.workspace.run import Run
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.store import Store
 
-FAILED = ("diverged", "refused")
 _T = TypeVar("_T")
 _RESULTS: cache.Cache[dict] = cache.documents(dict, dict)
 

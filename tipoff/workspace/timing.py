@@ -2,7 +2,8 @@
 
     ratio = median wall time of highfi.run / median wall time of lowfi.run
 
-``low`` and ``high`` are the smallest and the largest ratio of any pair of repeats.
+``low`` and ``high`` are the smallest and the largest ratio of any pair of repeats. Every repeat of a model
+must end as the first one did, after as many steps.
 """
 
 import statistics
@@ -15,7 +16,9 @@ import numpy as np
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.workspace import machine
 from tipoff.workspace.compiling import warm_up
+from tipoff.workspace.errors import FAILED, StudyError
 from tipoff.workspace.run import Run, execute
+from tipoff.workspace.words import counted
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +82,18 @@ def speedups(
     return {name: _speedup(highfi.label, slow, found) for name, found in fast.items()}
 
 
+def _require_equal_work(name: str, runs: list[Trajectory]) -> None:
+    """Raise StudyError if a run failed or did not end as the others, because its time is then not
+    that of the others."""
+    ends = sorted({(run.status, int(run.cost["steps"])) for run in runs})
+    if len(ends) > 1 or ends[0][0] in FAILED or not ends[0][1] > 0:
+        words = "; ".join(f"{status} after {counted(steps, 'step')}" for status, steps in ends)
+        raise StudyError(f"{name}: its repeats cannot be timed: {words}")
+
+
 def _speedup(condition: str, slow: list, fast: list) -> Speedup:
+    for name, runs in (("reference", slow), ("surrogate", fast)):
+        _require_equal_work(f"{condition}, {name}", [run for run, _, _ in runs])
     slow_wall, fast_wall = [wall for _, wall, _ in slow], [wall for _, wall, _ in fast]
     slow_median, fast_median = statistics.median(slow_wall), statistics.median(fast_wall)
     return Speedup(

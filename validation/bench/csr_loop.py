@@ -24,8 +24,11 @@ class CsrLoop:
             1e-3 * np.sin(np.arange(3.0 * len(used))),
         )
 
-    def advance(self, count: int) -> None:
-        """Make ``count`` steps."""
-        for _ in range(count):
+    def advance(self, count: int) -> int:
+        """Make ``count`` steps; returns how many times all elements were stepped."""
+        taken = 0
+        while taken < count:
             self.velocity -= self.step * self.inverse_mass * (self.stiffness @ self.displacement)
             self.displacement += self.step * self.velocity
+            taken += 1
+        return taken

@@ -1,5 +1,6 @@
 """The methods of the benchmark and their varied cases. A method has ``settings``, from coarse to fine,
-the ``error`` (%) at a setting, and a ``piece``: a call that solves all cases."""
+the ``error`` (%) at a setting, and a ``piece``: a call that solves all cases, and whose result ``solved``
+counts."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -9,7 +10,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
-from tipoff.mechanics import outcome, scene_model
+from tipoff.lowfi.dynamics import cases
+from tipoff.mechanics import ending, outcome, scene_model
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.scene import Scene
@@ -96,6 +98,10 @@ class Method(Protocol):
         """A call that solves every case."""
         ...
 
+    def solved(self, found, /) -> int:
+        """Number of cases that the result of a ``piece`` has to their end."""
+        ...
+
 
 class Surrogate:
     """The surrogate on one model; a setting is a relative tolerance."""
@@ -118,7 +124,19 @@ class Surrogate:
         population = self.population
         family = Family(population.base, None, self._numerics(tolerance), population.compliance)
         (job,) = family.kernels(population.rows)
-        return job
+
+        def call() -> np.ndarray:
+            found = job()
+            kept = found.copy()
+            found[:] = 0.0  # a call that does nothing must not show the results of the one before
+            return kept
+
+        return call
+
+    def solved(self, found: np.ndarray) -> int:
+        """Cases that the kernel itself followed to the end of their settled windows."""
+        ended = np.isfinite(found[:, cases.BOOK + ending.DONE]) & (found[:, cases.STEPS] > 0)
+        return int((ended & (found[:, cases.LEFT_OPEN] == 0)).sum())
 
     def whole(self, tolerance: float, **numerics) -> Callable:
         """A call that makes every case a run with curves, with other ``numerics`` if given."""
@@ -160,7 +178,18 @@ class PlainRungeKutta:
         from validation import oracle
 
         jobs = self._jobs(dt)
-        return lambda: [oracle.integrate(*arguments) for arguments, _, _ in jobs]
+
+        def call() -> list[np.ndarray]:
+            for arguments, rows, _ in jobs:
+                rows[1:] = np.nan
+                oracle.integrate(*arguments)
+            return [rows for _, rows, _ in jobs]
+
+        return call
+
+    def solved(self, found: list[np.ndarray]) -> int:
+        """Cases with all rows."""
+        return sum(bool(np.isfinite(rows).all()) for rows in found)
 
     def _jobs(self, dt: float) -> list[tuple[tuple, np.ndarray, float]]:
         """For each case the arguments of the integration, the argument ``rows`` that it fills, and
@@ -194,6 +223,10 @@ class SolveIvp:
     def piece(self, tolerance: float) -> Callable:
         """A call that integrates every case to the end of its window."""
         return lambda: self._solve(tolerance)
+
+    def solved(self, found) -> int:
+        """Cases with all samples of their windows."""
+        return sum(time.size == _IN_WINDOW for (time, _), _ in found)
 
     def _solve(self, tolerance: float) -> list[tuple[tuple[np.ndarray, np.ndarray], float]]:
         """Times (s) and rates (n,3) rad/s about the window of each case, and its start (s)."""

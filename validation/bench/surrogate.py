@@ -7,7 +7,8 @@ of a settled rate from a run of the same model with a tight tolerance, relative 
 method uses its coarsest setting with a 95th percentile within the requested error; all finer settings
 must be within it too. Times are processor times of one core: for the surrogate from the records to the
 settled values, with the detection of the exit; for the baselines only the integration, to a given end of
-the window. Runs with curves are timed twice on compliant contact: with the rail modes of the ensemble,
+the window. Each timed call counts the cases that it solved; other than all of them is an error. Runs with
+curves are timed twice on compliant contact: with the rail modes of the ensemble,
 and with modes that each run chooses, as by default.
 """
 
@@ -23,6 +24,7 @@ from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.scenes.scene import load
 from tipoff.workspace import machine
 from tipoff.workspace.progress import say
+from validation.bench import done
 from validation.bench.methods import (
     MODELS,
     Method,
@@ -77,11 +79,13 @@ def _single(populations: list[Population], requested: float, repeats: int) -> li
         SolveIvp(populations[-1]),
     ]
     chosen = [(method, *coarsest(method.settings, method.error, requested)) for method in methods]
-    pieces = {method.name: method.piece(setting) for method, setting, _ in chosen}
+    pieces: dict[str, tuple[Callable, Callable]] = {
+        method.name: (method.piece(setting), method.solved) for method, setting, _ in chosen
+    }
     for method, (_, setting, _) in zip(surrogates, chosen):
-        pieces[_with_curves(method.name)] = method.whole(setting)
+        pieces[_with_curves(method.name)] = method.whole(setting), done.runs
         if method.population.modes_why:
-            pieces[_chosen_modes(method.name)] = method.whole(setting, modes=AUTO)
+            pieces[_chosen_modes(method.name)] = method.whole(setting, modes=AUTO), done.runs
     times = _times(pieces, repeats, len(populations[0].rows))
     return [
         {
@@ -106,15 +110,19 @@ def _chosen_modes(name: str) -> str:
     return f"{name}, with curves and modes chosen"
 
 
-def _times(pieces: dict[str, Callable], repeats: int, cases: int) -> dict[str, float]:
-    """Median processor time (ms) per case of each piece."""
+def _times(
+    pieces: dict[str, tuple[Callable, Callable]], repeats: int, cases: int
+) -> dict[str, float]:
+    """Median processor time (ms) per case of each piece, a call and the number of cases solved in its
+    result. Raises NotDone if a call does not solve all ``cases``."""
     times: dict[str, list[float]] = {name: [] for name in pieces}
     for _ in range(repeats):
-        for name, piece in pieces.items():
+        for name, (piece, solved) in pieces.items():
             piece()  # once without timing, which loads this method into the caches of the machine
             began = time.thread_time()
-            piece()
+            found = piece()
             times[name].append(1e3 * (time.thread_time() - began) / cases)
+            done.require(f"cases of {name}", solved(found), cases)
     return {name: statistics.median(values) for name, values in times.items()}
 
 
@@ -141,12 +149,13 @@ def _ensemble(population: Population, cases: int, tolerance: float) -> dict:
     population.many(rows[:50], numerics)
     wall, processor = time.perf_counter(), time.process_time()
     table = population.many(rows, numerics)
-    spent = time.process_time() - processor
+    spent, wall = time.process_time() - processor, time.perf_counter() - wall
+    done.require(f"cases of an ensemble on {MODELS[population.model]}", done.rates(table), cases)
     return {
         "method": MODELS[population.model],
         "cases": cases,
         "cpu_ms_per_case": 1e3 * spent / cases,
-        "wall_s": time.perf_counter() - wall,
+        "wall_s": wall,
         "ok": table.attrs["ok"],
         "tolerance": tolerance,
         "modes": table.attrs["modes"],

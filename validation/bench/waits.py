@@ -3,7 +3,8 @@
 Each row is a call. It is made once without timing, which compiles its kernels and warms its caches, and
 then ``repeats`` times by turns with the calls of its group. The result is the median: wall time,
 and processor time of all threads and of finished processes, which other programs on the machine
-disturb less. Commands on empty caches, and the longest ones, are made once.
+disturb less. A call that did not do all that its name says is an error. Commands on empty caches, and
+the longest ones, are made once.
 """
 
 import itertools
@@ -20,14 +21,17 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+from xarray import Dataset
 
 from tipoff.files import write_json
-from tipoff.mechanics.rail_compliance import MODES
+from tipoff.mechanics.rail_compliance import MODES, RailCompliance
+from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene, load
 from tipoff.studies.render.table import Column, Table
 from tipoff.workspace import machine
 from tipoff.workspace.progress import say
+from validation.bench import done
 from validation.bench.methods import varied
 
 LENGTHS = (0.25, 0.5, 1.0, 2.0, 4.0)  # m, of rails whose compliance is timed
@@ -72,7 +76,7 @@ def _by_turns(calls: dict[str, Callable[[], object]], repeats: int) -> list[Wait
         call()
     for _ in range(repeats):
         for name, call in calls.items():
-            times[name].append(_timed(call))
+            times[name].append(_timed(name, call))
     found = []
     for name, pairs in times.items():
         wall, processor = (1e3 * statistics.median(each) for each in zip(*pairs))
@@ -82,16 +86,30 @@ def _by_turns(calls: dict[str, Callable[[], object]], repeats: int) -> list[Wait
 
 
 def _once(name: str, call: Callable[[], object]) -> Wait:
-    wall, processor = _timed(call)
+    wall, processor = _timed(name, call)
     say(f"  {name}: {wall:.3g} s")
     return Wait(name, 1e3 * wall, 1e3 * processor, 1)
 
 
-def _timed(call: Callable[[], object]) -> tuple[float, float]:
-    """Wall time and processor time (s)."""
+def _timed(name: str, call: Callable[[], object]) -> tuple[float, float]:
+    """Wall time and processor time (s) of a call that does its work."""
     wall, processor = time.perf_counter(), _processor()
-    call()
-    return time.perf_counter() - wall, _processor() - processor
+    found = call()
+    spent = time.perf_counter() - wall, _processor() - processor
+    require_whole(name, found)
+    return spent
+
+
+def require_whole(name: str, found: object) -> None:
+    """Raise NotDone for a result ``found`` of the call ``name`` that lacks a part: a run or a case
+    that did not settle, or a rail compliance without its uncertainty. A command that fails raises an
+    error of its own."""
+    if isinstance(found, Trajectory):
+        done.require(f"runs in '{name}'", done.runs([found]), 1)
+    elif isinstance(found, Dataset):
+        done.require(f"cases in '{name}'", done.rates(found), _CASES)
+    elif isinstance(found, RailCompliance) and found.not_known:
+        raise done.NotDone(f"{name}: its uncertainty is not known: {found.not_known}")
 
 
 def _processor() -> float:

@@ -154,6 +154,10 @@ def test_on_a_free_platform_the_error_is_bounded():
     assert 0.0 < np.abs(np.subtract(one.outcome.rate, other.outcome.rate)).max() < 1e-5 * scale
     assert 0.0 < one.cost["left_out_m"] < 10.0 * resting.MOST_LEFT_OUT
     assert one.cost["steps_taken"] < one.cost["steps"] and one.cost["stepped_share"] < 0.9
+    every, stepped = (
+        run.cost["ns_per_element_stepped"] / run.cost["ns_per_element_step"] for run in (other, one)
+    )
+    assert every == pytest.approx(1.0) and stepped > 1.1  # elements at rest take no time
     assert other.cost["steps_taken"] == other.cost["steps"] and other.cost["left_out_m"] == 0.0
 
 

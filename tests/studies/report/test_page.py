@@ -138,7 +138,7 @@ def test_page_of_a_reference_alone_names_the_targets_that_make_the_rest(tmp_path
     rows = [
         row(name, run, f"highfi/{name}.nc")
         for name, run in runs.items()
-        if run.cost.update(elements=1, ns_per_element_step=1.0) is None
+        if run.cost.update(elements=1, ns_per_element_step=1.0, ns_per_element_stepped=None) is None
     ]
     other = other_rails.Scene("thin", agreement.table(), {})
     made = Page(

@@ -12,8 +12,10 @@ from typer.testing import CliRunner
 import tipoff
 from tipoff import highfi, lowfi
 from tipoff.highfi import Numerics
+from tipoff.highfi.dynamics.stepper import Stepper, Taken
 from tipoff.highfi.statics import assembly
 from tipoff.lowfi.dynamics import cases
+from tipoff.mechanics.ending import DONE
 from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.scenes import load
 from tipoff.studies import registry
@@ -21,9 +23,10 @@ from tipoff.studies.report.assembly import render
 from tipoff.studies.report.page import Page
 from tipoff.studies.runs.figures import Runs
 from validation import STUDIES
-from validation.bench import reference, surrogate
+from validation.bench import done, reference, surrogate
 from validation.bench.command import bench
 from validation.bench.csr_loop import CsrLoop
+from validation.bench.done import NotDone
 from validation.bench.methods import (
     PlainRungeKutta,
     Population,
@@ -81,6 +84,11 @@ def test_bench_writes_one_row_per_size(tmp_path, monkeypatch, figures, few, erro
     assert row["ratio"] == pytest.approx(
         row["baseline_ns_per_element_step"] / row["ns_per_element_step"]
     )
+    assert (
+        row["times_stepped"]["pressed"] >= row["times_stepped"]["free"] == 50 == row["steps_timed"]
+    )
+    fastest = min(row[name] for name in ("ns_per_element_step", "ns_free", "ns_one_thread"))
+    assert fastest * row["threads"] > 0.5  # no processor is faster
     assert row["bytes_per_element"] > 24 * 8 and row["dt_s"] > row["dt_element_s"] * 0.9
     assert f"{row['elements']:,} elements" in reference.line(row)
     monkeypatch.setattr(registry, "ADDED", [*STUDIES])
@@ -105,6 +113,38 @@ def test_bench_writes_one_row_per_size(tmp_path, monkeypatch, figures, few, erro
             and ensemble["cpu_ms_per_case"] > 0.0 < ensemble["wall_s"]
         )
         assert ensemble["peak_memory_bytes"] > 10**7
+
+
+def test_a_loop_that_returns_early_has_no_time(tmp_path, monkeypatch):
+    """Control: in the test above the same loop makes its steps."""
+    monkeypatch.setattr(Stepper, "advance", lambda self, count: Taken(0, 0, 0.0, 0.0))
+    with pytest.raises(NotDone, match="steps of the reference: 0 done, 5 asked for"):
+        reference.run(tmp_path, (0.008,), repeats=1, steps=50)
+
+
+def test_a_case_that_is_left_out_has_no_time():
+    """A kernel that does nothing does not show the results of its last call. Control: one that
+    works."""
+    scene = load("tiny")
+    method = Surrogate(Population(scene, varied(2), COMPLIANT, tipoff.compliance(scene)))
+    piece = method.piece(1e-5)
+    found = piece()
+    assert method.solved(found) == 2
+    for column, value in ((cases.LEFT_OPEN, 1.0), (cases.STEPS, 0.0), (cases.BOOK + DONE, np.inf)):
+        changed = found.copy()
+        changed[0, column] = value
+        assert method.solved(changed) == 1
+    assert method.solved(np.zeros_like(found)) == 0
+
+
+def test_a_time_needs_what_was_asked():
+    done.require("steps", 5, 5)
+    done.require_at_least("ns", 0.5, 0.5)
+    with pytest.raises(NotDone, match="cases: 4 done, 5 asked for"):
+        done.require("cases", 4, 5)
+    for value in (0.012, float("nan")):
+        with pytest.raises(NotDone, match="less than 0.5"):
+            done.require_at_least("ns", value, 0.5)
 
 
 def test_runs_of_a_method_have_the_modes_of_its_population():

@@ -92,7 +92,8 @@ class Row:
     rail_compliance: dict[str, Any] | None = None
     by_hand: ByHand | None = None
     elements: int | None = None
-    ns_per_element_step: float | None = None
+    ns_per_element_step: float | None = None  # of all elements, those of rails at rest included
+    ns_per_element_stepped: float | None = None  # None if all rails rest all the time
     peak_stress_pa: Annotated[float | None, Column("peak von Mises", "MPa", ".3g", 1e-6)] = None
     peak_stress_place_m: Vector | None = None
     peak_stress_rail: Annotated[str | None, Column("rail")] = None

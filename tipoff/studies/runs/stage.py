@@ -78,6 +78,7 @@ def row(name: str, run: Trajectory, path: str, request: Run | None = None) -> Ro
         beside |= {
             "elements": cost["elements"],
             "ns_per_element_step": cost["ns_per_element_step"],
+            "ns_per_element_stepped": cost["ns_per_element_stepped"],
         } | stresses.facts(run)
     return Row(
         condition=name,
