@@ -111,6 +111,16 @@ def place_of(touch, face, row, column):
 
 
 @inlined
+def depth_of_part(touch, face, direction, side, index):
+    """Part (m) of the depth of cells along the nominal normal that depends on their ``index`` along
+    one ``side`` (0 ``face.along``, 1 ``face.across``, the ``direction``). Both parts and that of
+    ``face.middle`` are the depth but for rounding."""
+    place, crown = fourth_power(index, touch.surface.cells[face.number, side])
+    relief, axis = touch.faces.relief[face.number], face.axis
+    return face.sign * (place * direction[axis] + relief * crown * face.inward[axis])
+
+
+@inlined
 def no_spot():
     """No wall."""
     height = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

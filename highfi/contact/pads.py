@@ -37,6 +37,7 @@ import numpy as np
 
 from tipoff.highfi.contact.cells import (
     Touch,
+    depth_of_part,
     face_of,
     nearest_wall,
     no_spot,
@@ -60,6 +61,8 @@ ROUNDED = 1e-6  # m; edges of pads and walls have at least this radius
 _ENTRY = 1e-4
 # m: a larger gap counts as this one, because the face may slide over another part of the wall
 _FARTHEST = 1e-3
+# m: rounding of a depth, which has magnitudes of less than 100 m, is smaller
+_ROUNDING = 1e-12
 # m/s along the wall: a face this far from the border is skipped until it could arrive
 FASTEST_SLIDE = 1000.0
 
@@ -151,19 +154,37 @@ def _forces_of_face(touch, friction, face):
 def _forces_of_cells(touch, friction, face):
     """Forces of all cells of a face; returns a lower bound (m) of their gaps to the wall, at most
     ``_FARTHEST``."""
-    cells, thickness = touch.surface.cells, touch.surface.thickness
-    wall, deepest, spot = nearest_wall(touch, face), -np.inf, no_spot()
-    presses = not touch.active.rests[touch.group]
-    for row in range(cells[face.number, 0]):
-        for column in range(cells[face.number, 1]):
-            place = place_of(touch, face, row, column)
-            depth = face.sign * place[face.axis] - wall
-            deepest = max(deepest, depth)
-            if depth > 0.0 and presses:
-                spot = spot_under(touch, face, place, spot)
-                if spot.facet >= 0 and 0.0 < spot.penetration < thickness:
-                    press(touch, friction, face, place, spot)
+    wall = nearest_wall(touch, face)
+    across = face.sign * face.middle[face.axis] - wall + _deepest(touch, face, face.across, 1)
+    deepest = across + _deepest(touch, face, face.along, 0)
+    if deepest > -_ROUNDING and not touch.active.rests[touch.group]:
+        spot = no_spot()
+        for row in range(touch.surface.cells[face.number, 0]):
+            if across + depth_of_part(touch, face, face.along, 0, row) > -_ROUNDING:
+                spot = _forces_of_row(touch, friction, face, row, wall, spot)
     return min(max(0.0, -deepest), _FARTHEST)
+
+
+@inlined
+def _deepest(touch, face, direction, side):
+    """Largest ``depth_of_part`` (m) along one side."""
+    deepest = -np.inf
+    for index in range(touch.surface.cells[face.number, side]):
+        deepest = max(deepest, depth_of_part(touch, face, direction, side, index))
+    return deepest
+
+
+@inlined
+def _forces_of_row(touch, friction, face, row, wall, spot):
+    """Forces of a row of cells; ``wall`` (m) as ``nearest_wall``. Returns the last spot, from
+    ``spot`` on."""
+    for column in range(touch.surface.cells[face.number, 1]):
+        place = place_of(touch, face, row, column)
+        if face.sign * place[face.axis] - wall > 0.0:
+            spot = spot_under(touch, face, place, spot)
+            if spot.facet >= 0 and 0.0 < spot.penetration < touch.surface.thickness:
+                press(touch, friction, face, place, spot)
+    return spot
 
 
 @inlined
