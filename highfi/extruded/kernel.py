@@ -289,9 +289,11 @@ def _add_ends(columns, point, displacement, force, turn):
     beyond them are no forces."""
     base, layers = point * columns.stride, columns.layers
     x, y, z, far_x, far_y, far_z = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for q in range(columns.first[point], columns.first[point + 1]):
-        node = columns.neighbour[q]
-        far = node + layers - 1
+    # Unsigned, because a signed index needs a test for negative values.
+    to_far = np.uint64(layers - 1)
+    for q in range(np.uint64(columns.first[point]), np.uint64(columns.first[point + 1])):
+        node = np.uint64(columns.neighbour[q])
+        far = node + to_far
         xy, xz, yx, zx = (
             columns.ends[q, 0],
             columns.ends[q, 1],
