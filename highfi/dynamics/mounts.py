@@ -3,18 +3,21 @@ of the mount strips.
 
     r += S u
 
-``statics.mounts`` defines S. Unlike K u, S u has a resultant and a moment about the undeformed
-places. Their opposites act on the frame. They are summed here node by node; ``step`` has the rest
-of the balance.
+``statics.mounts`` defines S. Its block for two nodes of a strip across an axis is diagonal; on an
+oblique strip it is not. Both are stored apart. Unlike K u, S u has a resultant and a moment about
+the undeformed places. Their opposites act on the frame. They are summed here node by node; ``step``
+has the rest of the balance.
 """
 
 import numpy as np
 from scipy.sparse import csr_array
 
-from tipoff.highfi.state.pose import triple
+from tipoff.highfi.state.pose import plus, triple
 from tipoff.highfi.state.records import Mounts
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
+
+_ROUNDING = 1e-14  # of the largest number; a smaller one off the diagonals is zero
 
 
 def build(matrix: csr_array | None, number: np.ndarray, blocks: np.ndarray) -> Mounts | None:
@@ -26,14 +29,26 @@ def build(matrix: csr_array | None, number: np.ndarray, blocks: np.ndarray) -> M
     own = np.flatnonzero(np.diff(by_node.indptr))
     own = own[np.argsort(number[own])]
     counts = np.diff(by_node.indptr)[own]
-    first = np.concatenate([[0], np.cumsum(counts)])
-    place = np.repeat(by_node.indptr[own] - first[:-1], counts) + np.arange(first[-1])
+    ends = np.cumsum(counts)
+    pair = np.repeat(by_node.indptr[own] - ends + counts, counts) + np.arange(ends[-1])
+    neighbour, stiffness = number[by_node.indices[pair]].astype(np.uint32), by_node.data[pair]
+    diagonal = np.einsum("pii->pi", stiffness)
+    beside = np.abs(stiffness - diagonal[:, :, None] * np.eye(3)).max(axis=(1, 2))
+    mixed = beside > _ROUNDING * np.abs(stiffness).max()
+    of_node = np.repeat(np.arange(own.size), counts)
+
+    def first(chosen: np.ndarray) -> np.ndarray:
+        return np.searchsorted(of_node[chosen], np.arange(own.size + 1)).astype(np.uint64)
+
     return Mounts(
-        node=number[own],
-        first_node=np.searchsorted(number[own], blocks),
-        first=first,
-        neighbour=number[by_node.indices[place]],
-        stiffness=np.ascontiguousarray(by_node.data[place]),
+        node=number[own].astype(np.uint32),
+        first_node=np.searchsorted(number[own], blocks).astype(np.uint64),
+        first=first(~mixed),
+        neighbour=neighbour[~mixed],
+        stiffness=diagonal[~mixed],
+        first_mixed=first(mixed),
+        mixed_neighbour=neighbour[mixed],
+        mixed_stiffness=stiffness[mixed],
     )
 
 
@@ -43,23 +58,31 @@ def add_mounts(mounts, rail, displacement, force, block, turn, total):
     ``total`` (b,6) of the block to the resultant of S u and its moment about the frame's origin;
     not compiled when ``mounts`` is None."""
     if mounts is not None:
-        total[block, :] = 0.0
+        # numbers, because the compiler cannot know that arrays do not overlap
+        turning, resultant, whole = triple(turn), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
         for k in range(mounts.first_node[block], mounts.first_node[block + 1]):
             node, f = mounts.node[k], _force(mounts, displacement, k)
-            own = rotation.cross(triple(displacement[node]), f)
-            moment = rotation.cross(triple(rail.points[node]), f)
+            turning = plus(turning, rotation.cross(triple(displacement[node]), f))
+            resultant = plus(resultant, f)
+            whole = plus(whole, rotation.cross(triple(rail.points[node]), f))
             for i in range(3):
                 force[node, i] += f[i]
-                turn[i] += own[i]
-                total[block, i] += f[i]
-                total[block, 3 + i] += moment[i]
+        for i in range(3):
+            turn[i] = turning[i]
+            total[block, i], total[block, 3 + i] = resultant[i], whole[i]
 
 
 @kernel
 def _force(mounts, displacement, k):
     x, y, z = 0.0, 0.0, 0.0
-    for q in range(mounts.first[k], mounts.first[k + 1]):
-        u, s = triple(displacement[mounts.neighbour[q]]), mounts.stiffness[q]
+    after = k + np.uint64(1)
+    for q in range(mounts.first[k], mounts.first[after]):
+        u = triple(displacement[mounts.neighbour[q]])
+        x += mounts.stiffness[q, 0] * u[0]
+        y += mounts.stiffness[q, 1] * u[1]
+        z += mounts.stiffness[q, 2] * u[2]
+    for q in range(mounts.first_mixed[k], mounts.first_mixed[after]):
+        u, s = triple(displacement[mounts.mixed_neighbour[q]]), mounts.mixed_stiffness[q]
         x += s[0, 0] * u[0] + s[0, 1] * u[1] + s[0, 2] * u[2]
         y += s[1, 0] * u[0] + s[1, 1] * u[1] + s[1, 2] * u[2]
         z += s[2, 0] * u[0] + s[2, 1] * u[1] + s[2, 2] * u[2]

@@ -43,7 +43,7 @@ from tipoff.highfi.dynamics.loads import (
 from tipoff.highfi.dynamics.mounts import collect_mounts
 from tipoff.highfi.dynamics.pushers import begin_pushers, kick_pushers, load_pushers
 from tipoff.highfi.state.nodes import kick_nodes
-from tipoff.highfi.state.pose import drift_body, less, pose_in_frame, small_turn, triple
+from tipoff.highfi.state.pose import drift_body, less, plus, pose_in_frame, small_turn, triple
 from tipoff.highfi.state.threads import barrier, reset_queue
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import entry, inlined, kernel
@@ -123,11 +123,6 @@ def collect(interface_stiffness, constants, state, active):
         collect_contact(constants.rail, constants.surface, state, active)
 
 
-@kernel
-def _sum(a, b):
-    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
-
-
 @inlined
 def _kick_bodies(constants, state, pose, thrust, dt):
     """Advance all velocities except those of the nodes over ``dt`` by the present forces; adds the
@@ -150,7 +145,7 @@ def _kick_bodies(constants, state, pose, thrust, dt):
 @inlined
 def _kick_payload(constants, state, pose, thrust, dt):
     load, body = state.load[0], state.payload
-    contact = rotation.rotate(pose.frame, _sum(load.normal_force, load.friction_force))
+    contact = rotation.rotate(pose.frame, plus(load.normal_force, load.friction_force))
     moment = rotation.rotate(pose.frame, triple(load.moment))
     for i in range(3):
         body.velocity[i] += dt * (contact[i] + thrust[0][i]) / constants.payload.mass

@@ -36,6 +36,12 @@ def triple(a):
 
 
 @kernel
+def plus(a, b):
+    """a + b of two triples."""
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+@kernel
 def less(a, b):
     """a - b of two triples."""
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])

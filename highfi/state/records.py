@@ -40,13 +40,18 @@ class Elements(NamedTuple):
 
 @by_reference
 class Mounts(NamedTuple):
-    """Stiffness of the joints under the mounts, between m nodes and their neighbours."""
+    """Stiffness of the joints under the mounts, between m nodes and their neighbours: p pairs of
+    nodes whose block is diagonal, and o others. Numbers are unsigned, because a signed index needs a
+    test for negative values."""
 
     node: np.ndarray  # (m,) numbers of the nodes, ascending
     first_node: np.ndarray  # (b+1,) place in ``node`` of the first one of each block
     first: np.ndarray  # (m+1,) place in ``neighbour`` of the first one of each node
     neighbour: np.ndarray  # (p,) node numbers, the node itself among them
-    stiffness: np.ndarray  # (p,3,3) N/m
+    stiffness: np.ndarray  # (p,3) N/m, diagonals
+    first_mixed: np.ndarray  # (m+1,) place in ``mixed_neighbour`` of the first one of each node
+    mixed_neighbour: np.ndarray  # (o,) node numbers
+    mixed_stiffness: np.ndarray  # (o,3,3) N/m
 
 
 @by_reference

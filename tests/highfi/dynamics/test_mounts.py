@@ -2,6 +2,7 @@
 ledgers, bits, code, and the run of a tetrahedral mesh."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -13,9 +14,11 @@ from tests.highfi.support import COARSE, assert_same_bits, begun, loop_on, tiny
 from tests.highfi.tets import split
 from tipoff import highfi
 from tipoff.highfi import Numerics
-from tipoff.highfi.dynamics import observe, stable_step
+from tipoff.highfi.dynamics import mounts, observe, stable_step
 from tipoff.highfi.dynamics.checkpoint import Checkpoint, restore
 from tipoff.highfi.statics import assembly
+from tipoff.highfi.statics import mounts as statics
+from tipoff.scenes.effects.mount_stiffness import MountStiffness
 
 SIDE, DENSITY, MODULUS = 0.02, 2810.0, 72e9
 # The block is stiffer than its springs by E / (k l) = 3.6e5.
@@ -56,6 +59,34 @@ def released(loop, axis, count=60, amplitude=1e-6):
         found.append(float(mass @ loop.stepper.state.displacement[number, axis]) / mass.sum())
         assert not loop.recorded.message
     return np.array(found), np.array(loop.recorded.rows)
+
+
+class Places(NamedTuple):
+    points: np.ndarray
+
+
+@pytest.mark.parametrize("angle, mixed", [(0.0, 0), (0.3, 49)])
+def test_strips_across_an_axis_and_oblique_ones_have_the_force_of_their_matrix(angle, mixed):
+    """S u, its moments and sums from the matrix of the joints of a strip turned about Y; all 49
+    pairs of the 9 nodes of a strip of four facets are neighbours of each other."""
+    mesh = cube()
+    cosine, sine = math.cos(angle), math.sin(angle)
+    points = mesh.points @ np.array([[cosine, 0.0, -sine], [0.0, 1.0, 0.0], [sine, 0.0, cosine]])
+    matrix = statics.stiffness(points, mesh.surfaces["mount"], MountStiffness(3e9, 1e9))
+    number = np.random.default_rng(1).permutation(len(points))
+    record = mounts.build(matrix, number, np.array([0, len(points)]))
+    assert record is not None and len(record.mixed_stiffness) == mixed
+    places, u, force = (np.zeros(points.shape, order="F") for _ in range(3))
+    places[number], u[number] = points, np.random.default_rng(2).normal(0.0, 1e-6, points.shape)
+    turn, total = np.ones(3), np.ones((1, 6))
+    mounts.add_mounts(record, Places(places), u, force, 0, turn, total)
+    exact = (matrix @ u[number].ravel()).reshape(-1, 3)
+    size = np.abs(exact).max()
+    assert np.abs(force[number] - exact).max() <= 1e-14 * size
+    turned, moved = np.cross(u[number], exact).sum(axis=0), np.cross(points, exact).sum(axis=0)
+    assert np.abs(turn - 1.0 - turned).max() <= 1e-14
+    sums = np.concatenate([exact.sum(axis=0), moved])
+    assert np.abs(total[0] - sums).max() <= 1e-13 * size
 
 
 @pytest.mark.case("O54")
