@@ -77,8 +77,48 @@ def test_units_of_the_header_or_of_the_key(tmp_path):
     assert moments(tmp_path, drawing(square, units=None), "cm").area == pytest.approx(1e-4)
     with pytest.raises(ValueError, match=r"set rail.unit"):
         moments(tmp_path, drawing(square, units=0))
-    with pytest.raises(ValueError, match="the drawing states this one"):
+    with pytest.raises(ValueError, match="the drawing states millimetres"):
         moments(tmp_path, drawing(square), "in")
+
+
+LENGTHS = {  # m, of each $INSUNITS
+    **{1: 0.0254, 2: 0.3048, 3: 1609.344, 4: 1e-3, 5: 1e-2, 6: 1.0, 7: 1e3, 8: 2.54e-8, 9: 2.54e-5},
+    **{10: 0.9144, 11: 1e-10, 12: 1e-9, 13: 1e-6, 14: 0.1, 15: 10.0, 16: 100.0, 17: 1e9},
+    **{18: 1.495978707e11, 19: 9.4607304725808e15, 20: 3.0856775814913673e16},
+    **{21: 0.3048006096012192, 22: 0.0254000508001016, 23: 0.9144018288036576},
+    24: 1609.347218694437,
+}
+
+
+@pytest.mark.parametrize("code", LENGTHS)
+def test_every_unit_of_the_header(tmp_path, code):
+    """In its own unit a square of 10 mm is the same, and another unit in the key is refused."""
+    side = 0.01 / LENGTHS[code]
+    text = drawing(polyline((0, 0), (side, 0), (side, side), (0, side)), units=code)
+    assert moments(tmp_path, text).area == pytest.approx(1e-4, rel=1e-12)
+    for unit, metres in paths.UNITS.items():
+        if metres == LENGTHS[code]:
+            assert moments(tmp_path, text, unit).area == pytest.approx(1e-4, rel=1e-12)
+        else:
+            with pytest.raises(ValueError, match="the drawing states .* in .INSUNITS"):
+                moments(tmp_path, text, unit)
+
+
+@pytest.mark.parametrize("code", [-1, 25, 99])
+def test_a_unit_that_the_format_does_not_have(tmp_path, code):
+    square = polyline((0, 0), (1, 0), (1, 1), (0, 1))
+    with pytest.raises(ValueError, match=f"from 0 to 24, not {code}"):
+        moments(tmp_path, drawing(square, units=code), "mm")
+
+
+def test_the_system_of_measurement_is_only_a_hint(tmp_path):
+    square = polyline((0, 0), (1, 0), (1, 1), (0, 1))
+    text = drawing(square, units=0).replace(
+        "  9\n$INSUNITS", "  9\n$MEASUREMENT\n 70\n0\n  9\n$INSUNITS"
+    )
+    with pytest.raises(ValueError, match=r"states none .*MEASUREMENT: inches.*set rail.unit"):
+        moments(tmp_path, text)
+    assert moments(tmp_path, text, "mm").area == pytest.approx(1e-6)
 
 
 def test_an_arc_that_hardly_bends_is_a_line(tmp_path):

@@ -3,7 +3,8 @@
 A file is a list of pairs, a group code and a value on a line each. Every entity of the drawing must
 be one of the three; others are refused by name, since a left-out line would change the section.
 
-Source: Autodesk, DXF Reference, 2012: group codes of LINE, ARC, LWPOLYLINE, and of $INSUNITS.
+Source: Autodesk, DXF Reference, 2012: group codes of LINE, ARC, LWPOLYLINE, and of $INSUNITS
+and $MEASUREMENT.
 """
 
 import math
@@ -13,7 +14,34 @@ from tipoff.files import read_input
 from tipoff.scenes.sections import paths
 from tipoff.scenes.sections.outline import Corner
 
-_UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m"}  # of $INSUNITS
+_SURVEY = 1200.0 / 3937.0  # m, a foot of the US survey
+_UNITS = (  # of $INSUNITS from 1 on, in m; 0 is none
+    ("inches", 0.0254),
+    ("feet", 0.3048),
+    ("miles", 1609.344),
+    ("millimetres", 1e-3),
+    ("centimetres", 1e-2),
+    ("metres", 1.0),
+    ("kilometres", 1e3),
+    ("microinches", 2.54e-8),
+    ("mils", 2.54e-5),
+    ("yards", 0.9144),
+    ("angstroms", 1e-10),
+    ("nanometres", 1e-9),
+    ("microns", 1e-6),
+    ("decimetres", 0.1),
+    ("decametres", 10.0),
+    ("hectometres", 100.0),
+    ("gigametres", 1e9),
+    ("astronomical units", 149597870700.0),
+    ("light years", 9460730472580800.0),
+    ("parsecs", 149597870700.0 * 648000.0 / math.pi),
+    ("US survey feet", _SURVEY),
+    ("US survey inches", _SURVEY / 12.0),
+    ("US survey yards", 3.0 * _SURVEY),
+    ("US survey miles", 5280.0 * _SURVEY),
+)
+_SYSTEMS = {0: "inches", 1: "metric"}  # of $MEASUREMENT, which chooses hatches and line types
 _READ = "LINE, ARC and LWPOLYLINE are read"
 _MOST_ENTITIES = 2000
 
@@ -27,18 +55,21 @@ def loops(path: str | Path, unit: str | None) -> list[list[Corner]]:
     Raises ValueError for a file that cannot be read as such, with what it lacks.
     """
     pairs = _pairs(path)
-    own = _UNITS.get(_units_of_header(pairs))
-    if unit is None and own is None:
-        raise ValueError('a unit: the drawing states none, so set rail.unit, for example "mm"')
-    if unit is not None and own is not None and unit != own:
-        raise ValueError(f"no rail.unit, or {own!r}: the drawing states this one")
+    stated = _unit_of_header(pairs)
+    if unit is None and stated is None:
+        system = _SYSTEMS.get(_of_header(pairs, "$MEASUREMENT", -1))
+        hint = f" ($MEASUREMENT: {system})" if system else ""
+        raise ValueError(f'a unit: the drawing states none{hint}, so set rail.unit, such as "mm"')
+    if unit is not None and stated is not None and not math.isclose(paths.UNITS[unit], stated[1]):
+        raise ValueError(f"no rail.unit: the drawing states {stated[0]} in $INSUNITS")
+    scale = stated[1] if stated is not None else paths.UNITS[unit or "m"]
     still_open: list[paths.Path] = []
     closed: list[paths.Path] = []
     for entity in _entities(pairs):
         (closed if _is_closed(entity) else still_open).append(_points(entity))
     if not still_open and not closed:
         raise ValueError(f"closed loops; the drawing has no entities; {_READ}")
-    return paths.loops(still_open, closed, paths.UNITS[unit or own or "m"])
+    return paths.loops(still_open, closed, scale)
 
 
 def _pairs(path: str | Path) -> Pairs:
@@ -59,9 +90,17 @@ def _pairs(path: str | Path) -> Pairs:
     return found[: found.index((0, "EOF")) + 1]
 
 
-def _units_of_header(pairs: Pairs) -> int:
-    place = next((n for n, pair in enumerate(pairs) if pair == (9, "$INSUNITS")), None)
-    return 0 if place is None else int(_number(pairs[place + 1][1]))
+def _unit_of_header(pairs: Pairs) -> tuple[str, float] | None:
+    """Name of the unit in the header, and its length (m)."""
+    code = _of_header(pairs, "$INSUNITS", 0)
+    if not 0 <= code <= len(_UNITS):
+        raise ValueError(f"$INSUNITS from 0 to {len(_UNITS)}, not {code}")
+    return _UNITS[code - 1] if code else None
+
+
+def _of_header(pairs: Pairs, name: str, default: int) -> int:
+    place = next((n for n, pair in enumerate(pairs) if pair == (9, name)), None)
+    return default if place is None else int(_number(pairs[place + 1][1]))
 
 
 def _entities(pairs: Pairs) -> list[Pairs]:
