@@ -3,7 +3,7 @@
 import hashlib
 import json
 from array import array
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
 from itertools import chain, repeat
 from pathlib import Path
@@ -21,29 +21,39 @@ _TOO_MANY, _TOO_FEW = "cells beyond the header", "a missing cell"
 
 class TableFile:
     """Cases of a CSV file: dotted keys in its header, units in the second line or in each cell, one
-    case a line; an empty cell leaves the scene's value. A cell that is no number of its unit stays
-    text; the scene then refuses that case.
+    case a line. An empty cell of a key that is no number, such as ``friction``, leaves the scene's
+    value. A cell that is no number of its unit stays text; the scene then refuses that case.
 
-    Raises SceneError for a file that cannot be read, and for keys and units that do not fit a
-    scene.
+    Raises SceneError for a file that cannot be read, for keys and units that do not fit a scene,
+    and for cells of numbers that are empty.
     """
 
     def __init__(self, path: str | Path):
         self._odd: dict[int, dict[str, str]] = {}
-        rows: Iterator[list[str]] = (row for _, row in csv_file.lines(path))
-        self.keys = _header(str(path), next(rows, []))
+        self._empty: dict[str, list[int]] = {}
+        rows = csv_file.lines(path)
+        self.keys = _header(str(path), next(rows, (0, []))[1])
         self._columns = [array("d") for _ in self.keys]
         wanted = [keys.unit(Scene, key) for key in self.keys]
-        second = next(rows, [])
+        self._numbers = {key for key, unit in zip(self.keys, wanted) if unit is not None}
+        line, second = next(rows, (0, []))
         readers: list[Callable[[str], float]]
         if units.are_units(second):
             factors = _factors(str(path), self.keys, wanted, second)
             readers = [partial(_number, factor) for factor in factors]
         else:
             readers = [partial(_quantity, unit) for unit in wanted]
-            rows = chain([second] if second else [], rows)
-        for row in rows:
-            self._append(row, readers)
+            rows = chain([(line, second)] if second else [], rows)
+        for line, row in rows:
+            self._append(line, row, readers)
+        if self._empty:
+            words = "a value in each line"
+            raise SceneError(
+                [
+                    Fault(str(path), key, f"nothing in {csv_file.listed_lines(lines)}", words)
+                    for key, lines in self._empty.items()
+                ]
+            )
         self.asked = len(self._columns[0])
         if not self.asked:
             raise SceneError([Fault(str(path), "file", "no case", "one in each line")])
@@ -52,7 +62,7 @@ class TableFile:
             digest.update(column)
         self.identity = {"table": digest.hexdigest(), "cases": self.asked}
 
-    def _append(self, row: list[str], readers: list[Callable[[str], float]]) -> None:
+    def _append(self, line: int, row: list[str], readers: list[Callable[[str], float]]) -> None:
         number, odd = len(self._columns[0]), {}
         for key, column, read, text in zip(
             self.keys, self._columns, readers, chain(row, repeat(_TOO_FEW))
@@ -60,6 +70,8 @@ class TableFile:
             column.append(value := read(text))
             if value != value and text.strip():
                 odd[key] = text.strip()
+            if key in self._numbers and (text is _TOO_FEW or not text.strip()):
+                self._empty.setdefault(key, []).append(line)
         if len(row) > len(self.keys):
             odd[_TOO_MANY] = ", ".join(row[len(self.keys) :])
         if odd:

@@ -268,3 +268,13 @@ def test_errors_far_from_the_values_of_the_scene_are_told():
     assert uncertainty.far_from_scene(drawn, rocket.replace({"payload.mass": edge})) == []
     without = rocket.replace({"payload.mass": 12.0, "studies.errors": None})
     assert not any(words.startswith("vary.") for words in implausible.of_all_conditions(without))
+
+
+@pytest.mark.parametrize(
+    "static, dynamic, warned",
+    [(0.2, 0.2, False), (0.3, 0.2, False), (0.2, 0.2001, True), (0.0, 0.2, True)],
+)
+def test_friction_that_grows_when_a_pad_slides(static, dynamic, warned):
+    scene = load("tiny").replace({"friction.static": static, "friction.dynamic": dynamic})
+    found = [text for text in scene.warnings if text.startswith("friction.static")]
+    assert len(found) == warned

@@ -127,9 +127,9 @@ def numbers(
         if not sound:
             wrong.setdefault(_quoted(text), []).append(number)
     expected = "a number" if gaps else "a finite number in each line"
-    shown = [f"{text} in {_listed(where)}" for text, where in list(wrong.items())[:MOST_ALIKE]]
+    shown = [f"{text} in {listed_lines(where)}" for text, where in list(wrong.items())[:MOST_ALIKE]]
     if rest := [number for where in list(wrong.values())[MOST_ALIKE:] for number in where]:
-        shown.append(f"other text in {_listed(rest)}")
+        shown.append(f"other text in {listed_lines(rest)}")
     return values, [Fault(source, name, given, expected) for given in shown]
 
 
@@ -157,6 +157,7 @@ def _quoted(text: str) -> str:
     return repr(text) if text else "nothing"
 
 
-def _listed(where: list[int]) -> str:
+def listed_lines(where: list[int]) -> str:
+    """Numbers of lines in words, the first few of them."""
     more = [f"and {len(where) - _SHOWN} more"] if len(where) > _SHOWN else []
     return f"line{'s' if len(where) > 1 else ''} " + ", ".join([*map(str, where[:_SHOWN]), *more])

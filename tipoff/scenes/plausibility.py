@@ -49,6 +49,11 @@ def warnings(scene) -> list[str]:
     found += _of_joints(scene.rail.mount_stiffness) + thrust_plausibility.warnings(scene)
     if scene.contact is not None:
         found += sinking.warnings(scene) + _of_interface(scene.contact) + _of_pads(scene)
+    if scene.friction is not None and below(scene.friction.static, scene.friction.dynamic):
+        found.append(
+            f"friction.static, friction.dynamic: {scene.friction.static:.4g} and "
+            f"{scene.friction.dynamic:.4g}, plausible a static coefficient that is not the smaller one"
+        )
     if scene.thermal is not None:
         found += _of_temperature(scene)
     if scene.initial is not None and scene.platform is None:

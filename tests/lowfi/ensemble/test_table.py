@@ -40,27 +40,39 @@ def test_units_in_a_line_or_in_the_cells_are_the_same_bits(tmp_path):
     )
 
 
-def test_odd_cells_stay_text_and_empty_ones_are_left_out(tmp_path):
+def test_odd_cells_stay_text_and_empty_keys_of_tables_are_left_out(tmp_path):
     found = table(
         tmp_path,
         f"{AXIAL},{MASS},friction",
         "deg,kg,",
-        "0.1,,",
         "x,9.9,absent",
         "nan,9.9,",
-        "0.2",
+        "0.2,9.9",
         "0.3,9.9,,7",
         "",
     )
-    assert found.asked == 5
-    rows = found.rows(0, 5)
-    assert rows[0] == {AXIAL: to_si("0.1 deg", "rad")}
-    assert rows[1] == {AXIAL: "x", MASS: 9.9, "friction": "absent"}
-    assert rows[2][AXIAL] == "nan"
-    assert rows[3][MASS] == rows[3]["friction"] == "a missing cell"
-    assert rows[4]["cells beyond the header"] == "7"
+    assert found.asked == 4
+    rows = found.rows(0, 4)
+    assert rows[0] == {AXIAL: "x", MASS: 9.9, "friction": "absent"}
+    assert rows[1][AXIAL] == "nan" and "friction" not in rows[1]
+    assert rows[2]["friction"] == "a missing cell"
+    assert rows[3]["cells beyond the header"] == "7"
     inputs = numbers(found.keys, rows)
-    assert inputs.shape == (5, 3) and np.isnan(inputs[1, [0, 2]]).all() and inputs[1, 1] == 9.9
+    assert inputs.shape == (4, 3) and np.isnan(inputs[0, [0, 2]]).all() and inputs[0, 1] == 9.9
+
+
+@pytest.mark.parametrize("units", [True, False])
+def test_empty_cells_of_numbers_are_refused_with_their_lines(tmp_path, units):
+    """A case with the value of the scene in place of a hole looks like one that was asked. Each
+    column is named at once; a line that is too short has a hole too."""
+    cell = "0.1,9" if units else "0.1 deg,9 kg"
+    lines = [cell, "0.1,", "", " ,9", "0.1", cell]
+    with pytest.raises(SceneError) as refused:
+        table(tmp_path, f"{AXIAL},{MASS}", *(["deg,kg"] if units else []), *lines)
+    first, second = refused.value.faults
+    at = 2 if units else 1
+    assert (first.key, first.given) == (MASS, f"nothing in lines {at + 2}, {at + 5}")
+    assert (second.key, second.given) == (AXIAL, f"nothing in line {at + 4}")
 
 
 def test_a_bare_number_is_no_quantity(tmp_path):
