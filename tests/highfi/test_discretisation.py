@@ -1,6 +1,8 @@
 """Uncertainty of a rail compliance by its elements: it covers the error against finer meshes on sections
 that are too stiff at 4 mm, and is not far above it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -47,6 +49,35 @@ def test_the_finer_solution_is_that_of_the_mesh_itself():
     factor = 2.0 * discretisation.SAFETY_FACTOR
     assert found.compliance == pytest.approx(factor * (fine / own - 1.0), rel=5e-3)
     assert found.frequency == pytest.approx(factor * (1.0 - finer / frequency), rel=2e-2)
+
+
+@pytest.mark.parametrize("stretch", [1.0, 30.0])
+def test_long_elements_have_an_uncertainty_too(monkeypatch, stretch):
+    """Elements much longer than their wall is thick, as on rails of metres. Control: the iteration, which
+    solves for shorter ones, does not converge for them."""
+    mesh = sections.rail("tee", 8e-3)
+    mesh = replace(mesh, points=mesh.points * (stretch, 1.0, 1.0))
+    reach = 0.0, stretch * sections.LENGTH
+    travel = np.linspace(0.0, reach[1] - 0.016, 4)
+
+    def known():
+        rails = distinct(mesh, sections.ALUMINIUM)
+        return discretisation.of_rails(rails, sections.pad(), reach, travel)
+
+    def direct(mesh):
+        rails, pad = distinct(mesh, sections.ALUMINIUM), sections.pad()
+        found = compliance.of_rails(rails, pad, reach, travel, patterns=1, modes=1)
+        return found.matrix[:, 0, 0, 0, 0].sum(), found.frequency[0, 0]
+
+    (own, frequency), (fine, finer) = direct(mesh), direct(split.refined(mesh)[0])
+    factor, found = 2.0 * discretisation.SAFETY_FACTOR, known()
+    assert found.compliance == pytest.approx(factor * (fine / own - 1.0), rel=5e-3)
+    # from the modes of the mesh itself, whose places in between are those of straight elements
+    assert found.frequency == pytest.approx(factor * abs(1.0 - finer / frequency), rel=6e-2)
+    monkeypatch.setattr(discretisation.chain, "seconds", lambda *_: 1e9)  # no factor
+    alone = known()
+    assert (alone.compliance is None) == (stretch > 1.0)
+    assert alone.compliance is not None or "times as long as thick" in alone.why
 
 
 def test_the_uncertainty_covers_the_error_of_walls_one_element_thick():
