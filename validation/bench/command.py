@@ -37,23 +37,27 @@ def bench(
     ] = 2000,
     json_: Json = False,
 ) -> None:
-    """Measure the speed of both solvers; writes bench/highfi.json and bench/lowfi.json.
+    """Measure the speed of both solvers; writes bench/highfi.json, bench/parts.json and
+    bench/lowfi.json.
 
-    The reference is compared with a SciPy matrix and with NumPy on the same mesh. The surrogate, with
+    The reference is compared with a SciPy matrix and with NumPy on the same mesh, and the parts of its
+    step are timed, in elements of 8, 4, 2 and 1 mm by default. The surrogate, with
     compliant contact and with springs, is compared with plain Runge-Kutta and solve_ivp at the same
     error.
     """
 
     def work() -> Output:
-        from validation.bench import page, reference, surrogate
+        from validation.bench import page, parts, reference, surrogate
 
         def shown(found: dict) -> "list[Part]":
-            files = [f"  {out / 'bench' / name}" for name in ("highfi.json", "lowfi.json")]
+            names = ("highfi.json", "parts.json", "lowfi.json")
+            files = [f"  {out / 'bench' / name}" for name in names]
             return [*page.terminal(found), "\n".join(files)]
 
         sizes = tuple(1e-3 * size for size in element_size) if element_size else reference.SIZES
         found = {
             **reference.run(out, sizes, repeats, steps),
+            "parts": parts.run(out, repeats, sizes if element_size else parts.SIZES),
             "surrogate": surrogate.run(out, cases=cases, repeats=repeats),
         }
         return Output(found, shown)

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 from tipoff.studies.render.document import Part
 from tipoff.studies.render.table import Cells, Column, Table
+from validation.bench import parts
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
@@ -38,7 +39,7 @@ def draw(page: "Page") -> list[Part]:
 
 def terminal(found: dict) -> list[Part]:
     """The result of the command for the terminal."""
-    return [_reference(found["rows"]), _surrogate(found["surrogate"])]
+    return [_reference(found["rows"]), parts.table(found["parts"]), _surrogate(found["surrogate"])]
 
 
 def _reference(rows: list[dict]) -> Table:

@@ -110,7 +110,7 @@ def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dic
     elements = len(mesh.cells)
     count = steps or max(20, min(round(_WORK / elements), int(_PRESSED / stepping.dt_s)))
     pieces: dict[str, tuple[Callable[[int], int], int, int]] = {
-        name: (_Again(loop), count, elements) for name, loop in loops.items()
+        name: (Again(loop), count, elements) for name, loop in loops.items()
     }
     pieces["baseline"] = (baseline.advance, max(3, count // 50), baseline.elements)
     times: dict[str, list[float]] = {name: [] for name in pieces}
@@ -149,7 +149,7 @@ def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dic
     }
 
 
-class _Again:
+class Again:
     """Makes steps of a loop; ``rewind`` returns to its start."""
 
     def __init__(self, loop):
@@ -179,7 +179,7 @@ class _Again:
 def _timed(advance: Callable[[int], int], count: int) -> tuple[float, int]:
     """Seconds of ``count`` steps with warm caches, and how many times they stepped all elements."""
     advance(max(1, count // 10))
-    if isinstance(advance, _Again):
+    if isinstance(advance, Again):
         advance.rewind()
     began = time.perf_counter()
     stepped = advance(count)

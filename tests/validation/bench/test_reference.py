@@ -91,6 +91,13 @@ def test_bench_writes_one_row_per_size(tmp_path, monkeypatch, figures, few, erro
     assert fastest * row["threads"] > 0.5  # no processor is faster
     assert row["bytes_per_element"] > 24 * 8 and row["dt_s"] > row["dt_element_s"] * 0.9
     assert f"{row['elements']:,} elements" in reference.line(row)
+    (split,) = json.loads((tmp_path / "bench" / "parts.json").read_text())["rows"]
+    assert split["elements"] == row["elements"] and "bodies, ledgers" in said.stdout
+    assert min(split[f"{name}_us"] for name in ("elements", "contact", "bodies", "samples")) > 0.0
+    named = sum(
+        split[f"{name}_us"] for name in ("elements", "nodes", "joints", "contact", "bodies")
+    )
+    assert named == pytest.approx(split["step_us"])
     monkeypatch.setattr(registry, "ADDED", [*STUDIES])
     page = render(
         Page(load("tiny"), tmp_path, {"bench": reference.stored(tmp_path)}, Runs({}, {}, {}), {})

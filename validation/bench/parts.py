@@ -1,0 +1,175 @@
+"""Parts of one step of the finite elements: processor time of one thread while all rails are stepped.
+
+A part is the difference of two times: of steps with it and without it. Pads are pressed as in
+``reference``; without contact, every face waits; without joints, the rails have none under any node;
+without stepped rails, only bodies, loads and ledgers are left. Elements are timed by themselves, and the
+motion of the nodes is the rest. A sample, with its checks, is divided by the steps from one to the next.
+"""
+
+import statistics
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from tipoff.files import write_json
+from tipoff.highfi.dynamics import substeps
+from tipoff.scenes.scene import load
+from tipoff.studies.render.table import Cells, Column, Table
+from tipoff.workspace import machine
+from tipoff.workspace.progress import say
+from validation.bench.reference import Again, pressed
+
+SIZES = (0.008, 0.004, 0.002, 0.001)  # m
+_STEPS = 100  # of one timed repeat, shorter than the contact
+_CALLS = 10  # of a function in one timed repeat
+_NEVER = 2**40  # steps for which a face waits
+_COLUMNS: Cells = (
+    (Column("element size", "mm", "g", 1e3), "element_size_m"),
+    ("elements", "elements"),
+    (Column("one step", "us", ".1f"), "step_us"),
+    (Column("elements", "us", ".1f"), "elements_us"),
+    (Column("nodes", "us", ".1f"), "nodes_us"),
+    (Column("joints", "us", ".1f"), "joints_us"),
+    (Column("contact", "us", ".1f"), "contact_us"),
+    (Column("bodies, ledgers", "us", ".1f"), "bodies_us"),
+    (Column("samples, checks", "us", ".1f"), "samples_us"),
+)
+
+
+def run(out: Path, repeats: int, sizes: tuple[float, ...] = SIZES) -> dict:
+    """``rows``, one for each element size (m), medians of ``repeats``; writes
+    ``out``/bench/parts.json."""
+    rows = []
+    for size in sizes:
+        rows.append(_measured(size, repeats))
+        say(f"  parts of a step at {1e3 * size:g} mm: done")
+    found = {"rows": rows, "repeats": repeats, "hardware": machine.describe()}
+    write_json(Path(out) / "bench" / "parts.json", found)
+    return found
+
+
+def table(found: dict) -> Table:
+    """All rows."""
+    note = (
+        "Parts of one step of the finite elements with all rails stepped and eight pad faces pressed, "
+        f"processor time of one thread, median of {found['repeats']} repeats. Samples and checks are "
+        "divided by the steps from one sample to the next, and are not in the time of the step."
+    )
+    return Table.of(found["rows"], _COLUMNS, notes=(note,))
+
+
+def _measured(size: float, repeats: int) -> dict:
+    from tipoff.highfi import Numerics, prepare
+    from tipoff.highfi.dynamics.setup import set_up
+    from tipoff.highfi.dynamics.step_size import choose
+    from tipoff.highfi.dynamics.system import build
+    from tipoff.highfi.simulation import Loop
+
+    numerics, scene = Numerics(element_size=size), pressed(load("reference").condition("phi35"))
+    system = build(scene, numerics, prepare(scene, numerics))
+    stepping = choose(system, scene, numerics)
+    loop = Loop(set_up(scene, system, stepping, 1))
+    loose = Loop(set_up(scene, system._replace(rail=_without_joints(system.rail)), stepping, 1))
+    for each in (loop, loose):
+        each.begin()
+    calls = {
+        "step": _steps(loop, lambda stepper: None),
+        "free": _steps(loop, _wait),
+        "loose": _steps(loose, _wait),
+        "bodies": _steps(loose, _rest),
+        "elements": _elements(loose),
+        "sample": _sample(loop),
+    }
+    times: dict[str, list[float]] = {name: [] for name in calls}
+    for _ in range(repeats):
+        for name, call in calls.items():
+            times[name].append(1e6 * call())
+    median = {name: statistics.median(values) for name, values in times.items()}
+    return {
+        "element_size_m": size,
+        "elements": len(system.mesh.cells),
+        "step_us": median["step"],
+        "elements_us": median["elements"],
+        "nodes_us": median["loose"] - median["bodies"] - median["elements"],
+        "joints_us": median["free"] - median["loose"],
+        "contact_us": median["step"] - median["free"],
+        "bodies_us": median["bodies"],
+        "samples_us": median["sample"] / stepping.steps_per_sample,
+    }
+
+
+def _without_joints(rail):
+    """``rail`` with joints under no node, so that the same compiled loop runs."""
+    joints, none = rail.mounts, np.zeros(1, dtype=np.uint64)
+    return rail._replace(
+        mounts=joints._replace(first_node=np.zeros_like(joints.first_node), first=none)
+    )
+
+
+def _wait(stepper) -> None:
+    # decides on substeps now, because another length of the step ends all waiting
+    substeps.adapt(stepper)
+    stepper.active.wait[:] = _NEVER
+
+
+def _rest(stepper) -> None:
+    _wait(stepper)
+    stepper.state.stepped.in_use[0] = 0
+
+
+def _steps(loop, change: Callable) -> Callable[[], float]:
+    """A call that gives the time (s) of a step from the start of ``loop`` on, after a ``change``."""
+    again = Again(loop)
+
+    def timed() -> float:
+        again.rewind()
+        change(loop.stepper)
+        began = time.thread_time()
+        parts = again(_STEPS)
+        return (time.thread_time() - began) / parts
+
+    return timed
+
+
+def _elements(loop) -> Callable[[], float]:
+    """A call that gives the time (s) of K u of all elements: of the function, less that of a call for
+    none."""
+    from tipoff.highfi.dynamics.elastic import elastic_force
+
+    state, team, rail = loop.stepper.state, loop.setup.team, loop.setup.system.rail
+    none = rail
+    if rail.elements is not None:
+        none = rail._replace(elements=rail.elements._replace(cells=rail.elements.cells[:0]))
+    force = np.zeros_like(state.displacement)
+    turn, joints = np.zeros_like(state.turning), np.zeros_like(state.mounting)
+
+    def timed() -> float:
+        spent = []
+        for record, blocks in ((rail, len(turn)), (none, 0)):
+            began = time.thread_time()
+            for _ in range(_CALLS):
+                elastic_force(record, state.displacement, force, turn[:blocks], joints, team)
+            spent.append(time.thread_time() - began)
+        return (spent[0] - spent[1]) / _CALLS
+
+    return timed
+
+
+def _sample(loop) -> Callable[[], float]:
+    """A call that gives the time (s) of a sample with its checks."""
+    from tipoff.highfi import faults
+    from tipoff.highfi.dynamics import observe
+
+    stepper, recorded, team = loop.stepper, loop.recorded, loop.setup.team
+
+    def timed() -> float:
+        began = time.thread_time()
+        for _ in range(_CALLS):
+            row = observe.sample(stepper.now, team, stepper.state, *stepper.moving())
+            faults.fault(stepper, recorded, row)
+            recorded.add_sample(stepper, row)
+        return (time.thread_time() - began) / _CALLS
+
+    return timed
