@@ -7,12 +7,12 @@ The names in ``__all__`` are imported at their first use, as those of ``tipoff.h
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tipoff.lowfi.compiled import compiled_effects
+    from tipoff.lowfi.counted import evaluations
     from tipoff.lowfi.ensemble.many import run_many
     from tipoff.lowfi.numerics import OF_MANY, Numerics
     from tipoff.lowfi.simulation import run
 
-__all__ = ["OF_MANY", "Numerics", "compiled_effects", "run", "run_many"]
+__all__ = ["OF_MANY", "Numerics", "evaluations", "run", "run_many"]
 
 
 def __getattr__(name: str) -> Any:
@@ -20,8 +20,8 @@ def __getattr__(name: str) -> Any:
     match name:
         case "Numerics" | "OF_MANY":
             from tipoff.lowfi import numerics as module
-        case "compiled_effects":
-            from tipoff.lowfi import compiled as module
+        case "evaluations":
+            from tipoff.lowfi import counted as module
         case "run":
             from tipoff.lowfi import simulation as module
         case "run_many":

@@ -29,19 +29,18 @@ class Moving(NamedTuple):
 @kernel
 def resist(inertia, mass, pushing, payload, bodies, state, out):
     """Fill the pairs of forces (N) that accelerate the pushers, with the other forces in ``out``."""
-    if inertia is not None:
-        moving = Moving(
-            payload,
-            accelerations(payload, state, slot.PAYLOAD, bodies.payload, out),
-            of_platform(bodies.platform, state, bodies.base, out),
-        )
-        for i in range(mass.size):
-            inertia.pairs[i] = 0.0
-            for j in range(mass.size):
-                inertia.matrix[i, j] = 1.0 if i == j else 0.0
-            if pushing.segment[i] != law.last_segment(pushing.law, i):
-                _balance(inertia, mass[i], pushing, i, bodies, moving)
-        law.solve(inertia.matrix, inertia.pairs)
+    moving = Moving(
+        payload,
+        accelerations(payload, state, slot.PAYLOAD, bodies.payload, out),
+        of_platform(bodies.platform, state, bodies.base, out),
+    )
+    for i in range(mass.size):
+        inertia.pairs[i] = 0.0
+        for j in range(mass.size):
+            inertia.matrix[i, j] = 1.0 if i == j else 0.0
+        if pushing.segment[i] != law.last_segment(pushing.law, i):
+            _balance(inertia, mass[i], pushing, i, bodies, moving)
+    law.solve(inertia.matrix, inertia.pairs)
 
 
 @kernel

@@ -17,6 +17,17 @@ from tipoff.lowfi.contact.springs import relative_pose
 from tipoff.lowfi.contact.step_limit import inverse_mass
 from tipoff.scenes.effects import pusher_law as law
 
+_NONE = law.Pushers(
+    direction=np.zeros((0, 3)),
+    point=np.zeros((0, 3)),
+    origin=np.zeros(0),
+    first=np.zeros(1, dtype=np.int64),
+    travel=np.zeros(0),
+    force=np.zeros(0),
+    energy=np.zeros(0),
+    friction=np.zeros(0),
+    mass=None,
+)
 _NEAR = 1e-12  # m, distance from a knot at which it counts as passed
 
 
@@ -28,7 +39,7 @@ class Pushing(NamedTuple):
     segment: np.ndarray  # (n,) number of the present segment of each
     before: np.ndarray  # (n,) m, travel at the start of the step
     after: np.ndarray  # (n,) m, travel at its end
-    inertia: "Inertia | None"  # None if no pusher has mass
+    inertia: "Inertia"  # of none if no pusher has mass
 
 
 @by_reference
@@ -41,23 +52,21 @@ class Inertia(NamedTuple):
     pairs: np.ndarray  # (n,) N
 
 
-def pushing(pushers: law.Pushers | None) -> Pushing | None:
-    """A record for one run of ``pushers``."""
-    if pushers is None:
-        return None
+def pushing(pushers: law.Pushers | None) -> Pushing:
+    """A record for one run of ``pushers``, which may be none."""
+    pushers = pushers or _NONE
     count = len(pushers.point)
+    mass = np.zeros(0) if pushers.mass is None else pushers.mass
     return Pushing(
-        law=pushers,
+        law=pushers._replace(mass=mass),
         segment=np.zeros(count, dtype=np.int64),
         before=np.zeros(count),
         after=np.zeros(count),
-        inertia=_inertia(pushers.mass, count),
+        inertia=_inertia(mass.size),
     )
 
 
-def _inertia(mass: np.ndarray | None, count: int) -> Inertia | None:
-    if mass is None:
-        return None
+def _inertia(count: int) -> Inertia:
     return Inertia(
         kept=np.zeros(count),
         speed=np.zeros(count),
@@ -69,34 +78,21 @@ def _inertia(mass: np.ndarray | None, count: int) -> Inertia | None:
 @kernel
 def reset(pushing):
     """Begin at the surveyed travel."""
-    if pushing is not None:
-        for i in range(pushing.segment.size):
-            pushing.segment[i] = law.segment_at(pushing.law, i, pushing.after[i])
-            _start(pushing.inertia, i)
-
-
-@kernel
-def _start(inertia, i):
-    if inertia is not None:
-        inertia.kept[i] = 0.0
+    for i in range(pushing.segment.size):
+        pushing.segment[i] = law.segment_at(pushing.law, i, pushing.after[i])
+    pushing.inertia.kept[:] = 0.0
 
 
 @kernel
 def survey(pushing, platform, payload, state):
     """Fill the travel at the end of the step, which has this ``state``."""
-    if pushing is not None:
+    if pushing.segment.size > 0:
         body, base = slot.motion(payload, state, slot.PAYLOAD), slot.frame(platform, state)
         place, turn = relative_pose(platform, body, base)
         for i in range(pushing.segment.size):
             pushing.after[i] = law.travel(pushing.law, i, place, turn)
-        _survey_speed(pushing.inertia, pushing, platform, body, base)
-
-
-@kernel
-def _survey_speed(inertia, pushing, platform, body, base):
-    if inertia is not None:
-        for i in range(inertia.speed.size):
-            inertia.speed[i] = speed_of(pushing, i, platform, body, base)
+        for i in range(pushing.inertia.speed.size):
+            pushing.inertia.speed[i] = speed_of(pushing, i, platform, body, base)
 
 
 @kernel
@@ -104,20 +100,19 @@ def begin_step(pushing):
     """Go on to the segments of the travel that is reached; True if any changed. A pusher whose
     stroke is used up stays off."""
     changed = False
-    if pushing is not None:
-        for i in range(pushing.segment.size):
-            pushing.before[i] = pushing.after[i]
-            moved = _go_on(pushing, i)
-            if moved:
-                _stop(pushing.inertia, pushing.law.mass, pushing, i)
-            changed = moved or changed
+    for i in range(pushing.segment.size):
+        pushing.before[i] = pushing.after[i]
+        moved = _go_on(pushing, i)
+        if moved:
+            _stop(pushing.inertia, pushing.law.mass, pushing, i)
+        changed = moved or changed
     return changed
 
 
 @kernel
 def _stop(inertia, mass, pushing, i):
     """Keep the kinetic energy of a pusher whose stroke is used up."""
-    if inertia is not None:
+    if mass.size > 0:
         if pushing.segment[i] == law.last_segment(pushing.law, i):
             inertia.kept[i] = 0.5 * mass[i] * inertia.speed[i] * inertia.speed[i]
 
@@ -187,7 +182,7 @@ def fastest_rate(pushing, platform, payload, state):
     """Bound (1/s) of the eigenvalues of the pushers at ``state``, as that of contact springs
     (``contact.step_limit``): K = sum |dF/ds| w, C = sum |df/d(ds/dt)| w."""
     stiffness, damping = 0.0, 0.0
-    if pushing is not None:
+    if pushing.segment.size > 0:
         body, base = slot.motion(payload, state, slot.PAYLOAD), slot.frame(platform, state)
         for i in range(pushing.segment.size):
             e = rotation.rotate(base.turn, law.direction_of(pushing.law, i))
@@ -204,7 +199,7 @@ def work(pushing, integrated, platform, body, base):
     """Work (J) of the thrust: the energy that the pushers have given up, by their potential;
     without pushers the ``integrated`` one."""
     total = integrated
-    if pushing is not None:
+    if pushing.segment.size > 0:
         total = 0.0
         place, turn = relative_pose(platform, body, base)
         for i in range(pushing.segment.size):
@@ -218,12 +213,11 @@ def work(pushing, integrated, platform, body, base):
 def _in_pushers(inertia, mass, pushing, platform, body, base):
     """Kinetic energy (J) that the pushers have or have kept."""
     total = 0.0
-    if inertia is not None:
-        for i in range(inertia.kept.size):
-            total += inertia.kept[i]
-            if pushing.segment[i] != law.last_segment(pushing.law, i):
-                speed = speed_of(pushing, i, platform, body, base)
-                total += 0.5 * mass[i] * speed * speed
+    for i in range(inertia.kept.size):
+        total += inertia.kept[i]
+        if pushing.segment[i] != law.last_segment(pushing.law, i):
+            speed = speed_of(pushing, i, platform, body, base)
+            total += 0.5 * mass[i] * speed * speed
     return total
 
 

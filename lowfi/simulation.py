@@ -23,7 +23,6 @@ def run(
     calibration: Calibration | None = None,
     numerics: Numerics | None = None,
     progress: Callable[[float], None] | None = None,
-    vibrates: Callable[[int], None] | None = None,
 ) -> Trajectory:
     """Solve ``scene`` with rigid bodies until the settled window is complete, the payload jams, or
     the scene's duration is over.
@@ -33,13 +32,11 @@ def run(
     at each pad face. Rails that are warm or from a file then need a rigid ``compliance``
     (``calibration.rail_compliance.walls``), because no file is read here. A ``calibration``
     replaces constants that were fitted on the same model. ``progress`` is called with the completed
-    fraction of the duration. ``vibrates`` is called with each number of modes that ``modes="auto"``
-    has chosen, before the scene is run with them: their kernels may need compilation. A run whose
-    ledgers do not close as promised is repeated at tighter tolerances; message and cost state it. A
-    run that still breaks a promise is diverged. Raises SceneError with every fault before the first
-    step; a later failure is the status of the result."""
+    fraction of the duration. A run whose ledgers do not close as promised is repeated at tighter
+    tolerances; message and cost state it. A run that still breaks a promise is diverged. Raises
+    SceneError with every fault before the first step; a later failure is the status of the result."""
     require(scene, model, compliance, calibration, numerics)
-    return solved(scene, calibration, numerics, progress, compliance, vibrates)
+    return solved(scene, calibration, numerics, progress, compliance)
 
 
 def solved(
@@ -48,7 +45,6 @@ def solved(
     numerics: Numerics | None = None,
     progress: Callable[[float], None] | None = None,
     compliance: RailCompliance | None = None,
-    vibrates: Callable[[int], None] | None = None,
 ) -> Trajectory:
     """``run`` without its check of the options; ``compliance`` determines the model."""
     began, cpu = clock.perf_counter(), clock.thread_time()
@@ -70,8 +66,6 @@ def solved(
         numerics = replace(numerics, degree=degree)
 
     def tried(count: int) -> SingleRun:
-        if count and vibrates:
-            vibrates(count)
         return made(replace(numerics, modes=count), watches=count == 0)
 
     if numerics.modes == AUTO and may_vibrate(scene, compliance):

@@ -87,7 +87,7 @@ def modal_size(compliance):
 @kernel
 def _modal_size(modes):
     size = 0
-    if modes is not None:
+    if modes.square.size > 0:
         size = 2 * modes.square.size
     return size
 

@@ -6,18 +6,52 @@ import numpy as np
 
 from tipoff.kernels.reference import by_reference
 from tipoff.lowfi import faces
+from tipoff.lowfi.contact import thermal_offset
 from tipoff.lowfi.contact.compliant.neglected import Neglected
 from tipoff.lowfi.contact.compliant.record import Compliance
+from tipoff.lowfi.contact.springs import SMOOTH
 from tipoff.lowfi.contact.thermal_offset import ThermalOffset
 from tipoff.lowfi.pushers import Pushing, pushing
+from tipoff.mechanics import ledger
 from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.effects.body_force import BodyForce
-from tipoff.scenes.effects.contact import ContactLaw
+from tipoff.scenes.effects.contact import NO_CONTACT, ContactLaw
 from tipoff.scenes.effects.friction import Friction
 from tipoff.scenes.effects.hold_down import HoldDown
 from tipoff.scenes.effects.sticking import Sticking
-from tipoff.scenes.effects.thrust_law import Thrust
+from tipoff.scenes.effects.thrust_law import Thrust, complete
 from tipoff.scenes.effects.thrust_offset import ThrustOffset
+
+# Effects whose evaluations a run counts.
+(
+    BODY_FORCE,
+    COMPLIANCE,
+    CONTACT,
+    FRICTION,
+    HOLD_DOWN,
+    MODES,
+    PLATFORM,
+    PUSHERS,
+    STICKING,
+    THERMAL,
+    THRUST_OFFSET,
+) = range(11)
+COUNTED = (
+    ledger.BODY_FORCE,
+    "compliance",
+    "contact",
+    "friction",
+    "hold_down",
+    "modes",
+    "platform",
+    "pushers",
+    "sticking",
+    "thermal",
+    "thrust_offset",
+)
+_NO_LATCH = HoldDown(release=-np.inf, line=(0.0, 0.0))
+_NO_STICKING = Sticking(static=0.0, dynamic=0.0, stiffness=0.0, damping=0.0, capture_speed=1.0)
+_NO_FORCE = BodyForce(0.0, 0.0, 0.0)
 
 
 @by_reference
@@ -29,17 +63,35 @@ class Body(NamedTuple):
     inverse_inertia: np.ndarray  # (3, 3) 1/(kg m2)
 
 
+class Offset(NamedTuple):
+    """Line of action of the thrust, in body axes."""
+
+    acts: bool  # else the line is along the body's x axis through the mass centre
+    direction: tuple  # unit vector
+    arm: tuple  # m, from the actual mass centre
+
+
+def offset(thrust_offset: ThrustOffset | None) -> Offset:
+    """The line of action of a thrust."""
+    if thrust_offset is None:
+        return Offset(False, (1.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    return Offset(True, *thrust_offset)
+
+
 @by_reference
 class Contact(NamedTuple):
     """Contact springs."""
 
     law: ContactLaw
-    thermal_offset: ThermalOffset | None  # of the walls, None if they are not warm
+    thermal_offset: ThermalOffset  # of the walls
+    sticking: Sticking  # stick-slip law
 
 
 @by_reference
 class System(NamedTuple):
-    """All records of one run; None for an absent effect."""
+    """All records of one run. The kernels skip an absent effect by its record: no pusher, no
+    friction, no offset. None is a type of its own, for which kernels are compiled: fixed rails, and
+    the kind of contact that is not there."""
 
     payload: Body
     platform: Body | None  # None for fixed rails
@@ -47,55 +99,54 @@ class System(NamedTuple):
     rail_start: float  # m, X of the rear end
     rail_end: float  # m, X of the open end
     thrust: Thrust  # over time
-    pushing: Pushing | None  # thrust over travel
+    pushing: Pushing  # thrust over travel
     reacts_on_platform: bool  # whether the platform takes the reaction of the thrust
-    thrust_offset: ThrustOffset | None
-    hold_down: HoldDown | None
-    contact: Contact | None  # contact springs
+    thrust_offset: Offset
+    hold_down: HoldDown
+    contact: Contact | None  # contact springs; None for compliant contact
     compliance: Compliance | None  # compliant contact, instead of contact springs
     has_contact: bool  # of either kind
     # True with a compliance, else None: a small argument that removes code at compile time
     is_compliant: bool | None
-    friction: Friction | None  # two-step law
-    sticking: Sticking | None  # stick-slip law
-    body_force: BodyForce | None
-    ledger: bool | None  # True if work, losses and impulses are integrated
+    friction: Friction  # two-step law
+    body_force: BodyForce
+    evaluated: np.ndarray  # (n,) how often the law of each effect of ``COUNTED`` was evaluated
     neglected: Neglected | None  # watched modes of the rails, None at rigid walls
 
 
 def build(
     model: Model,
-    ledger: bool = True,
     compliance: Compliance | None = None,
-    thermal_offset: ThermalOffset | None = None,
+    thermal_offset: ThermalOffset = thermal_offset.NONE,
     neglected: Neglected | None = None,
 ) -> System:
     """Records of ``model``: contact springs at rigid walls, with or without a ``thermal_offset``,
-    or compliant contact with a ``compliance``. Without a ``ledger`` no work, loss or impulse is
-    integrated. The effect of ``neglected`` modes is computed."""
+    or compliant contact with a ``compliance``. The effect of ``neglected`` modes is computed."""
     contact, friction = None, model.friction
-    if model.contact is not None and compliance is None:
-        contact = Contact(law=model.contact, thermal_offset=thermal_offset)
+    if compliance is None:
+        contact = Contact(
+            law=model.contact or NO_CONTACT,
+            thermal_offset=thermal_offset,
+            sticking=friction if isinstance(friction, Sticking) else _NO_STICKING,
+        )
     return System(
         payload=_body(model.payload),
         platform=_body(model.platform) if model.platform is not None else None,
         faces=faces.table(model, compliance),
         rail_start=float(model.rail_start),
         rail_end=float(model.rail_end),
-        thrust=model.thrust,
+        thrust=complete(model.thrust),
         pushing=pushing(model.pushers),
         reacts_on_platform=model.reacts_on_platform,
-        thrust_offset=model.thrust_offset,
-        hold_down=model.hold_down,
+        thrust_offset=offset(model.thrust_offset),
+        hold_down=model.hold_down or _NO_LATCH,
         contact=contact,
         compliance=compliance,
-        has_contact=contact is not None or compliance is not None,
+        has_contact=model.contact is not None or compliance is not None,
         is_compliant=True if compliance is not None else None,
-        # a field for each law, so that only the law in use is compiled
-        friction=friction if isinstance(friction, Friction) else None,
-        sticking=friction if isinstance(friction, Sticking) else None,
-        body_force=model.body_force,
-        ledger=True if ledger else None,
+        friction=friction if isinstance(friction, Friction) else SMOOTH,
+        body_force=model.body_force or _NO_FORCE,
+        evaluated=np.zeros(len(COUNTED), dtype=np.int64),
         neglected=neglected,
     )
 

@@ -7,48 +7,30 @@ from tests.highfi.contact.test_deformed_wall import Pressed
 from tests.highfi.dynamics.test_mounts import DAMPED, SOFT
 from tests.highfi.support import COARSE, begun, tiny
 from tests.lowfi.compliance import REFERENCE, reference_compliance
-from tests.lowfi.support import IMMOVABLE, PAPER_PAD, scene
 from tests.pushed import SPRING
 from tipoff import highfi, lowfi
+from tipoff.mechanics.rail_compliance import LOW_DEGREE
 
-LINEAR = {"law": "linear", "clearance": 1e-5, "stiffness": 7e7, "damping": 0.0}
-HUNT_CROSSLEY = {
-    "law": "hunt-crossley",
-    "clearance": 1e-5,
-    "stiffness": 7e7,
-    "exponent": 1.5,
-    "dissipation": 1.0,
-}
-NO_THRUST = {"kind": "gaussian", "peak": 0.0, "width": 1e-3, "centre": 0.0}
-STICKING = {
-    "law": "sticking",
-    "static": 0.3,
-    "dynamic": 0.3,
-    "stiffness": 1e7,
-    "damping": 1e4,
-}
 NO_FORCE = {"kind": "constant", "force": 0.0, "duration": 1e-3}
 FIXED = {"platform": None}
 FOUR = lowfi.Numerics(modes=4)
 
 
-def four_modes() -> None:
-    """The surrogate on compliant rails that vibrate."""
+def compliant() -> None:
+    """The surrogate on compliant rails."""
     lowfi.run(REFERENCE, "compliant", compliance=reference_compliance(), numerics=FOUR)
 
 
-def without_modes() -> None:
-    """The surrogate on compliant rails without inertia."""
-    none = lowfi.Numerics(modes=0)
-    lowfi.run(REFERENCE, "compliant", compliance=reference_compliance(), numerics=none)
+def compliant_cases() -> None:
+    """The same with the patterns of many cases."""
+    few = reference_compliance().of_degree(LOW_DEGREE)
+    lowfi.run(REFERENCE, "compliant", compliance=few, numerics=FOUR)
 
 
-def weight_without_modes() -> None:
-    """A payload without thrust or friction on compliant rails of a fixed platform."""
-    absent = FIXED | {"friction": None, "thrust_offset": None}
-    alone = REFERENCE.replace(absent | {"thrust": NO_FORCE, "gravity": {"z": -9.80665}})
-    none = lowfi.Numerics(modes=0)
-    lowfi.run(alone, "compliant", compliance=reference_compliance(), numerics=none)
+def compliant_on_a_fixed_platform() -> None:
+    """The surrogate on compliant rails of a fixed platform."""
+    fixed = REFERENCE.replace(FIXED)
+    lowfi.run(fixed, "compliant", compliance=reference_compliance(), numerics=FOUR)
 
 
 def finite_elements() -> None:
@@ -87,58 +69,13 @@ def tetrahedra() -> None:
 
 
 def springs() -> None:
-    """The surrogate on springs."""
+    """The surrogate on springs, and without contact."""
     lowfi.run(REFERENCE, "springs")
 
 
 def springs_on_a_fixed_platform() -> None:
-    """The surrogate on springs, without a platform."""
+    """The same without a platform."""
     lowfi.run(REFERENCE.replace(FIXED), "springs")
-
-
-def body_on_impact() -> None:
-    """One body on the contact law of the paper."""
-    lowfi.run(scene(1e-3, 1e-3, contact=PAPER_PAD), "springs")
-
-
-def body_on_linear() -> None:
-    """One body on a linear contact law."""
-    lowfi.run(scene(1e-3, 1e-3, contact=LINEAR), "springs")
-
-
-def body_on_hunt_crossley() -> None:
-    """One body on the contact law of Hunt and Crossley."""
-    lowfi.run(scene(1e-3, 1e-3, contact=HUNT_CROSSLEY), "springs")
-
-
-def body_that_sticks() -> None:
-    """One body on a linear contact law with friction that sticks."""
-    lowfi.run(scene(1e-3, 1e-3, contact=LINEAR, friction=STICKING), "springs")
-
-
-def body_that_sticks_to_a_platform() -> None:
-    """The same on a platform."""
-    lowfi.run(scene(1e-3, 1e-3, contact=LINEAR, friction=STICKING, thrust=NO_THRUST), "springs")
-
-
-def free_body() -> None:
-    """One body without contact."""
-    lowfi.run(scene(1e-3, 1e-3), "springs")
-
-
-def two_free_bodies() -> None:
-    """A payload and a platform without contact."""
-    lowfi.run(scene(1e-3, 1e-3, thrust=NO_THRUST), "springs")
-
-
-def free_payload() -> None:
-    """A payload without contact on a fixed platform."""
-    lowfi.run(REFERENCE.replace(FIXED | {"contact": None, "friction": None}), "springs")
-
-
-def pushed_payload() -> None:
-    """A payload without contact that springs push from a platform."""
-    lowfi.run(scene(1e-3, 1e-3, thrust=SPRING, platform=IMMOVABLE), "springs")
 
 
 def pushed_from_rails() -> None:
@@ -146,8 +83,7 @@ def pushed_from_rails() -> None:
     begun(tiny(contact=None, friction=None, thrust=SPRING))
 
 
-# Runs that watch modes, or choose them, have the same kernels.
-COMPLIANT = (four_modes, without_modes, weight_without_modes)
+COMPLIANT = (compliant, compliant_cases, compliant_on_a_fixed_platform)
 FINITE_ELEMENTS = (
     finite_elements,
     fixed_rails,
@@ -158,13 +94,5 @@ FINITE_ELEMENTS = (
     tetrahedra,
     pushed_from_rails,
 )
-BODIES = (
-    body_on_impact,
-    body_on_linear,
-    body_on_hunt_crossley,
-    body_that_sticks,
-    body_that_sticks_to_a_platform,
-    free_body,
-)
-PAYLOADS = (springs, springs_on_a_fixed_platform, free_payload, two_free_bodies, pushed_payload)
-FAMILIES = (FINITE_ELEMENTS, COMPLIANT, BODIES, PAYLOADS)  # the longest first
+SPRINGS = (springs, springs_on_a_fixed_platform)
+FAMILIES = (FINITE_ELEMENTS, COMPLIANT, SPRINGS)  # the longest first

@@ -9,18 +9,21 @@ beside the kernels says that all loops of this code are compiled: then nothing i
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from importlib import import_module, metadata
+from importlib import import_module
 from multiprocessing import get_context
 from pathlib import Path
 
 from tipoff import sources
+from tipoff.highfi.dynamics.step import perform
+from tipoff.kernels import called
+from tipoff.lowfi.dynamics.integrate import integrate
 
 LOOPS = "tests.loops"  # takes seconds to load
 
 
 def stamp() -> Path:
     """The file that is there once the loops of the present code are compiled."""
-    name = f"loops-{metadata.version('numba')}-{sources.digest(LOOPS)[:16]}"
+    name = f"loops-{called.digest(perform, integrate)}-{sources.source(LOOPS).code[:16]}"
     return sources.cache_folder() / "kernels" / name
 
 

@@ -132,7 +132,7 @@ def run(
         with kernel_marks.first_use(Run("highfi", scene.name, scene, sizes)):
             return highfi.run(scene, sizes, progress)
     request = asked.run(scene, model, numerics, compliance, calibration)
-    with kernel_marks.first_use(request), kernel_marks.chosen_modes(request) as vibrates:
+    with kernel_marks.first_use(request):
         found = lowfi.run(
             scene,
             model,
@@ -140,7 +140,6 @@ def run(
             calibration=calibration,
             numerics=request.numerics,
             progress=progress,
-            vibrates=vibrates,
         )
         if not sensitivity:
             return found
@@ -214,7 +213,7 @@ def ensemble(
     )
     rows = asked.cases(cases, scene, options)
     like = asked.run(scene, model, options, compliance, calibration, many=True)
-    with kernel_marks.first_use(like, many=True):
+    with kernel_marks.first_use(like):
         return lowfi.run_many(
             scene,
             rows,

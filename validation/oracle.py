@@ -272,17 +272,14 @@ def pad_contact(contact, system, face, place, axes, body, base):
 @kernel
 def _thermal_offset(offset, face, x):
     """Thermal offset (m) of the wall at ``x`` (m), and its slope."""
-    if offset is not None:
+    if thermal_offset.shifts(offset):
         return thermal_offset.offset_and_slope(offset, int(face[NUMBER]), x)
     return 0.0, 0.0
 
 
 @kernel
 def _drag(friction, slip):
-    value = 0.0
-    if friction is not None:
-        value = coefficient_over_speed(friction, np.sqrt(rotation.dot(slip, slip)))
-    return value
+    return coefficient_over_speed(friction, np.sqrt(rotation.dot(slip, slip)))
 
 
 @kernel

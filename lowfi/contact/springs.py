@@ -14,11 +14,13 @@ from typing import NamedTuple
 
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
-from tipoff.lowfi.contact.thermal_offset import offset_and_slope
+from tipoff.lowfi.contact.thermal_offset import offset_and_slope, shifts
 from tipoff.lowfi.faces import NORMAL_Y, NORMAL_Z, NUMBER, WALL
 from tipoff.lowfi.state import velocity_at
 from tipoff.scenes.effects import contact as law
-from tipoff.scenes.effects.friction import coefficient_over_speed
+from tipoff.scenes.effects.friction import Friction, coefficient_over_speed
+
+SMOOTH = Friction(static=0.0, dynamic=0.0, static_speed=1.0, dynamic_speed=2.0)  # no friction
 
 
 class Load(NamedTuple):
@@ -100,13 +102,18 @@ def _seen_from_platform(body, base, place, spin):
 
 
 @kernel
-def approach(offset, face, place, turn, drift, swing):
-    """Rate (m/s) of the penetration of ``face``, from the rates of the pose; the pose itself is
-    needed only with a thermal ``offset``."""
+def approach_of_straight(face, drift, swing):
+    """Rate (m/s) of the penetration of ``face`` into a straight wall, from the rates of the pose."""
     y = drift[1] + swing[3] * face[0] + swing[4] * face[1] + swing[5] * face[2]
     z = drift[2] + swing[6] * face[0] + swing[7] * face[1] + swing[8] * face[2]
-    rate = face[NORMAL_Y] * y + face[NORMAL_Z] * z
-    if offset is not None:
+    return face[NORMAL_Y] * y + face[NORMAL_Z] * z
+
+
+@kernel
+def approach(offset, face, place, turn, drift, swing):
+    """Rate (m/s) of the penetration of ``face``, from the pose and its rates."""
+    rate = approach_of_straight(face, drift, swing)
+    if shifts(offset):
         x = drift[0] + swing[0] * face[0] + swing[1] * face[1] + swing[2] * face[2]
         rate -= offset_and_slope(offset, int(face[NUMBER]), along(face, place, turn))[1] * x
     return rate
@@ -119,12 +126,18 @@ def along(face, place, turn):
 
 
 @kernel
-def penetration(offset, face, place, turn):
-    """Penetration (m) of ``face`` into its wall, negative across the gap."""
+def penetration_of_straight(face, place, turn):
+    """Penetration (m) of ``face`` into a straight wall, negative across the gap."""
     y = place[1] + turn[3] * face[0] + turn[4] * face[1] + turn[5] * face[2]
     z = place[2] + turn[6] * face[0] + turn[7] * face[1] + turn[8] * face[2]
-    p = face[NORMAL_Y] * y + face[NORMAL_Z] * z - face[WALL]
-    if offset is not None:
+    return face[NORMAL_Y] * y + face[NORMAL_Z] * z - face[WALL]
+
+
+@kernel
+def penetration(offset, face, place, turn):
+    """Penetration (m) of ``face`` into its wall, negative across the gap."""
+    p = penetration_of_straight(face, place, turn)
+    if shifts(offset):
         p -= offset_and_slope(offset, int(face[NUMBER]), along(face, place, turn))[0]
     return p
 
@@ -168,7 +181,7 @@ def along_width(face, size):
 @kernel
 def gradient(offset, face, base, point):
     """Gradient of the penetration by the pad's ``point`` (scene axes): the normal of the wall."""
-    if offset is not None:
+    if shifts(offset):
         return _gradient_with_offset(offset, face, base, point)
     return outward(face, base)
 
@@ -186,7 +199,7 @@ def _gradient_with_offset(offset, face, base, point):
 def slip_velocity(offset, u, closing, n):
     """The part of ``u`` (m/s) across ``n``; |n| is one for a straight wall."""
     along = closing
-    if offset is not None:
+    if shifts(offset):
         along = closing / rotation.dot(n, n)
     return (u[0] - along * n[0], u[1] - along * n[1], u[2] - along * n[2])
 
@@ -209,9 +222,15 @@ def relative_velocity(platform, body, base, point):
 
 
 @kernel
+def rubs(friction):
+    """Whether there is two-step friction."""
+    return friction.static > 0.0 or friction.dynamic > 0.0
+
+
+@kernel
 def friction_force(friction, normal_force, slip):
     """Friction on the payload (N) at slip velocity ``slip`` (m/s); zero without friction."""
-    if friction is not None:
+    if rubs(friction):
         factor = -normal_force * coefficient_over_speed(friction, rotation.dot(slip, slip) ** 0.5)
         return (factor * slip[0], factor * slip[1], factor * slip[2])
     return (0.0, 0.0, 0.0)

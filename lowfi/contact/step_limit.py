@@ -18,8 +18,16 @@ import numpy as np
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
-from tipoff.lowfi.contact.springs import gradient, load, outward, penetration, relative_pose
-from tipoff.lowfi.contact.stick_slip import STICKS, heading, row_of
+from tipoff.lowfi.contact.springs import (
+    SMOOTH,
+    gradient,
+    load,
+    outward,
+    penetration,
+    relative_pose,
+    rubs,
+)
+from tipoff.lowfi.contact.stick_slip import STICKS, acts, heading
 from tipoff.scenes.effects import contact as law
 from tipoff.scenes.effects.friction import coefficient_over_speed
 
@@ -48,13 +56,10 @@ def fastest_rate(contact, system, touching, stick, state, ahead):
                 p = penetration(contact.thermal_offset, face, place, turn)
                 if p > 0.0:
                     p += ahead * max(
-                        load(contact, None, platform, face, p, body, base).closing, 0.0
+                        load(contact, SMOOTH, platform, face, p, body, base).closing, 0.0
                     )
                     k, c = _normal(contact, system, face, p, body, base)
-                    row = row_of(system.sticking, stick, i)
-                    held, rubbed = _tangential(
-                        system.sticking, contact, system, row, face, p, body, base
-                    )
+                    held, rubbed = _tangential(contact, system, stick[i], face, p, body, base)
                     stiffness += k + held
                     damping += c + rubbed
         rate = 0.5 * damping + np.sqrt(0.25 * damping * damping + stiffness)
@@ -79,7 +84,7 @@ def _normal(contact, system, face, p, body, base):
 def friction_damping(friction, now, platform, payload, body, base, n):
     """Contribution of a face's friction to C (1/s)."""
     damping = 0.0
-    if friction is not None:
+    if rubs(friction):
         speed = np.sqrt(rotation.dot(now.slip, now.slip)) + _NUDGE * friction.static_speed
         here = coefficient_over_speed(friction, speed)
         there = coefficient_over_speed(friction, speed * (1.0 + _NUDGE)) * (1.0 + _NUDGE)
@@ -98,12 +103,12 @@ def friction_damping(friction, now, platform, payload, body, base, n):
 
 
 @kernel
-def _tangential(sticking, contact, system, row, face, p, body, base):
+def _tangential(contact, system, row, face, p, body, base):
     """Contribution of friction with sticking to K (1/s2) and C (1/s)."""
-    stiffness, damping = 0.0, 0.0
-    if sticking is not None:
+    stiffness, damping, sticking = 0.0, 0.0, contact.sticking
+    if acts(sticking):
         payload, platform = system.payload, system.platform
-        now, n = load(contact, None, platform, face, p, body, base), outward(face, base)
+        now, n = load(contact, SMOOTH, platform, face, p, body, base), outward(face, base)
         if row[STICKS] != 0.0:
             a = _tangent(n)
             across = inverse_mass(platform, payload, body, base, now.point, a) + inverse_mass(

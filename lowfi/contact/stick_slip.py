@@ -36,11 +36,9 @@ SLIPPED = -1e-7  # margin of a sticking face at which it slips; closer to zero i
 
 
 @kernel
-def row_of(sticking, stick, number):
-    """Row ``number`` of the table; None without the effect."""
-    if sticking is not None:
-        return stick[number]
-    return None
+def acts(sticking):
+    """Whether there is friction with sticking."""
+    return sticking.stiffness > 0.0
 
 
 @kernel
@@ -112,7 +110,7 @@ def stored(sticking, row, face, point, base):
 def stored_in_all(sticking, stick, faces, body, base):
     """Energy (J) in the springs of all faces."""
     energy = 0.0
-    if sticking is not None:
+    if acts(sticking):
         for i in range(faces.shape[0]):
             energy += stored(sticking, stick[i], faces[i], pad_point(faces[i], body), base)
     return energy

@@ -59,7 +59,7 @@ def _balances(system, loop, surveyed, in_compliance, state):
         in_compliance
         + strain
         + _in_springs(system.contact, loop.engaged, surveyed)
-        + stick_slip.stored_in_all(system.sticking, loop.stick, system.faces, body, base)
+        + _in_sticking(system.contact, loop.stick, system.faces, body, base)
     )
     kinetic += more + vibrating
     axial += more_axial
@@ -101,7 +101,7 @@ def _axial_work(pushing, thrust, state):
     """Axial work (J) of the thrust. The work of pushers comes from their potential; its difference
     from the integrated one counts as axial, because it is rounding of the axial motion."""
     axial = state[slot.THRUST_AXIAL]
-    if pushing is not None:
+    if pushing.segment.size > 0:
         axial += thrust - state[slot.THRUST]
     return axial
 
@@ -140,58 +140,58 @@ def _in_springs(contact, engaged, surveyed):
 
 
 @kernel
+def _in_sticking(contact, stick, faces, body, base):
+    energy = 0.0
+    if contact is not None:
+        energy = stick_slip.stored_in_all(contact.sticking, stick, faces, body, base)
+    return energy
+
+
+@kernel
 def dissipated(state):
     """Energy (J) that has left the contacts."""
     return state[slot.RELEASED] + state[slot.DAMPING]
 
 
 @kernel
-def open_books(ledger, is_compliant, system, loop):
+def open_books(is_compliant, system, loop):
     """Begin the ledgers at the start of the first step, with the energy that its faces already
     store."""
-    if ledger is not None:
-        in_compliance = 0.0
-        if is_compliant is not None:
-            in_compliance = energy_in_compliance(
-                system.compliance,
-                system.faces,
-                system.platform,
-                system.payload,
-                loop.touching,
-                loop.start,
-            )
-        audit = loop.audit
-        first = _balances(system, loop, loop.before, in_compliance, loop.start)
-        audit.error = audit.error_transverse = audit.created = audit.in_compliance = 0.0
-        audit.peak_error = audit.peak_error_transverse = 0.0
-        audit.failed = False
-        audit.first, audit.first_transverse = first.total, first.transverse
-        audit.scale = max(first.work, first.kinetic)
-        audit.scale_transverse = first.energy_transverse
-        audit.terms, audit.dissipated = first.terms, dissipated(loop.start)
+    in_compliance = 0.0
+    if is_compliant is not None:
+        in_compliance = energy_in_compliance(
+            system.compliance,
+            system.faces,
+            system.platform,
+            system.payload,
+            loop.touching,
+            loop.start,
+        )
+    audit = loop.audit
+    first = _balances(system, loop, loop.before, in_compliance, loop.start)
+    audit.error = audit.error_transverse = audit.created = audit.in_compliance = 0.0
+    audit.peak_error = audit.peak_error_transverse = 0.0
+    audit.failed = False
+    audit.first, audit.first_transverse = first.total, first.transverse
+    audit.scale = max(first.work, first.kinetic)
+    audit.scale_transverse = first.energy_transverse
+    audit.terms, audit.dissipated = first.terms, dissipated(loop.start)
 
 
 @kernel
-def after_step(ledger, system, loop):
-    """Balances at the end of the last attempted step, or None without a ledger."""
-    found = None
-    if ledger is not None:
-        found = _balances(system, loop, loop.after, loop.audit.in_compliance, loop.end)
-    return found
+def after_step(system, loop):
+    """Balances at the end of the last attempted step."""
+    return _balances(system, loop, loop.after, loop.audit.in_compliance, loop.end)
 
 
 @kernel
 def step_is_affordable(system, tolerance, loop, found):
     """Whether the attempted step may be kept. Between contacts the forces are smooth, and the
     estimated error is sufficient."""
-    affordable = True
-    if found is not None:
-        touching = False
-        for touches in loop.touching:
-            touching = touching or touches
-        if touching:
-            affordable = _is_affordable(tolerance, system.payload.mass, loop.audit, found)
-    return affordable
+    touching = False
+    for touches in loop.touching:
+        touching = touching or touches
+    return not touching or _is_affordable(tolerance, system.payload.mass, loop.audit, found)
 
 
 @kernel
@@ -222,15 +222,7 @@ def _keeps_budget(promise, rounding, before, after):
 @kernel
 def record_step(system, tolerance, loop, found):
     """Record the accepted step; False if it lost a tenth of the energy."""
-    kept = True
-    if found is not None:
-        kept = _record(tolerance, system.payload.mass, loop, found)
-    return kept
-
-
-@kernel
-def _record(tolerance, mass, loop, found):
-    audit = loop.audit
+    audit, mass = loop.audit, system.payload.mass
     audit.error = found.total - audit.first
     audit.error_transverse = found.transverse - audit.first_transverse
     audit.peak_error = max(audit.peak_error, abs(audit.error))

@@ -12,13 +12,13 @@ import numpy as np
 
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state
+from tipoff.lowfi.contact.springs import rubs
 from tipoff.lowfi.faces import CENTRE, WALL
-from tipoff.lowfi.system import Body, System
+from tipoff.lowfi.system import Body, Contact, Offset, System, offset
 from tipoff.mechanics.ending import BOOK_SIZE
 from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.effects.friction import Friction
 from tipoff.scenes.effects.sticking import Sticking
-from tipoff.scenes.effects.thrust_offset import ThrustOffset
 
 # Columns of the results: whether the case is left to ``lowfi.run``, steps, the book.
 LEFT_OPEN, STEPS, BOOK = range(3)
@@ -33,8 +33,8 @@ class Cases(NamedTuple):
     inverse_inertia: np.ndarray  # (n, 3, 3) 1/(kg m2), of the payload
     faces: np.ndarray  # (n, f, FACE_SIZE)
     friction: np.ndarray  # (n, 2) static and dynamic coefficient of either law; zero without
-    direction: np.ndarray | None  # (n, 3) of the thrust; None without thrust offset
-    arm: np.ndarray | None  # (n, 3) m, of the thrust; None without thrust offset
+    direction: np.ndarray  # (n, 3) of the thrust
+    arm: np.ndarray  # (n, 3) m, of the thrust
     start: np.ndarray  # (n, STATE_SIZE) state at ignition
     reach: np.ndarray  # (n,) m, as in ``Tolerance``
     results: np.ndarray  # (n, RESULT_SIZE) filled without samples
@@ -46,16 +46,15 @@ def of_models(system: System, models: Sequence[Model]) -> Cases:
     faces = np.repeat(system.faces[None], count, axis=0)
     faces[:, :, CENTRE : CENTRE + 3] = centre
     faces[:, :, WALL] = np.array([model.faces.sign * model.faces.wall for model in models])
-    # all have one, or none
-    offsets = [model.thrust_offset for model in models if model.thrust_offset is not None]
+    offsets = [offset(model.thrust_offset) for model in models]  # all have one, or none
     return Cases(
         mass=np.array([model.payload.mass for model in models]),
         inertia=np.array([model.payload.inertia for model in models]),
         inverse_inertia=np.array([model.payload.inverse_inertia for model in models]),
         faces=faces,
         friction=np.array([coefficients(model.friction) for model in models]),
-        direction=np.array([offset.direction for offset in offsets]) if offsets else None,
-        arm=np.array([offset.arm for offset in offsets]) if offsets else None,
+        direction=np.array([each.direction for each in offsets]),
+        arm=np.array([each.arm for each in offsets]),
         start=np.array([state.initial(model) for model in models]),
         reach=np.sqrt((centre**2).sum(axis=2).max(axis=1)),
         results=np.zeros((count, RESULT_SIZE)),
@@ -80,39 +79,41 @@ def system_of(common, cases, n):
         pushing=common.pushing,
         reacts_on_platform=common.reacts_on_platform,
         hold_down=common.hold_down,
-        thrust_offset=_offset(cases.direction, cases.arm, n),
-        contact=common.contact,
+        thrust_offset=_offset(common.thrust_offset, cases.direction, cases.arm, n),
+        contact=_contact(common.contact, cases.friction, n),
         compliance=common.compliance,
         has_contact=common.has_contact,
         is_compliant=common.is_compliant,
         friction=_friction(common.friction, cases.friction, n),
-        sticking=_sticking(common.sticking, cases.friction, n),
         body_force=common.body_force,
-        ledger=common.ledger,
+        evaluated=common.evaluated,
         neglected=common.neglected,
     )
 
 
 @kernel
-def _offset(direction, arm, n):
-    if direction is not None:
-        return ThrustOffset(
-            (direction[n, 0], direction[n, 1], direction[n, 2]), (arm[n, 0], arm[n, 1], arm[n, 2])
-        )
-    return None
+def _offset(common, direction, arm, n):
+    return Offset(
+        common.acts,
+        (direction[n, 0], direction[n, 1], direction[n, 2]),
+        (arm[n, 0], arm[n, 1], arm[n, 2]),
+    )
 
 
 @kernel
 def _friction(law, coefficient, n):
-    if law is not None:
-        return Friction(coefficient[n, 0], coefficient[n, 1], law.static_speed, law.dynamic_speed)
-    return None
+    share = 1.0 if rubs(law) else 0.0
+    return Friction(
+        share * coefficient[n, 0], share * coefficient[n, 1], law.static_speed, law.dynamic_speed
+    )
 
 
 @kernel
-def _sticking(law, coefficient, n):
-    if law is not None:
-        return Sticking(
+def _contact(common, coefficient, n):
+    if common is not None:
+        law = common.sticking
+        sticking = Sticking(
             coefficient[n, 0], coefficient[n, 1], law.stiffness, law.damping, law.capture_speed
         )
+        return Contact(common.law, common.thermal_offset, sticking)
     return None

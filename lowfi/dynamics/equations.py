@@ -13,15 +13,20 @@ mass centre of the body it acts on (``mechanics.ledger``).
 
 from typing import NamedTuple
 
+import numpy as np
+
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
+from tipoff.lowfi import system as effects
 from tipoff.lowfi.contact import stick_slip
 from tipoff.lowfi.contact.compliant.loads import axial_force, wall_force
 from tipoff.lowfi.contact.compliant.loads import load as compliant_load
 from tipoff.lowfi.contact.compliant.modes import vibrate
 from tipoff.lowfi.contact.compliant.solution import solve
-from tipoff.lowfi.contact.springs import load, penetration, relative_pose
+from tipoff.lowfi.contact.compliant.thermal_offset import is_warm
+from tipoff.lowfi.contact.springs import load, penetration, relative_pose, rubs
+from tipoff.lowfi.contact.thermal_offset import shifts
 from tipoff.lowfi.hold_down import hold
 from tipoff.lowfi.pusher_inertia import resist
 from tipoff.lowfi.pushers import place_of, push_of, slip_at
@@ -38,14 +43,14 @@ class Bodies(NamedTuple):
     payload: slot.Motion
     base: slot.Motion  # of the platform, or of scene axes at rest
     platform: Body | None  # None for fixed rails
-    friction: Friction | None
-    ledger: bool | None  # None if no work, loss or impulse is integrated
+    friction: Friction
+    evaluated: np.ndarray  # evaluations of the law of each effect (``lowfi.system``)
 
 
 @kernel
 def derivative(system, touching, stick, apart, time, state, out):
     """Fill ``out`` with the time derivative of ``state`` (both STATE_SIZE,). ``touching`` (f,) are
-    the faces with load, ``stick`` (f, ROW_SIZE) their stick-slip states or None; ``apart``: A is about
+    the faces with load, ``stick`` (f, ROW_SIZE) their stick-slip states; ``apart``: A is about
     the mass centres."""
     payload, platform = system.payload, system.platform
     bodies = Bodies(
@@ -53,18 +58,18 @@ def derivative(system, touching, stick, apart, time, state, out):
         base=slot.frame(platform, state),
         platform=platform,
         friction=system.friction,
-        ledger=system.ledger,
+        evaluated=system.evaluated,
     )
     out[:] = 0.0
     add_thrust(system.thrust, system.thrust_offset, system.reacts_on_platform, time, bodies, out)
     add_pushers(system.pushing, bodies, out)
     add_body_force(system.body_force, payload.mass, bodies, out)
-    add_springs(system.contact, system.sticking, system.faces, touching, stick, bodies, out)
+    add_springs(system.contact, system.faces, touching, stick, bodies, out)
     add_compliant_contact(system.compliance, system.faces, touching, bodies, state, out)
     add_pusher_inertia(system.pushing, payload, bodies, state, out)
     add_hold_down(system.hold_down, payload, time, bodies, state, out)
     move(payload.mass, apart, state, PAYLOAD, bodies.payload, out)
-    move_platform(platform, apart, state, bodies.base, out)
+    move_platform(platform, apart, state, bodies, out)
 
 
 @kernel
@@ -93,10 +98,11 @@ def move(mass, apart, state, first, body, out):
 
 
 @kernel
-def move_platform(platform, apart, state, base, out):
+def move_platform(platform, apart, state, bodies, out):
     """``move`` of the platform, if it is free."""
     if platform is not None:
-        move(platform.mass, apart, state, PLATFORM, base, out)
+        bodies.evaluated[effects.PLATFORM] += 1
+        move(platform.mass, apart, state, PLATFORM, bodies.base, out)
 
 
 @kernel
@@ -120,37 +126,33 @@ def add_thrust(thrust, offset, reacts, time, bodies, out):
     if size == 0.0:
         return
     body = bodies.payload
+    bodies.evaluated[effects.THRUST_OFFSET] += offset.acts
     force, point = line_of_action(offset, size, body)
     push(out, PAYLOAD, force, point, 1.0)
     velocity = slot.velocity_at(body, point)
-    add_power(
-        bodies.ledger, slot.THRUST, slot.THRUST_AXIAL, force, velocity, body.velocity[0], 1.0, out
-    )
+    add_power(slot.THRUST, slot.THRUST_AXIAL, force, velocity, body.velocity[0], 1.0, out)
     react(bodies.platform, reacts, bodies, force, point, out)
 
 
 @kernel
-def add_power(ledger, entry, axial_entry, force, velocity, axial_speed, sign, out):
+def add_power(entry, axial_entry, force, velocity, axial_speed, sign, out):
     """Add ``sign`` times the power (W) of a force (N) on a point that moves at ``velocity`` (m/s),
-    and its axial part, to two slots of ``out``; nothing without a ledger."""
-    if ledger is not None:
-        out[entry] += sign * rotation.dot(force, velocity)
-        out[axial_entry] += sign * force[0] * axial_speed
+    and its axial part, to two slots of ``out``."""
+    out[entry] += sign * rotation.dot(force, velocity)
+    out[axial_entry] += sign * force[0] * axial_speed
 
 
 @kernel
-def add_outside_impulse(ledger, force, point, out):
-    """Add a force (N) from outside, and its moment, to the rates of the impulses in ``out``; nothing
-    without a ledger."""
-    if ledger is not None:
-        _push(out, IMPULSE, TURN, force, point, 1.0)
+def add_outside_impulse(force, point, out):
+    """Add a force (N) from outside, and its moment, to the rates of the impulses in ``out``."""
+    _push(out, IMPULSE, TURN, force, point, 1.0)
 
 
 @kernel
 def line_of_action(offset, size, body):
     """Thrust (N) and a point of its line (m) in scene axes; without an offset the line passes
     through the mass centre."""
-    if offset is not None:
+    if offset.acts:
         return _offset_line(offset, size, body)
     return (size * body.turn[0], size * body.turn[3], size * body.turn[6]), body.place
 
@@ -166,7 +168,7 @@ def _offset_line(offset, size, body):
 def react(platform, reacts, bodies, force, point, out):
     """Add the reaction of the thrust: on a free platform, or outside (exhaust, fixed platform)."""
     if platform is None:
-        add_outside_impulse(bodies.ledger, force, point, out)
+        add_outside_impulse(force, point, out)
     if platform is not None:
         _react_on_free_platform(reacts, bodies, force, point, out)
 
@@ -177,37 +179,32 @@ def _react_on_free_platform(reacts, bodies, force, point, out):
         base = bodies.base
         push(out, PLATFORM, force, point, -1.0)
         velocity, speed = slot.velocity_at(base, point), base.velocity[0]
-        add_power(bodies.ledger, slot.THRUST, slot.THRUST_AXIAL, force, velocity, speed, -1.0, out)
+        add_power(slot.THRUST, slot.THRUST_AXIAL, force, velocity, speed, -1.0, out)
     else:
-        add_outside_impulse(bodies.ledger, force, point, out)
+        add_outside_impulse(force, point, out)
 
 
 @kernel
 def add_pushers(pushing, bodies, out):
     """Add the forces of spring pushers, each a pair at one point."""
-    if pushing is not None:
-        for i in range(pushing.segment.size):
-            push = push_of(pushing, i, bodies.platform, bodies.payload, bodies.base)
-            speed = _axial_speed(bodies.platform, bodies)
-            _pair(bodies.platform, bodies.ledger, push.force, push.point, out)
-            _pair(bodies.platform, bodies.ledger, push.drag, push.point, out)
-            for force, entry, axial, sign in (
-                (push.force, slot.THRUST, slot.THRUST_AXIAL, 1.0),
-                (push.drag, slot.FRICTION, slot.FRICTION_AXIAL, -1.0),
-            ):
-                add_power(bodies.ledger, entry, axial, force, push.slip, speed, sign, out)
+    for i in range(pushing.segment.size):
+        bodies.evaluated[effects.PUSHERS] += 1
+        push = push_of(pushing, i, bodies.platform, bodies.payload, bodies.base)
+        speed = _axial_speed(bodies.platform, bodies)
+        _pair(bodies.platform, push.force, push.point, out)
+        _pair(bodies.platform, push.drag, push.point, out)
+        for force, entry, axial, sign in (
+            (push.force, slot.THRUST, slot.THRUST_AXIAL, 1.0),
+            (push.drag, slot.FRICTION, slot.FRICTION_AXIAL, -1.0),
+        ):
+            add_power(entry, axial, force, push.slip, speed, sign, out)
 
 
 @kernel
 def add_pusher_inertia(pushing, payload, bodies, state, out):
     """Add the pairs of forces that accelerate pushers with mass, after all other forces."""
-    if pushing is not None:
-        _add_pusher_inertia(pushing.inertia, pushing, payload, bodies, state, out)
-
-
-@kernel
-def _add_pusher_inertia(inertia, pushing, payload, bodies, state, out):
-    if inertia is not None:
+    inertia = pushing.inertia
+    if inertia.pairs.size > 0:
         resist(inertia, pushing.law.mass, pushing, payload, bodies, state, out)
         for i in range(inertia.pairs.size):
             point, size = place_of(pushing, i, bodies.payload), inertia.pairs[i]
@@ -218,10 +215,10 @@ def _add_pusher_inertia(inertia, pushing, payload, bodies, state, out):
 @kernel
 def add_hold_down(latch, payload, time, bodies, state, out):
     """Add the force of the hold-down before its release, after all other forces."""
-    if latch is not None:
-        if time < latch.release:
-            force, point = hold(latch, payload, bodies, state, out)
-            _drive(force, point, bodies, out)
+    if time < latch.release:
+        bodies.evaluated[effects.HOLD_DOWN] += 1
+        force, point = hold(latch, payload, bodies, state, out)
+        _drive(force, point, bodies, out)
 
 
 @kernel
@@ -229,35 +226,36 @@ def _drive(force, point, bodies, out):
     """Add a pair of forces (N) at a point, whose work counts as that of the thrust."""
     slip = slip_at(bodies.payload, bodies.base, point)
     speed = _axial_speed(bodies.platform, bodies)
-    _pair(bodies.platform, bodies.ledger, force, point, out)
-    add_power(bodies.ledger, slot.THRUST, slot.THRUST_AXIAL, force, slip, speed, 1.0, out)
+    _pair(bodies.platform, force, point, out)
+    add_power(slot.THRUST, slot.THRUST_AXIAL, force, slip, speed, 1.0, out)
 
 
 @kernel
 def add_body_force(force, mass, bodies, out):
     """Add the body force on the payload of ``mass`` (kg), and on the platform."""
-    if force is not None:
-        _add_body_force(force, mass, PAYLOAD, bodies.ledger, bodies.payload, out)
+    if force.x != 0.0 or force.y != 0.0 or force.z != 0.0:
+        bodies.evaluated[effects.BODY_FORCE] += 1
+        _add_body_force(force, mass, PAYLOAD, bodies.payload, out)
         _add_body_force_on_platform(force, bodies.platform, bodies, out)
 
 
 @kernel
 def _add_body_force_on_platform(force, platform, bodies, out):
     if platform is not None:
-        _add_body_force(force, platform.mass, PLATFORM, bodies.ledger, bodies.base, out)
+        _add_body_force(force, platform.mass, PLATFORM, bodies.base, out)
 
 
 @kernel
-def _add_body_force(force, mass, first, ledger, body, out):
+def _add_body_force(force, mass, first, body, out):
     weight = (mass * force.x, mass * force.y, mass * force.z)
     push(out, first, weight, body.place, 1.0)
-    add_outside_impulse(ledger, weight, body.place, out)
+    add_outside_impulse(weight, body.place, out)
     velocity, speed = body.velocity, body.velocity[0]
-    add_power(ledger, slot.BODY_FORCE, slot.BODY_FORCE_AXIAL, weight, velocity, speed, 1.0, out)
+    add_power(slot.BODY_FORCE, slot.BODY_FORCE_AXIAL, weight, velocity, speed, 1.0, out)
 
 
 @kernel
-def add_springs(contact, sticking, faces, touching, stick, bodies, out):
+def add_springs(contact, faces, touching, stick, bodies, out):
     """Add the contact springs of all ``touching`` faces."""
     if contact is not None:
         body, base, platform = bodies.payload, bodies.base, bodies.platform
@@ -267,9 +265,10 @@ def add_springs(contact, sticking, faces, touching, stick, bodies, out):
                 p = penetration(contact.thermal_offset, faces[i], place, turn)
                 if p > 0.0:
                     pad = load(contact, bodies.friction, platform, faces[i], p, body, base)
+                    bodies.evaluated[effects.CONTACT] += 1
+                    bodies.evaluated[effects.THERMAL] += shifts(contact.thermal_offset)
                     _add_pad(pad, bodies, out)
-                    row = stick_slip.row_of(sticking, stick, i)
-                    _add_traction(sticking, row, faces[i], pad, bodies, out)
+                    _add_traction(contact.sticking, stick[i], faces[i], pad, bodies, out)
 
 
 @kernel
@@ -291,64 +290,56 @@ def add_compliant_contact(compliance, faces, touching, bodies, state, out):
                     aside, point = wall_force(compliance, faces, face, body, base)
                     _add_wall_force(aside, point, bodies, out)
             if count > 0:
+                bodies.evaluated[effects.COMPLIANCE] += 1
+                bodies.evaluated[effects.THERMAL] += is_warm(compliance.thermal_offset)
+                bodies.evaluated[effects.MODES] += compliance.modes.square.size > 0
                 along = rotation.rotate(base.turn, (axial_force(compliance, count), 0.0, 0.0))
                 _add_wall_force(along, body.place, bodies, out)
-            _add_modes(
-                compliance.modes, compliance.workspace, (rail, count), bodies.ledger, state, out
-            )
+            _add_modes(compliance.modes, compliance.workspace, (rail, count), state, out)
 
 
 @kernel
-def _add_modes(modes, workspace, pressed, ledger, state, out):
+def _add_modes(modes, workspace, pressed, state, out):
     """Add the vibration of a rail and the work of its damping; ``pressed``: its number and the
     number of faces that press it. A rail without pressing faces vibrates freely; a step knows its
     motion in advance (``lowfi.contact.compliant.free_vibration``)."""
-    if modes is not None:
-        rail, count = pressed
-        loss = vibrate(modes, workspace, rail, count, state, out) if count > 0 else 0.0
-        if ledger is not None:
-            out[slot.STRUCTURAL] += loss
+    rail, count = pressed
+    if modes.square.size > 0 and count > 0:
+        out[slot.STRUCTURAL] += vibrate(modes, workspace, rail, count, state, out)
 
 
 @kernel
 def _add_wall_force(force, point, bodies, out):
     """Add a force of a wall along or across the rail; its work is the energy of the rail."""
-    _pair(bodies.platform, bodies.ledger, force, point, out)
-    _add_axial_power(bodies.ledger, force[0] * _axial_speed(bodies.platform, bodies), out)
-
-
-@kernel
-def _add_axial_power(ledger, power, out):
-    if ledger is not None:
-        out[slot.CONTACT_AXIAL] += power
+    _pair(bodies.platform, force, point, out)
+    out[slot.CONTACT_AXIAL] += force[0] * _axial_speed(bodies.platform, bodies)
 
 
 @kernel
 def _add_pad(pad, bodies, out):
     """Add the load of one touching face, a pair of forces at one point, and the conversion of its
     energy."""
-    _pair(bodies.platform, bodies.ledger, pad.normal, pad.point, out)
+    _pair(bodies.platform, pad.normal, pad.point, out)
     axial_speed = _axial_speed(bodies.platform, bodies)
-    _add_contact_power(bodies.ledger, pad, axial_speed, out)
+    _add_contact_power(pad, axial_speed, out)
     _add_friction(bodies.friction, pad, bodies, axial_speed, out)
 
 
 @kernel
-def _add_contact_power(ledger, pad, axial_speed, out):
-    if ledger is not None:
-        if pad.raw >= 0.0:
-            out[slot.DAMPING] += (pad.raw - pad.elastic) * pad.closing
-        else:
-            out[slot.RELEASED] -= pad.elastic * pad.closing
-        out[slot.CONTACT_AXIAL] += pad.normal[0] * axial_speed
+def _add_contact_power(pad, axial_speed, out):
+    if pad.raw >= 0.0:
+        out[slot.DAMPING] += (pad.raw - pad.elastic) * pad.closing
+    else:
+        out[slot.RELEASED] -= pad.elastic * pad.closing
+    out[slot.CONTACT_AXIAL] += pad.normal[0] * axial_speed
 
 
 @kernel
 def _add_friction(friction, pad, bodies, axial_speed, out):
-    if friction is not None:
-        _pair(bodies.platform, bodies.ledger, pad.drag, pad.point, out)
+    if rubs(friction):
+        bodies.evaluated[effects.FRICTION] += 1
+        _pair(bodies.platform, pad.drag, pad.point, out)
         add_power(
-            bodies.ledger,
             slot.FRICTION,
             slot.FRICTION_AXIAL,
             pad.drag,
@@ -364,27 +355,21 @@ def _add_traction(sticking, row, face, pad, bodies, out):
     """Add friction with sticking. Only the heat of its work is lost; the spring stores the rest.
     The axial part of the whole work counts as friction, because the energy of the spring ends there
     too."""
-    if sticking is not None:
+    if stick_slip.acts(sticking):
+        bodies.evaluated[effects.STICKING] += 1
         drag, heat = stick_slip.traction(sticking, row, face, pad, bodies.base)
-        _pair(bodies.platform, bodies.ledger, drag, pad.point, out)
-        axial_speed = _axial_speed(bodies.platform, bodies)
-        _add_friction_power(bodies.ledger, heat, drag[0] * axial_speed, out)
-
-
-@kernel
-def _add_friction_power(ledger, heat, axial_power, out):
-    if ledger is not None:
+        _pair(bodies.platform, drag, pad.point, out)
         out[slot.FRICTION] += heat
-        out[slot.FRICTION_AXIAL] -= axial_power
+        out[slot.FRICTION_AXIAL] -= drag[0] * _axial_speed(bodies.platform, bodies)
 
 
 @kernel
-def _pair(platform, ledger, force, point, out):
+def _pair(platform, force, point, out):
     """Add a force on the payload, and its opposite at the same point on the platform or the
     ground."""
     push(out, PAYLOAD, force, point, 1.0)
     if platform is None:
-        add_outside_impulse(ledger, force, point, out)
+        add_outside_impulse(force, point, out)
     if platform is not None:
         push(out, PLATFORM, force, point, -1.0)
 

@@ -18,7 +18,7 @@ from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip
 from tipoff.lowfi.contact.compliant.free_vibration import cannot_touch
 from tipoff.lowfi.contact.compliant.survey import depth as depth_in_compliance
-from tipoff.lowfi.contact.springs import across, along, load, penetration, relative_pose
+from tipoff.lowfi.contact.springs import SMOOTH, across, along, load, penetration, relative_pose
 from tipoff.lowfi.contact.wall_ends import (
     ALONG,
     BEYOND,
@@ -86,7 +86,7 @@ def _event_on_springs(contact, system, loop, dt, span):
                         theta > SOONEST or (kind == DEPTH and after[DEPTH] > 0.0)
                     ):
                         first, blamed = theta, i
-        theta, face = _change_of_sticking(system.sticking, system, loop, dt, span)
+        theta, face = _change_of_sticking(contact.sticking, system, loop, dt, span)
         if theta < first:
             first, blamed = theta, face
     return first, blamed
@@ -96,7 +96,7 @@ def _event_on_springs(contact, system, loop, dt, span):
 def _change_of_sticking(sticking, system, loop, dt, span):
     """Fraction at which a touching face slips or stops."""
     first, blamed = 1.0, -1
-    if sticking is not None:
+    if stick_slip.acts(sticking):
         for i in range(loop.engaged.size):
             before, after = loop.before[i], loop.after[i]
             level = stick_slip.last_margin(loop.stick[i], before[MARGIN])
@@ -152,12 +152,11 @@ def _knot(pushing, system, loop, dt, span):
     """Fraction at which a pusher passes an end of its segment. It is never so small that the step
     would end at its start."""
     first = 1.0
-    if pushing is not None:
-        for i in range(pushing.segment.size):
-            level = pushers.passed(pushing, i)
-            if not np.isnan(level):
-                theta = max(_time_of_travel(system, loop, dt, span, i, level), 2.0 * SOONEST / span)
-                first = min(first, theta)
+    for i in range(pushing.segment.size):
+        level = pushers.passed(pushing, i)
+        if not np.isnan(level):
+            theta = max(_time_of_travel(system, loop, dt, span, i, level), 2.0 * SOONEST / span)
+            first = min(first, theta)
     return first
 
 
@@ -257,15 +256,12 @@ def _quantity(is_compliant, system, loop, number, kind):
         return depth_in_compliance(
             system.compliance, system.faces, number, loop.touching, place, turn, state
         )
-    row = stick_slip.row_of(system.sticking, loop.stick, number)
-    motions = (body, base)
-    return _quantity_on_springs(
-        system.contact, system.sticking, row, system.platform, face, kind, motions
-    )
+    motions, row = (body, base), loop.stick[number]
+    return _quantity_on_springs(system.contact, row, system.platform, face, kind, motions)
 
 
 @kernel
-def _quantity_on_springs(contact, sticking, row, platform, face, kind, motions):
+def _quantity_on_springs(contact, row, platform, face, kind, motions):
     value = 0.0 if kind == DEPTH else 1.0
     if contact is not None:
         body, base = motions
@@ -274,9 +270,9 @@ def _quantity_on_springs(contact, sticking, row, platform, face, kind, motions):
         if kind == DEPTH:
             value = p
         elif kind == MARGIN:
-            value = margin(contact, sticking, row, platform, face, p, body, base)
+            value = margin(contact, row, platform, face, p, body, base)
         else:
-            value = pull(load(contact, None, platform, face, max(p, 0.0), body, base))
+            value = pull(load(contact, SMOOTH, platform, face, max(p, 0.0), body, base))
     return value
 
 

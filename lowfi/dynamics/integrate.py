@@ -62,7 +62,7 @@ def _begin(system, first_step, loop):
     survey(system, loop, solved=False)
     pushers.reset(system.pushing)
     update_engaged(system, loop)  # pads may press from the start
-    stick_slip.update(system.sticking, system, loop)
+    stick_slip.update(system.contact, system, loop)
 
 
 @kernel
@@ -104,15 +104,13 @@ def _reset_compliance(compliance, friction):
 
 @kernel
 def _take_friction(workspace, friction):
-    if friction is not None:
-        workspace.friction[0] = friction.dynamic
+    workspace.friction[0] = friction.dynamic
 
 
 @kernel
 def _reset_stick(stick):
-    if stick is not None:
-        for i in range(stick.shape[0]):
-            clear(stick[i])
+    for i in range(stick.shape[0]):
+        clear(stick[i])
 
 
 @entry

@@ -116,7 +116,7 @@ def _rail_ratio(tolerance, payload, compliance, error, end):
 @kernel
 def _modal_ratio(tolerance, payload, modes, error, end):
     ratio = 0.0
-    if modes is not None:
+    if modes.square.size > 0:
         body = motion(payload, end, PAYLOAD)
         across = (
             tolerance.floor

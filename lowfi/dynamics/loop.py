@@ -97,7 +97,7 @@ class Loop(NamedTuple):
     engaged: np.ndarray  # (f,) whether a face is over its wall
     depth_left: np.ndarray  # (f,) m, penetration at which a face left that is still partly over
     touching: np.ndarray  # (f,) whether a face touches its wall in the step
-    stick: np.ndarray | None  # (f, ROW_SIZE) stick-slip state; None without that law
+    stick: np.ndarray  # (f, ROW_SIZE) stick-slip state
     clock: np.record  # CLOCK
     counts: np.record  # COUNTS
     work: np.ndarray  # (n,) workspace
@@ -117,7 +117,7 @@ def allocate(system) -> Loop:
         engaged=np.zeros(faces, dtype=np.bool_),
         depth_left=zeros((faces,)),
         touching=np.zeros(faces, dtype=np.bool_),
-        stick=zeros((faces, ROW_SIZE)) if system.sticking is not None else None,
+        stick=zeros((faces, ROW_SIZE)),
         clock=record(CLOCK),
         counts=record(COUNTS),
         work=zeros((size,)),

@@ -63,7 +63,7 @@ def observe(system, loop, row, forces):
 @kernel
 def _pushers(pushing, platform, body, base, row):
     """Replace the integrated work of pushers by that of their potential (``dynamics.audit``)."""
-    if pushing is not None:
+    if pushing.segment.size > 0:
         thrust, axial = WORKS + slot.THRUST - WORK, WORKS + slot.THRUST_AXIAL - WORK
         found = pushers.work(pushing, row[thrust], platform, body, base)
         row[axial] += found - row[thrust]
@@ -158,9 +158,8 @@ def _observe_springs(contact, system, loop, body, base, forces):
                     energy += stored(contact, p)
                     for j in range(3):
                         forces[i, j] = pad.normal[j] + pad.drag[j]
-                    row = stick_slip.row_of(system.sticking, loop.stick, i)
-                    _add_traction(system.sticking, row, face, pad, base, forces[i])
-        energy += stick_slip.stored_in_all(system.sticking, loop.stick, system.faces, body, base)
+                    _add_traction(contact.sticking, loop.stick[i], face, pad, base, forces[i])
+        energy += stick_slip.stored_in_all(contact.sticking, loop.stick, system.faces, body, base)
     return energy
 
 
@@ -219,7 +218,7 @@ def _copy_rows(source, target):
 
 @kernel
 def _add_traction(sticking, row, face, pad, base, force):
-    if sticking is not None:
+    if stick_slip.acts(sticking):
         drag, _ = stick_slip.traction(sticking, row, face, pad, base)
         for j in range(3):
             force[j] += drag[j]

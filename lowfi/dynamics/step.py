@@ -96,12 +96,12 @@ def step(system, plan, tolerance, loop):
         span, face = _cut_at_event(system, loop, dt)
         if face >= 0:  # touches as the step begins, by rounding on the wrong side
             loop.touching[face] = fresh = True
-            stick_slip.begin_contact(system.sticking, system, loop, face)
+            stick_slip.begin_contact(system.contact, system, loop, face)
             continue
         if span < 1.0 and not smooth and not (cuts > 0 and span > 1.0 - _NEAR_END) and cuts < _CUTS:
             cuts, ceiling = cuts + 1, span * dt * (1.0 + 0.2 * _NEAR_END)
             continue
-        balances = audit.after_step(system.ledger, system, loop)
+        balances = audit.after_step(system, loop)
         if halvings < _HALVINGS and not audit.step_is_affordable(system, tolerance, loop, balances):
             halvings += 1
             counts.rejected += 1
@@ -152,7 +152,7 @@ def _begin(system, plan, loop):
     left, energy, returned, counts.striking_face = update_engaged(system, loop)
     loop.start[slot.RELEASED] += energy
     loop.audit.dissipated -= returned
-    changed, lost = stick_slip.update(system.sticking, system, loop)
+    changed, lost = stick_slip.update(system.contact, system, loop)
     loop.start[slot.FRICTION] += lost
     for i in range(loop.engaged.size):
         slot.copy(loop.after[i], loop.before[i], SURVEY_SIZE)
@@ -160,12 +160,12 @@ def _begin(system, plan, loop):
     _release(system.is_compliant, system, loop, left, 1.0)
     changed = update_touching(loop) or changed
     changed = pushers.begin_step(system.pushing) or changed
-    changed = (_has_pushers(system.pushing) and counts.steps == 0) or changed
+    changed = (system.pushing.segment.size > 0 and counts.steps == 0) or changed
     if changed:
         clock.rate = rate_bound(system, loop, loop.start, solved=False)
     _release(system.is_compliant, system, loop, left, -1.0)
     if counts.steps == 0:
-        audit.open_books(system.ledger, system.is_compliant, system, loop)
+        audit.open_books(system.is_compliant, system, loop)
     parted = _part(system, loop)
     return changed or left or fresh or parted or clock.kept < 1.0
 
@@ -185,11 +185,6 @@ def _part(system, loop):
 def _take_platform_apart(platform, state):
     if platform is not None:
         slot.take_apart(platform.mass, state, slot.PLATFORM)
-
-
-@kernel
-def _has_pushers(pushing):
-    return pushing is not None
 
 
 @kernel

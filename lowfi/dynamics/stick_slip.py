@@ -4,51 +4,57 @@ their springs (law: ``lowfi.contact.stick_slip``)."""
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip as law
-from tipoff.lowfi.contact.springs import load, penetration, relative_pose
+from tipoff.lowfi.contact.springs import SMOOTH, load, penetration, relative_pose
 from tipoff.lowfi.contact.wall_ends import MARGIN, MODE, OPEN
 
 
 @kernel
-def update(sticking, system, loop):
+def update(contact, system, loop):
     """Update stick-slip states and surveyed margins at the start ``loop.end`` of a step.
 
     ``loop.touching`` still has the faces that touched in the step before. Returns whether anything
     changed, and the energy (J) that friction takes from the springs.
     """
     changed, lost = False, 0.0
-    if sticking is not None:
-        for i in range(loop.engaged.size):
-            touches = loop.engaged[i] and loop.after[i, MODE] != OPEN
-            if touches != loop.touching[i] or (
-                touches
-                and law.used_up(loop.stick[i], loop.before[i, MARGIN], loop.after[i, MARGIN])
-            ):
-                energy, margin = _change(
-                    sticking, system, loop, i, loop.touching[i], touches, loop.end
-                )
-                loop.after[i, MARGIN] = margin
-                lost += energy
-                changed = True
+    if contact is not None:
+        if law.acts(contact.sticking):
+            changed, lost = _update(contact, system, loop)
     return changed, lost
 
 
 @kernel
-def begin_contact(sticking, system, loop, face):
-    """Stick-slip state of one face, by number, that begins to touch at ``loop.start``."""
-    if sticking is not None:
-        _change(sticking, system, loop, face, False, True, loop.start)
+def _update(contact, system, loop):
+    changed, lost = False, 0.0
+    for i in range(loop.engaged.size):
+        touches, touched = loop.engaged[i] and loop.after[i, MODE] != OPEN, loop.touching[i]
+        if touches != touched or (
+            touches and law.used_up(loop.stick[i], loop.before[i, MARGIN], loop.after[i, MARGIN])
+        ):
+            energy, margin = _change(contact, system, loop, i, touched, touches, loop.end)
+            loop.after[i, MARGIN] = margin
+            lost += energy
+            changed = True
+    return changed, lost
 
 
 @kernel
-def _change(sticking, system, loop, number, touched, touches, state):
+def begin_contact(contact, system, loop, face):
+    """Stick-slip state of one face, by number, that begins to touch at ``loop.start``."""
+    if contact is not None:
+        if law.acts(contact.sticking):
+            _change(contact, system, loop, face, False, True, loop.start)
+
+
+@kernel
+def _change(contact, system, loop, number, touched, touches, state):
     """Change the state of a face that begins to touch, slips, stops, or ceases to touch; returns
     the lost energy (J) and its new margin."""
-    face, row, contact = system.faces[number], loop.stick[number], system.contact
+    face, row, sticking = system.faces[number], loop.stick[number], contact.sticking
     body = slot.motion(system.payload, state, slot.PAYLOAD)
     base = slot.frame(system.platform, state)
     place, turn = relative_pose(system.platform, body, base)
     depth = max(penetration(contact.thermal_offset, face, place, turn), 0.0)
-    now = load(contact, None, system.platform, face, depth, body, base)
+    now = load(contact, SMOOTH, system.platform, face, depth, body, base)
     lost = 0.0
     if not (touched and touches):
         lost = law.stored(sticking, row, face, now.point, base)

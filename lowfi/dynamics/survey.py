@@ -7,6 +7,7 @@ from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip
 from tipoff.lowfi.contact.compliant.survey import survey as survey_compliance
 from tipoff.lowfi.contact.springs import (
+    SMOOTH,
     across,
     along,
     approach,
@@ -46,7 +47,8 @@ def survey(system, loop, solved):
     there."""
     faces, platform, payload = system.faces, system.platform, system.payload
     pushers.survey(system.pushing, platform, payload, loop.end)
-    _survey_springs(system.contact, system.sticking, faces, platform, payload, loop)
+    if system.has_contact:
+        _survey_springs(system.contact, faces, platform, payload, loop)
     loop.audit.in_compliance = _survey_compliance(
         system.compliance, faces, platform, payload, loop, solved
     )
@@ -63,7 +65,7 @@ def _survey_compliance(compliance, faces, platform, payload, loop, solved):
 
 
 @kernel
-def _survey_springs(contact, sticking, faces, platform, payload, loop):
+def _survey_springs(contact, faces, platform, payload, loop):
     if contact is not None:
         out = loop.after
         body = slot.motion(payload, loop.end, slot.PAYLOAD)
@@ -79,11 +81,11 @@ def _survey_springs(contact, sticking, faces, platform, payload, loop):
             out[i, SIDE] = across(faces[i], place, turn) - faces[i, SIDE_MIDDLE]
             out[i, SIDEWAYS] = sideways(faces[i], drift, swing)
             if p > 0.0:
-                pad = load(contact, None, platform, faces[i], p, body, base)
+                pad = load(contact, SMOOTH, platform, faces[i], p, body, base)
                 out[i, MODE] = PRESSING if pad.raw >= 0.0 else CUT_OFF
                 out[i, PULL] = pull(pad)
-            row = stick_slip.row_of(sticking, loop.stick, i)
-            out[i, MARGIN] = margin(contact, sticking, row, platform, faces[i], p, body, base)
+            row = loop.stick[i]
+            out[i, MARGIN] = margin(contact, row, platform, faces[i], p, body, base)
 
 
 @kernel
@@ -95,13 +97,17 @@ def pull(pad):
 
 
 @kernel
-def margin(contact, sticking, row, platform, face, p, body, base):
+def margin(contact, row, platform, face, p, body, base):
     """Stick-slip margin of a face at penetration ``p`` (m); -1 for a sticking face with a gap."""
     left = 1.0
-    if sticking is not None:
+    if stick_slip.acts(contact.sticking):
         if p > 0.0:
             left = stick_slip.margin(
-                sticking, row, face, load(contact, None, platform, face, p, body, base), base
+                contact.sticking,
+                row,
+                face,
+                load(contact, SMOOTH, platform, face, p, body, base),
+                base,
             )
         elif row[stick_slip.STICKS] != 0.0:
             left = -1.0

@@ -143,7 +143,7 @@ def add_compliant_contact(system, touching, state, out):
         slot.frame(system.platform, state),
         system.platform,
         system.friction,
-        True,
+        system.evaluated,
     )
     equations.add_compliant_contact(system.compliance, system.faces, touching, bodies, state, out)
 

@@ -232,8 +232,8 @@ def test_ablation_changes_rates_and_kernel(pipeline):
     }
     for fidelity in ("highfi", "lowfi"):
         assert max(map(abs, rows[fidelity, "without friction"]["settled_rate_change_deg_s"])) > 0.01
-    assert "friction" in rows["highfi", "all effects"]["compiled"]
-    assert "friction" not in rows["highfi", "without friction"]["compiled"]
+    assert "friction" in rows["highfi", "all effects"]["evaluated"]
+    assert "friction" not in rows["highfi", "without friction"]["evaluated"]
 
 
 def test_page_is_whole_and_self_contained(pipeline):

@@ -2,12 +2,12 @@
 
 import gc
 import sys
+from dataclasses import replace
 from types import ModuleType
 
 import pytest
 
 from tests.lowfi.compliance import REFERENCE, reference_compliance
-from tests.studies.synthetic import flight
 from tipoff import lowfi, scenes
 from tipoff.workspace import compiling, kernel_marks
 from tipoff.workspace.run import Run
@@ -19,12 +19,13 @@ FLYING = FALLING.replace({"platform": None})
 
 @pytest.fixture
 def runs(monkeypatch, tmp_path):
-    """A free flight with and without gravity, and one that needs the kernel of the first."""
+    """A free flight from a platform and from the ground, and one that needs the kernel of the
+    first."""
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    changes = ({}, {"gravity.x": "1 m/s**2"}, {"payload.mass": "3 kg"})
+    lighter = FALLING.replace({"payload.mass": "3 kg", "thrust_offset": None})
     return [
-        Run("lowfi", f"{number}", FLYING.replace(change), lowfi.Numerics())
-        for number, change in enumerate(changes)
+        Run("lowfi", f"{number}", scene, lowfi.Numerics())
+        for number, scene in enumerate((FALLING, FLYING, lighter))
     ]
 
 
@@ -62,22 +63,23 @@ def test_the_first_compilation_is_announced_once(runs, capfd):
     kernel_marks.announce(first)
     assert "compiling the kernels of model compliant" in capfd.readouterr().err
     kernel_marks.remember(first)
-    kernel_marks.announce(same)  # the same effects
+    kernel_marks.announce(same)  # with other effects
     assert capfd.readouterr().err == ""
     kernel_marks.announce(other)
-    said = capfd.readouterr().err
-    assert "once" in said and "modes" not in said  # nothing presses a rail
+    assert "once" in capfd.readouterr().err
+
+
+def mark(scene, fidelity="lowfi"):
+    return kernel_marks.mark(Run(fidelity, "a", scene, lowfi.Numerics()))
 
 
 def test_gravity_that_all_bodies_share_needs_no_kernel_of_its_own():
-    """It is in no kernel where a free platform falls with the payload (``tests/lowfi/test_compiled``)."""
-
-    def mark(scene):
-        return kernel_marks.mark(Run("lowfi", "a", scene, lowfi.Numerics()))
-
+    """It is in no kernel of the reference where a free platform falls with the payload
+    (``tests/highfi/test_compiled``). The surrogate has one kernel for all effects."""
     gravity = {"gravity.x": "1 m/s**2"}
-    assert mark(FALLING.replace(gravity)) == mark(FALLING)
-    assert mark(FLYING.replace(gravity)) != mark(FLYING)
+    assert mark(FALLING.replace(gravity), "highfi") == mark(FALLING, "highfi")
+    assert mark(FLYING.replace(gravity), "highfi") != mark(FLYING, "highfi")
+    assert mark(FLYING.replace(gravity)) == mark(FLYING) != mark(FALLING)
 
 
 def pressed(modes) -> Run:
@@ -86,18 +88,20 @@ def pressed(modes) -> Run:
     return Run("lowfi", "a", REFERENCE, numerics, compliance=reference_compliance())
 
 
-def test_kernels_with_modes_of_the_rails_are_others(monkeypatch, tmp_path, capfd):
+def test_any_number_of_modes_has_the_same_kernels(monkeypatch, tmp_path, capfd):
+    """Control: another degree of the patterns has others."""
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
 
-    def announced(modes, chosen=False) -> str:
-        kernel_marks.announce(pressed(modes), chosen)
-        kernel_marks.remember(pressed(modes), chosen)
+    def announced(**numerics) -> str:
+        run = pressed("auto")
+        run = replace(run, numerics=replace(run.numerics, **numerics))
+        kernel_marks.announce(run)
+        kernel_marks.remember(run)
         return capfd.readouterr().err
 
-    assert "again if modes" in announced("auto")
-    # it began without modes, so the kernels with modes are not compiled
-    assert "with modes of the rails" in announced("auto", chosen=True)
-    assert [announced(modes) for modes in ("auto", 0, 4, 20)] == [""] * 4
+    assert "compiling the kernels of model compliant" in announced()
+    assert [announced(modes=modes) for modes in (0, 4, 20)] == [""] * 3
+    assert "once" in announced(degree=2)
 
 
 def test_a_process_marks_the_kernels_that_it_uses_once(monkeypatch, tmp_path, capfd):
@@ -110,57 +114,13 @@ def test_a_process_marks_the_kernels_that_it_uses_once(monkeypatch, tmp_path, ca
     monkeypatch.setattr(
         kernel_marks,
         "remember",
-        lambda run, many: (marked.append(run), remember(run, many=many)),
+        lambda run: (marked.append(run), remember(run)),
     )
     for folder, count in (("two", 1), ("two", 1), ("three", 2)):
         monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / folder))
         with kernel_marks.first_use(pressed(0)):
             pass
         assert len(marked) == count and kernel_marks.are_there(pressed(0))
-
-
-def test_runs_of_given_modes_leave_kernels_for_those_that_choose(monkeypatch, tmp_path, capfd):
-    """And so for many cases alone, which may need those with modes and those without."""
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    for modes, expected in ((4, "with modes"), (0, "once\n"), ("auto", "")):
-        kernel_marks.announce(pressed(modes))
-        said = capfd.readouterr().err
-        assert expected in said and bool(expected) == bool(said)
-        kernel_marks.remember(pressed(modes))
-    kernel_marks.remember(pressed("auto"), many=True)
-    kernel_marks.announce(pressed(0), many=True)
-    assert "once\n" in capfd.readouterr().err
-
-
-def test_modes_that_are_there_are_not_announced_as_missing(monkeypatch, tmp_path, capfd):
-    """Control: above, where they are not there."""
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    kernel_marks.remember(pressed("auto"), chosen=True)
-    kernel_marks.announce(pressed("auto"))
-    assert "once\n" in capfd.readouterr().err
-
-
-@pytest.mark.parametrize("chosen", [(), (2, 20)])
-def test_a_run_that_chooses_modes_announces_their_kernels_before_it_goes_on(
-    monkeypatch, tmp_path, capfd, chosen
-):
-    """And notes them only then. Control: a run that chooses none."""
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
-    said = []
-
-    def run(scene, model, *, vibrates, **_):
-        for modes in chosen:
-            vibrates(modes)
-            said.append(capfd.readouterr().err)
-        return flight(model=model)
-
-    monkeypatch.setattr(lowfi, "run", run)
-    store = Store(tmp_path / "out")
-    asked = pressed("auto")
-    store.fill("lowfi", [asked])
-    assert ["with modes of the rails" in text for text in said] == ([True, False] if chosen else [])
-    assert kernel_marks.are_there(asked, chosen=True) == bool(chosen)
-    assert kernel_marks.are_there(asked)
 
 
 @pytest.mark.parametrize("before", [(700, 10, 10), (10**6, 99, 99)])

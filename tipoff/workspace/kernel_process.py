@@ -1,6 +1,6 @@
 """Kernels of compliant contact, compiled in a separate process while this one solves the statics of
-the rails. Both take many seconds, and one needs no result of the other: the kernels depend on the
-effects of a scene, but not on the values of its compliance.
+the rails. Both take many seconds, and one needs no result of the other: the kernels do not depend on the
+values of a compliance.
 
 The process gets the scene as JSON on its standard input and leaves its kernels in the cache. If it
 fails, the run compiles them.
@@ -30,10 +30,9 @@ def compiled_beside(scene: Scene, workers: int, degree: int = DEGREE) -> Iterato
     """Compile the kernels of compliant contact for ``scene``, with patterns of this ``degree``, in a
     process during the block, and wait for it at the end. An exception in the block, such as Ctrl-C, ends the process.
 
-    Does nothing if the kernels are there, with one of ``workers``, on one core, and for a rail from
-    a file: whether its walls are straight is not known before it is meshed.
+    Does nothing if the kernels are there, with one of ``workers``, and on one core.
     """
-    if min(workers, machine.cores()) < 2 or not scene.rail.IS_STRAIGHT:
+    if min(workers, machine.cores()) < 2:
         yield
         return
     run = request(scene, degree)
@@ -68,8 +67,8 @@ def main() -> None:
 
 
 def request(scene: Scene, degree: int = DEGREE) -> Run:
-    """A run of ``scene`` with the kernels of any of its runs on compliant contact that begin without
-    modes of the rails. Its walls do not yield."""
+    """A run of ``scene`` with the kernels of any of its runs on compliant contact. Its walls do not
+    yield."""
     from tipoff import lowfi
 
     if scene.rail.mount_stiffness is not None:

@@ -67,9 +67,8 @@ def execute(
     threads: int | None = None,
     **further: Any,
 ) -> Trajectory:
-    """Make a run without a store. ``further`` are arguments of ``highfi.run`` for checkpoints, or
-    ``vibrates`` of ``lowfi.run``. For the reference, ``threads`` is their number, None for the
-    default."""
+    """Make a run without a store. ``further`` are arguments of ``highfi.run`` for checkpoints. For
+    the reference, ``threads`` is their number, None for the default."""
     if run.fidelity == "highfi":
         from tipoff import highfi
 
@@ -85,7 +84,6 @@ def execute(
         calibration=run.calibration,
         numerics=run.numerics,
         progress=progress,
-        **further,
     )
 
 

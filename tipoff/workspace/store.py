@@ -34,14 +34,6 @@ _STOPPING = (InputError, StudyError, Interrupted, OSError, MemoryError)
 RUNS: cache.Cache[Trajectory] = cache.binary(content, Trajectory.load)
 
 
-def _surrogate(
-    run: Run, progress: Callable[[float], None], threads: int | None = None
-) -> Trajectory:
-    """Run the surrogate. Kernels with modes of the rails are announced when it has chosen modes."""
-    with kernel_marks.chosen_modes(run) as vibrates:
-        return execute(run, progress, threads, vibrates=vibrates)
-
-
 class Store:
     """Trajectories below one folder."""
 
@@ -106,7 +98,7 @@ class Store:
     def _one(self, run: Run, board: Board, threads: int | None) -> Trajectory:
         progress = board.callback(run.label)
         progress(0.0)
-        make = self._kept if run.fidelity == "highfi" else _surrogate
+        make = self._kept if run.fidelity == "highfi" else execute
         with kernel_marks.first_use(run):
             trajectory = make(run, progress, threads)
         RUNS.put(self.path(run), run.key, trajectory)

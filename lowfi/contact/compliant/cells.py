@@ -28,7 +28,7 @@ from tipoff.lowfi.contact.compliant.record import (
     SHIFT,
     SPAN,
 )
-from tipoff.lowfi.contact.springs import along, penetration
+from tipoff.lowfi.contact.springs import along, penetration_of_straight
 from tipoff.lowfi.faces import NORMAL_Y, NORMAL_Z
 
 
@@ -37,7 +37,7 @@ def take_lever(compliance, faces, face, place, turn):
     """Fill the face's lever for the payload's pose in platform axes."""
     lever, half = compliance.workspace.lever[face], compliance.half[face]
     y, z = faces[face, NORMAL_Y], faces[face, NORMAL_Z]
-    lever[DEPTH] = penetration(None, faces[face], place, turn)
+    lever[DEPTH] = penetration_of_straight(faces[face], place, turn)
     lever[BY_XI] = half[0] * (y * turn[3] + z * turn[6])
     # a face along y is wide along z, and the other way round
     lever[BY_ETA] = half[1] * (y * turn[5] + z * turn[7])
@@ -347,7 +347,7 @@ def _change_of_row(compliance, face, row, moved, grown):
 def push_of_drawn_slopes(compliance, face):
     """Force (N) along the rail, and generalised force (N m) per eta, on the face due to the slopes
     of a wall as drawn; zeros if all walls are straight."""
-    if compliance.drawn is not None:
+    if drawn_walls.is_drawn(compliance.drawn):
         return _push_of_slopes(compliance, face)
     return 0.0, 0.0
 

@@ -20,7 +20,7 @@ _NOTHING = (0.0, 0.0, 0.0)
 @kernel
 def along(compliance, face):
     """s_0, s_xi and s_eta (1); zeros if all walls are straight."""
-    if compliance.drawn is not None:
+    if drawn_walls.is_drawn(compliance.drawn):
         return _along(compliance, face)
     return _NOTHING
 
@@ -28,7 +28,7 @@ def along(compliance, face):
 @kernel
 def across(compliance, face):
     """t_0, t_xi and t_eta (m); zeros if all walls are straight."""
-    if compliance.drawn is not None:
+    if drawn_walls.is_drawn(compliance.drawn):
         return _across(compliance, face)
     return _NOTHING
 

@@ -1,5 +1,5 @@
 """Offset W of walls that are not straight as drawn (``mechanics.drawn_walls``), under the cells of
-a pad face. If all walls are straight, ``drawn`` is None and every function gives zeros."""
+a pad face. If all walls are straight, ``drawn`` has no places and every function gives zeros."""
 
 from tipoff.kernels.jit import kernel
 
@@ -7,10 +7,16 @@ _NOTHING = (0.0, 0.0, 0.0)
 
 
 @kernel
+def is_drawn(drawn):
+    """Whether a wall is not straight as drawn."""
+    return drawn.cubic.shape[0] > 0
+
+
+@kernel
 def height(drawn, face, x):
     """Coefficients (m) of 1, eta' and eta'^2 in W at X = ``x`` (m); straight beyond the ends of the
     rail."""
-    if drawn is not None:
+    if is_drawn(drawn):
         c, inside, beyond = _between(drawn, face, x)
         return (
             _value(c[0], inside, beyond),
@@ -23,7 +29,7 @@ def height(drawn, face, x):
 @kernel
 def slope(drawn, face, x):
     """Derivatives of ``height`` along the rail."""
-    if drawn is not None:
+    if is_drawn(drawn):
         c, inside, _ = _between(drawn, face, x)
         return (_slope(c[0], inside), _slope(c[1], inside), _slope(c[2], inside))
     return _NOTHING

@@ -58,7 +58,7 @@ def advance(compliance, touching, dt, start, end, with_work):
 def _advance(modes, members, touching, dt, start, end):
     """Advance the modes of one rail; returns the energy (J) lost to damping."""
     lost = 0.0
-    if modes is not None:
+    if modes.square.size > 0:
         number = modes.square.shape[1]
         for rail in range(modes.square.shape[0]):
             if not is_pressed(members, rail, touching):
@@ -110,7 +110,7 @@ def note_reach(modes, rail, face, count, speed, state, row):
     """Fill the ``row`` of a survey with an upper bound of the depth (m) of a face while its rail
     vibrates freely, and its rate for a wall at rest. ``speed`` (m/s): speed of the wall due to its
     modes. No bound if ``count`` faces press the rail."""
-    if modes is not None:
+    if modes.square.size > 0:
         row[NEAR], row[NEARING] = np.inf, 0.0
         if count == 0:
             row[NEAR], row[NEARING] = _nearest(modes, rail, face, speed, state, row)
@@ -138,7 +138,7 @@ def cannot_touch(modes, before, after, dt):
     """Whether free vibration of the rail cannot bring the wall to an open face in a step of ``dt`` (s)
     between two rows of a survey."""
     away = False
-    if modes is not None:
+    if modes.square.size > 0:
         turn = turning_point(before[NEAR], after[NEAR], dt * before[NEARING], dt * after[NEARING])
         away = max(before[NEAR], after[NEAR], turn[1]) <= BEYOND
     return away
@@ -149,7 +149,7 @@ def longest_step(modes, rail, touching, engaged, before, state):
     """Longest step (s) from ``state`` at which vibration cannot hide a touch of an ``engaged`` (f,)
     face on its ``rail`` (f,), by the survey ``before`` (f, SURVEY_SIZE)."""
     longest = np.inf
-    if modes is not None:
+    if modes.square.size > 0:
         for face in range(engaged.size):
             if engaged[face] and not touching[face] and BEYOND < before[face, NEAR] < np.inf:
                 longest = min(longest, _resolved(modes, rail[face], face, state))
@@ -172,7 +172,7 @@ def _resolved(modes, rail, face, state):
 def shortened(modes, faces, state, dt):
     """``dt`` (s), or a shorter step to try if a face comes near a vibrating wall in it."""
     shortest = dt
-    if modes is not None:
+    if modes.square.size > 0:
         for face in range(faces.engaged.size):
             before, after = faces.before[face], faces.after[face]
             if faces.engaged[face] and not faces.touching[face] and before[NEAR] < np.inf:

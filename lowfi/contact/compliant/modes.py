@@ -27,7 +27,7 @@ from tipoff.lowfi.state import STATE_SIZE
 def evaluate(modes, rail, face, station, way, changes, state):
     """Fill shapes, displacement and speed of the modes of ``rail`` under ``face``, ``way`` (m) from
     a station; ``changes`` is the derivative of ``way`` by the place."""
-    if modes is not None:
+    if modes.square.size > 0:
         count, size = modes.square.shape[1], patterns.count(modes.levels)
         first, rates = STATE_SIZE + rail * count, STATE_SIZE + modes.square.size + rail * count
         modes.offset[face, :] = 0.0
@@ -51,7 +51,7 @@ def evaluate(modes, rail, face, station, way, changes, state):
 def to_whole(modes, face, part):
     """Replace the values under ``face``, in the patterns of a ``part`` of it, by those of the whole
     face."""
-    if modes is not None:
+    if modes.square.size > 0:
         for i in range(modes.square.shape[1]):
             parts.to_whole(modes.levels, part, modes.shape[face, i], 0, 1)
         parts.vector_to_whole(modes.levels, part, modes.offset[face], modes.slope[face])
@@ -62,7 +62,7 @@ def to_whole(modes, face, part):
 def offset(modes, face, a):
     """Displacement (m) of the wall in pattern a due to its modes."""
     value = 0.0
-    if modes is not None:
+    if modes.square.size > 0:
         value = modes.offset[face, a]
     return value
 
@@ -71,7 +71,7 @@ def offset(modes, face, a):
 def slope(modes, face, a):
     """Derivative of ``offset`` along the rail."""
     value = 0.0
-    if modes is not None:
+    if modes.square.size > 0:
         value = modes.slope[face, a]
     return value
 
@@ -80,7 +80,7 @@ def slope(modes, face, a):
 def speed_at(modes, face, xi, eta):
     """Speed (m/s) at which the modes move the point (xi, eta) of the wall away."""
     value = 0.0
-    if modes is not None:
+    if modes.square.size > 0:
         value = patterns.value(modes.levels, modes.speed[face], xi, eta)
     return value
 
@@ -110,7 +110,7 @@ def vibrate(modes, workspace, rail, count, state, out):
 def energies(modes, state):
     """Kinetic and strain energy (J) of all modes."""
     kinetic, strain = 0.0, 0.0
-    if modes is not None:
+    if modes.square.size > 0:
         count = modes.square.shape[1]
         for rail in range(modes.square.shape[0]):
             for i in range(count):
@@ -127,7 +127,7 @@ def energies(modes, state):
 def fastest(modes, rail, pressed):
     """Largest omega^2 (1/s2) and d (1/s) of the modes of a rail; zero if no face presses it."""
     square, drag = 0.0, 0.0
-    if modes is not None:
+    if modes.square.size > 0:
         for i in range(modes.square.shape[1] if pressed else 0):
             square, drag = max(square, modes.square[rail, i]), max(drag, modes.drag[rail, i])
     return square, drag

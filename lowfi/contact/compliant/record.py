@@ -96,9 +96,9 @@ class Compliance(NamedTuple):
     # (s-1, f, m, 4, p p) m/N, between a face and the m members of its rail, as powers of the distance
     # (m) from a station, in the patterns of the parts of the faces over the wall (``parts``)
     cubic: np.ndarray
-    # (s-1, f, m, 4, d d) m/N, as ``cubic``, in the first d patterns for a coefficient of 1; None
-    # without friction
-    dragged: np.ndarray | None
+    # (s-1, f, m, 4, d d) m/N, as ``cubic``, in the first d patterns for a coefficient of 1; without
+    # stations if there is no friction
+    dragged: np.ndarray
     origin: float  # m, X of the first face at the first station
     spacing: float  # m, between stations
     members: np.ndarray  # (r, m) numbers of the faces on each rail; -1 fills up
@@ -114,9 +114,9 @@ class Compliance(NamedTuple):
     end: float  # m, X of the open end
     node: np.ndarray  # (c,) middles of the cells in xi and eta
     crown: np.ndarray  # (c,) means of xi^4 over the cells
-    modes: Modes | None  # None for rails without inertia
-    thermal_offset: ThermalOffset | None  # None for rails that are not warm
-    drawn: DrawnWalls | None  # None for walls that are straight as drawn
+    modes: Modes  # none for rails without inertia
+    thermal_offset: ThermalOffset  # without stations for rails that are not warm
+    drawn: DrawnWalls  # without places for walls that are straight as drawn
     workspace: Workspace
 
 
@@ -170,11 +170,10 @@ def build(
     edges = np.linspace(-1.0, 1.0, cells + 1)
     node, crown = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges**5) / (5.0 * np.diff(edges))
     flexibility, shape = found.cubic(modes)
-    vibrating = _modes(found, shape, damping) if shape.size else None
-    rubs = model.friction is not None
+    dragged = found.cubic_of_dragged if model.friction is not None else None
     return Compliance(
         cubic=flexibility,
-        dragged=found.cubic_of_dragged if rubs else None,
+        dragged=_none(5) if dragged is None else dragged,
         origin=float(nominal[0, 0] + found.travel[0]),
         spacing=spacing,
         members=members,
@@ -190,7 +189,7 @@ def build(
         end=float(model.rail_end),
         node=node,
         crown=crown,
-        modes=vibrating,
+        modes=_modes(found, shape, damping),
         thermal_offset=_thermal_offset(found, model),
         drawn=_drawn(found, model),
         workspace=_workspace(
@@ -199,22 +198,29 @@ def build(
     )
 
 
-def _thermal_offset(found: data.RailCompliance, model: Model) -> ThermalOffset | None:
-    if model.thermal is None:
-        return None
+def _none(dimensions: int) -> np.ndarray:
+    """An empty table with so many dimensions."""
+    return zeros((0,) * dimensions)
+
+
+def _thermal_offset(found: data.RailCompliance, model: Model) -> ThermalOffset:
     by_pattern = found.shape.shape[1:3]
+    cubic = _none(4)
+    if model.thermal is not None:
+        moved = found.moved(model.thermal.amounts)
+        cubic = found.cubic_of(moved).swapaxes(-1, -2).copy()
     return ThermalOffset(
         levels=tuple(range(found.degree + 1)),
-        cubic=found.cubic_of(found.moved(model.thermal.amounts)).swapaxes(-1, -2).copy(),
+        cubic=cubic,
         offset=zeros(by_pattern),
         slope=zeros(by_pattern),
     )
 
 
-def _drawn(found: data.RailCompliance, model: Model) -> DrawnWalls | None:
-    if found.drawn is None:
-        return None
+def _drawn(found: data.RailCompliance, model: Model) -> DrawnWalls:
     start, end = float(model.rail_start), float(model.rail_end)
+    if found.drawn is None:
+        return DrawnWalls(cubic=_none(4), spacing=1.0, start=start)
     places = np.linspace(start, end, len(found.drawn))
     return DrawnWalls(
         cubic=drawn_walls.cubic(places, found.drawn),
@@ -226,11 +232,7 @@ def _drawn(found: data.RailCompliance, model: Model) -> DrawnWalls | None:
 def states(compliance: Compliance | None) -> int:
     """Number of values that the modes of ``compliance`` add to the state
     (``lowfi.state.modal_size``)."""
-    return (
-        2 * compliance.modes.square.size
-        if compliance is not None and compliance.modes is not None
-        else 0
-    )
+    return 2 * compliance.modes.square.size if compliance is not None else 0
 
 
 def _modes(found: data.RailCompliance, cubic: np.ndarray, damping: Damping | None) -> Modes:

@@ -136,7 +136,7 @@ def _evaluate(compliance, face, place, state):
 @kernel
 def _add_drag(dragged, among, workspace, i, j, station, s, changes):
     """Add what friction adds to flexibility and slope between two faces in order."""
-    if dragged is not None:
+    if dragged.shape[0] > 0:
         c = dragged[station, workspace.order[i], among[workspace.order[j]]]
         share, size = workspace.friction[0], patterns.count(workspace.levels)
         for a in range(DRAGGED):
@@ -154,7 +154,7 @@ def _add_drag(dragged, among, workspace, i, j, station, s, changes):
 def _follow_drag(dragged, among, workspace, face, other, station, s, out):
     """Add to ``out`` the displacement of the wall under a face by the friction of another one, from the
     forces in ``own``."""
-    if dragged is not None:
+    if dragged.shape[0] > 0:
         c, share = dragged[station, face, among[other]], workspace.friction[0]
         for a in range(DRAGGED):
             for b in range(DRAGGED):

@@ -23,7 +23,7 @@ import numpy as np
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
-from tipoff.lowfi.contact.compliant import drawn_slopes, patterns
+from tipoff.lowfi.contact.compliant import drawn_slopes, drawn_walls, patterns
 from tipoff.lowfi.contact.compliant.loads import load
 from tipoff.lowfi.contact.compliant.modes import fastest
 from tipoff.lowfi.contact.compliant.record import ASIDE, SHIFT
@@ -110,7 +110,7 @@ def _tangent(compliance, count):
 def _add_modes(modes, workspace, count):
     """Fill the columns of the modes before elimination; returns their number."""
     number = 0
-    if modes is not None:
+    if modes.square.size > 0:
         number, size = modes.square.shape[1], patterns.count(workspace.levels)
         for row in range(count * size):
             for i in range(number):
@@ -136,7 +136,7 @@ def _pressure(modes, workspace, face, a, i):
 def _trace_of_modes(modes, workspace, count, first):
     """Trace (1/s2) of W' T W; ``right`` has dU of the modes from the column ``first`` on."""
     total = 0.0
-    if modes is not None:
+    if modes.square.size > 0:
         size = patterns.count(workspace.levels)
         for k in range(count):
             face = workspace.order[k]
@@ -207,7 +207,7 @@ def _trace(compliance, faces, platform, payload, count, body, base):
 def _trace_of_rest(compliance, faces, platform, payload, count, body, base):
     """Bound R (1/s2) of the trace of slopes of drawn walls that are not linear under a face; zero
     if all walls are straight."""
-    if compliance.drawn is None:
+    if not drawn_walls.is_drawn(compliance.drawn):
         return 0.0
     total = 0.0
     for i in range(count):

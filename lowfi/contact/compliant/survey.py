@@ -5,7 +5,7 @@ import numpy as np
 
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
-from tipoff.lowfi.contact.compliant import thermal_offset
+from tipoff.lowfi.contact.compliant import drawn_walls, thermal_offset
 from tipoff.lowfi.contact.compliant.cells import (
     deepest,
     deepest_at_rest,
@@ -22,7 +22,7 @@ from tipoff.lowfi.contact.compliant.solution import follow, solve, solve_unless
 from tipoff.lowfi.contact.springs import (
     across,
     along,
-    approach,
+    approach_of_straight,
     forward,
     relative_motion,
     relative_pose,
@@ -62,9 +62,13 @@ def _deepest(compliance, faces, face, count, touching, place, turn, state):
     displacement = compliance.workspace.displacement[face]
     if not touching[face]:
         take_lever(compliance, faces, face, place, turn)
-        if count == 0 and compliance.modes is None and compliance.thermal_offset is None:
+        if (
+            count == 0
+            and compliance.modes.square.size == 0
+            and not thermal_offset.is_warm(compliance.thermal_offset)
+        ):
             displacement[:] = 0.0
-            if compliance.drawn is None:
+            if not drawn_walls.is_drawn(compliance.drawn):
                 return deepest_at_rest(compliance, face, displacement)
             return deepest(compliance, face, displacement)
         follow(compliance, face, place[0] + faces[0, 0], count, state, displacement)
@@ -82,7 +86,7 @@ def _approach(compliance, faces, face, xi, eta, drift, swing):
     away = thermal_offset.slope(compliance.thermal_offset, face, along, across) * drift[0]
     away += drawn_slope(compliance, face, xi, eta) * forward(faces[face], drift, swing)
     along_edge = drift_of_depth(compliance, face, xi, eta) * forward(faces[face], drift, swing)
-    return approach(None, faces[face], None, None, drift, swing) + turning - away + along_edge
+    return approach_of_straight(faces[face], drift, swing) + turning - away + along_edge
 
 
 @kernel

@@ -41,9 +41,8 @@ def _thrust_and_drag(thrust, offset, reacts, time, bodies, out):
     body = bodies.payload
     force = (STIFFNESS * (STRETCHED + SPEED * time - body.place[0]), 0.0, 0.0)
     equations.push(out, slot.PAYLOAD, force, body.place, 1.0)
-    equations.add_outside_impulse(bodies.ledger, force, body.place, out)
+    equations.add_outside_impulse(force, body.place, out)
     equations.add_power(
-        bodies.ledger,
         slot.THRUST,
         slot.THRUST_AXIAL,
         force,

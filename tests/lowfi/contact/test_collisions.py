@@ -3,14 +3,16 @@ two tolerances."""
 
 import math
 
+import numpy as np
 import pytest
 
 from tests.exact import contact as exact
 from tests.lowfi.support import PAPER_PAD, G, close, drop, numerics, scene
 from tipoff import lowfi
-from tipoff.lowfi import state
+from tipoff.lowfi import state, system
 from tipoff.lowfi.contact import springs
-from tipoff.lowfi.system import Contact
+from tipoff.lowfi.faces import FACE_SIZE
+from tipoff.mechanics import scene_model
 from tipoff.scenes.effects import contact as law
 
 K = PAPER_PAD["stiffness"]
@@ -30,13 +32,14 @@ TWO_TOLERANCES = pytest.mark.parametrize("tolerance", [1e-7, 1e-9])
 )
 def test_impact_spot_values(p_mm, closing, force):
     """F = max(0, k p^e + c s(p/d) p') at the paper's pad, from the load on a face."""
-    record = scene(1e-3, 1e-4, contact=PAPER_PAD).contact.record()
+    contact = system.build(scene_model.build(scene(1e-3, 1e-4, contact=PAPER_PAD))).contact
     turn, zero = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0)
     body = state.Motion(zero, (0.0, 0.0, -closing / 1e3), turn, zero, zero)
-    face = (0.0, 0.0, -0.1, 0.0, -1.0, 0.1, 0.0)
+    face = np.zeros(FACE_SIZE)
+    face[:7] = 0.0, 0.0, -0.1, 0.0, -1.0, 0.1, 0.0
     found = springs.load(
-        Contact(law=record, thermal_offset=None),
-        None,
+        contact,
+        springs.SMOOTH,
         None,
         face,
         p_mm * 1e-3,
@@ -49,7 +52,7 @@ def test_impact_spot_values(p_mm, closing, force):
     assert found == pytest.approx(force, abs=5e-4)
     # Controls: without the cut-off the law pulls while the pad opens fast; with its damping there
     # at once, not by the cubic step, it is off where the pad is shallow.
-    uncut = sum(law.parts(record, p_mm * 1e-3, closing / 1e3))
+    uncut = sum(law.parts(contact.law, p_mm * 1e-3, closing / 1e3))
     assert uncut < -5.0 if closing < 0.0 else uncut == pytest.approx(force, abs=5e-4)
     if 0.0 < closing and p_mm < 0.3:
         assert K * (p_mm * 1e-3) ** 1.5 + 60000.0 * closing / 1e3 > force + 500.0

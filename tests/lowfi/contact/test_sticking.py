@@ -270,8 +270,8 @@ def test_same_bits_in_an_ensemble():
             assert np.array_equal(case[name].values, getattr(alone.outcome, name)), (row, name)
 
 
-def test_compiled_only_where_the_scene_has_it():
-    present = lowfi.compiled_effects(load("sensitive").replace(WEDGED))
+def test_evaluated_only_where_the_scene_has_it():
+    present = lowfi.evaluations(load("sensitive").replace(WEDGED))
     assert present["sticking"] and not present["friction"]
 
 

@@ -4,7 +4,6 @@ bit."""
 import numpy as np
 import pytest
 
-from tests import loops
 from tests.lowfi.compliance import reference_compliance
 from tests.lowfi.support import PAPER_PAD, RAIL, G, scene
 from tipoff import lowfi
@@ -14,6 +13,15 @@ from tipoff.lowfi.numerics import Numerics
 from tipoff.scenes import load
 from tipoff.scenes.faults import SceneError
 from validation.bench.surrogate import varied
+
+LINEAR = {"law": "linear", "clearance": 1e-5, "stiffness": 7e7, "damping": 0.0}
+STICKS = {
+    "law": "sticking",
+    "static": 0.3,
+    "dynamic": 0.3,
+    "stiffness": 1e7,
+    "damping": 1e4,
+}
 
 HEAVY = {"gravity.x": -0.36, "payload.mass": 22.0}
 ROWS = [{"thrust_offset.misalignment.radial": f"{angle} deg"} for angle in (5, 25, 45, 65)]
@@ -123,8 +131,8 @@ STICKING = scene(
     rail=RAIL | {"start": -0.2, "end": 0.2},
     thrust={"kind": "constant", "force": 2e4, "duration": 0.03},
     gravity={"z": -G},
-    contact=loops.LINEAR,
-    friction=loops.STICKING,
+    contact=LINEAR,
+    friction=STICKS,
 )
 
 

@@ -194,14 +194,16 @@ ContactTable = Annotated[ImpactTable | HuntCrossleyTable | LinearTable, Field(di
 
 
 class ContactLaw(NamedTuple):
-    """Kernel record of a law. A constant that the law does not have is None, so that its term is
-    not compiled."""
+    """Kernel record of a law."""
 
     stiffness: float  # N/m^e
-    exponent: float | None = None  # e; None for 1
-    damping: float | None = None  # N s/m
-    damping_depth: float | None = None  # m, depth of full damping; None for any
-    dissipation: float | None = None  # s/m
+    exponent: float = 1.0  # e
+    damping: float = 0.0  # N s/m
+    damping_depth: float = 0.0  # m, depth of full damping; zero for any
+    dissipation: float = 0.0  # s/m
+
+
+NO_CONTACT = ContactLaw(stiffness=0.0)
 
 
 @njit
@@ -217,31 +219,21 @@ def parts(law, penetration, closing):
 
 @njit
 def _power(base, exponent):
-    power = base
-    if exponent is not None:
-        # sqrt is several times cheaper than pow, and 1.5 (Hertz) is by far the most common exponent
-        power = base * np.sqrt(base) if exponent == 1.5 else base**exponent
-    return power
+    if exponent == 1.0:
+        return base
+    # sqrt is several times cheaper than pow, and 1.5 (Hertz) is by far the most common exponent
+    return base * np.sqrt(base) if exponent == 1.5 else base**exponent
 
 
 @njit
 def _coefficient(damping, damping_depth, dissipation, elastic, penetration):
     """Damping force over closing speed (N s/m)."""
-    coefficient = 0.0
-    if dissipation is not None:
-        coefficient = elastic * dissipation
-    if damping is not None:
-        coefficient = _at_depth(damping, damping_depth, penetration)
-    return coefficient
-
-
-@njit
-def _at_depth(damping, damping_depth, penetration):
-    coefficient = damping
-    if damping_depth is not None:
-        x = min(penetration / damping_depth, 1.0)
-        coefficient = damping * x * x * (3.0 - 2.0 * x)
-    return coefficient
+    if damping == 0.0:
+        return elastic * dissipation
+    if damping_depth == 0.0:
+        return damping
+    x = min(penetration / damping_depth, 1.0)
+    return damping * x * x * (3.0 - 2.0 * x)
 
 
 @njit
@@ -252,7 +244,6 @@ def stored_energy(law, penetration):
 
 @njit
 def _stored(stiffness, exponent, penetration):
-    energy = 0.5 * stiffness * penetration * penetration
-    if exponent is not None:
-        energy = stiffness * penetration ** (exponent + 1.0) / (exponent + 1.0)
-    return energy
+    if exponent == 1.0:
+        return 0.5 * stiffness * penetration * penetration
+    return stiffness * penetration ** (exponent + 1.0) / (exponent + 1.0)

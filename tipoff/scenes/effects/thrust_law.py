@@ -48,6 +48,13 @@ class Thrust(NamedTuple):
     curve: Curve | None
 
 
+def complete(thrust: Thrust) -> Thrust:
+    """The same thrust with both records, of which one or both are empty: kernels have one type for
+    all of them."""
+    none = np.zeros(0)
+    return Thrust(thrust.pulses or Pulses(none, none, none, np.inf, -np.inf), _curve(thrust))
+
+
 def _curve(thrust: Thrust) -> Curve:
     """The curve of a thrust without pulses, empty for a force over travel."""
     return thrust.curve if thrust.curve is not None else Curve(np.zeros(0), np.zeros(0))
@@ -67,7 +74,7 @@ def _pulsed(pulses, time):
 @njit
 def _interpolated(curve, time):
     last = curve.times.size - 1
-    if time < curve.times[0] or time >= curve.times[last]:
+    if last < 0 or time < curve.times[0] or time >= curve.times[last]:
         return 0.0
     after = np.searchsorted(curve.times, time, side="right")
     t0, t1 = curve.times[after - 1], curve.times[after]
@@ -82,7 +89,7 @@ def magnitude(pulses, curve, time):
     if pulses is not None:
         force = _pulsed(pulses, time)
     if curve is not None:
-        force = _interpolated(curve, time)
+        force += _interpolated(curve, time)
     return force
 
 

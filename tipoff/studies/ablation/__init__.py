@@ -1,4 +1,4 @@
-"""Run without one effect at a time: time, rates, compiled effects; writes ablation.json."""
+"""Run without one effect at a time: time, rates, effects evaluated; writes ablation.json."""
 
 from tipoff.studies.question import Question
 

@@ -1,5 +1,5 @@
 """Stage ``ablation``: runs without each effect, one at a time, in both fidelities: change of rates
-and time, and the effects in each compiled kernel.
+and time, and the effects whose laws are evaluated.
 
 The baseline has all effects: effects that the scene lacks are added with the small values in ``ADDED``,
 except effects that need values of the scene (contact, friction, platform, and temperature for a material
@@ -8,7 +8,6 @@ has one more line: the baseline with all rails stepped, also at rest. The surrog
 turn, so other load on the machine affects all of them alike.
 """
 
-import importlib
 import statistics
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -47,7 +46,7 @@ class Row:
     ns_per_step: Annotated[float, Column("time per step", "ns", ",.0f")]
     settled_rate_deg_s: Annotated[Rates | None, Column("settled x, y, z", "deg/s")]
     settled_rate_change_deg_s: Annotated[Rates | None, Column("change x, y, z", "deg/s", "+.3g")]
-    compiled: Annotated[tuple[str, ...], Column("effects in the compiled kernel", nothing="none")]
+    evaluated: Annotated[tuple[str, ...], Column("effects evaluated", nothing="none")]
 
 
 @dataclass(frozen=True)
@@ -171,7 +170,7 @@ def _rows(
             ns_per_step=1e9 * seconds / max(run.cost["steps"], 1),
             settled_rate_deg_s=_degrees(run.outcome.rate),
             settled_rate_change_deg_s=_change(run.outcome.rate, baseline),
-            compiled=tuple(compiled(item)),
+            evaluated=tuple(evaluated(item)),
         )
         for line, item, run, seconds in zip(lines, requested, runs, times)
     ]
@@ -187,13 +186,18 @@ def _change(rate: Sequence[float] | None, baseline: Sequence[float] | None) -> R
     return _degrees([own - other for own, other in zip(rate, baseline)])
 
 
-def compiled(run: Run) -> list[str]:
-    """Effects with code in the kernel compiled for ``run``."""
-    arguments = {"compliance": run.compliance} if run.compliance is not None else {}
-    present = importlib.import_module(f"tipoff.{run.fidelity}").compiled_effects(
-        run.scene, run.numerics, **arguments
-    )
-    return sorted(effect for effect in present if present[effect])
+def evaluated(run: Run) -> list[str]:
+    """Effects whose laws ``run`` evaluates. The kernel of the reference has no code of others."""
+    found: dict[str, int] | dict[str, bool]
+    if run.fidelity == "highfi":
+        from tipoff import highfi
+
+        found = highfi.compiled_effects(run.scene, run.numerics)
+    else:
+        from tipoff import lowfi
+
+        found = lowfi.evaluations(run.scene, run.numerics, run.compliance)
+    return sorted(effect for effect, times in found.items() if times)
 
 
 def _tag(line: str) -> str:

@@ -148,7 +148,7 @@ def request(study: Study, options: Options) -> tuple[Ensemble, Path]:
     like = Run(
         "lowfi", "ensemble", scene=scene, numerics=numerics, calibration=fitted, compliance=found
     )
-    with kernel_marks.first_use(like, many=True):
+    with kernel_marks.first_use(like):
         ensemble = population.chosen_modes("ensemble", asked, path)
     if ensemble.modes_why:
         say(f"modes of each rail {ensemble.modes_why}")

@@ -143,7 +143,7 @@ def seconds_per_case(model: Surrogate, rows: Rows) -> float:
         calibration=None,
         compliance=model.compliance,
     )
-    with kernel_marks.first_use(like, many=True):
+    with kernel_marks.first_use(like):
         once(rows[:1])
     return statistics.median(once(rows) for _ in range(_REPEATS))
 

@@ -233,7 +233,7 @@ def run(
         calibration=None,
         compliance=model.compliance,
     )
-    with kernel_marks.first_use(like, many=True):
+    with kernel_marks.first_use(like):
         ensemble = chosen_modes(name, asked, path)
     try:
         store = ensemble.store(path)
