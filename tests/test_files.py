@@ -6,7 +6,10 @@ import threading
 
 import pytest
 
-from tipoff import files
+from tipoff import files, scenes
+from tipoff.comparison.curve_files import reading
+from tipoff.lowfi.ensemble.table import TableFile
+from tipoff.scenes.sections import dxf
 
 
 def test_an_error_of_writing_names_the_file(tmp_path):
@@ -45,6 +48,35 @@ def test_the_files_of_all_threads_are_removed_at_once(tmp_path):
 def test_only_regular_files_are_input(name):
     with pytest.raises(OSError):
         files.read_input(name)
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-32", "utf-8", "utf-8-sig"])
+def test_readers_of_text_know_the_encodings_of_windows(tmp_path, encoding):
+    """A byte order mark states UTF-16. Control: without knowing it no line is text."""
+
+    def written(name, text):
+        path = tmp_path / name
+        path.write_bytes(text.encode(encoding))
+        return path
+
+    scene = written("own.toml", 'extends = "tiny"\nname = "own"\ndescription = "bär"\n')
+    assert scenes.load(scene).description == "bär"
+    assert TableFile(written("cases.csv", "payload.mass\nkg\n3\n4\n")).asked == 2
+    curve = written(
+        "a.csv", "time [s],rate_x [deg/s],rate_y [deg/s],rate_z [deg/s]\n0,0,1,2\n1,1,2,3\n"
+    )
+    found = reading.read(curve, optional=("velocity_x",))
+    assert not found.faults and found.values["time"].tolist() == [0.0, 1.0]
+    pairs = "0 SECTION 2 HEADER 0 ENDSEC 0 SECTION 2 ENTITIES 0 LWPOLYLINE 90 3 70 1"
+    pairs += " 10 0 20 0 10 1 20 0 10 0 20 1 0 ENDSEC 0 EOF"
+    (loop,) = dxf.loops(written("a.dxf", pairs.replace(" ", "\n") + "\n"), "m")
+    assert len(loop) == 3
+
+
+@pytest.mark.parametrize("content", [b"\xff\xfe\x00", b"\xff\xfe\x00\xd8", b"\x89HDF\r\n", b""])
+def test_bytes_that_are_no_text_stay(tmp_path, content):
+    (tmp_path / "a").write_bytes(content)
+    assert files.read_input(tmp_path / "a") == content
 
 
 def test_input_is_read_up_to_a_size(tmp_path):

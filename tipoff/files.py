@@ -11,6 +11,7 @@ This line is a comment in TOML, and readers of HDF5, netCDF and zip ignore it. A
 depend on the layout.
 """
 
+import codecs
 import errno
 import glob
 import hashlib
@@ -29,6 +30,13 @@ from typing import Any
 MOST_TEXT = 2**25  # bytes of a text file from a user; reading takes about ten times as much memory
 KEY = "sha256"  # of the digest in a JSON object
 _MARK = b"# sha-256 "
+_ENCODINGS = {  # by the mark that a text begins with
+    codecs.BOM_UTF32_LE: "utf-32",
+    codecs.BOM_UTF32_BE: "utf-32",
+    codecs.BOM_UTF16_LE: "utf-16",
+    codecs.BOM_UTF16_BE: "utf-16",
+}
+_XML_ENCODING = re.compile(r"""(<\?xml[^>]*?)\sencoding\s*=\s*("[^"]*"|'[^']*')""")
 _LINE = re.compile(_MARK + rb"([0-9a-f]{64})\n")
 _LENGTH = len(_MARK) + 64 + 1
 _KEY_LINE = re.compile(rb"\n# key ([0-9a-f]{64})\n")
@@ -70,14 +78,30 @@ def open_input(path: str | Path) -> Iterator[io.BufferedReader]:
         yield stream
 
 
+def encoding(begin: bytes) -> str:
+    """Encoding of a text by its first bytes: UTF-16 or UTF-32 with a byte order mark, as Windows writes
+    them, else UTF-8."""
+    return next((name for mark, name in _ENCODINGS.items() if begin.startswith(mark)), "utf-8-sig")
+
+
+def utf_8(content: bytes) -> bytes:
+    """A text of another ``encoding`` in UTF-8; anything else as it is."""
+    if (found := encoding(content[:4])) == "utf-8-sig":
+        return content
+    try:
+        return _XML_ENCODING.sub(r"\1", content.decode(found), count=1).encode()
+    except UnicodeError:  # no text
+        return content
+
+
 def read_input(path: str | Path, most: int = MOST_TEXT) -> bytes:
-    """Content of a file that a user named. Raises OSError as ``open_input`` does, and for a file of
-    more than ``most`` bytes; no more are read."""
+    """Content of a file that a user named, as ``utf_8`` gives it. Raises OSError as ``open_input``
+    does, and for a file of more than ``most`` bytes; no more are read."""
     with open_input(path) as stream:
         content = stream.read(most + 1)
     if len(content) > most:
         raise OSError(errno.EFBIG, f"larger than {most // 2**20} MiB", str(path))
-    return content
+    return utf_8(content)
 
 
 @contextmanager

@@ -16,7 +16,7 @@ from typing import TextIO
 
 import numpy as np
 
-from tipoff.files import open_input
+from tipoff.files import encoding, open_input
 from tipoff.scenes import units
 from tipoff.scenes.faults import MOST_ALIKE, Fault, SceneError
 
@@ -45,8 +45,8 @@ def lines(
     try:
         # Spreadsheets put a byte-order mark in front of UTF-8. "utf-8-sig" removes it.
         with (
-            open_input(path) if data is None else io.BytesIO(data) as content,
-            io.TextIOWrapper(content, encoding="utf-8-sig", newline="") as stream,
+            open_input(path) if data is None else io.BufferedReader(io.BytesIO(data)) as content,
+            io.TextIOWrapper(content, encoding(content.peek(4)), newline="") as stream,
         ):
             for number, row in _rows(_text(stream, comments), separator):
                 if len(row) > _MOST_COLUMNS:
@@ -56,7 +56,7 @@ def lines(
     except OSError as error:
         given = error.strerror or str(error)
         raise SceneError([Fault(str(path), "file", given, "a readable CSV file")]) from error
-    except (UnicodeDecodeError, csv.Error) as error:
+    except (UnicodeError, csv.Error) as error:
         raise SceneError([Fault(str(path), "file", str(error), "a CSV file of text")]) from error
 
 

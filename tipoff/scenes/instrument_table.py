@@ -229,10 +229,7 @@ def is_unit(cell: str) -> bool:
 
 
 def _utf_8(data: bytes) -> bytes:
-    """The text in UTF-8 if it is in UTF-16 or in the code page of Windows; else unchanged."""
-    with contextlib.suppress(UnicodeDecodeError):
-        if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-            return data.decode("utf-16").encode()
+    """The text in UTF-8 if it is in the code page of Windows; else unchanged."""
     if b"\0" not in data:
         try:
             data.decode("utf-8")

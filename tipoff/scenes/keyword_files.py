@@ -12,7 +12,7 @@ import re
 from pathlib import Path
 from typing import NamedTuple
 
-from tipoff.files import open_input
+from tipoff.files import open_input, utf_8
 
 SUFFIXES = (".k", ".key", ".dyn")
 _MOST = 500  # files
@@ -71,7 +71,7 @@ class _Reading(NamedTuple):
 def _read(path: Path, chain: tuple[Path, ...], reading: _Reading) -> None:
     reading.files.append(path.resolve())
     with open_input(path) as stream:
-        content = stream.read()
+        content = utf_8(stream.read())
     if not _INCLUDE.search(content):
         reading.found.append(Piece(path, 1, content))
         return

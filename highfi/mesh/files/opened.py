@@ -5,7 +5,7 @@ from pathlib import Path
 
 import meshio
 
-from tipoff.files import open_input
+from tipoff.files import open_input, utf_8
 from tipoff.highfi.mesh.files import abaqus, gmsh_msh, lsdyna, med, nastran, universal, vtk
 from tipoff.highfi.mesh.files.tables import Unreadable
 from tipoff.highfi.mesh.memory_limit import limited
@@ -54,7 +54,7 @@ def opened(path: Path) -> meshio.Mesh:
         size, made = sum(len(piece.content) for piece in pieces), partial(lsdyna.read, pieces)
     else:
         with open_input(path) as stream:
-            content = stream.read()
+            content = utf_8(stream.read())
         size, made = len(content), partial(reader, content)
     try:
         with limited(_PER_BYTE * size + _BESIDE):

@@ -1,7 +1,6 @@
 """Shared by the readers of all formats: their fault, numbers of nodes converted to places in a
 list, and a mesh made of blocks of elements with named groups."""
 
-import codecs
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
@@ -23,16 +22,8 @@ _EXPONENT = re.compile(r"^([-+]?[\d.]+)([-+]\d+)$")  # 7.0-1 for 7.0E-1
 
 
 def decoded(content: bytes) -> str:
-    """Text of a file in the encoding of its byte order mark; UTF-8 without a mark."""
-    marks = {
-        codecs.BOM_UTF8: "utf-8",
-        codecs.BOM_UTF16_LE: "utf-16-le",
-        codecs.BOM_UTF16_BE: "utf-16-be",
-    }
-    for mark, encoding in marks.items():
-        if content.startswith(mark):
-            return content[len(mark) :].decode(encoding, "replace")
-    return content.decode("utf-8", "replace")
+    """Text of a file in UTF-8, with or without a byte order mark."""
+    return content.decode("utf-8-sig", "replace")
 
 
 def whole(text: str, line: int) -> int:

@@ -1,6 +1,8 @@
 """Motor files of RASP and RockSim: written out as their programs and authors publish them, with the
 impulse that is stated elsewhere."""
 
+import codecs
+
 import pytest
 
 from tests.scenes.thrust_files.support import points, refusal, thrust
@@ -61,6 +63,7 @@ E18 = """<engine-database>
   </engine-list>
 </engine-database>
 """
+XML = '<?xml version="1.0" encoding="ENCODING"?>\n'
 SECOND = """<engine code="D12" mfg="Estes" Itot="1.">
       <data><eng-data t="0." f="0." m="1." cg="1."/><eng-data t="1." f="2." m="0." cg="1."/></data>
     </engine>
@@ -96,6 +99,19 @@ def test_one_of_several_motors_is_named(tmp_path, motor):
     assert "motor B6 of Estes Industries" in found.usage()
 
 
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-be", "utf-32", "utf-8-sig"])
+@pytest.mark.parametrize("name, text", [("m.eng", M1670), ("e.rse", E18), ("x.rse", f"{XML}{E18}")])
+def test_motors_that_windows_has_written(tmp_path, name, text, encoding):
+    """Editors and redirections of Windows write UTF-16 with a byte order mark. An XML file states the
+    encoding too."""
+    mark = codecs.BOM_UTF16_BE if encoding == "utf-16-be" else b""
+    content = mark + text.replace("ENCODING", encoding.removesuffix("-sig")).encode(encoding)
+    found = thrust(tmp_path, name, content)
+    assert (
+        found.requested() == thrust(tmp_path, name, text.replace("ENCODING", "utf-8")).requested()
+    )
+
+
 def test_several_motors_without_a_name_are_listed(tmp_path):
     assert "thrust.motor, one of 2 in the file: Estes A8, Estes B6" in refusal(
         tmp_path, "two.eng", TWO
@@ -111,7 +127,13 @@ def test_several_motors_without_a_name_are_listed(tmp_path):
     [
         ("", "it has none"),
         ("; only a comment\n", "it has none"),
-        ("0.1 10\n0.3 0\n", "first (line 1: '0.1 10')"),
+        ("0.1 10\n0.3 0\n", "give the points as a table in a file .csv"),
+        ("0.1 10 3\n0.3 0 3\n", "first (line 1: '0.1 10 3')"),
+        (M1670.replace("757 0 ", "757 6, 10 "), "not '5.231' as the maker (line 1"),
+        (M1670.replace("757 0 ", "757 6 - 10 "), "numbers for sizes and masses (line 1"),
+        (M1670.replace("M1670-BS", "M 1670"), "not '5.231' as the maker (line 1"),
+        (M1670.replace("3.101 5.231", "5.231 3.101"), "a propellant of 5.231 kg in a motor of 3.1"),
+        (M1670.replace("757 0", "757mm 0"), "numbers for sizes and masses (line 1"),
         (M1670.replace("M1670-BS 75 757 0", "M1670-BS 75 757"), "first (line 1"),
         (M1670.replace("0.15 2200", "0.15 2200 5"), "line 5: '0.15 2200 5'"),
         (M1670.replace("0.15 2200", "0.15 2,200"), "line 5"),

@@ -232,3 +232,21 @@ def test_equal_points_make_equal_scenes(tmp_path):
         hashes.add(scene.hash)
         assert parse(scene.resolved(), bare_numbers_are_si=True).hash == scene.hash
     assert len(hashes) == 1
+
+
+EPOCH = "timestamp_ms,thrust_N\n1700000000000,0\n1700000000500,100\n1700000001000,0\n"
+
+
+@pytest.mark.parametrize("text", [EPOCH, "time_s,force_N\n4000,0\n4001,100\n4002,0\n"])
+def test_a_curve_in_the_time_of_a_clock_needs_its_ignition(tmp_path, text):
+    """The scene would wait for 54 years. Control: with the instant the curve is that of the burn."""
+    said = refusal(tmp_path, "epoch.csv", text)
+    assert "thrust.ignition" in said and "(the file is from " in said
+    begin = said.partition("is from ")[2].partition(" to")[0]
+    found = thrust(tmp_path, "epoch.csv", text, ignition=begin)
+    assert found.requested() == pytest.approx(50.0 if text is EPOCH else 100.0)
+
+
+def test_a_curve_that_begins_soon_after_zero_is_no_clock(tmp_path):
+    thrust(tmp_path, "late.csv", "time_s,force_N\n9,0\n9.1,100\n9.2,0\n")
+    thrust(tmp_path, "long.csv", "time_s,force_N\n90,0\n95,100\n100,0\n")

@@ -217,6 +217,19 @@ def test_a_rocket_has_the_given_numbers_and_the_motor_of_the_catalogue_beside_it
     assert scenes.load("same.toml").studies.errors == "rocket_rail"
 
 
+@pytest.mark.parametrize("options", [(), ("--rocket",)])
+def test_a_curve_in_the_time_of_a_clock_gets_its_ignition(tmp_path, monkeypatch, options):
+    monkeypatch.chdir(tmp_path)
+    rows = "1700000000000,0\n1700000000050,400\n1700000002500,380\n1700000002600,0\n"
+    (tmp_path / "motor.csv").write_text(f"timestamp_ms,thrust_N\n{rows}")
+    made = call("new", "own.toml", *options, "--thrust-curve", "motor.csv")
+    assert made.exit_code == 0, made.output
+    assert (
+        tomllib.loads((tmp_path / "own.toml").read_text())["thrust"]["ignition"] == "1700000000 s"
+    )
+    assert scenes.load("own.toml").thrust.curve().time == pytest.approx([0.0, 0.05, 2.5, 2.6])
+
+
 def test_a_rocket_takes_a_motor_of_its_own(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "motor.csv").write_text("time_s,force_N\n0,0\n0.05,400\n2.5,380\n2.6,0\n")

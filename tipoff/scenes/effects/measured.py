@@ -16,6 +16,7 @@ from tipoff.scenes.thrust_files.record import ANYTHING, SECTION, Choice, Record
 
 FIT_IMPULSE = 0.02  # of the impulse of a curve: largest error of its fit by default
 _HIGHEST = 2.0  # times the largest measured force: the peak of a Gaussian that describes a curve
+_LATE, _LATE_LENGTHS = 10.0, 10.0  # s, and lengths of a record, before its first point
 
 
 class MeasuredCurve(NamedTuple):
@@ -96,15 +97,27 @@ def _expected(found: Record, may_begin_early: bool) -> Iterator[tuple[np.ndarray
         yield force < 0.0, "thrusts of a motor that are not negative"
 
 
+def is_of_a_clock(curve: MeasuredCurve) -> bool:
+    """Whether the times seem to count from another instant than ignition: the first one is later
+    than several times the length of the record."""
+    first, last = float(curve.time[0]), float(curve.time[-1])
+    return first > max(_LATE, _LATE_LENGTHS * (last - first))
+
+
 def from_ignition(curve: MeasuredCurve, ignition: float | None) -> MeasuredCurve:
     """The curve from the instant ``ignition`` (s) on, which becomes zero. Raises ValueError for an
-    instant outside the curve."""
+    instant outside the curve, and for a curve in the time of a clock without it."""
+    if ignition is None and is_of_a_clock(curve):
+        raise ValueError(
+            f"times from ignition on, or thrust.ignition, the instant of the file at which the scene "
+            f"begins (the file is from {curve.time[0]:.15g} s to {curve.time[-1]:.15g} s); {SECTION}"
+        )
     if ignition is None:
         return curve
     if not curve.time[0] <= ignition < curve.time[-1]:
         raise ValueError(
-            f"a curve around thrust.ignition = {ignition:g} s (it is from {curve.time[0]:g} s to "
-            f"{curve.time[-1]:g} s); {SECTION}"
+            f"a curve around thrust.ignition = {ignition:.15g} s (it is from {curve.time[0]:.15g} s "
+            f"to {curve.time[-1]:.15g} s); {SECTION}"
         )
     first = int(np.searchsorted(curve.time, ignition, side="right"))
     begun = float(

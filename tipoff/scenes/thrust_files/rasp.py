@@ -1,7 +1,8 @@
 """RASP motor files, ``.eng`` (thrustcurve.org, "RASP File Format"). Times are in s, forces in N.
 
 A motor has a header of seven words, ``name diameter length delays propellant_mass total_mass
-maker``, and points of two numbers. Text after a semicolon is a comment. The first point (0, 0) is
+maker``, and points of two numbers. A blank inside of a word, as between two delays, would move
+the masses: such a header is refused. Text after a semicolon is a comment. The first point (0, 0) is
 not written; the last one has no thrust. Several motors may follow each other.
 """
 
@@ -45,11 +46,21 @@ def _motors(data: bytes) -> list[_Motor]:
             continue
         point = _numbers(words)
         if len(words) >= _WORDS and (len(words) > len(point) or not found):
+            if fault := _of_header(words):
+                raise ValueError(
+                    f"a RASP file with headers {_LAYOUT}, {fault} (line {number}: {line[:80]!r}); "
+                    f"{SECTION}"
+                )
             found.append(_Motor(words, [], [], []))
         elif len(words) == len(point) == 2 and found:
             found[-1].time.append(point[0])
             found[-1].force.append(point[1])
             found[-1].lines.append(number)
+        elif not found and len(words) == len(point) == 2:
+            raise ValueError(
+                f"a RASP file with {_LAYOUT} first, and not only points (line {number}: {line[:80]!r}); "
+                f"add that line, or give the points as a table in a file .csv; {SECTION}"
+            )
         elif not found:
             raise ValueError(
                 f"a RASP file with {_LAYOUT} first (line {number}: {line[:80]!r}); {SECTION}"
@@ -63,6 +74,19 @@ def _motors(data: bytes) -> list[_Motor]:
             f"({', '.join(wrong[:_SHOWN])}{more}); {SECTION}"
         )
     return found
+
+
+def _of_header(words: list[str]) -> str:
+    """What the words of a header lack; empty for a header that can be."""
+    sizes = [_numbers([words[place]]) for place in (1, 2, 4, 5)]
+    if not all(sizes):
+        return "each a word without a blank, with numbers for sizes and masses"
+    (propellant,), (total,) = sizes[2:]
+    if _numbers(words[6:7]):
+        return f"each a word without a blank, and not {words[6]!r} as the maker"
+    if propellant > total > 0.0:
+        return f"and not a propellant of {propellant:g} kg in a motor of {total:g} kg"
+    return ""
 
 
 def _numbers(words: list[str]) -> list[float]:

@@ -153,7 +153,9 @@ def _from_catalogue(
     elif thrust_curve is not None:
         if faults := template.curve_faults(thrust_curve):
             raise SceneError(faults)
-        curve = os.path.relpath(thrust_curve.resolve(), file.parent.resolve())
+        curve = {"file": os.path.relpath(thrust_curve.resolve(), file.parent.resolve())}
+        if begin := template.clock_time(thrust_curve):
+            curve["ignition"] = begin
     text = from_catalogue.text(file.stem, like, numbers, curve, wrong)
     beside_it = {} if curve else from_catalogue.files(like)
     if errors := from_catalogue.errors(like, numbers):

@@ -89,11 +89,11 @@ def text(
     name: str,
     kind: Kind,
     given: Mapping[str, float | None],
-    thrust_curve: str | None = None,
+    thrust_curve: Mapping[str, str] | None = None,
     others: Sequence[str] = (),
 ) -> str:
-    """The scene as TOML for a ``kind``, with the ``given`` numbers (SI) by name of the option and the file
-    of its ``thrust_curve``; the others are those of the catalogue. Raises SceneError for names of
+    """The scene as TOML for a ``kind``, with the ``given`` numbers (SI) by name of the option and the keys
+    of ``[thrust]`` of its ``thrust_curve``; the others are those of the catalogue. Raises SceneError for names of
     ``others`` that are given, and for a number that is not above zero."""
     document = tomlkit.parse((CATALOG / f"{kind.scene}.toml").read_text(encoding="utf-8"))
     document["name"] = name
@@ -113,7 +113,8 @@ def text(
     if errors(kind, given) is not None:
         document["studies"]["errors"] = errors_file(name)
     if thrust_curve is not None:
-        _put(document, "thrust.file", thrust_curve)
+        for entry, own in thrust_curve.items():
+            _put(document, f"thrust.{entry}", own)
         document["provenance"]["thrust"] = GIVEN
     return tomlkit.dumps(document).replace(f"--scene {kind.scene} ", f"--scene {name}.toml ")
 

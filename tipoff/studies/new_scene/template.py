@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import tomlkit
 
-from tipoff.scenes.effects.measured import read_curve
+from tipoff.scenes.effects.measured import is_of_a_clock, read_curve
 from tipoff.scenes.faults import Fault, SceneError
 
 _WIDTH = 0.2  # m, of the payload of the scene ``clamped``, whose sections are scaled
@@ -71,6 +71,12 @@ def pads_faults(count: int) -> list[Fault]:
         return []
     expected = "4, 8, 12 or another multiple of 4: each of the four rails holds as many pads"
     return [Fault("--pads", "value", str(count), expected)]
+
+
+def clock_time(file: Path) -> str | None:
+    """First time of a curve whose times are those of a clock; None for another one."""
+    curve = read_curve(file)
+    return f"{curve.time[0]:.15g} s" if is_of_a_clock(curve) else None
 
 
 def _of_pads(numbers: Numbers) -> list[Fault]:
@@ -157,11 +163,13 @@ def _thrust(numbers: Numbers, folder: Path) -> str:
     """The keys that differ between a pulse and a measured curve."""
     if numbers.thrust_curve is not None:
         path = os.path.relpath(numbers.thrust_curve.resolve(), folder.resolve())
-        file = tomlkit.item(path).as_string()
+        file, begin = tomlkit.item(path).as_string(), clock_time(numbers.thrust_curve)
+        ignition = f'ignition = "{begin}"  # where the scene begins\n' if begin else ""
         return (
             "[thrust]  # other kinds: gaussian (a pulse), gaussians (a sum), constant\n"
             'kind = "measured"\n'
             f"file = {file}  # relative to this file\n"
+            f"{ignition}"
             'use = "curve"  # "fit": use the Gaussian that is fitted to the points'
         )
     return (
