@@ -166,3 +166,25 @@ def test_an_input_that_a_scene_lacks_is_left_out_with_the_reason():
     assert "contact.stiffness" in compliant.left_out and "contact.interface_stiffness" in [
         item.key for item in compliant.inputs
     ]
+
+
+@pytest.mark.parametrize("response", ["additive", "product"])
+def test_the_half_width_of_the_sum_is_its_scatter(response):
+    """Over draws of random base points the sum of the first-order indices scatters about its value by the half
+    width that one draw states. Control: a quarter of the points has twice the half width."""
+    inputs, count, sums, widths, fewer = 6, 128, [], [], []
+    for seed in range(60):
+        first, last = np.random.default_rng(seed).uniform(-0.5, 0.5, (2, count, inputs))
+        mixed = [np.where(np.arange(inputs) == n, last, first) for n in range(inputs)]
+        x = np.stack([first, *mixed, last], axis=1).reshape(-1, inputs)
+        values = x.sum(axis=1) if response == "additive" else x[:, 0] * x[:, 1]
+        sums.append(sum(indices.indices(values, inputs, seed=1, resamples=2).first))
+        widths.append(indices.sum_half_width(values, inputs, seed=1))
+        few = values[: count // 4 * (inputs + 2)]
+        fewer.append(indices.sum_half_width(few, inputs, seed=1))
+    scatter = 1.96 * np.std(sums)
+    assert np.mean(widths) == pytest.approx(scatter, rel=0.25)
+    assert np.mean(fewer) == pytest.approx(2.0 * scatter, rel=0.35)
+    exact = 1.0 if response == "additive" else 0.0
+    assert np.mean(sums) == pytest.approx(exact, abs=scatter / 3.0)
+    assert indices.sum_half_width(np.ones(count * (inputs + 2)), inputs, seed=1) is None

@@ -2,19 +2,24 @@
 the page."""
 
 import json
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from tests.studies import kept
 from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.columns import STATUSES
 from tipoff.scenes import load
 from tipoff.studies.cli import app
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate
+from tipoff.studies.render import document
+from tipoff.studies.sensitivity import page
 from tipoff.studies.sensitivity import stage as sensitivity
+from tipoff.studies.sensitivity.indices import Indices
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.study import Study, StudyError, read
 
@@ -221,3 +226,27 @@ def test_bad_input_is_listed_whole_and_nothing_written(tiny, tmp_path):
         ).exit_code
         == 2
     )
+
+
+def test_an_index_below_its_noise_is_not_resolved():
+    """Sums of first-order indices, and total indices, beside the half widths of their intervals."""
+    kept_ = kept.result(sensitivity.STAGE)
+    width = len(kept_.sobol.inputs)
+
+    def shown(first: float, half: float, total: float, total_half: float) -> tuple:
+        indices = Indices(
+            first=(first,) + (0.0,) * (width - 1),
+            first_half_width=(0.1,) * width,
+            total=(total,) + (0.0,) * (width - 1),
+            total_half_width=(total_half,) + (0.1,) * (width - 1),
+            points=64,
+        )
+        item = replace(kept_.sobol.quantities[0], indices=indices, first_sum_half_width=half)
+        table = page.table_of_indices(replace(kept_.sobol, quantities=(item,)))
+        text = document.terminal([table]).splitlines()
+        return next(line for line in text if line.startswith(" rate about x"))
+
+    assert "not resolved (± 52)   not resolved" in shown(-0.971, 0.52, 0.2, 0.3)
+    assert "not resolved (± 52)" in shown(0.5, 0.52, 0.9, 0.3)
+    assert "75 ± 12" in shown(0.75, 0.12, 0.9, 0.3) and "0.9 ± 0.3" in shown(0.75, 0.12, 0.9, 0.3)
+    assert "-" not in shown(-0.971, 0.52, -0.2, 0.3).partition("not resolved")[2]

@@ -14,7 +14,7 @@ from tipoff.studies.render.chart import Chart, Line, Panel, Picture
 from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table, span
-from tipoff.studies.render.uncertain import Measured
+from tipoff.studies.render.uncertain import Measured, number, uncertain
 from tipoff.studies.sensitivity.contact_table import Axes, Row
 from tipoff.studies.sensitivity.indices import Indices
 from tipoff.studies.sensitivity.results import Constants, Paper, Sensitivity, Shares, Sobol
@@ -47,8 +47,8 @@ _BARS = (
     "Total index (dark): its share with all interactions. Whiskers: 95 % intervals, bootstrap."
 )
 _MAP = (
-    "Total Sobol' index of each input (row) for each quantity (column). The half widths of the "
-    "95 % intervals are in sensitivity.json."
+    "Total Sobol' index of each input (row) for each quantity (column); ? where it is not above the half "
+    "width of its 95 % interval, which is in sensitivity.json."
 )
 _CONVERGENCE = (
     "Total indices of the four largest inputs against the number of base points. A flat line shows "
@@ -66,8 +66,11 @@ _LARGEST = (
 )
 _INDICES = (
     "Mean, standard deviation, sum of the first-order indices, and the three inputs with the "
-    "largest total index. A sum below 100 % shows interactions; a negative sum is sampling error."
+    "largest total index, each with the half width of its 95 % interval. A sum below 100 % shows "
+    "interactions. A value that is not above its half width is not resolved: its half width shrinks "
+    "with the square root of --points."
 )
+_UNRESOLVED = "not resolved"
 _MOVED = (
     Column("rates x, y, z", "deg/s", ".3f"),
     Column("change", "deg/s", ".2g"),
@@ -180,20 +183,33 @@ def table_of_indices(sobol: Sobol) -> Table:
         error = item.sd / math.sqrt(sobol.used)
         return Measured(item.mean, error, apart=True) if item.sd else item.mean
 
-    def most(item: Shares) -> str:
-        totals = item.indices.total if item.indices else ()
+    def most(item: Shares) -> str | None:
+        if item.indices is None:
+            return None
+        totals, errors = item.indices.total, item.indices.total_half_width
         order = np.argsort(totals)[::-1][:_SHOWN]
-        return ", ".join(f"{name_of(sobol.inputs[n].key)} {totals[n]:.2f}" for n in order)
+        named = [
+            f"{name_of(sobol.inputs[n].key)} {uncertain(totals[n], errors[n], 0.01)}"
+            for n in order
+            if totals[n] > errors[n]
+        ]
+        return ", ".join(named) or _UNRESOLVED
+
+    def first(item: Shares) -> Any:
+        error = item.first_sum_half_width
+        if item.indices is None or error is None:
+            return None
+        total = sum(item.indices.first)
+        if total <= error:
+            return f"{_UNRESOLVED} (± {number(100.0 * error, '.2g')})"
+        return Measured(total, error)
 
     return Table.of_records(
         sobol.quantities,
         ("quantity", lambda item: item.title),
         ("mean", mean),
         ("sd", attrgetter("sd")),
-        (
-            Column("first order", "%", scale=100.0),
-            lambda item: item.indices and sum(item.indices.first),
-        ),
+        (Column("first order", "%", scale=100.0), first),
         ("largest total indices", most),
         notes=(_INDICES,),
     )
@@ -296,12 +312,14 @@ def _map(sobol: Sobol, shown: _Indexed) -> Picture:
     from matplotlib.figure import Figure
 
     totals = np.array([own.total for _, own in shown]).T
+    errors = np.array([own.total_half_width for _, own in shown]).T
     order = np.argsort(-totals.max(axis=1))
     figure = Figure(figsize=(9.6, 0.33 * len(order) + 2.0), dpi=130, layout="constrained")
     axes = figure.subplots()
     image = axes.imshow(totals[order], cmap="Greys", vmin=0.0, vmax=1.0, aspect="auto")
     for (row, column), value in np.ndenumerate(totals[order]):
-        colour, text = "white" if value > 0.55 else "black", f"{value:.2f}"
+        resolved = value > errors[order][row, column]
+        colour, text = "white" if value > 0.55 else "black", f"{value:.2f}" if resolved else "?"
         axes.text(column, row, text, ha="center", va="center", fontsize=8, color=colour)
     axes.set_yticks(range(len(order)), [name_of(sobol.inputs[n].key) for n in order], fontsize=8.5)
     axes.set_xticks(

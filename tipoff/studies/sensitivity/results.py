@@ -62,11 +62,13 @@ class Step:
 
 @dataclass(frozen=True, kw_only=True)
 class Shares(Named):
-    """Spread of a quantity and its indices, None if it does not vary."""
+    """Spread of a quantity and its indices, with the half width of the 95 % interval of the sum of those
+    of first order; None if it does not vary."""
 
     mean: float
     sd: float
     indices: Indices | None
+    first_sum_half_width: float | None
     convergence: tuple[Step, ...]
 
 

@@ -167,6 +167,7 @@ def _shares(item: answers.Quantity, found: Population, inputs: int, options: Opt
         mean=float(settled.mean()),
         sd=float(settled.std()),
         indices=series[-1],
+        first_sum_half_width=indices.sum_half_width(values, inputs, options.seed),
         convergence=tuple(
             Step(base_points=size, **(vars(one) if one else {})) for size, one in zip(sizes, series)
         ),
