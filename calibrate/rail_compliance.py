@@ -18,6 +18,7 @@ from tipoff.highfi.statics import inputs
 from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance, content, digest, stored
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
+from tipoff.remaining import Remaining
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.studies import element_size as own_size
 
@@ -128,30 +129,35 @@ def _made(
 
 
 class _Waiting:
-    """Reports the remaining time of computations of more than ``LONG`` seconds by the ``clock``:
-    first, and again at each quarter. The speed is counted from the first report, because a mesh is
-    made before it."""
+    """Reports the remaining time of parts of the work of more than ``LONG`` seconds by the ``clock``: at
+    each quarter, and after ``SILENT`` seconds without a line. The speed is counted from the first
+    report of a part, because a mesh is made before it."""
 
-    LONG = 30.0
+    LONG, SILENT = 30.0, 60.0
 
     def __init__(self, say: Callable[[str], None], clock: Callable[[], float]):
         self._say, self._clock = say, clock
-        self._first: tuple[float, float] | None = None  # time (s) and fraction
-        self._next = 0.0
+        self._part, self._began, self._next = "", 0.0, 0.0
+        self._remaining = Remaining(0.0)
+        self._said = clock()
+        self._advises = True
 
-    def __call__(self, fraction: float) -> None:
-        if self._first is None or fraction <= self._first[1]:
-            self._first = self._clock(), fraction
+    def __call__(self, fraction: float, part: str = "loads") -> None:
+        now = self._clock()
+        if part != self._part:
+            self._part, self._began, self._next = part, now, 0.0
+            self._remaining = Remaining(now, fraction)
             return
-        began, before = self._first
-        taken = self._clock() - began
-        left = taken * (1.0 - fraction) / (fraction - before)
-        if fraction < self._next or fraction >= 1.0 or taken + left < self.LONG:
+        self._remaining.note(now, fraction)
+        left = self._remaining.seconds(now)
+        if fraction >= 1.0 or (left is not None and now - self._began + left < self.LONG):
             return
-        advice = "; coarser elements take less" if self._next == 0.0 else ""
-        self._next = 0.25 * (int(4.0 * fraction) + 1)
-        shown = f"{left:.0f} s" if left < 90.0 else f"{left / 60.0:.0f} min"
-        self._say(f"  {100.0 * fraction:.0f} %, about {shown} left{advice}")
+        if (left is None or fraction < self._next) and now - self._said < self.SILENT:
+            return
+        words = self._remaining.words(now)
+        advice = "; coarser elements take less" if self._advises else ""
+        self._said, self._next, self._advises = now, 0.25 * (int(4.0 * fraction) + 1), False
+        self._say(f"  {part} {100.0 * fraction:.0f} %{words and f', about {words}'}{advice}")
 
 
 def kept_file(scene: Scene, folder: Path, element_size: float, degree: int = DEGREE) -> Path:

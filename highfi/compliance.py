@@ -27,7 +27,7 @@ from tipoff.highfi.rail import drawn_walls
 from tipoff.highfi.simulation import prepare
 from tipoff.highfi.statics import inputs, joint_terms
 from tipoff.highfi.statics.held import HeldRail, distinct
-from tipoff.highfi.statics.places import Patches, part_of_wall, pressed_together
+from tipoff.highfi.statics.places import Patches, one_of, part_of_wall, pressed_together
 from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import (
     DEGREE,
@@ -262,12 +262,13 @@ def of_rails(
             rails += bool(here.any())
     beside = pairs.beside(rail_of)
     near = np.zeros((stations.size, *beside.shape, patterns, patterns + dragged))
-    for rail, patches, places in under:
+    for solved_before, (rail, patches, places) in enumerate(under):
         # An additional last place without response, for faces without a wall (number -1).
         together, number_of = pressed_together(places, len(patches.found), beside)
-        answer, heated, frequency, swung, terms = patches.solved(
-            rail, 0.5 * (reach[0] + reach[1]), modes, together, joints
-        )
+        with one_of(solved_before, len(under)):
+            answer, heated, frequency, swung, terms = patches.solved(
+                rail, 0.5 * (reach[0] + reach[1]), modes, together, joints
+            )
         between = np.pad(answer, [(0, 1), (0, 0), (0, 0)])
         heated, swung = (np.pad(moved, [(0, 1), (0, 0), (0, 0)]) for moved in (heated, swung))
         grams = np.array([patch.gram for patch in patches.found] + [np.zeros((patterns, patterns))])

@@ -41,7 +41,7 @@ from tipoff.highfi.simulation import prepare
 from tipoff.highfi.statics import assembly, chain, inputs
 from tipoff.highfi.statics.held import HeldRail
 from tipoff.highfi.statics.operator import internal_force
-from tipoff.highfi.statics.places import Patches
+from tipoff.highfi.statics.places import Patches, one_of, reported
 from tipoff.highfi.statics.solve import Clamped, one_thread
 from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance
@@ -52,6 +52,8 @@ from tipoff.scenes.scene import Scene
 SAFETY_FACTOR = 1.25
 _PLACES = 4  # along the way of the pads
 _SOLUTIONS = 12  # about as many for each load, of the iteration and the modes
+# Parts of the work whose progress is reported
+ITERATION, DIRECTLY = "uncertainty", "uncertainty, directly"
 _MODES = 3  # close modes may change places; the lowest is then still among them
 MOST_BYTES = 4e9  # on the finer mesh
 _ROWS = 6  # of each load, in the iteration
@@ -112,7 +114,7 @@ def of_rails(
     half = scene_model.half_sizes(faces)
     coarse, fine = (np.zeros((travel.size, faces.axis.size)) for _ in range(2))
     lowest: list[tuple[float, float]] = []
-    for held in rails:
+    for before, held in enumerate(rails):
         own = Patches(held.rail, 1)
         numbers = [[own.under(faces, half, signs, reach, travel) for signs in held.images]]
         if not own.found:
@@ -123,7 +125,8 @@ def of_rails(
         finer, weights = split.refined(held.rail)
         other = Patches(finer, 1)
         numbers.append([other.under(faces, half, signs, reach, travel) for signs in held.images])
-        made = _pair(held, finer, weights, (own.loads(), other.loads()))
+        with one_of(before, len(rails)):
+            made = _pair(held, finer, weights, (own.loads(), other.loads()))
         if made is None:
             return Uncertainty(None, None, _not_solved(held.rail))
         for sums, values, places in zip((coarse, fine), made.compliance, numbers):
@@ -212,9 +215,10 @@ def _iterations(held: Clamped, finer: RailMesh, loads: int) -> int:
 def _factored(operator: assembly.Operator, loads: np.ndarray) -> np.ndarray:
     """Displacement (l,l) of each of the ``loads`` (l,3n) under each, by layers of the whole mesh."""
     free = np.repeat(operator.free, 3)
-    stiffness = assembly.sparse(operator)[free][:, free]
+    stiffness, report = assembly.sparse(operator)[free][:, free], reported()
     with one_thread():
-        return chain.Layered(stiffness, chain.layers(stiffness)).products(loads[:, free].T)
+        layered = chain.Layered(stiffness, chain.layers(stiffness))
+        return layered.products(loads[:, free].T, lambda done: report(done, DIRECTLY))
 
 
 class _Finer:
@@ -277,13 +281,18 @@ def _solved(fine: _Finer, loads: np.ndarray, most: int) -> tuple[np.ndarray, np.
     all loads; None if they do not converge in ``most`` iterations."""
     moved, rest = np.zeros_like(loads), loads.copy()
     towards = np.zeros_like(loads)
-    before = np.ones(len(loads))
+    before, report, nearest = np.ones(len(loads)), reported(), 0.0
     with one_thread():
         for _ in range(most):
             better = fine.nearly_solved(rest)
             now = _products(rest, better)
-            if (now <= _ACCURACY * np.abs(_products(loads, moved))).all():
+            least = np.abs(_products(loads, moved))
+            if (now <= _ACCURACY * least).all():
                 return moved, rest
+            if (least > 0.0).all():
+                far = max(float((now / least).max()), _ACCURACY)
+                nearest = max(nearest, min(math.log(far) / math.log(_ACCURACY), 1.0))
+                report(nearest, ITERATION)
             towards *= (now / before)[:, None]
             towards += better
             pulled = fine.force(towards)

@@ -29,6 +29,7 @@ from scipy.sparse import csc_array, csr_array
 # and a sparse factor for each load and each square of a width
 _CUBE, _LAYER, _SQUARE = 3e-10, 1.5e-3, 1.1e-9
 _MOST_BYTES = 4e9  # of both matrices of each layer
+_BEHIND = 0.8  # share of the work on places that is done from behind
 _PASSES = 3  # of the search: it ends with the whole layer at one end as its start
 
 
@@ -91,9 +92,10 @@ class Layered:
         found[rows[inside], place[inside]] = self._matrix.data[first:last][inside]
         return found
 
-    def products(self, loads: np.ndarray) -> np.ndarray:
+    def products(self, loads: np.ndarray, report: Callable[[float], None]) -> np.ndarray:
         """Products F' K^-1 F (l,l) of ``loads`` F (d,l) N: the displacement of each under each, in J.
-        Layers that are done are not kept, so a solid of any length fits into memory."""
+        Layers that are done are not kept, so a solid of any length fits into memory. ``report`` gets
+        the fraction that is done."""
         placed = loads[self._order]
         found = np.zeros((loads.shape[1], loads.shape[1]))
         coupled, z = np.zeros((0, 0)), np.zeros((0, 0))
@@ -107,6 +109,7 @@ class Layered:
             found += z.T @ z
             if layer + 1 < len(self._parts):
                 coupled = dtrtrs(lower, self._block(layer, layer + 1), lower=True)[0]
+            report((layer + 1) / len(self._parts))
         return found
 
 
@@ -157,7 +160,7 @@ class Chain(Layered):
         one, number = np.unique(sorted_pairs, axis=0, return_inverse=True)
         found = np.zeros((len(one), width, width))
         moved = self._from_behind(placed, (begin, end), one, found, report)
-        self._from_front(placed, begin, one, found, moved)
+        self._from_front(placed, begin, one, found, moved, report)
         every = found[number.reshape(-1)]
         return np.where(turned[:, None, None], every.transpose(0, 2, 1), every)
 
@@ -223,7 +226,7 @@ class Chain(Layered):
                 both = np.flatnonzero((seconds < layer) & (layer <= shared))
                 first, second = np.searchsorted(active, pairs[both].T)
                 found[both] += _picked(z.T @ z, first, second, width)
-            report(1.0 - layer / len(self._parts))
+            report(_BEHIND * (1.0 - layer / len(self._parts)))
         return moved
 
     def _from_front(
@@ -233,6 +236,7 @@ class Chain(Layered):
         pairs: np.ndarray,
         found: np.ndarray,
         moved: np.ndarray,
+        report: Callable[[float], None],
     ) -> None:
         """Adds to ``found`` the terms of all ``pairs`` with loads condensed from the front."""
         width = found.shape[1]
@@ -255,6 +259,7 @@ class Chain(Layered):
                 first = np.searchsorted(here, pairs[now, 0])
                 second = np.searchsorted(starting, pairs[now, 1])
                 found[now] += _picked(y.T @ u.T, first, second, width)
+            report(_BEHIND + (1.0 - _BEHIND) * (layer + 1) / len(self._parts))
 
 
 def _inverse(block: np.ndarray) -> np.ndarray:

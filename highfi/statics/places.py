@@ -29,15 +29,15 @@ _MOST_THREADS = 8  # also bounds the memory
 _DIGITS = 9  # decimals of a place in m; faces at equal places share one solution
 
 
-# Called with the solved fraction of the loads. As an argument, it would pass through every function
-# below.
-_PROGRESS: ContextVar[Callable[[float], None] | None] = ContextVar("progress", default=None)
+# Called with the solved fraction of the loads, or with that of another part of the work and its name. As
+# an argument, it would pass through every function below.
+_PROGRESS: ContextVar[Callable[..., None] | None] = ContextVar("progress", default=None)
 
 
 @contextmanager
-def progress_to(report: Callable[[float], None]) -> Iterator[None]:
-    """Context in which this thread's calls ``report`` the solved fraction of the loads, from 0 to 1
-    for each distinct rail."""
+def progress_to(report: Callable[..., None]) -> Iterator[None]:
+    """Context in which this thread's calls ``report`` the solved fraction of the loads, from 0 to 1,
+    and of other parts of the work with their names."""
     before = _PROGRESS.set(report)
     try:
         yield
@@ -45,9 +45,17 @@ def progress_to(report: Callable[[float], None]) -> Iterator[None]:
         _PROGRESS.reset(before)
 
 
-def reported() -> Callable[[float], None]:
+def reported() -> Callable[..., None]:
     """The function given to ``progress_to`` in this thread, or one that does nothing."""
-    return _PROGRESS.get() or (lambda _: None)
+    return _PROGRESS.get() or (lambda *_: None)
+
+
+@contextmanager
+def one_of(number: int, count: int) -> Iterator[None]:
+    """Context in which fractions are those of the rail ``number`` of ``count``, on one scale."""
+    whole = reported()
+    with progress_to(lambda fraction, *part: whole((number + fraction) / count, *part)):
+        yield
 
 
 class Patches:

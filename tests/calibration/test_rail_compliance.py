@@ -174,8 +174,8 @@ def test_a_long_wait_says_how_long_it_takes(monkeypatch, tmp_path):
     first, *left, last, _ = _said(monkeypatch, tmp_path / "long", 60.0)
     assert "rail compliance, once" in first and "computed in 240 s" in last
     assert left == [
-        "  50 %, about 2 min left; coarser elements take less",
-        "  75 %, about 60 s left",
+        "  loads 50 %, about 2 min left; coarser elements take less",
+        "  loads 75 %, about 60 s left",
     ]
     assert len(_said(monkeypatch, tmp_path / "short", 1.0)) == 3
 

@@ -17,12 +17,13 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
+from tipoff.remaining import Remaining, duration
+
 console = Console(stderr=True, highlight=False)
 _SHOWN_AFTER = 2.0  # s; shorter work gets no bar
 # s without a line off a terminal, at first and at most; it doubles with each line
 _NOTED_AFTER, _NOTED_EVERY = 10.0, 60.0
 _LOOKED_EVERY = 1.0  # s, whether a line is due, since a run that compiles reports nothing
-_LEAST_KNOWN = 0.02  # share done from which the time left is stated
 _NAMED = 3  # runs in such a line
 
 
@@ -38,9 +39,11 @@ class Board:
         self._title, self._total, self._done = title, total, 0
         self._stop, self._lock = threading.Event(), threading.Lock()
         self._fractions: dict[str, float] = {}
+        self._parts: dict[str, int] = {}  # of runs that began another part: its number
         self._bars: Progress | None = None
         self._tasks: dict[str, TaskID] = {}
         self._started = self._said = time.monotonic()
+        self._remaining = Remaining(self._started)
         self._silence = _NOTED_AFTER  # s, until the next line without a bar
         self._over = threading.Event()
 
@@ -70,13 +73,18 @@ class Board:
         self._stop.set()
 
     def callback(self, label: str) -> Callable[[float], None]:
-        """Progress callback of one run; its argument is the completed fraction, 0 to 1."""
+        """Progress callback of one run; its argument is the completed fraction, 0 to 1. A smaller one
+        than before begins another part of the run, which has no known share of it."""
 
         def report(fraction: float) -> None:
             if self._stop.is_set():
                 raise Interrupted(label)
             with self._lock:
-                self._fractions[label] = min(max(float(fraction), 0.0), 1.0)
+                share = min(max(float(fraction), 0.0), 1.0)
+                if share < self._fractions.get(label, 0.0):
+                    self._parts[label] = self._parts.get(label, 1) + 1
+                self._fractions[label] = share
+                self._count()
                 self._draw()
 
         return report
@@ -86,11 +94,18 @@ class Board:
         with self._lock:
             self._done += 1
             self._fractions.pop(label, None)
+            self._parts.pop(label, None)
+            self._count()
             if self._bars is not None and label in self._tasks:
                 self._bars.remove_task(self._tasks.pop(label))
             self._said = time.monotonic()
             say(f"  {self._title} {self._done}/{self._total}  {label}: {note}")
             self._draw()
+
+    def _count(self) -> None:
+        """Note how much of all runs is done. A run in a further part counts as not begun."""
+        known = (share for label, share in self._fractions.items() if label not in self._parts)
+        self._remaining.note(time.monotonic(), (self._done + sum(known)) / self._total)
 
     def _look(self) -> None:
         while not self._over.wait(_LOOKED_EVERY):
@@ -113,24 +128,26 @@ class Board:
         for label, fraction in self._fractions.items():
             if label not in self._tasks:
                 self._tasks[label] = self._bars.add_task(f"  {label}", total=1.0)
-            self._bars.update(self._tasks[label], completed=fraction)
+            named = f"  {self._named(label)}"
+            self._bars.update(self._tasks[label], completed=fraction, description=named)
+
+    def _named(self, label: str) -> str:
+        return f"{label}, part {self._parts[label]}" if label in self._parts else label
 
     def _note(self, now: float) -> None:
         """A line about the runs in progress."""
         self._said, self._silence = now, min(2.0 * self._silence, _NOTED_EVERY)
-        taken, begun = now - self._started, sum(self._fractions.values())
-        done = (self._done + begun) / self._total
-        left = (
-            f", {_duration(taken * (1.0 / done - 1.0))} left" if _LEAST_KNOWN < done < 1.0 else ""
-        )
-        shares = [f"{label} {share:.0%}" for label, share in self._fractions.items() if share > 0.0]
+        taken = now - self._started
+        words = "" if self._parts else self._remaining.words(now)
+        left = words and f", {words}"
+        shares = [
+            f"{self._named(label)} {share:.0%}"
+            for label, share in self._fractions.items()
+            if share > 0.0
+        ]
         more = f" and {len(shares) - _NAMED} more" if len(shares) > _NAMED else ""
         under_way = f"  {', '.join(shares[:_NAMED])}{more}" if shares else ""
-        say(f"  {self._title} {self._done}/{self._total}{under_way} after {_duration(taken)}{left}")
-
-
-def _duration(seconds: float) -> str:
-    return f"{seconds:.0f} s" if seconds < 90.0 else f"{seconds / 60.0:.0f} min"
+        say(f"  {self._title} {self._done}/{self._total}{under_way} after {duration(taken)}{left}")
 
 
 @contextmanager

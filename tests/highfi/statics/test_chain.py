@@ -44,9 +44,12 @@ def stiffness(request):
 
 def test_products_of_loads_need_no_kept_layer(stiffness):
     """As of a dense solution, for loads over all layers."""
-    loads = np.random.default_rng(1).standard_normal((stiffness.shape[0], 4))
-    found = chain.Layered(stiffness, chain.layers(csr_array(stiffness))).products(loads)
+    loads, seen = np.random.default_rng(1).standard_normal((stiffness.shape[0], 4)), []
+    found = chain.Layered(stiffness, chain.layers(csr_array(stiffness))).products(
+        loads, seen.append
+    )
     expected = loads.T @ np.linalg.solve(stiffness.toarray(), loads)
+    assert seen == sorted(seen) and seen[-1] == 1.0
     assert found == pytest.approx(expected, rel=SAME, abs=SAME * np.abs(expected).max())
 
 
