@@ -85,9 +85,9 @@ def encoding(begin: bytes) -> str:
 
 
 def utf_8(content: bytes) -> bytes:
-    """A text of another ``encoding`` in UTF-8; anything else as it is."""
+    """A text of another ``encoding`` in UTF-8, without a byte order mark; anything else as it is."""
     if (found := encoding(content[:4])) == "utf-8-sig":
-        return content
+        return content.removeprefix(codecs.BOM_UTF8)
     try:
         return _XML_ENCODING.sub(r"\1", content.decode(found), count=1).encode()
     except UnicodeError:  # no text
