@@ -1,5 +1,7 @@
 """nodout, rbdout and binout of LS-DYNA."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -153,7 +155,53 @@ def test_nodes_of_solid_elements_have_no_rates(tmp_path):
     text = dyna.NODOUT[:start] + dyna.NODOUT[end : dyna.NODOUT.rindex("\n\n\n n o d a l")]
     found = reading.read(dyna.written(tmp_path, "nodout", text), layout())
     assert [fault.key for fault in found.faults] == ["rate_x", "rate_y", "rate_z"]
-    assert "no such column 'rx_velocity'" in said(found)
+    assert "no such column 'rx_velocity'" in said(found) and "write rbdout" in said(found)
+
+
+def test_rotations_that_are_all_zero_are_those_of_a_solid(tmp_path):
+    """LS-DYNA writes zeros for the rotations of its nodes. Control: about one axis alone is motion."""
+    turned = "1.0000E-05  2.0000E-05  3.0000E-05"
+    still = "0.0000E+00  0.0000E+00  0.0000E+00"
+    assert turned in dyna.NODOUT
+    path = dyna.written(tmp_path, "nodout", dyna.NODOUT.replace(turned, still))
+    assert "rates: given 0 at every time" in said(found := reading.read(path, layout()))
+    assert "write rbdout" in said(found)
+    one = dyna.NODOUT.replace(turned, f"1.0000E-05{still[10:]}")
+    assert not reading.read(dyna.written(tmp_path, "nodout", one), layout()).faults
+
+
+def touching(text: str) -> str:
+    """A file whose numbers have five digits behind the point, and fill twelve columns if negative."""
+    whole = re.compile(r" ( |-)(\d\.\d{4})(E[+-]\d\d|[+-]\d{3})(?=\s)")
+    return whole.sub(lambda found: f"{found[1]}{found[2]}0{found[3]}", text)
+
+
+@pytest.mark.parametrize("text", [dyna.NODOUT, dyna.RBDOUT], ids=["nodout", "rbdout"])
+def test_numbers_may_fill_their_columns(text, tmp_path):
+    """Control: between blanks the line has fewer words than columns."""
+    text = text.replace("0.0000E+00 ", "-.0000E+00 ").replace(" -.0000E+00", "-0.0000E+00")
+    tight = touching(text)
+    assert re.search(r"\dE[+-]\d\d-\d", tight)
+    loose = reading.read(dyna.written(tmp_path, "a", text), layout())
+    found = reading.read(dyna.written(tmp_path, "b", tight), layout())
+    require_motion(found)
+    for name, values in loose.values.items():
+        np.testing.assert_array_equal(found.values[name], values)
+
+
+@pytest.mark.parametrize("text", [dyna.NODOUT, dyna.RBDOUT], ids=["nodout", "rbdout"])
+@pytest.mark.parametrize("lost", range(1, 14))
+def test_a_cut_number_is_not_taken_for_another_one(text, lost, tmp_path):
+    """5.0E-06 without its exponent is 5. The whole file without its last line end is read."""
+    last = (
+        text.rindex("  6.0000-105\n") + 12
+        if text is dyna.NODOUT
+        else text.rindex("6.0000E-05\n") + 10
+    )
+    found = reading.read(dyna.written(tmp_path, "a", text[: last - lost]), layout())
+    assert not found.faults and found.values["time"].tolist() == [0.0]
+    found = reading.read(dyna.written(tmp_path, "b", text[:last]), layout())
+    assert not found.faults and len(found.values["time"]) == 2
 
 
 @pytest.mark.parametrize(

@@ -172,3 +172,13 @@ def test_options_of_other_formats_are_refused(tmp_path):
     said = "\n".join(map(str, found.faults))
     assert "--body: given 7, expected none: a table has one body" in said
     assert "--units length: given mm, expected none: only files of LS-DYNA" in said
+
+
+@pytest.mark.parametrize("other", ["WY", "-WY", "5"])
+def test_two_quantities_have_two_columns(tmp_path, other):
+    """Control: the sign or the number of the column does not make it another one."""
+    names = "time=Time, velocity_x=VX, rate_x=WX, rate_y=WY, rate_z=" + other.replace("5", "4")
+    text = "Time,VX,WX,WY,WZ\n" + rows(",")
+    found = reading.read(written(tmp_path, "a", text), layout(names))
+    (fault,) = found.faults
+    assert fault.key == "rate_z" and "rate_y has this one" in fault.expected

@@ -1,7 +1,9 @@
 """The text files nodout and rbdout of LS-DYNA: motion of nodes and of rigid bodies, one block for each
 time.
 
-The layouts are those that the public translator of LSTC, ``l2a``, writes. Columns have the names of the
+The layouts are those that the public translator of LSTC, ``l2a``, writes: numbers have twelve columns
+and may fill them, so that nothing is between two. A last line without its end is left out where it
+may be cut: a number without its exponent is another one. Columns have the names of the
 binary file. Rates are in global axes. Values are in the consistent units of the model, rates in rad per
 unit of time.
 """
@@ -67,6 +69,10 @@ _BODY_TIME = re.compile(r"r i g i d   b o d y   m o t i o n.*time= *(\S+)")
 _BODY_NUMBER = re.compile(r"\s*(nodal )?rigid body +(\d+)\s*$")
 _SHORT_EXPONENT = re.compile(r"(?<=\d)(?=[+-]\d{3}$)")  # Fortran writes 1.0-100 for 1.0E-100
 _MOST_STATES = 1_000_000
+_WIDTH = 12  # columns of a number
+WITHOUT_RATES = (
+    "rotations, which nodes of solid elements do not have: write rbdout for a rigid body"
+)
 
 
 class _Block(NamedTuple):
@@ -114,17 +120,17 @@ def table(source: str, kind: str, states: list[dict[str, float]]) -> Table:
 
 
 def _nodes(source: str, text: Iterator[str] | io.TextIOWrapper) -> Iterator[_Block]:
-    time, columns = None, None
+    time, columns, lengths = None, None, set[int]()
     for number, line in enumerate(text, 1):
         if match := _NODE_TIME.search(line):
             time, columns = _number(source, number, match[1]), None
         elif line.lstrip().startswith("nodal point"):
             columns = list(_OF_NODE_TURN if "x-rot" in line else _OF_NODE)
         elif time is not None and columns is not None and line.strip():
-            node, *cells = line.split()
+            if _may_be_cut(line, lengths):
+                return
+            node, cells = _fields(line, len(columns))
             values = [_number(source, number, cell) for cell in cells]
-            if len(values) < len(columns) and not line.endswith("\n"):
-                return  # the run was stopped in this line
             if not node.isdecimal() or len(values) != len(columns):
                 given = f"{line.strip()[:40]!r} in line {number}"
                 expected = f"a number of a node and {len(columns)} values"
@@ -133,7 +139,7 @@ def _nodes(source: str, text: Iterator[str] | io.TextIOWrapper) -> Iterator[_Blo
 
 
 def _bodies(source: str, text: Iterator[str] | io.TextIOWrapper) -> Iterator[_Block]:
-    time, body, is_global = None, None, False
+    time, body, is_global, lengths = None, None, False, set[int]()
     for number, line in enumerate(text, 1):
         head, colon, rest = line.partition(":")
         if match := _BODY_TIME.search(line):
@@ -143,19 +149,40 @@ def _bodies(source: str, text: Iterator[str] | io.TextIOWrapper) -> Iterator[_Bl
         elif line.lstrip().startswith(("principal", "output in")):
             is_global = False
         elif colon and time is not None and body is not None and is_global:
+            if _may_be_cut(line, lengths):
+                return
             columns = list(_OF_BODY.get(head.strip(), ()))
-            values = [_number(source, number, cell) for cell in rest.split()]
-            if len(values) < len(columns) and not line.endswith("\n"):
-                return  # the run was stopped in this line
+            other, cells = _fields(rest, len(columns))
+            values = [_number(source, number, cell) for cell in (*other.split(), *cells)]
             if len(values) != len(columns):
                 given = f"{len(values)} values of {head.strip()[:40]!r} in line {number}"
                 raise SceneError([Fault(source, RBDOUT, given, f"{len(columns)} values")])
             yield _Block(time, body, columns, values)
 
 
+def _may_be_cut(line: str, lengths: set[int]) -> bool:
+    """Whether a line has no end, and another length than lines before it; adds its length."""
+    length = len(line.rstrip("\r\n"))
+    if line.endswith("\n"):
+        lengths.add(length)
+        return False
+    return length not in lengths
+
+
+def _fields(line: str, count: int) -> tuple[str, list[str]]:
+    """What is in front of the last ``count`` numbers of a line, and the numbers. They are between blanks,
+    or fill their columns."""
+    words, text = line.split(), line.rstrip("\r\n")
+    at = len(text) - _WIDTH * count
+    if at >= 0 and len(words) < count + bool(text[:at].strip()):
+        return text[:at].strip(), [text[k : k + _WIDTH] for k in range(at, len(text), _WIDTH)]
+    front = max(0, len(words) - count)
+    return " ".join(words[:front]), words[front:]
+
+
 def _number(source: str, line: int, cell: str) -> float:
     try:
-        return float(_SHORT_EXPONENT.sub("E", cell))
+        return float(_SHORT_EXPONENT.sub("E", cell.strip()))
     except ValueError:
         given = f"{cell[:40]!r} in line {line}"
         raise SceneError([Fault(source, "file", given, "a number")]) from None

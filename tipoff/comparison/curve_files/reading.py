@@ -63,7 +63,7 @@ def read(path: str | Path, layout: Layout = OF_THE_FORMAT, optional: Collection[
         faults += wrong
         if not wrong:
             values[name] = found
-    faults += _axes_faults(source, layout, table)
+    faults += _axes_faults(source, layout, table) + _of_rates(source, table, layout, values)
     if layout.ignition and "time" in values:
         late = values["time"] - layout.ignition
         keep = late >= -_ROUNDING
@@ -122,13 +122,39 @@ def _quantity(
     if place is None and column.startswith("-"):
         place, sign = table.place(column[1:].strip()), -1.0
     if place is None:
-        return np.empty(0), [table.no_column(source, name, column)]
+        fault = table.no_column(source, name, column)
+        if column == lsdyna.DEFAULTS[lsdyna.NODOUT].get(name) and name in RATES:
+            fault = fault._replace(expected=lsdyna.WITHOUT_RATES)
+        return np.empty(0), [fault]
     values, faults = table.numbers(source, name, place)
     unit = table.units[place] if place < len(table.units) else None
     if table.is_consistent and unit is not None:
         unit = layout.filled(unit)
     factor, wrong = _factor(source, name, si, unit, layout.unit(name))
     return sign * factor * values, faults + wrong
+
+
+def _of_rates(
+    source: str, table: Table, layout: Layout, values: dict[str, np.ndarray]
+) -> list[Fault]:
+    """Faults of quantities that share a column, and of rates of a node that does not turn. Two columns
+    that are exchanged do not show: axes may have any names."""
+    faults, taken = [], dict[int, str]()
+    for name in values:
+        column = dict(layout.columns).get(name, table.columns.get(name, name))
+        place = table.place(column)
+        if place is None:
+            place = table.place(column.removeprefix("-").strip())
+        assert place is not None  # its values were read
+        if place in taken:
+            words = f"a column of its own; {taken[place]} has this one"
+            faults.append(Fault(source, name, f"column {column.removeprefix('-')!r}", words))
+        taken.setdefault(place, name)
+    is_node = table.columns == lsdyna.DEFAULTS[lsdyna.NODOUT]
+    rates = [values[name] for name in RATES if name in values]
+    if is_node and rates and len(rates[0]) > 1 and not np.any(rates):
+        faults.append(Fault(source, "rates", "0 at every time", lsdyna.WITHOUT_RATES))
+    return faults
 
 
 def _factor(
