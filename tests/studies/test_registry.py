@@ -10,6 +10,9 @@ from typer.testing import CliRunner
 
 from tipoff import scenes
 from tipoff.studies import registry
+from tipoff.studies.agreement import stage as compare
+from tipoff.studies.question import Result
+from tipoff.studies.report import assembly
 from tipoff.studies.report import stage as report
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.study import Study
@@ -138,3 +141,35 @@ def test_the_report_makes_it_with_every(entry, study, monkeypatch):
     assert (
         f"It weighs {2.0 * study.scene.payload.mass:g} kg." in study.path("report.html").read_text()
     )
+
+
+def test_a_first_page_is_there_before_the_comparison(study, monkeypatch):
+    """It names what is still being made. Control: with a stored comparison only the whole page is
+    written."""
+    names, seen = ("nominal", "agreement", "cost", "stability"), []
+    page = study.path("report.html")
+
+    def made(name):
+        def make(study):
+            seen.append(page.read_text() if page.exists() else None)
+            return {"key": name, "failed": []}
+
+        return Result(name, make)
+
+    monkeypatch.setattr(report, "results", lambda: [made(name) for name in names])
+    monkeypatch.setattr(assembly, "render", lambda page: f"made {', '.join(page.problems)}.")
+    for name in ("_answer", "_verdict"):
+        monkeypatch.setattr(report, name, lambda found: "")
+    study.folder.mkdir(parents=True)
+    for name in names:
+        study.path(f"{name}.json").write_text("{}")
+    report.run(study)
+    early = "made agreement, cost, stability."
+    assert seen == [None, early, "made cost, stability.", "made cost, stability."]
+    assert page.read_text() == "made ."
+
+    page.unlink()
+    seen.clear()
+    monkeypatch.setattr(type(compare.STAGE), "stored", lambda *_: {})
+    report.run(study)
+    assert seen == [None] * 4

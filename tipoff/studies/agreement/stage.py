@@ -21,6 +21,7 @@ from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study
 from tipoff.workspace.timing import Speedup, speedups
 
+NEIGHBOURS_OF_A_REPORT = 8
 _SIMPLER = {
     "mean pressure of each face by itself": (1, False),
     "mean pressure": (1, True),
@@ -119,9 +120,11 @@ def run(study: Study, options: Options | None = None) -> dict:
 
 def current(study: Study) -> dict:
     """The result for the page: the stored one of ``tipoff compare``, with its number of neighbours,
-    if scene, code and settings are the present ones; otherwise a new one."""
+    if scene, code and settings are the present ones; otherwise a new one with few neighbours, whose
+    runs take most of the time of a first report."""
     found = STAGE.stored(study)
-    return run(study, None if found is None else STAGE.asked(found))
+    few = Options(min(NEIGHBOURS_OF_A_REPORT, study.settings.neighbours))
+    return run(study, few if found is None else STAGE.asked(found))
 
 
 def _elements(compliant: Candidate) -> dict | None:

@@ -33,8 +33,9 @@ def report(
 
     First come velocity and rates of the scene itself, with their 95 % range under the random errors
     that the scene states (studies.errors). Makes mesh, highfi, lowfi, calibrate, compare, cost,
-    stability and ablation where they are out of date (half an hour the first time). The page shows
-    every other study that has a result; --every makes them all.
+    stability and ablation where they are out of date; a first page is written before compare, and
+    a chaotic condition gets 8 neighbours (--every: all). The page shows every other study that has
+    a result; --every makes them all.
     """
     from tipoff.studies.populations import exceedance
     from tipoff.studies.report import stage

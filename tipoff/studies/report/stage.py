@@ -28,7 +28,8 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
     failures of all stages and sections.
 
     The page has all other results and sections if one fails, or if the scene does not allow one. The
-    comparison of both models is made if the scene asks for it.
+    comparison of both models is made if the scene asks for it. A first page, with the answer and the
+    runs, is written before it is made, and once more before the studies that follow it.
     Raises InputError, before a result is made, if the scene does not allow a required one. With
     ``every``, each study without a present result is made too; the page gives the reason if the
     scene does not allow a study. The page states whether the rates are within ``limits``.
@@ -36,10 +37,18 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
     asked = tuple(limit.asked for limit in limits)
     documents: dict[str, dict | None] = {}
     problems: dict[str, str] = {}
-    listed = results()
+    listed, fresh = results(), False
     for name, make_result, stored, _ in listed:
         if make_result is None or stored is not None:
             continue
+        if name == compare.STAGE.name:
+            if every:
+                make_result = compare.run  # with as many neighbours as the settings have
+            fresh = _is_to_be_made(study)
+        if fresh:
+            waiting = [own for own, make, there, _ in listed if make and there is None]
+            _draw_early(study, documents, waiting[waiting.index(name) :], limits)
+        fresh = fresh and name == compare.STAGE.name
         passing = NotAsked if any(documents.values()) else InputError
         try:
             documents[name], reason = attempt(name, partial(make_result, study), passing)
@@ -95,6 +104,33 @@ def run(study: Study, every: bool = False, limits: Sequence[Limit] = ()) -> dict
         shown,
     )
     return study.stage("report", key, make)
+
+
+def _is_to_be_made(study: Study) -> bool:
+    """Whether the comparison of both models has no present result; False if the scene allows none."""
+    try:
+        return compare.STAGE.stored(study) is None
+    except (InputError, StudyError):
+        return False
+
+
+def _draw_early(
+    study: Study, documents: dict, waiting: Sequence[str], limits: Sequence[Limit]
+) -> None:
+    """Write the page with the results that are there; it names those that are still being made."""
+    from tipoff.studies.report.assembly import render
+    from tipoff.studies.report.page import Page
+    from tipoff.studies.runs.figures import Runs
+
+    def write() -> None:
+        again = "being made; this page is written again with it"
+        found, _ = attempt("stored runs", lambda: _trajectories(study, documents))
+        made = documents, found or Runs({}, {}), dict.fromkeys(waiting, again)
+        write_text(path, render(Page(study.scene, study.folder, *made, limits)))
+        say(f"{path}: a first page, without {', '.join(waiting)}")
+
+    path = study.path("report.html")
+    attempt("the first page", write)
 
 
 def _answer(nominal: dict | None) -> list[str]:
