@@ -3,7 +3,8 @@
 In format 4 an element belongs to an entity, and an entity to any number of physical groups. The
 entities of a partitioned mesh have a section of their own. In format 2 an element is written once
 for each group. See section "Gmsh file formats" of the manual of gmsh 4.15; for formats 2 and 4.0
-"Legacy formats". A physical tag is negative if the entity is used in reverse.
+"Legacy formats". A physical tag is negative if the entity is used in reverse. A group without a
+name is called by its dimension and tag, "surface 3".
 """
 
 import re
@@ -42,6 +43,8 @@ _TYPES = {
 _TETRA10 = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]  # place of each node of VTK in the order of gmsh
 _NAME = re.compile(rb'^\s*(\d+)\s+(-?\d+)\s+"(.*)"\s*$')
 _SIZES = {1, 2, 4, 8}  # bytes of a size_t
+_PARAMETRIC = "ParametricNodes"
+_DIMENSIONS = ("point", "curve", "surface", "volume")
 
 Names = dict[tuple[int, int], str]  # of a dimension and a physical tag
 Entities = dict[tuple[int, int], list[int]]  # physical tags of a dimension and an entity
@@ -144,14 +147,15 @@ def _names(file: _File) -> Names:
 def _groups(
     blocks: list[Block], names: Names, members: list[list[tuple[int, int]]]
 ) -> dict[str, list[np.ndarray]]:
-    """Members of each named group in each block, from the dimension and the physical tags of every
-    block."""
+    """Members of each group in each block, from the dimension and the physical tags of every
+    block; the tag 0 is that of no group."""
     nothing = np.array([], dtype=np.int64)
     groups: dict[str, list[np.ndarray]] = {}
     for place, (block, tags) in enumerate(zip(blocks, members)):
         for dimension, tag in tags:
-            if (name := names.get((dimension, abs(tag)))) is None:
+            if tag == 0:
                 continue
+            name = names.get((dimension, abs(tag)), f"{_DIMENSIONS[dimension]} {abs(tag)}")
             parts = groups.setdefault(name, [nothing] * len(blocks))
             parts[place] = np.arange(len(block.nodes))
     return groups
@@ -177,10 +181,25 @@ def _type(number: int) -> tuple[str, int, int]:
 def _old_nodes(file: _File) -> tuple[np.ndarray, np.ndarray]:
     section = file.section("Nodes")
     if section is None:
-        raise Unreadable("no $Nodes")
+        return _parametric_nodes(file)
     count = _count_line(file, "Nodes", section)
     labels, points = section.rows(count, (INT, 1), (REAL, 3))
     return labels[:, 0], points
+
+
+def _parametric_nodes(file: _File) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes of ``-parametric``: behind its place, each has the dimension and the tag of its entity, and
+    its coordinates on a curve or a surface."""
+    section = file.section(_PARAMETRIC)
+    if section is None:
+        raise Unreadable("no $Nodes")
+    labels, points = [], []
+    for _ in range(_count_line(file, _PARAMETRIC, section)):
+        labels.append(section.one())
+        points.append(section.take(3, REAL))
+        dimension, _ = section.take(2)
+        section.take(int(dimension) if dimension in (1, 2) else 0, REAL)
+    return np.array(labels, dtype=np.int64), np.array(points).reshape(-1, 3)
 
 
 def _count_line(file: _File, name: str, section: Section) -> int:

@@ -57,11 +57,15 @@ def cards(text: str) -> Iterator[Card]:
 
 def _fields(line: str) -> tuple[str, list[str], str]:
     """First field of a line, its data, and the mark that its continuation repeats. A line has eight
-    data fields in small or free format, four in large format."""
+    data fields in small or free format, four in large format. A free line may have a whole card, whose
+    tenth field is no mark then."""
     if "," in line:
         first, *rest = [field.strip() for field in line.split(",")]
         count = 4 if first.endswith("*") or first.startswith("*") else 8
         data, last = rest[:count], "".join(rest[count : count + 1])
+        if len(rest) > count + 1 and last and last[0] not in "+*":
+            data, last = rest, ""  # a whole card in one line
+            count *= -(-len(rest) // count)
     else:
         line = line.expandtabs(8)
         first = line[:8].strip()

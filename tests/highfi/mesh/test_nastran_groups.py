@@ -138,6 +138,28 @@ def test_what_a_file_gets_wrong_is_named(tmp_path, cards, why):
         read_text(tmp_path, in_system(seeds.rail().points, cards), "rail.bdf")
 
 
+def test_a_free_card_may_be_in_one_line(tmp_path):
+    """Its ninth data field is no mark of a continuation. Control: a line that has a mark."""
+    lines, whole, marked = TEXT.split("\n"), [], []
+    place = 0
+    while place < len(lines):
+        if not lines[place].startswith("CHEXA"):
+            whole.append(lines[place])
+            marked.append(lines[place])
+            place += 1
+            continue
+        first, second = lines[place], lines[place + 1]
+        fields = [first[at : at + 8].strip() for at in range(0, 72, 8)]
+        rest = [second[at : at + 8].strip() for at in (8, 16)]
+        whole.append(",".join([*fields, *rest]))
+        marked += [",".join([*fields, "+A"]), ",".join(["+A", *rest])]
+        place += 2
+    assert any(line.count(",") == 10 for line in whole)
+    for number, made in enumerate((whole, marked)):
+        (tmp_path / f"{number}.bdf").write_text("\n".join(made))
+        check_rail(read(tmp_path / f"{number}.bdf"))
+
+
 def test_a_body_is_a_property(tmp_path):
     """Beside the plate there is a wedge of another property."""
     text = TEXT.replace("ENDDATA", "CPENTA,99,9,1,2,3,4,5,6\nENDDATA")
