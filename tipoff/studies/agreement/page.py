@@ -225,15 +225,16 @@ def counts(rows: Sequence[Row], words: str = "") -> tuple[str, str]:
     """The same in two parts: how many of how many, and the rest of the sentence."""
     count = Counter(row.judgement for row in rows)
     free = sum(row.judgement == verdicts.AGREES and not row.touches for row in rows)
-    alike, missing = count[verdicts.AS_DISTRIBUTION], count[verdicts.MISSES]
-    return f"{count[verdicts.AGREES]} of {len(rows)}", (
+    curves, alike, missing = (
+        count[word] for word in (verdicts.AGREES, verdicts.AS_DISTRIBUTION, verdicts.MISSES)
+    )
+    of_them = [
+        *([f"{free} of them without contact"] if free else []),
+        *([f"{alike} of them as distributions"] if alike else []),
+    ]
+    return f"{curves + alike} of {len(rows)}", (
         f"{words}conditions agree"
-        + (f" ({free} of them without contact)" if free else "")
-        + (
-            f", {alike} {'agrees as a distribution' if alike == 1 else 'agree as distributions'}"
-            if alike
-            else ""
-        )
+        + (f" ({', '.join(of_them)})" if of_them else "")
         + f", {count[verdicts.CANNOT]} cannot be judged, "
         + f"{missing} {'misses' if missing == 1 else 'miss'}"
     )

@@ -74,12 +74,14 @@ footer { max-width: 1240px; margin: 60px auto 40px; padding: 0 28px; color: var(
 @media (max-width: 700px) {
   main, header { padding: 0 14px; } header { padding-top: 20px; } h1 { font-size: 24px; }
   nav { padding: 6px 14px; max-height: 98px; } .figures { display: block; } .figures div { margin: 8px 0; }
-  .drawing { display: block; } svg.picture { max-width: none; }
+  .drawing { display: block; }
+  table.judged td:last-child, table.judged th:last-child { position: static; box-shadow: none; }
 }
 @page { size: A4 landscape; margin: 12mm; }
 @media print {
   :root { --ink: #000; --soft: #444; --rule: #bbb; --tint: #f2f2f2; --accent: #1d3461; --paper: #fff; --warn: #fff; }
   body { font-size: 10pt; } main, header, footer { max-width: none; padding: 0; } nav { display: none; }
+  img, svg.picture { max-height: 145mm; width: auto; }  /* with its heading on one page */
   h2, h3 { break-after: avoid; } tr, img, svg.picture, .drawing, .figures { break-inside: avoid; }
   .wide { overflow: visible; } table { width: 100%; font-size: 8pt; } table.dense { font-size: 6.5pt; }
   th, td, table.dense th, table.dense td { padding: 2px 4px 2px 2px; }
