@@ -53,7 +53,9 @@ def test_second_order_series_is_bounded_by_five_quarters_of_its_error(limit, slo
     [
         ((1.0, 3.0, 2.0), None, 3.0, "alternating: first order, factor 3"),
         ((1.0, 3.0, 0.5), None, 7.5, extrapolation.NOT_CONVERGED),
-        ((1.0, 2.0, 2.0), None, 0.75, "alternating: first order, factor 3"),
+        ((1.0, 2.0, 2.0), None, 0.75, "last change almost zero: first order, factor 3"),
+        ((1.0, 0.0, -1e-30), None, 0.75, "last change almost zero: first order, factor 3"),
+        ((1.0, 0.0, 1e-30), None, 0.75, "alternating: first order, factor 3"),
         ((0.0, 1.0, 5.0), -2.0, 15.0, extrapolation.NOT_CONVERGED),
         ((0.0, 1.0, 2.0), 0.0, 6.0, extrapolation.NOT_CONVERGED),
         ((0.0, 8.0, 9.0), 3.0, 2.0, "GCI, order limited to 2, factor 3"),

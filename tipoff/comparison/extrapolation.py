@@ -13,6 +13,7 @@ three values                            order used             F
 p above the order of the method         that of the method     3
 0 < p < 0.5                             0.5                    3
 changes of alternating sign that fall   1                      3
+last change zero, or almost             1                      3
 changes that do not fall                none: not converged    3 times the range of the three values
 ======================================  =====================  ====================================
 
@@ -54,7 +55,7 @@ class Estimate:
 
 def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float | None:
     """Order p of three values on grids of three decreasing ``sizes``; negative if differences grow,
-    None if the values are not monotone. Raises ValueError for other sizes."""
+    None if the values are not monotone or the order is too large to find. Raises ValueError for other sizes."""
     (r32, r21), (e32, e21) = _ratios(sizes), (values[0] - values[1], values[1] - values[2])
     if e32 * e21 <= 0.0:
         return None
@@ -93,7 +94,9 @@ def _of_three(sizes: Sequence[float], values: Sequence[float]) -> Estimate:
     change = abs(values[1] - values[2])
     if order is None:
         change = max(change, _least_change(sizes, values))
-        used, factor, method = _ASSUMED_ORDER, CAUTIOUS_FACTOR, "alternating: first order, factor 3"
+        is_monotone = (values[0] - values[1]) * (values[1] - values[2]) >= 0.0
+        words = "last change almost zero" if is_monotone else "alternating"
+        used, factor, method = _ASSUMED_ORDER, CAUTIOUS_FACTOR, f"{words}: first order, factor 3"
     elif _LEAST_ORDER <= order <= METHOD_ORDER + 1e-6:
         used, factor, method = min(order, METHOD_ORDER), SAFETY_FACTOR, "GCI"
     else:
