@@ -128,18 +128,17 @@ def _groups(at: dict, numbers: np.ndarray, limit: float) -> list[list]:
     left = dict(at)
     found: list[list] = [[] for _ in KINDS]
     for number, kind in enumerate(KINDS):
-        for offset in at:
-            places = [tuple(sign * d for sign, d in zip(signs, offset)) for signs in _mirrors(kind)]
-            if len(set(places)) == len(places) and all(place in left for place in places):
-                folded = numbers[[at[place] for place in places]] * _SIGNS[number]
-                mean = folded.mean(axis=0)
-                if (
-                    np.abs(folded - mean).max() <= limit
-                    and np.abs(np.delete(mean, kind.numbers)).max(initial=0.0) <= limit
-                ):
-                    found[number].append(
-                        ([left.pop(place) for place in places], mean[list(kind.numbers)])
-                    )
+        for offset in at if left else ():
+            places = [(y * offset[0], z * offset[1]) for y, z in _MIRRORS[number]]
+            if len(set(places)) < len(places) or not left.keys() >= set(places):
+                continue
+            folded = numbers[[at[place] for place in places]] * _SIGNS[number]
+            mean = folded.mean(axis=0)
+            if np.abs(folded - mean).max() <= limit and (
+                np.abs(mean[_ABSENT[number]]).max(initial=0.0) <= limit
+            ):
+                own = [left.pop(place) for place in places]
+                found[number].append((own, mean[list(kind.numbers)]))
     return found
 
 
@@ -158,4 +157,7 @@ def _signs(signs: tuple[int, int]) -> list[int]:
     ]
 
 
-_SIGNS = [np.array([_signs(signs) for signs in _mirrors(kind)]) for kind in KINDS]
+_MIRRORS = [_mirrors(kind) for kind in KINDS]
+_SIGNS = [np.array([_signs(signs) for signs in mirrors]) for mirrors in _MIRRORS]
+# The numbers that are zero in each kind.
+_ABSENT = [[n for n in range(len(PLACES)) if n not in kind.numbers] for kind in KINDS]

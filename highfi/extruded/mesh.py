@@ -168,18 +168,26 @@ def _blocks(operator, point, layer, layers) -> dict | None:
 
 
 def _layer(operator, point, layer, elements) -> dict[tuple[int, int], np.ndarray]:
-    blocks: dict[tuple[int, int], np.ndarray] = {}
-    for element in elements:
-        nodes = operator.cells[element]
-        stiffness = operator.stiffness[operator.shape_class[element]].reshape(8, 3, 8, 3)
-        upper = layer[nodes] - layer[nodes].min()
-        for i in range(8):
-            for j in range(8):
-                block = blocks.setdefault(
-                    (int(point[nodes[i]]), int(point[nodes[j]])), np.zeros((2, 2, 3, 3))
-                )
-                block[upper[i], upper[j]] += stiffness[i, :, j, :]
-    return blocks
+    nodes = operator.cells[elements]
+    points, upper = point[nodes], layer[nodes] - layer[nodes].min(axis=1, keepdims=True)
+    shape = (len(nodes), 8, 8)
+    own, other, own_upper, other_upper = (
+        np.broadcast_to(part, shape)
+        for part in (
+            points[:, :, None],
+            points[:, None, :],
+            upper[:, :, None],
+            upper[:, None, :],
+        )
+    )
+    pairs, pair = np.unique(own * (point.max() + 1) + other, return_inverse=True)
+    blocks = np.zeros((len(pairs), 2, 2, 3, 3))
+    stiffness = operator.stiffness[operator.shape_class[elements]].reshape(-1, 8, 3, 8, 3)
+    np.add.at(
+        blocks, (pair.reshape(shape), own_upper, other_upper), stiffness.transpose(0, 1, 3, 2, 4)
+    )
+    numbers = zip(*(part.tolist() for part in np.divmod(pairs, point.max() + 1)))
+    return dict(zip(numbers, blocks))
 
 
 def _parts(block):
