@@ -3,6 +3,15 @@
 The gradient at a corner is that of ``elements.hexahedral_recovery``, bubbles included: differences
 along the edges times the slopes of the element's class at the corner, plus the bubbles, whose
 amplitudes are matrices of the class times the displacement.
+
+The square of a gradient G (Frobenius norm) is at most the sum of the squared displacements u of the
+corners relative to the first one, times the squared norm of the matrix between both. As strain^2 <=
+G^2, rotation^2 <= G^2 / 2 and the square of the stress over the shear modulus is at most 6 strain^2,
+an element cannot raise a peak while
+
+    reach sum |u|^2 <= min(strain^2, 2 rotation^2, stress^2 / 6) of the peaks
+
+and is skipped.
 """
 
 from typing import NamedTuple
@@ -10,13 +19,14 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.highfi.elements import hexahedral_recovery
-from tipoff.highfi.stress.peak import measure, note
+from tipoff.highfi.stress.peak import ROTATION, STRAIN, STRESS, measure, note
 from tipoff.kernels.jit import entry, inlined, kernel
 from tipoff.kernels.memory import aligned
 
 CORNERS = 8
 STEPS = 8.0  # cost of a scan of an element in steps: 180 against 25 ns, one thread each
 _BATCH = 2048  # classes at once; bounds the memory of an unstructured mesh
+_ROUNDING = 1e-9  # far above that of a gradient
 _LANES = 16  # the nine amplitudes, padded to whole vectors
 # Places in the workspace of one element; one flat array, so that the compiler sees that they do not
 # overlap.
@@ -31,6 +41,7 @@ class Recovery(NamedTuple):
     amplitude: np.ndarray  # (c,24*16) of the bubbles, nine of 16 in use
     slope: np.ndarray  # (c,3*3*8) 1/m, of local coordinate i along j at each corner
     bubble: np.ndarray  # (c,3*3*8) 1/m, of bubble i along j at each corner
+    reach: np.ndarray  # (c,) 1/m2, see above
 
 
 def build(
@@ -48,38 +59,77 @@ def build(
         _of_classes(corners[start : start + _BATCH], law)
         for start in range(0, len(corners), _BATCH)
     ]
-    amplitude, slope, bubble = (aligned(np.concatenate(part)) for part in zip(*parts))
+    amplitude, slope, bubble, reach = (aligned(np.concatenate(part)) for part in zip(*parts))
     return Recovery(
         cells=number[hexes].astype(np.uint32),
         shape_class=shape_class,
         amplitude=amplitude,
         slope=slope,
         bubble=bubble,
+        reach=reach,
     )
 
 
-def _of_classes(corners: np.ndarray, law: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _of_classes(corners: np.ndarray, law: np.ndarray) -> tuple[np.ndarray, ...]:
     amplitude = np.zeros((len(corners), 24, _LANES))
-    by_component = (
-        hexahedral_recovery.amplitudes(corners, law).reshape(-1, 3, 3, 24).transpose(0, 3, 2, 1)
+    by_bubble = hexahedral_recovery.amplitudes(corners, law).reshape(-1, 3, 3, 24)
+    amplitude[:, :, :9] = by_bubble.transpose(0, 3, 2, 1).reshape(-1, 24, 9)
+    slope, bubble = hexahedral_recovery.corner_gradients(corners)
+    return (
+        amplitude.reshape(-1, 24 * _LANES),
+        np.moveaxis(slope, 1, 3).reshape(-1, 72),
+        np.moveaxis(bubble, 1, 3).reshape(-1, 72),
+        _reach(corners, by_bubble, bubble),
     )
-    amplitude[:, :, :9] = by_component.reshape(-1, 24, 9)
-    slope, bubble = (
-        np.moveaxis(part, 1, 3).reshape(-1, 72)
-        for part in hexahedral_recovery.corner_gradients(corners)
+
+
+def _reach(corners: np.ndarray, by_bubble: np.ndarray, bubble: np.ndarray) -> np.ndarray:
+    """Bound (c,) 1/m2 of the squared spectral norm of the matrices from the corners' displacement to the gradient at a
+    corner; amplitudes ``by_bubble`` (c,3,3,24) and gradients of each ``bubble`` (c,8,3,3)."""
+    local = np.tile(hexahedral_recovery.NODES, (len(corners), 1))
+    nodal, _ = hexahedral_recovery.gradients(np.repeat(corners, CORNERS, axis=0), local)
+    matrix = np.einsum(
+        "cpbj,cbiam->cpijam", bubble, by_bubble.reshape(-1, 3, 3, CORNERS, 3), optimize=True
     )
-    return amplitude.reshape(-1, 24 * _LANES), slope, bubble
+    for i in range(3):
+        matrix[:, :, i, :, :, i] += nodal.reshape(-1, CORNERS, CORNERS, 3).transpose(0, 1, 3, 2)
+    matrix = matrix[..., 1:, :].reshape(-1, CORNERS, 9, 3 * (CORNERS - 1))
+    # the largest eigenvalue of B is at most the root of the Frobenius norm of B B
+    square = matrix @ np.swapaxes(matrix, 2, 3)
+    largest = np.sqrt(np.linalg.norm(square @ square, axis=(2, 3)))
+    return (1.0 + _ROUNDING) * largest.max(axis=1)
 
 
 @entry
 def find(displacement, recovery, peak, space, first, last):
     """Raise ``peak`` to the values of elements ``first`` to ``last`` under displacement (n,3) m;
     ``space`` (SIZE,) is workspace."""
-    u = displacement.T
+    u, least = displacement.T, _least(peak)
     for e in range(first, last):
+        if recovery.reach[recovery.shape_class[e]] * _square(u, recovery.cells[e]) <= least:
+            continue
         _gradients(u, recovery, space, e)
         if measure(space, peak.square, GRADIENT, SQUARES, CORNERS) > 0:
             note(space, peak, e, SQUARES, CORNERS)
+            least = _least(peak)
+
+
+@inlined
+def _least(peak):
+    """Square of a gradient up to which it raises no peak."""
+    return min(peak.square[STRAIN], 2.0 * peak.square[ROTATION], peak.square[STRESS] / 6.0)
+
+
+@inlined
+def _square(u, nodes):
+    """Sum of the squared displacements (m2) of the corners relative to the first one."""
+    total = 0.0
+    for i in range(3):
+        first = u[i, nodes[0]]
+        for k in range(1, 8):
+            away = u[i, nodes[k]] - first
+            total += away * away
+    return total
 
 
 @kernel

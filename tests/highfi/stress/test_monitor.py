@@ -148,6 +148,34 @@ def test_strain_and_rotation_of_a_distorted_mesh():
     )
 
 
+def test_elements_that_cannot_raise_a_peak_are_skipped_without_a_difference():
+    """Peaks of smooth and of rough displacements in random order, to the bit those of a scan of every
+    element (a reach without a bound). Control: a thousandth of the reach skips elements of the peaks."""
+    mesh, random = block((3, 2, 2), (0.03, 0.02, 0.02)), np.random.default_rng(12)
+    points = mesh.points + 2e-3 * random.uniform(-1.0, 1.0, mesh.points.shape)
+    count, elements = len(points), len(mesh.cells)
+    classes = np.arange(elements, dtype=np.uint32)
+    found = peaks.build(points, mesh.cells, classes, LAW, np.arange(count))
+    seen = {factor: no_peak() for factor in (1.0, np.inf, 1e-3)}
+    for _ in range(300):
+        field = points @ random.standard_normal((3, 3)) + random.standard_normal(3)
+        field += 10.0 ** random.uniform(-5.0, -2.0) * random.standard_normal(points.shape)
+        field *= 1e-4 * random.uniform()
+        for factor, peak in seen.items():
+            recovery = found._replace(reach=factor * found.reach)
+            peaks.find(np.asfortranarray(field), recovery, peak, np.zeros(peaks.SIZE), 0, elements)
+    for part, expected in zip(seen[1.0], seen[np.inf]):
+        np.testing.assert_array_equal(part, expected)
+    assert not np.array_equal(seen[1e-3].square, seen[np.inf].square)
+    for e in range(elements):
+        worst = 0.0
+        for unit in np.eye(3 * count)[[3 * n + i for n in mesh.cells[e] for i in range(3)]]:
+            field = np.asfortranarray(unit.reshape(count, 3))
+            out = peaks.gradients(field, found, np.zeros(peaks.SIZE), e, e + 1)
+            worst = max(worst, (out**2).sum(axis=(2, 3)).max())
+        assert worst < found.reach[e] < 100.0 * worst
+
+
 def patches(size):
     scene, numerics = tiny(), Numerics(element_size=size)
     system = build(scene, numerics, highfi.prepare(scene, numerics))
