@@ -289,18 +289,23 @@ def _solved(fine: _Finer, loads: np.ndarray, most: int) -> tuple[np.ndarray, np.
             least = np.abs(_products(loads, moved))
             if (now <= _ACCURACY * least).all():
                 return moved, rest
-            if (least > 0.0).all():
-                far = max(float((now / least).max()), _ACCURACY)
+            if (known := least > 0.0).any():
+                far = max(float((now[known] / least[known]).max()), _ACCURACY)
                 nearest = max(nearest, min(math.log(far) / math.log(_ACCURACY), 1.0))
                 report(nearest, ITERATION)
-            towards *= (now / before)[:, None]
+            towards *= _ratio(now, before)[:, None]
             towards += better
             pulled = fine.force(towards)
-            length = (now / _products(towards, pulled))[:, None]
+            length = _ratio(now, _products(towards, pulled))[:, None]
             moved += length * towards
             rest -= length * pulled
             before = now
     return None
+
+
+def _ratio(part: np.ndarray, whole: np.ndarray) -> np.ndarray:
+    """Ratio (l,), zero for a load of zeros, as of a face over fixed nodes only: nothing moves."""
+    return np.divide(part, whole, out=np.zeros_like(part), where=whole != 0.0)
 
 
 def _products(first: np.ndarray, second: np.ndarray) -> np.ndarray:

@@ -1,6 +1,8 @@
 """Arrays of a store: one chunk of cases in one file, with a checksum."""
 
+import os
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -32,3 +34,16 @@ def create(
         attributes=dict(attributes),
         dimension_names=("case", "axis")[: 1 + len(inner)],
     )
+
+
+def exchange(new: Path, place: Path, aside: Path) -> None:
+    """Put the folder ``new`` in ``place`` and the one there ``aside``, which comes back if that
+    fails. No folder is replaced in one step where it has files."""
+    if was_there := place.exists():
+        os.replace(place, aside)
+    try:
+        os.replace(new, place)
+    except BaseException:
+        if was_there:
+            os.replace(aside, place)
+        raise

@@ -220,8 +220,9 @@ class Store:
             )
 
     def add(self, name: str, attributes: dict, values: Iterable[np.ndarray]) -> None:
-        """Store a further column (n,) with the results, its ``values`` by chunk; it replaces an
-        existing one atomically. Raises StoreError as ``write`` does."""
+        """Store a further column (n,) with the results, its ``values`` by chunk; an existing one
+        stays until all of the new one is written, and if it cannot be put in place. Raises StoreError
+        as ``write`` does."""
         import zarr
 
         with self._explained():
@@ -231,8 +232,9 @@ class Store:
                 column = arrays.create(group, name, self.asked, CHUNK, attributes)
                 for number, part in enumerate(values):
                     column[slice(*self.bounds(number))] = part
-                shutil.rmtree(place := self.path / "cases.zarr" / name, ignore_errors=True)
-                os.replace(folder / "group" / name, place)
+                arrays.exchange(
+                    folder / "group" / name, self.path / "cases.zarr" / name, folder / "old"
+                )
             finally:
                 shutil.rmtree(folder, ignore_errors=True)
 

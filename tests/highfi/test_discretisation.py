@@ -5,12 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.sparse import csc_array
 
 from tests.highfi import sections, tets
 from tipoff.highfi import compliance, discretisation
 from tipoff.highfi.mesh import split
 from tipoff.highfi.statics import held
 from tipoff.highfi.statics.held import distinct
+from tipoff.highfi.statics.places import Patches
 from tipoff.highfi.statics.solve import Clamped
 from tipoff.scenes import load
 
@@ -99,6 +101,27 @@ def test_the_uncertainty_covers_the_error_against_elements_of_one_millimetre(sec
     to_one = 1.0 - solved(sections.rail(section, size))[0] / solved(sections.rail(section, 1e-3))[0]
     error = too_stiff(section, size, 1e-3)
     assert 0.06 < to_one < 0.12 and to_one < error < own < 1.6 * error
+
+
+@pytest.mark.parametrize("directly", [False, True])
+def test_a_load_of_zeros_moves_nothing(monkeypatch, directly):
+    """As of a face over fixed nodes only: beside other loads the iteration ended without a result.
+    Control: the other loads keep theirs."""
+    mesh = sections.rail("tee", 20e-3)
+    expected = uncertainty(mesh)
+    plain = Patches.loads
+
+    def loads(self, friction=False):
+        found = plain(self, friction).tolil()
+        found[:, 1] = 0.0
+        return csc_array(found)
+
+    monkeypatch.setattr(Patches, "loads", loads)
+    if directly:
+        monkeypatch.setattr(discretisation.chain, "seconds", lambda *_: 0.0)
+    found = uncertainty(mesh)
+    assert not found.why and 0.0 < found.compliance[0] != expected.compliance[0]
+    assert found.frequency == pytest.approx(expected.frequency, rel=0.1)
 
 
 def test_tetrahedra_are_refined_too():

@@ -43,6 +43,19 @@ def test_each_kernel_is_compiled_once(runs, tmp_path, capfd):
     assert capfd.readouterr().err == ""
 
 
+def refuse(run):
+    raise ValueError(f"{run.label} cannot begin")
+
+
+def test_a_warm_up_that_fails_ends_nothing(runs, tmp_path, capfd, monkeypatch):
+    """The run compiles its own, and reports its own fault."""
+    monkeypatch.setattr(compiling, "warm_up", refuse)
+    compiling.compile_ahead("kernels", runs, workers=2)
+    said = capfd.readouterr().err
+    assert "kernels 2/2" in said and said.count("not compiled ahead (") == 2
+    assert machine_codes(tmp_path) == 0
+
+
 @pytest.mark.parametrize("count, workers", [(3, 1), (1, 2)])
 def test_a_run_alone_compiles_its_own(runs, tmp_path, count, workers):
     compiling.compile_ahead("kernels", runs[:count], workers)

@@ -33,8 +33,8 @@ def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
     with progress under ``title`` on standard error.
 
     Runs with the same model and the same effects count as one. With one worker, or one kernel, this
-    does nothing: the run compiles its kernel itself. The same in a script of the user, because each
-    process would begin by running the script again.
+    does nothing: the run compiles its kernel itself, and so does one whose warm-up fails. The same
+    in a script of the user, because each process would begin by running the script again.
     """
     named = {kernel_marks.mark(run): run for run in reversed(runs)}
     missing = {mark: run for mark, run in named.items() if not kernel_marks.are_there(run)}
@@ -49,9 +49,15 @@ def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
                 pending[pool.submit(warm_up, run)] = run
             for future in as_completed(pending):
                 run = pending[future]
-                future.result()
-                kernel_marks.remember(run)
-                board.finished(run.label, "compiled")
+                try:
+                    future.result()
+                except BrokenProcessPool:
+                    raise
+                except Exception as fault:  # a fault of the run itself is its own to report
+                    board.finished(run.label, f"not compiled ahead ({fault})")
+                else:
+                    kernel_marks.remember(run)
+                    board.finished(run.label, "compiled")
     except BrokenProcessPool:
         say("  a process that compiled kernels was ended; the runs compile their own")
     finally:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import zarr
 
 from tipoff import cache, lowfi
 from tipoff.lowfi.ensemble import store as stores
@@ -138,6 +139,38 @@ def test_a_full_disk_is_reported_and_the_store_resumes(tmp_path, digest, monkeyp
     store = asked.store(tmp_path / "store")
     assert fill(asked, store) == CASES - 2 * CHUNK
     assert store.digest() == digest
+
+
+def test_a_column_stays_until_another_is_in_its_place(tmp_path, monkeypatch):
+    """A disk that fails in between leaves the old one. Control: without a failure the new one is there."""
+    store = ensemble().store(tmp_path / "store")
+    store.add("told", {}, (np.full(end - begin, 1.0) for begin, end in places(store)))
+    assert stored(store, "told") == [1.0] * CASES
+    real = os.replace
+
+    def failing(source, target):
+        if Path(source).parent.name == "group" and Path(target).parent.name == "cases.zarr":
+            raise OSError(errno.EIO, "Input/output error")
+        real(source, target)
+
+    monkeypatch.setattr(os, "replace", failing)
+    with pytest.raises(StoreError, match="Input/output error"):
+        store.add("told", {}, (np.full(end - begin, 2.0) for begin, end in places(store)))
+    monkeypatch.setattr(os, "replace", real)
+    assert stored(store, "told") == [1.0] * CASES
+    store.add("told", {}, (np.full(end - begin, 2.0) for begin, end in places(store)))
+    assert stored(store, "told") == [2.0] * CASES
+    assert not [path for path in store.path.iterdir() if path.name.startswith(".told")]
+
+
+def places(store):
+    """First case of each chunk, and first of the next."""
+    return [store.bounds(number) for number in range(len(store))]
+
+
+def stored(store, name: str) -> list[float]:
+    """The values of a column in the folder."""
+    return zarr.open_group(store.path / "cases.zarr", mode="r")[name][:].tolist()
 
 
 @pytest.mark.parametrize(
