@@ -197,7 +197,9 @@ def test_conditions_are_counted_by_their_word():
         "5 of 6 conditions agree (1 of them without contact, 2 of them as distributions), "
         "0 cannot be judged, 1 misses"
     )
-    alike = [replace(ROW, judgement=verdicts.AS_DISTRIBUTION)] * 4  # the number on the tile of a report
+    alike = [
+        replace(ROW, judgement=verdicts.AS_DISTRIBUTION)
+    ] * 4  # the number on the tile of a report
     assert page.counts(alike)[0] == "4 of 4"
     assert page.summary([replace(ROW, judgement=verdicts.CANNOT)], "fitted ") == (
         "0 of 1 fitted conditions agree, 1 cannot be judged, 0 miss"
