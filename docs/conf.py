@@ -49,7 +49,6 @@ def _further() -> str:
 
 # What a page takes from the code, by the comment that stands in its place.
 _MADE = {
-    "<!-- every key of a scene -->": scene_keys.markdown,
     "<!-- every command -->": command_line.markdown,
     "<!-- further explanations -->": _further,
 }
@@ -60,6 +59,8 @@ def _fill(app, name: str, content: list[str]) -> None:
     for place, make in _MADE.items():
         if place in content[0]:
             content[0] = content[0].replace(place, make())
+    if name == "reference/scene":
+        content[0] = scene_keys.placed(content[0], scene_keys.markdown())
 
 
 def setup(app) -> None:

@@ -1,8 +1,14 @@
-"""Every key of a scene file with its value, default and meaning, from the tables themselves."""
+"""Every key of a scene file with its value, default and meaning, from the tables themselves.
+
+    python -m docs.pages.scene_keys        writes them into docs/reference/scene.md, without drawings
+
+The build of the site puts those with drawings in their place.
+"""
 
 import json
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from docs.pages import key_drawings
@@ -11,6 +17,9 @@ from docs.pages.meanings import meanings
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.table import Table
 
+PAGE = Path(__file__).resolve().parents[1] / "reference" / "scene.md"
+_BEGIN, _END = "<!-- every key of a scene -->\n", "<!-- end of the keys -->"
+_DRAWING = re.compile(r'<div class="drawing">.*?</div>\n*', re.DOTALL)
 _BOUNDS = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
 _BOUNDS |= {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
 _CHOICES = (
@@ -34,6 +43,19 @@ def markdown() -> str:
         if path == "`[[pads]]`":
             sections["`[pads]`"] = _pattern(sections[path])
     return "\n\n".join(sections.values())
+
+
+def placed(page: str, keys: str) -> str:
+    """The text of ``page`` with ``keys`` in their place; unchanged if it has none."""
+    if _BEGIN not in page:
+        return page
+    before, rest = page.split(_BEGIN)
+    return f"{before}{_BEGIN}\n{keys}\n\n{_END}{rest.split(_END)[1]}"
+
+
+def written() -> str:
+    """The text of the page of the keys as its file has it: no reader of a file sees drawings."""
+    return placed(PAGE.read_text(encoding="utf-8"), _DRAWING.sub("", markdown()))
 
 
 def _pattern(of_one: str) -> str:
@@ -148,3 +170,7 @@ def _default(key: str, entry: dict, required: list[str]) -> str:
     if isinstance(default, float):
         return f"{default:g}" if unit == "dimensionless" else f"`{default:g} {unit}`"
     return f"`{json.dumps(default)}`"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(written(), encoding="utf-8")

@@ -27,6 +27,17 @@ def test_a_key_without_a_meaning_is_named():
         meanings.meanings(Unexplained)
 
 
+def test_the_page_of_the_keys_is_whole_without_a_site():
+    """Its file is as `python -m docs.pages.scene_keys` writes it. Control: the site has drawings too."""
+    page = scene_keys.PAGE.read_text(encoding="utf-8")
+    assert page == scene_keys.written()
+    assert (
+        "| `payload` | table | required |" in page and "## `[thrust_offset.misalignment]`" in page
+    )
+    assert "<svg" not in page and "<svg" in scene_keys.placed(page, scene_keys.markdown())
+    assert scene_keys.placed("another page", "keys") == "another page"
+
+
 def _units() -> dict[str, str]:
     """Unit by dotted key, as the page has them."""
     found = {}
