@@ -3,16 +3,17 @@
 import pytest
 
 from tests.scenes.support import CONTACT, FRICTION, STICKING, small
-from tipoff.mechanics import outcome, scene_model
-from tipoff.scenes import load, parse
+from tipoff.mechanics import scene_model
+from tipoff.scenes import ends, load, parse
 from tipoff.scenes.effects.friction import Friction
 from tipoff.scenes.effects.sticking import Sticking
 
 
 def test_record():
-    found = scene_model.build(parse(small(contact=CONTACT, friction=STICKING)))
+    scene = parse(small(contact=CONTACT, friction=STICKING))
+    found = scene_model.build(scene)
     assert found.friction == pytest.approx(Sticking(0.4, 0.3, 1e7, 1e4, 1e-6))
-    assert outcome.jam_speed(found) == 0.01
+    assert ends.slow(scene) == 0.01
 
 
 def test_a_table_without_a_law_is_two_step():
