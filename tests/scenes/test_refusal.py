@@ -382,6 +382,6 @@ def test_unknown_names_and_paths(tmp_path):
         load("refrence")
     with pytest.raises(SceneError, match="No such file"):
         load(tmp_path / "none.toml")
-    (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe")
+    (tmp_path / "bytes.toml").write_bytes(b"\xff\xff")
     with pytest.raises(SceneError, match="valid TOML"):
         load(tmp_path / "bytes.toml")
