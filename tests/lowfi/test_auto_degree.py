@@ -7,10 +7,11 @@ import pytest
 
 import tipoff
 from tests.highfi.support import COARSE, tiny
-from tipoff import front, highfi, lowfi
+from tipoff import highfi, lowfi
 from tipoff.lowfi import degrees, modes
 from tipoff.lowfi.ensemble.batch import Family
 from tipoff.scenes import SceneError
+from tipoff.workspace import asked
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +70,7 @@ def test_springs_have_no_cells():
 
 def test_a_call_from_python_may_choose_it(monkeypatch):
     """As the command line does."""
-    monkeypatch.setattr(front, "compliance", lambda scene, degree: given.append(degree) or walls)
+    monkeypatch.setattr(asked, "compliance", lambda _, size, degree: given.append(degree) or walls)
     given, walls = [], highfi.condense(tiny(), COARSE.element_size)
     found = tipoff.run(tiny(), modes=0, degree="auto")
     assert given == [5] and found.numerics["degree"] in (2, 3)
