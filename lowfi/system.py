@@ -6,7 +6,6 @@ import numpy as np
 
 from tipoff.kernels.reference import by_reference
 from tipoff.lowfi import faces
-from tipoff.lowfi.contact import thermal_offset
 from tipoff.lowfi.contact.compliant.neglected import Neglected
 from tipoff.lowfi.contact.compliant.record import Compliance
 from tipoff.lowfi.contact.springs import SMOOTH
@@ -83,15 +82,17 @@ class Contact(NamedTuple):
     """Contact springs."""
 
     law: ContactLaw
-    thermal_offset: ThermalOffset  # of the walls
+    thermal_offset: (
+        ThermalOffset | None
+    )  # of the walls; a type, because a flag costs springs a tenth
     sticking: Sticking  # stick-slip law
 
 
 @by_reference
 class System(NamedTuple):
     """All records of one run. The kernels skip an absent effect by its record: no pusher, no
-    friction, no offset. None is a type of its own, for which kernels are compiled: fixed rails, and
-    the kind of contact that is not there."""
+    friction, no offset. None is a type of its own, for which kernels are compiled: fixed rails, the
+    kind of contact that is not there, and springs at straight walls."""
 
     payload: Body
     platform: Body | None  # None for fixed rails
@@ -117,7 +118,7 @@ class System(NamedTuple):
 def build(
     model: Model,
     compliance: Compliance | None = None,
-    thermal_offset: ThermalOffset = thermal_offset.NONE,
+    thermal_offset: ThermalOffset | None = None,
     neglected: Neglected | None = None,
 ) -> System:
     """Records of ``model``: contact springs at rigid walls, with or without a ``thermal_offset``,

@@ -272,7 +272,7 @@ def pad_contact(contact, system, face, place, axes, body, base):
 @kernel
 def _thermal_offset(offset, face, x):
     """Thermal offset (m) of the wall at ``x`` (m), and its slope."""
-    if thermal_offset.shifts(offset):
+    if offset is not None:
         return thermal_offset.offset_and_slope(offset, int(face[NUMBER]), x)
     return 0.0, 0.0
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
-from tipoff.lowfi.contact.thermal_offset import offset_and_slope, shifts
+from tipoff.lowfi.contact.thermal_offset import offset_and_slope
 from tipoff.lowfi.faces import NORMAL_Y, NORMAL_Z, NUMBER, WALL
 from tipoff.lowfi.state import velocity_at
 from tipoff.scenes.effects import contact as law
@@ -113,7 +113,7 @@ def approach_of_straight(face, drift, swing):
 def approach(offset, face, place, turn, drift, swing):
     """Rate (m/s) of the penetration of ``face``, from the pose and its rates."""
     rate = approach_of_straight(face, drift, swing)
-    if shifts(offset):
+    if offset is not None:
         x = drift[0] + swing[0] * face[0] + swing[1] * face[1] + swing[2] * face[2]
         rate -= offset_and_slope(offset, int(face[NUMBER]), along(face, place, turn))[1] * x
     return rate
@@ -137,7 +137,7 @@ def penetration_of_straight(face, place, turn):
 def penetration(offset, face, place, turn):
     """Penetration (m) of ``face`` into its wall, negative across the gap."""
     p = penetration_of_straight(face, place, turn)
-    if shifts(offset):
+    if offset is not None:
         p -= offset_and_slope(offset, int(face[NUMBER]), along(face, place, turn))[0]
     return p
 
@@ -181,7 +181,7 @@ def along_width(face, size):
 @kernel
 def gradient(offset, face, base, point):
     """Gradient of the penetration by the pad's ``point`` (scene axes): the normal of the wall."""
-    if shifts(offset):
+    if offset is not None:
         return _gradient_with_offset(offset, face, base, point)
     return outward(face, base)
 
@@ -199,7 +199,7 @@ def _gradient_with_offset(offset, face, base, point):
 def slip_velocity(offset, u, closing, n):
     """The part of ``u`` (m/s) across ``n``; |n| is one for a straight wall."""
     along = closing
-    if shifts(offset):
+    if offset is not None:
         along = closing / rotation.dot(n, n)
     return (u[0] - along * n[0], u[1] - along * n[1], u[2] - along * n[2])
 

@@ -18,7 +18,6 @@ import numpy as np
 import scipy  # its parts load when they are first used
 
 from tipoff.kernels.jit import kernel
-from tipoff.kernels.memory import zeros
 from tipoff.kernels.reference import by_reference
 from tipoff.mechanics import drawn_walls
 from tipoff.mechanics.rail_compliance import RailCompliance, cubic
@@ -37,14 +36,11 @@ class ThermalOffset(NamedTuple):
     origin: np.ndarray  # (f,) m, X of the centre of the face at the first station
 
 
-NONE = ThermalOffset(zeros((0, 0, 4)), 1.0, zeros((0,)))
-
-
-def under_pads(model: Model, compliance: RailCompliance | None) -> ThermalOffset:
-    """Record of the rail ``compliance`` of a scene: ``NONE`` for walls without offset, and for
-    compliant contact, which contains the offset itself."""
+def under_pads(model: Model, compliance: RailCompliance | None) -> ThermalOffset | None:
+    """Record of the rail ``compliance`` of a scene. None for walls without offset, and for compliant
+    contact, which contains the offset itself."""
     if compliance is None or compliance.flexibility is not None:
-        return NONE
+        return None
     platform = model.platform.mass_centre[0] if model.platform is not None else 0.0
     origin = model.faces.centre[:, 0] + (model.payload.mass_centre[0] - platform)
     travel, mean = compliance.travel, None
@@ -56,7 +52,7 @@ def under_pads(model: Model, compliance: RailCompliance | None) -> ThermalOffset
         warm = 0.0 if mean is None else scipy.interpolate.CubicSpline(travel, mean)(fine)
         travel, mean = fine, warm + _drawn_mean(compliance.drawn, model, fine, origin)
     if mean is None:
-        return NONE
+        return None
     return ThermalOffset(
         cubic(travel, mean),
         float(travel[1] - travel[0]),
@@ -103,12 +99,6 @@ def require(scene: Scene, compliance: RailCompliance | None) -> None:
     """Raise SceneError with the faults of ``lacking``."""
     if faults := lacking(scene, compliance):
         raise SceneError(faults)
-
-
-@kernel
-def shifts(offset):
-    """Whether any wall is away from its straight place."""
-    return offset.cubic.shape[0] > 0
 
 
 @kernel

@@ -26,7 +26,6 @@ from tipoff.lowfi.contact.compliant.modes import vibrate
 from tipoff.lowfi.contact.compliant.solution import solve
 from tipoff.lowfi.contact.compliant.thermal_offset import is_warm
 from tipoff.lowfi.contact.springs import load, penetration, relative_pose, rubs
-from tipoff.lowfi.contact.thermal_offset import shifts
 from tipoff.lowfi.hold_down import hold
 from tipoff.lowfi.pusher_inertia import resist
 from tipoff.lowfi.pushers import place_of, push_of, slip_at
@@ -266,9 +265,15 @@ def add_springs(contact, faces, touching, stick, bodies, out):
                 if p > 0.0:
                     pad = load(contact, bodies.friction, platform, faces[i], p, body, base)
                     bodies.evaluated[effects.CONTACT] += 1
-                    bodies.evaluated[effects.THERMAL] += shifts(contact.thermal_offset)
+                    _count_thermal(contact.thermal_offset, bodies)
                     _add_pad(pad, bodies, out)
                     _add_traction(contact.sticking, stick[i], faces[i], pad, bodies, out)
+
+
+@kernel
+def _count_thermal(offset, bodies):
+    if offset is not None:
+        bodies.evaluated[effects.THERMAL] += 1
 
 
 @kernel

@@ -1,8 +1,8 @@
 """Marks in the cache of the kernels that runs have compiled, so that a user is told before the
 first run that must wait for compilation.
 
-The surrogate has few kernels: one for each kind of contact, of platform (free or fixed), and degree
-of the patterns. They skip the effects that a scene does not have.
+The surrogate has few kernels: one for each kind of contact, of platform (free or fixed), degree of
+the patterns, and walls of springs (straight or not). They skip the effects that a scene does not have.
 """
 
 import functools
@@ -82,7 +82,7 @@ def mark(run: Run) -> tuple[Path, str]:
     folder, code = sources.cache_folder() / "kernels", _code(run.fidelity)
     if run.fidelity == "highfi":
         return _mark(folder, code, run.model, _not_compiled(run.scene))
-    return _mark(folder, code, run.scene.platform is None, _degree(run))
+    return _mark(folder, code, run.scene.platform is None, _degree(run), _is_at_offset_walls(run))
 
 
 @functools.cache  # a run of the surrogate asks three times
@@ -110,6 +110,13 @@ def _not_compiled(scene: Scene) -> tuple[str, ...]:
     return tuple(
         item.key for item in EFFECTS if item.key in absent or (falls and item.is_body_force)
     )
+
+
+def _is_at_offset_walls(run: Run) -> bool:
+    """Whether contact springs are at walls that are warm or not straight as drawn."""
+    if run.model == COMPLIANT or run.compliance is None:
+        return False
+    return run.scene.thermal is not None or run.compliance.drawn is not None
 
 
 def _degree(run: Run) -> int | str | None:

@@ -68,9 +68,9 @@ def test_places_of_the_walls():
             assert thermal_offset.offset_and_slope(
                 record, face, start + end + over
             ) == pytest.approx(beyond, rel=1e-9, abs=1e-15)
-    assert thermal_offset.under_pads(scene_model.build(REFERENCE), None) is thermal_offset.NONE
+    assert thermal_offset.under_pads(scene_model.build(REFERENCE), None) is None
     # compliant contact holds the offset itself
-    assert thermal_offset.under_pads(model, reference_compliance()) is thermal_offset.NONE
+    assert thermal_offset.under_pads(model, reference_compliance()) is None
 
 
 def test_force_is_along_the_gradient_of_the_penetration():
