@@ -48,7 +48,7 @@ COUNTED = (
     "thermal",
     "thrust_offset",
 )
-_NO_LATCH = HoldDown(release=-np.inf, line=(0.0, 0.0))
+NO_LATCH = HoldDown(release=-np.inf, line=(0.0, 0.0), is_stop=False)
 _NO_STICKING = Sticking(static=0.0, dynamic=0.0, stiffness=0.0, damping=0.0, capture_speed=1.0)
 _NO_FORCE = BodyForce(0.0, 0.0, 0.0)
 
@@ -140,7 +140,7 @@ def build(
         pushing=pushing(model.pushers),
         reacts_on_platform=model.reacts_on_platform,
         thrust_offset=offset(model.thrust_offset),
-        hold_down=model.hold_down or _NO_LATCH,
+        hold_down=model.hold_down or NO_LATCH,
         contact=contact,
         compliance=compliance,
         has_contact=model.contact is not None or compliance is not None,

@@ -88,6 +88,7 @@ def follow(constants, state, book, began):
             _leave(book, share, began + share * dt, marks)
         else:
             _check_speed(book, marks, began, dt)
+            books.look_at_stop(book, past, began + dt, marks)
     if book[EXIT] < np.inf:
         for window in (LEAVING, SETTLED):
             low, high = books.part_in(book, window, began, began + dt)

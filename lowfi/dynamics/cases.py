@@ -14,10 +14,11 @@ from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state
 from tipoff.lowfi.contact.springs import rubs
 from tipoff.lowfi.faces import CENTRE, WALL
-from tipoff.lowfi.system import Body, Contact, Offset, System, offset
+from tipoff.lowfi.system import NO_LATCH, Body, Contact, Offset, System, offset
 from tipoff.mechanics.ending import BOOK_SIZE
 from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.effects.friction import Friction
+from tipoff.scenes.effects.hold_down import HoldDown
 from tipoff.scenes.effects.sticking import Sticking
 
 # Columns of the results: whether the case is left to ``lowfi.run``, steps, the book.
@@ -35,6 +36,7 @@ class Cases(NamedTuple):
     friction: np.ndarray  # (n, 2) static and dynamic coefficient of either law; zero without
     direction: np.ndarray  # (n, 3) of the thrust
     arm: np.ndarray  # (n, 3) m, of the thrust
+    release: np.ndarray  # (n,) s, of the payload from its latch or stop; -infinity without
     start: np.ndarray  # (n, STATE_SIZE) state at ignition
     reach: np.ndarray  # (n,) m, as in ``Tolerance``
     results: np.ndarray  # (n, RESULT_SIZE) filled without samples
@@ -47,6 +49,7 @@ def of_models(system: System, models: Sequence[Model]) -> Cases:
     faces[:, :, CENTRE : CENTRE + 3] = centre
     faces[:, :, WALL] = np.array([model.faces.sign * model.faces.wall for model in models])
     offsets = [offset(model.thrust_offset) for model in models]  # all have one, or none
+    latches = [model.hold_down or NO_LATCH for model in models]
     return Cases(
         mass=np.array([model.payload.mass for model in models]),
         inertia=np.array([model.payload.inertia for model in models]),
@@ -55,6 +58,7 @@ def of_models(system: System, models: Sequence[Model]) -> Cases:
         friction=np.array([coefficients(model.friction) for model in models]),
         direction=np.array([each.direction for each in offsets]),
         arm=np.array([each.arm for each in offsets]),
+        release=np.array([latch.release for latch in latches]),
         start=np.array([state.initial(model) for model in models]),
         reach=np.sqrt((centre**2).sum(axis=2).max(axis=1)),
         results=np.zeros((count, RESULT_SIZE)),
@@ -78,7 +82,7 @@ def system_of(common, cases, n):
         thrust=common.thrust,
         pushing=common.pushing,
         reacts_on_platform=common.reacts_on_platform,
-        hold_down=common.hold_down,
+        hold_down=_latch(common.hold_down, cases.release, n),
         thrust_offset=_offset(common.thrust_offset, cases.direction, cases.arm, n),
         contact=_contact(common.contact, cases.friction, n),
         compliance=common.compliance,
@@ -98,6 +102,11 @@ def _offset(common, direction, arm, n):
         (direction[n, 0], direction[n, 1], direction[n, 2]),
         (arm[n, 0], arm[n, 1], arm[n, 2]),
     )
+
+
+@kernel
+def _latch(latch, release, n):
+    return HoldDown(release[n], latch.line, latch.is_stop)
 
 
 @kernel

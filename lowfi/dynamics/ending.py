@@ -99,6 +99,7 @@ def _monitor(system, marks, loop, step):
             )
             return
         book[PAST] = past
+        books.look_at_stop(book, past, end, marks)
         _look_at_speed(system, marks, loop, step, begin, end)
         if book[DONE] < np.inf:
             return

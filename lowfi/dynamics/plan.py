@@ -16,7 +16,9 @@ _FIRST_SHARE = 1e-3  # of the time to the first stop
 
 def make(model: Model, end: float, numerics: Numerics) -> Plan:
     """Plan of a run up to ``end`` (s)."""
-    released = model.hold_down.release if model.hold_down is not None else 0.0
+    # The force of a stop ends with zero, and at a time of each case.
+    latch = model.hold_down
+    released = latch.release if latch is not None and not latch.is_stop else 0.0
     corners = thrust_law.corners(model.thrust, end)
     if 0.0 < released < end:
         corners = np.unique(np.append(corners, released))

@@ -20,6 +20,7 @@ from tipoff.mechanics.scene_model import Built, Faces
 from tipoff.scenes import changes
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.effects.friction import Friction
+from tipoff.scenes.effects.hold_down import HoldDown
 from tipoff.scenes.effects.sticking import Sticking
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.scene import Scene
@@ -259,6 +260,8 @@ def _without_own(record: Any) -> Any:
         return record._replace(wall=_NONE)
     if isinstance(record, Friction | Sticking):
         return record._replace(static=0.0, dynamic=0.0)
+    if isinstance(record, HoldDown) and record.is_stop:
+        return record._replace(release=0.0)
     return record
 
 

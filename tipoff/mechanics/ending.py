@@ -94,6 +94,13 @@ def look_at_speed(book, excess, at, crossing):
 
 
 @inlined
+def look_at_stop(book, past, at, marks):
+    """Enter the end of a run ``at`` (s) whose payload has fallen back on its stop. ``past`` as PAST."""
+    if past < marks.behind:
+        book[DONE] = at
+
+
+@inlined
 def part_in(book, window, began, ended):
     """Start and end (s) of the part of a step inside a ``window``, SETTLED or LEAVING; for a step
     outside, the end is the smaller value."""

@@ -12,6 +12,8 @@ definitions.
   if friction has none) of a payload that would be faster without friction: friction holds it. A payload
   that is as slow without friction coasts. Its jam speed is that of a payload at rest: at it, the rail
   lasts an hour. It is zero, and no payload is jammed, if the weight pulls along rails without friction.
+* **Fallen back**: the payload comes back to its stop (``scenes.stop``) and is 1 mm behind its start. Such a
+  run ends as a jam.
 
 All values come from the steps of a run (``mechanics.ending``), independent of the sampling
 interval.
@@ -24,7 +26,7 @@ import numpy as np
 
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
-from tipoff.scenes import ends
+from tipoff.scenes import ends, stop
 from tipoff.scenes.effects import thrust
 from tipoff.scenes.ends import EXIT_WINDOW as EXIT_WINDOW
 from tipoff.scenes.ends import JAM_DURATION as JAM_DURATION
@@ -32,6 +34,7 @@ from tipoff.scenes.ends import SETTLE_DELAY
 from tipoff.scenes.ends import SETTLE_WINDOW as SETTLE_WINDOW
 from tipoff.scenes.scene import Scene
 
+BEHIND = 1e-3  # m behind its start, at which a run of a payload that falls back on its stop ends
 _ROUNDING = 1e-12  # relative error of a difference of two equal impulses
 
 
@@ -125,6 +128,9 @@ class Milestones(NamedTuple):
     spent_thrust: float
     jam_speed: float  # m/s
     constant_thrust: bool  # whether a slow payload is jammed under the thrust: constant and strong
+    # m, place of the rearmost trailing edge beyond the rail end at which a payload has fallen back on its
+    # stop; -infinity without a stop
+    behind: float = -math.inf
 
 
 def burnouts(scene: Scene, model) -> tuple[float, float]:
@@ -142,6 +148,7 @@ def milestones(scene: Scene, model, burnt: tuple[float, float] | None = None) ->
         spent_thrust=max(spent, ends.slides(scene, slow)),
         jam_speed=ends.jam_speed(scene),
         constant_thrust=ends.starts_briskly(scene, slow),
+        behind=-ends.way(scene) - BEHIND if stop.is_there(scene) else -math.inf,
     )
 
 

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tipoff.kernels.reference import by_reference
+from tipoff.scenes import stop
 from tipoff.scenes.body import inverse, tensor
 from tipoff.scenes.effects import contact, hold_down, registry, spring, thrust, thrust_offset
 from tipoff.scenes.effects.body_force import BodyForce
@@ -83,7 +84,7 @@ class Model(NamedTuple):
     pushers: Pushers | None  # thrust over travel
     reacts_on_platform: bool
     thrust_offset: thrust_offset.ThrustOffset | None
-    hold_down: hold_down.HoldDown | None  # None after the release too
+    hold_down: hold_down.HoldDown | None  # latch or stop; None after the release too
     contact: contact.ContactLaw | None
     interface_stiffness: float | None  # N/m3, interface and pad layer in series
     friction: Friction | Sticking | None
@@ -140,7 +141,7 @@ def built(scene: Scene, earlier: Built | None = None) -> Built:
         thrust_offset=thrust_offset.record(
             scene.thrust_offset, scene.mass_offset, scene.thrust.arm
         ),
-        hold_down=hold_down.record(scene),
+        hold_down=stop.record(scene),
         contact=kept("contact", lambda: scene.contact.record() if scene.contact else None),
         interface_stiffness=scene.contact.series_stiffness() if scene.contact else None,
         # Friction without contact has no normal force, so it is absent too.

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tipoff.mechanics import ledger
-from tipoff.mechanics.outcome import SETTLE_DELAY, SETTLE_WINDOW, relative_motion
-from tipoff.scenes import ends
+from tipoff.mechanics.outcome import BEHIND, SETTLE_DELAY, SETTLE_WINDOW, relative_motion
+from tipoff.scenes import ends, stop
 from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.tables import MOST_SAMPLES
@@ -81,6 +81,13 @@ def _before_settling(exit_time: float, thrust_ends: float) -> str:
 
 def _jammed(scene: Scene, run: "Trajectory") -> str:
     way, whole, speeds = _progress(scene, run)
+    if stop.is_there(scene):
+        weight = f"{stop.weight(scene):.4g} N of its weight along the rail"
+        if stop.release_time(scene) == math.inf:
+            return f"it rests on its stop: it needs a thrust of more than the {weight}"
+        if way < -0.5 * BEHIND:
+            at = _ms(float(run.time[-1]))
+            return f"fell back on its stop at {at}: it needs thrust that stays above the {weight}"
     work = dict(zip(ledger.ENTRIES, run.energy[-1].tolist(), strict=True))
     weight = work[ledger.BODY_FORCE]
     given = {
@@ -116,6 +123,9 @@ def _progress(scene: Scene, run: "Trajectory") -> tuple[float, float, np.ndarray
 def _on_the_rail(scene: Scene, run: "Trajectory", thrust_ends: float) -> str:
     way, whole, speeds = _progress(scene, run)
     speed, now = float(speeds[-1]), float(run.time[-1])
+    if way < 0.0 and speed < 0.0 and stop.weight(scene) > 0.0:
+        slid = f"slid back along the rail: {-1e3 * way:.3g} mm behind its start, at {speed:.2g} m/s"
+        return f"{slid}: its weight pulls it, and no stop or latch holds it ([hold_down] release)"
     text = f"still on the rail: {1e3 * way:.3g} of {1e3 * whole:.3g} mm"
     exit_time = now + (whole - way) / speed if speed > 0.0 else math.inf
     if exit_time > LONGEST:

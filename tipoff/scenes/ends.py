@@ -19,9 +19,9 @@ from typing import Any
 
 import numpy as np
 
-from tipoff.scenes import pushed
+from tipoff.scenes import pushed, stop
 from tipoff.scenes.body import tensor
-from tipoff.scenes.effects import hold_down, registry, thrust_law
+from tipoff.scenes.effects import registry, thrust_law
 from tipoff.scenes.effects.spring import PushedTable
 from tipoff.scenes.faults import within
 from tipoff.scenes.rounding import at_most, below
@@ -38,9 +38,7 @@ _SLOW = 0.01  # m/s, where friction has no transition speed
 _AFTER = 1e-3  # s, duration of a run after its end
 _BURNT = 1e-3  # of the peak
 _UNIT = 1e-3  # s
-_REACH = 8.0  # widths of a Gaussian beyond which it is below 2e-14 of its peak
 _MARGIN = 1.25  # of the expected end: friction delays the exit
-_POINTS = 4001  # of the thrust
 
 
 class Timed:
@@ -90,7 +88,13 @@ def limit(scene: Any) -> float:
     # A payload that springs push is faster than this soon, or jammed.
     start = slides(scene, slowest) if isinstance(scene.thrust, PushedTable) else 0.0
     end = (
-        thrust_end(record) + start + coasting + JAM_DURATION + SETTLE_DELAY + SETTLE_WINDOW + _AFTER
+        thrust_law.last(record)
+        + start
+        + coasting
+        + JAM_DURATION
+        + SETTLE_DELAY
+        + SETTLE_WINDOW
+        + _AFTER
     )
     rounded = _UNIT * 2.0 ** math.ceil(math.log2(end / _UNIT))
     return min(max(rounded, scene.output.interval), longest(scene))
@@ -107,7 +111,7 @@ def burns_too_long(scene: Any) -> float | None:
     if scene.duration is not None:
         return None
     record, most = scene.thrust.record(), longest(scene)
-    if at_most(thrust_end(record) + SETTLE_WINDOW, most):
+    if at_most(thrust_law.last(record) + SETTLE_WINDOW, most):
         return None
     needed = _burnt(record) + SETTLE_WINDOW
     return needed if below(most, needed) else None
@@ -164,7 +168,7 @@ def expected(scene: Any) -> float:
     record = over_time(scene)
     exits = _exit(scene, record, _fixed_gain(scene), _pull(scene), forwards=False)
     if not math.isfinite(exits):  # it falls back, or nothing moves it
-        exits = thrust_end(record) + JAM_DURATION
+        exits = thrust_law.last(record) + JAM_DURATION
     settled = max(exits + SETTLE_DELAY, _burnt(record)) + SETTLE_WINDOW
     return min(_MARGIN * settled, limit(scene))
 
@@ -191,7 +195,7 @@ def exit_speed(scene: Any) -> float | None:
     left = _exit(scene, record, gain, pull, forwards=False)
     if not math.isfinite(left):
         return None
-    held = hold_down.release_time(scene)
+    held = stop.release_time(scene)
     pushed_on = thrust_law.impulse(record, left) - thrust_law.impulse(record, held)
     return _begun(scene) + gain * pushed_on + pull * (left - held)
 
@@ -204,7 +208,7 @@ def is_driven_otherwise(scene: Any) -> bool:
 def speed_change(scene: Any) -> float:
     """Change (m/s) of the speed along the rail by the whole thrust, on a platform that does not turn."""
     record = over_time(scene)
-    return _fixed_gain(scene) * thrust_law.impulse(record, thrust_end(record))
+    return _fixed_gain(scene) * thrust_law.impulse(record, thrust_law.last(record))
 
 
 def is_too_short(scene: Any) -> bool:
@@ -221,6 +225,8 @@ def slow(scene: Any) -> float:
 def jam_speed(scene: Any) -> float:
     """Relative axial speed (m/s) below which a payload counts as jammed (``mechanics.outcome``)."""
     force, pull, rests = registry.body_force(scene), _pull(scene), _at_rest(scene)
+    if stop.release_time(scene) == math.inf:
+        return rests
     if not (scene.friction and scene.contact and scene.friction.static > 0.0):
         return rests if pull == 0.0 else 0.0
     if force is not None and pull < 0.0:  # friction of the weight holds it, or it slides back
@@ -265,31 +271,14 @@ def slides(scene: Any, speed: float) -> float:
     return 2.0 * speed / pull if pull > 0.0 and abs(_begun(scene)) < speed else 0.0
 
 
-def thrust_end(record: thrust_law.Thrust) -> float:
-    """Time (s) after which the thrust is zero, or 2e-14 of a pulse's peak."""
-    if record.pulses is not None:
-        last = float((record.pulses.centres + _REACH * record.pulses.widths).max())
-        return max(0.0, min(last, record.pulses.end))
-    return max(0.0, float(record.curve.times[-1])) if record.curve is not None else 0.0
-
-
 def _burnt(record: thrust_law.Thrust) -> float:
     """Time (s) after which the thrust is below 0.1 % of its peak."""
-    return thrust_law.burnout(record, _BURNT, 2.0 * thrust_end(record) + _UNIT)
-
-
-def _forces(record: thrust_law.Thrust) -> tuple[np.ndarray, np.ndarray]:
-    """Times (s) from ignition to the end of the thrust, including corners, and forces (N)."""
-    last = thrust_end(record)
-    corners = np.append(thrust_law.corners(record, last), last)
-    both_sides = np.append(corners, np.nextafter(corners, -np.inf))  # of a jump
-    time = np.unique(np.concatenate([np.linspace(0.0, last, _POINTS), both_sides]))
-    return time, thrust_law.estimated(record, time)
+    return thrust_law.burnout(record, _BURNT, 2.0 * thrust_law.last(record) + _UNIT)
 
 
 def _pushed(record: thrust_law.Thrust) -> float:
     """Impulse (N s) of the forward parts of the thrust."""
-    time, force = _forces(record)
+    time, force = thrust_law.forces(record)
     return float(np.trapezoid(np.maximum(force, 0.0), time))
 
 
@@ -297,13 +286,13 @@ def _exit(scene: Any, record: thrust_law.Thrust, gain: float, pull: float, forwa
     """Time (s) at which a payload without friction reaches the exit; infinite if it never does.
     ``gain`` is its acceleration relative to the rail per force (1/kg); with ``forwards`` only
     forward forces count."""
-    time, force = _forces(record)
+    time, force = thrust_law.forces(record)
     force = np.maximum(force, 0.0) if forwards else force
     begun = max(_begun(scene), 0.0) if forwards else _begun(scene)
     distance = way(scene)
     if distance <= 0.0:
         return 0.0
-    free = time >= hold_down.release_time(scene)
+    free = time >= stop.release_time(scene)
     speed = begun + _integral((gain * force + pull) * free, time)
     place = _integral(speed, time)
     past = np.flatnonzero(place >= distance)

@@ -45,7 +45,7 @@ def _of_size(scene) -> list[str]:
     """A thrust that is too strong or too weak for its mass and rail."""
     keys = "thrust, payload.mass"
     record, speed = ends.over_time(scene), ends.speed_change(scene)
-    limit = max(ends.thrust_end(record), 1e-9)
+    limit = max(thrust_law.last(record), 1e-9)
     strongest = thrust_law.peak(record, limit) / scene.payload.mass
     leaves = ends.exit_speed(scene)
     if speed < 0.0:

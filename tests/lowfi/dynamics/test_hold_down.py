@@ -7,7 +7,10 @@ from scipy.spatial.transform import Rotation
 
 from tests.lowfi.support import CENTRED, PAPER_PAD, G, corners, scene
 from tipoff import lowfi
-from tipoff.scenes import SceneError, load
+from tipoff.lowfi import Numerics
+from tipoff.lowfi.ensemble.batch import Family
+from tipoff.mechanics import unfinished
+from tipoff.scenes import SceneError, ends, load
 from tipoff.scenes.effects.hold_down import release_time
 
 MASS, PEAK, WIDTH, CENTRE = 20.0, 4000.0, 2e-3, 6e-3
@@ -90,7 +93,7 @@ def test_the_line_of_the_latch_has_no_speed_along_the_rail():
 
 
 def test_a_payload_on_an_upright_rail_does_not_fall():
-    """Gravity pulls it back before the release. Control: without a hold-down it falls."""
+    """Gravity pulls it back before the release. Control: with a release at ignition it falls."""
     late = {"kind": "constant", "force": 1000.0, "start": 5e-3, "duration": 0.1}
     tables = {"thrust": late, "gravity": {"x": -G, "y": 0.0, "z": 0.0}}
     run = lowfi.run(held(500.0, **tables), "springs")
@@ -98,8 +101,83 @@ def test_a_payload_on_an_upright_rail_does_not_fall():
     assert np.abs(run.velocity[before]).max() < 1e-12
     expected = (1000.0 / MASS - G) * (run.time[-1] - 5e-3)
     assert run.velocity[-1, 0] == pytest.approx(expected, rel=1e-9)
-    free = lowfi.run(scene(0.014, 1e-4, mass=MASS, **OPEN | tables), "springs")
+    free = lowfi.run(held(0.0, **tables), "springs")
     assert free.velocity[before][-1, 0] < -0.04
+
+
+LATE = {"kind": "constant", "force": 1000.0, "start": 0.1, "duration": 1.0}
+TUBE = {
+    "start": -1.0,
+    "end": 0.5,
+    "material": {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33},
+}
+
+
+def on_slope(angle: float, **tables):
+    """At rest on a rail at an ``angle`` (rad) to the ground, untouched by it."""
+    weight = {"x": -G * np.sin(angle), "y": 0.0, "z": 0.0}
+    return scene(
+        0.5, 1e-3, mass=MASS, rail=TUBE, **OPEN | {"thrust": LATE, "gravity": weight} | tables
+    )
+
+
+@pytest.mark.parametrize("angle", [np.pi / 2.0, 0.5])
+def test_a_rocket_rests_on_its_stop_until_its_motor_burns(angle):
+    """From rest its speed at the end of the rail is sqrt(2 a s). Control: without latch and stop it falls
+    until then, by d = g t^2 / 2, and has the speed sqrt((g t)^2 + 2 a (s + d))."""
+    asked = on_slope(angle)
+    pull, way, start = G * np.sin(angle), ends.way(asked), LATE["start"]
+    push = LATE["force"] / MASS - pull
+    run = lowfi.run(asked, "springs")
+    assert np.abs(run.velocity[run.time < start]).max() < 1e-12
+    speed = np.sqrt(2.0 * push * way)
+    # mean over 0.2 ms, in which the thrust acts on
+    assert run.outcome.exit_velocity[0] == pytest.approx(speed + 1e-4 * push, rel=1e-9)
+    assert run.outcome.exit_time == pytest.approx(start + np.sqrt(2.0 * way / push), rel=1e-9)
+    assert run.checks["energy_error"] < 1e-9 and run.checks["linear_momentum_error"] < 1e-12
+    free = lowfi.run(asked.replace({"hold_down.release": 0.0}), "springs")
+    fast = np.sqrt((pull * start) ** 2 + 2.0 * push * (way + 0.5 * pull * start**2))
+    assert free.outcome.exit_velocity[0] == pytest.approx(fast + 1e-4 * push, rel=1e-9)
+
+
+def test_a_thrust_that_grows_lifts_the_payload_without_a_jump(tmp_path):
+    """Under c (t - t_0) the speed is (c / m) (t - t_1)^2 / 2 after the thrust has reached the weight at t_1.
+    The cases of an ensemble have releases of their own, in one call of the kernel."""
+    path, slope = tmp_path / "ramp.csv", 1e4
+    path.write_text(f"time_s,force_N\n0,0\n0.01,0\n0.06,{0.05 * slope}\n")
+    asked = on_slope(np.pi / 2.0, thrust={"kind": "measured", "file": str(path)})
+    asked = asked.replace({"duration": 0.055})
+    run, lifted = lowfi.run(asked, "springs"), 0.01 + MASS * G / slope
+    after = run.time > lifted
+    assert np.abs(run.velocity[~after]).max() < 1e-12
+    exact = 0.5 * slope / MASS * (run.time[after] - lifted) ** 2
+    assert run.velocity[after, 0] == pytest.approx(exact, abs=1e-6 * exact[-1])
+    rows = [{"payload.mass": mass} for mass in (20.0, 25.0, 40.0)]
+    family = Family(asked, None, Numerics(modes=0))
+    assert len(family.jobs(rows)) == 1
+    found = lowfi.run_many(asked, rows, "springs")
+    steps = [lowfi.run(asked.replace(row), "springs").cost["steps"] for row in rows]
+    assert found.steps.values.tolist() == steps and len(set(steps)) > 1
+
+
+@pytest.mark.parametrize(
+    "force, words", [(190.0, "rests on its stop"), (400.0, "fell back on its stop")]
+)
+def test_a_payload_that_its_thrust_does_not_carry_ends_on_its_stop(force, words):
+    """A weight of 196 N. Control: without latch and stop it falls on, and is not said to be on the rail."""
+    short = {"kind": "constant", "force": force, "start": 0.0, "duration": 0.05}
+    asked = on_slope(np.pi / 2.0, thrust=short)
+    run = lowfi.run(asked, "springs")
+    assert run.status == "jammed" and words in unfinished.advice(asked, run)
+    speed = (force / MASS - G) * 0.05
+    if speed > 0.0:
+        top = 0.5 * speed * 0.05 + speed**2 / (2.0 * G)
+        back = 0.05 + (speed + np.sqrt(2.0 * G * (top + 1e-3))) / G
+        # to a millisecond, a piece of a step, and another one until the run ends
+        assert back <= run.time[-1] < back + 3e-3
+    free = asked.replace({"hold_down.release": 0.0})
+    text = unfinished.advice(free, lowfi.run(free, "springs"))
+    assert text.startswith("slid back along the rail") and "no stop or latch" in text
 
 
 @pytest.mark.case("O91")

@@ -1,5 +1,6 @@
 """Hold-down: a latch between platform and payload, which holds the travel along the rail until the
-thrust first reaches a value. Absent table: none.
+thrust first reaches a value. Absent table: no latch, but a stop where the weight pulls the payload back
+(``scenes.stop``).
 
 The latch takes the force lambda along the rail that keeps the travel constant, and gives it back to
 the platform. It acts on the line of the nominal mass centre along the rail, in both directions, and
@@ -24,7 +25,8 @@ EFFECT = Effect("hold_down")
 class HoldDownTable(Table):
     """``[hold_down]``: thrust (N) at which the payload is released."""
 
-    #: Thrust at which the payload is released, once for all; 0 is the ignition.
+    #: Thrust at which the payload is released, once for all; 0 is the ignition. With 0 there is no
+    #: stop behind the payload either, and its weight may pull it back.
     release: NonNegativeForce
 
 
@@ -33,20 +35,21 @@ class HoldDown(NamedTuple):
 
     release: float  # s, time of the release
     line: tuple  # (2,) m, places along Y and Z of the line on which it acts, in platform axes
+    is_stop: bool  # whether it is released when the payload leaves its stop (``scenes.stop``)
 
 
 def release_time(scene) -> float:
-    """Time (s) of the release; 0 without a hold-down, infinite if the thrust is too small."""
+    """Time (s) at which the latch releases; 0 without one, infinite if the thrust is too small."""
     if scene.hold_down is None or isinstance(scene.thrust, PushedTable):
         return 0.0
     return thrust_law.reached(scene.thrust.record(), scene.hold_down.release)
 
 
-def record(scene) -> HoldDown | None:
-    """Kernel record, None if nothing is held after the ignition. Raises SceneError for a thrust
-    that never reaches the value, for springs, and for a payload that moves along the rail."""
-    if scene.hold_down is None:
-        return None
+def require(scene) -> None:
+    """Raise SceneError for a thrust that never reaches the value, for springs, and for a payload that
+    moves along the rail. A release at 0 N needs nothing."""
+    if scene.hold_down is None or scene.hold_down.release == 0.0:
+        return
     found, time = [], release_time(scene)
     if isinstance(scene.thrust, PushedTable):
         found.append(("hold_down", "a table", "none: springs push from the ignition on"))
@@ -58,6 +61,3 @@ def record(scene) -> HoldDown | None:
         found.append(("initial", "a velocity along the rail", "none: the payload is held"))
     if found:
         raise SceneError([Fault(scene.name, *fault) for fault in found])
-    centre = scene.platform.mass_centre if free else None
-    line = (0.0, 0.0) if centre is None else (-centre.y, -centre.z)
-    return HoldDown(time, line) if time > 0.0 else None

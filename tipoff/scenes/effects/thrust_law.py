@@ -17,6 +17,8 @@ ROOT_TWO_PI = math.sqrt(2.0 * math.pi)
 # Widths around a pulse in which the thrust is evaluated: for one pulse, and for one of several.
 _COARSE, _FINE = np.linspace(-8.0, 8.0, 17), np.linspace(-8.0, 8.0, 801)
 _BISECTIONS = 60  # of the usual interval
+_REACH = 8.0  # widths of a Gaussian beyond which it is below 2e-14 of its peak
+_POINTS = 4001  # of ``forces``
 _FEW = 500  # terms that Python sums; to load the first compiled function of a process takes 0.2 s
 
 
@@ -222,6 +224,30 @@ def _last_above(
     if above == time.size - 1:
         return float(duration)
     return float(_crossed(thrust, level, time[above], time[above + 1])[1])
+
+
+def crossing(thrust: Thrust, level: float, above: float, below: float) -> float:
+    """Time (s) between a time ``above`` and a time ``below`` at which the magnitude of the thrust passes
+    the ``level`` (N), on the side above."""
+    return _crossed(thrust, level, above, below)[0]
+
+
+def last(thrust: Thrust) -> float:
+    """Time (s) after which the thrust is zero, or 2e-14 of a pulse's peak."""
+    if thrust.pulses is not None:
+        end = float((thrust.pulses.centres + _REACH * thrust.pulses.widths).max())
+        return max(0.0, min(end, thrust.pulses.end))
+    return max(0.0, float(thrust.curve.times[-1])) if thrust.curve is not None else 0.0
+
+
+def forces(thrust: Thrust) -> tuple[np.ndarray, np.ndarray]:
+    """Times (s) from ignition to the end of the thrust, with both sides of its corners, and its values
+    (N)."""
+    end = last(thrust)
+    at_corners = np.append(corners(thrust, end), end)
+    both_sides = np.append(at_corners, np.nextafter(at_corners, -np.inf))  # of a jump
+    time = np.unique(np.concatenate([np.linspace(0.0, end, _POINTS), both_sides]))
+    return time, estimated(thrust, time)
 
 
 def kept(begin: float, end: float, centre: float, width: float) -> float:

@@ -13,8 +13,9 @@ from tipoff.mechanics import hand_over, instant
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.mechanics.rail_compliance import DEGREE
 from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes import stop
 from tipoff.scenes.faults import Fault, InputError, SceneError
-from tipoff.scenes.scene import catalog
+from tipoff.scenes.scene import Scene, catalog
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.render.uncertain import uncertain
@@ -219,6 +220,7 @@ def lines(row: Single, made_with: str, study: Study) -> list[str]:
     text = [f"{study.scene.name} / {row.condition}, model {made_with}: {row.status}{said}"]
     if row.thrust:
         text.append(f"  thrust        {row.thrust['text']}")
+    text += _stop(study.condition(row.condition))
     if row.advice and not row.failed:
         text.append(f"  advice        {row.advice}")
     if row.exit_time_s is not None:
@@ -238,6 +240,16 @@ def lines(row: Single, made_with: str, study: Study) -> list[str]:
     text.append(f"  took          {row.wall_s:.3g} s, {row.steps} steps")
     text.append(f"  trajectory    {study.path(row.trajectory)}")
     return text
+
+
+def _stop(scene: Scene) -> list[str]:
+    """How long the payload rests on its stop."""
+    if not stop.is_there(scene):
+        return []
+    left = stop.release_time(scene)
+    until = f"until {1e3 * left:.4g} ms: then" if math.isfinite(left) else "to the end: never"
+    weight = f"the thrust exceeds its weight along the rail, {stop.weight(scene):.4g} N"
+    return [f"  stop          the payload rests on a stop behind it {until} {weight}"]
 
 
 def _after(row: Row) -> str:
