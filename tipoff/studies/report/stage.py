@@ -123,9 +123,9 @@ def _draw_early(
     from tipoff.studies.runs.figures import Runs
 
     def write() -> None:
-        again = "being made; this page is written again with it"
+        again = "being made; this page is written again when they are there"
         found, _ = attempt("stored runs", lambda: _trajectories(study, documents))
-        made = documents, found or Runs({}, {}), dict.fromkeys(waiting, again)
+        made = documents, found or Runs({}, {}), {", ".join(waiting): again}
         write_text(path, render(Page(study.scene, study.folder, *made, limits)))
         say(f"{path}: a first page, without {', '.join(waiting)}")
 
