@@ -249,6 +249,8 @@ def test_a_rail_that_ends_behind_every_pad_is_refused(others):
         with pytest.raises(SceneError) as refused:
             variations.of(behind)
         assert str(refused.value) == str(error.value)
+    # a payload that begins 1 mm behind its nominal place has its pads on the rail
+    assert scene.replace(behind | {"initial.position.x": -1e-3}).rail.end == -0.0881
 
 
 def test_errors_far_from_the_values_of_the_scene_are_told():

@@ -30,8 +30,9 @@ def require_way(scene: Any) -> None:
 
 
 def ends_behind_the_pads(scene: Any) -> bool:
-    """Whether the rail ends behind every pad of a payload at its nominal place."""
-    return not below(0.0, nominal_way(scene), scene.rail.end)
+    """Whether the rail ends behind every pad of a payload at its nominal place, and at the place where it
+    begins."""
+    return not below(0.0, max(nominal_way(scene), way(scene)), scene.rail.end)
 
 
 def with_strokes_on_the_rail(thrust: Any, tables: dict[str, Any]) -> Any:
