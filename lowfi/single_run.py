@@ -169,7 +169,7 @@ class SingleRun:
             return ""
         times = "once" if self.reruns == 1 else f"{self.reruns} times"
         return (
-            f"run again {times}, with relative_tolerance {self.used.relative_tolerance:.3g}, "
+            f"it was run again {times}, with relative_tolerance {self.used.relative_tolerance:.3g}, "
             f"for the energy ledgers to close"
         )
 

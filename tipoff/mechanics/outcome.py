@@ -12,8 +12,8 @@ definitions.
   if friction has none) of a payload that would be faster without friction: friction holds it. A payload
   that is as slow without friction coasts. Its jam speed is that of a payload at rest: at it, the rail
   lasts an hour. It is zero, and no payload is jammed, if the weight pulls along rails without friction.
-* **Fallen back**: the payload comes back to its stop (``scenes.stop``) and is 1 mm behind its start. Such a
-  run ends as a jam.
+* **Fallen back**: the payload comes back to its stop (``scenes.stop``) and is 1 mm behind its start.
+  Without a stop, all pads are behind the start of the rail. Such a run ends as a jam.
 
 All values come from the steps of a run (``mechanics.ending``), independent of the sampling
 interval.
@@ -26,7 +26,7 @@ import numpy as np
 
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
-from tipoff.scenes import ends, stop
+from tipoff.scenes import ends, stop, travel
 from tipoff.scenes.effects import thrust
 from tipoff.scenes.ends import EXIT_WINDOW as EXIT_WINDOW
 from tipoff.scenes.ends import JAM_DURATION as JAM_DURATION
@@ -129,7 +129,7 @@ class Milestones(NamedTuple):
     jam_speed: float  # m/s
     constant_thrust: bool  # whether a slow payload is jammed under the thrust: constant and strong
     # m, place of the rearmost trailing edge beyond the rail end at which a payload has fallen back on its
-    # stop; -infinity without a stop
+    # stop or, without one, off the rear end of the rail
     behind: float = -math.inf
 
 
@@ -148,8 +148,15 @@ def milestones(scene: Scene, model, burnt: tuple[float, float] | None = None) ->
         spent_thrust=max(spent, ends.slides(scene, slow)),
         jam_speed=ends.jam_speed(scene),
         constant_thrust=ends.starts_briskly(scene, slow),
-        behind=-ends.way(scene) - BEHIND if stop.is_there(scene) else -math.inf,
+        behind=_behind(scene),
     )
+
+
+def _behind(scene: Scene) -> float:
+    """``Milestones.behind``."""
+    if stop.is_there(scene):
+        return -ends.way(scene) - BEHIND
+    return travel.way_off_the_rear_end(scene) - travel.nominal_way(scene)
 
 
 def relative_motion(motion) -> dict[str, np.ndarray]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from tipoff.mechanics import ledger
 from tipoff.mechanics.outcome import BEHIND, SETTLE_DELAY, SETTLE_WINDOW, relative_motion
-from tipoff.scenes import ends, stop
+from tipoff.scenes import ends, stop, travel
 from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.tables import MOST_SAMPLES
@@ -81,6 +81,7 @@ def _before_settling(exit_time: float, thrust_ends: float) -> str:
 
 def _jammed(scene: Scene, run: "Trajectory") -> str:
     way, whole, speeds = _progress(scene, run)
+    begun = scene.initial.position.x if scene.initial is not None else 0.0
     if stop.is_there(scene):
         weight = f"{stop.weight(scene):.4g} N of its weight along the rail"
         if stop.release_time(scene) == math.inf:
@@ -88,6 +89,11 @@ def _jammed(scene: Scene, run: "Trajectory") -> str:
         if way < -0.5 * BEHIND:
             at = _ms(float(run.time[-1]))
             return f"fell back on its stop at {at}: it needs thrust that stays above the {weight}"
+    elif begun + way < travel.way_off_the_rear_end(scene) + BEHIND:
+        pulled = stop.weight(scene) > 0.0
+        cause = "its weight pulls it, and no stop or latch holds it ([hold_down] release)"
+        fell = f"fell off the rear end of the rail at {_ms(float(run.time[-1]))}"
+        return f"{fell}: {cause if pulled else 'nothing holds it there'}"
     work = dict(zip(ledger.ENTRIES, run.energy[-1].tolist(), strict=True))
     weight = work[ledger.BODY_FORCE]
     given = {

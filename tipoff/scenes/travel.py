@@ -1,5 +1,6 @@
 """Travel along the rail from ignition to the exit, and the rails and strokes that do not fit it."""
 
+import math
 from types import SimpleNamespace
 from typing import Any
 
@@ -18,6 +19,14 @@ def way(scene: Any) -> float:
 def nominal_way(scene: Any) -> float:
     """``way`` (m) of a payload that begins at its nominal place. ``scene`` needs pads and rail."""
     return scene.rail.end - min(pad.position[0] - 0.5 * pad.length for pad in scene.pads)
+
+
+def way_off_the_rear_end(scene: Any) -> float:
+    """Place along the rail (m), relative to the nominal one, at which the leading edge of the foremost pad
+    is at the start of the rail; -infinity for a payload that begins behind it."""
+    begun = scene.initial.position.x if scene.initial is not None else 0.0
+    place = scene.rail.start - max(pad.position[0] + 0.5 * pad.length for pad in scene.pads)
+    return place if place < begun else -math.inf
 
 
 def require_way(scene: Any) -> None:
@@ -55,6 +64,8 @@ def strokes_too_long(scene: Any) -> list[tuple[str, float]]:
     if not isinstance(scene.thrust, PushedTable):
         return []
     whole = nominal_way(scene)
+    if whole <= 0.0:  # the fault is that of the rail
+        return []
     return [
         (key, whole)
         for key, spring in scene.thrust.named()

@@ -180,6 +180,20 @@ def test_a_payload_that_its_thrust_does_not_carry_ends_on_its_stop(force, words)
     assert text.startswith("slid back along the rail") and "no stop or latch" in text
 
 
+def test_a_payload_without_a_stop_falls_off_the_rear_end():
+    """Its thrust would carry it back through the rail. Control: a thrust that turns it on the rail."""
+    fallen, caught = (
+        on_slope(0.5 * np.pi, hold_down={"release": 0.0}, thrust=LATE | {"start": start})
+        for start in (1.0, 0.1)
+    )
+    run = lowfi.run(fallen, "springs")
+    front = max(pad.position[0] + 0.5 * pad.length for pad in fallen.pads)
+    exact = np.sqrt(2.0 * (front - TUBE["start"]) / G)
+    assert run.status == "jammed" and run.time[-1] == pytest.approx(exact, abs=6e-3)
+    assert "fell off the rear end of the rail" in unfinished.advice(fallen, run)
+    assert lowfi.run(caught, "springs").outcome.exit_time is not None
+
+
 @pytest.mark.case("O91")
 @pytest.mark.parametrize("level", [0.0, 20.0])
 def test_a_release_at_ignition_has_the_same_bits_as_none(level):

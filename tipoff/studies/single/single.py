@@ -14,6 +14,7 @@ from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.mechanics.rail_compliance import DEGREE
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import stop
+from tipoff.scenes.effects import hold_down
 from tipoff.scenes.faults import Fault, InputError, SceneError
 from tipoff.scenes.scene import Scene, catalog
 from tipoff.studies.agreement import kept, verdicts
@@ -243,8 +244,8 @@ def lines(row: Single, made_with: str, study: Study) -> list[str]:
 
 
 def _stop(scene: Scene) -> list[str]:
-    """How long the payload rests on its stop."""
-    if not stop.is_there(scene):
+    """How long the payload rests on its stop, without a latch that holds it longer."""
+    if not stop.is_there(scene) or hold_down.release_time(scene) == stop.release_time(scene) > 0.0:
         return []
     left = stop.release_time(scene)
     until = f"until {1e3 * left:.4g} ms: then" if math.isfinite(left) else "to the end: never"
