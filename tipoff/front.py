@@ -192,8 +192,9 @@ def ensemble(
         >>> cases = tipoff.ensemble(tipoff.load("tiny"), "paper", "springs", count=8)
         >>> cases.rate.dims, cases.rate.attrs["units"]
         (('case', 'axis'), 'rad/s')
-        >>> cases["contact.clearance"].dims, cases["contact.clearance"].attrs["units"]
-        (('case',), 'm')
+        >>> tilt = cases["thrust_offset.misalignment.axial"]
+        >>> tilt.dims, tilt.attrs["units"]
+        (('case',), 'rad')
         >>> heavier = [{"payload.mass": "10 kg"}, {"payload.mass": "11 kg"}]
         >>> tipoff.ensemble(tipoff.load("tiny"), heavier, "springs").sizes["case"]
         2

@@ -61,7 +61,8 @@ def test_results_that_cannot_be_written(tmp_path):
 def test_a_folder_of_kernels_that_cannot_be_made_is_named(tmp_path):
     (tmp_path / "file").write_text("")
     done = subprocess.run(
-        [sys.executable, "-m", "tipoff", "scenes"],
+        [sys.executable, "-m", "tipoff", "run", "--scene", "tiny", "--model", "springs"],
+        cwd=tmp_path,
         env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "file")},
         capture_output=True,
         text=True,

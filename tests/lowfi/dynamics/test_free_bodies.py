@@ -329,6 +329,7 @@ def test_a_rocket_far_from_its_rail_keeps_its_rate():
     """The thrust passes through the mass centre, so the rate is constant in every sample. With its angular
     momentum about the origin it had waves of 3e-5 rad/s between the steps."""
     free = {"contact": None, "friction": None, "initial.settled": None, "thrust_offset": None}
+    free |= {"hold_down": {"release": 0.0}}  # a stop would press on it beside its mass centre
     run = lowfi.run(scenes.load("rocket_rail").replace(free | {"initial.rate.y": 0.05}), "springs")
     assert run.position[-1, 0] > 2.0
     assert np.ptp(run.rate[:, 1]) < 1e-14

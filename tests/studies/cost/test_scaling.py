@@ -205,7 +205,7 @@ def rows(times) -> tuple[Row, ...]:
             variant=variant,
             status="exited",
             time_s=factor * seconds,
-            compiled=(),
+            evaluated=(),
             **nothing,
         )
         for fidelity, factor in (("highfi", 1e3), ("lowfi", 1.0))

@@ -175,7 +175,7 @@ def test_the_probability_above_limits(tmp_path):
 def test_bad_rows_are_refused_alone(tmp_path):
     table = tmp_path / "cases.csv"
     table.write_text(
-        "thrust_offset.misalignment.axial,payload.mass\ndeg,kg\n0.1,9.9\n0.2,-1\nx,9.9\n0.3,\n"
+        "thrust_offset.misalignment.axial,payload.mass\ndeg,kg\n0.1,9.9\n0.2,-1\nx,9.9\n0.3,9.8\n"
     )
     found = json.loads(call("--table", table, "--out", tmp_path / "out", "--json").stdout)
     assert found["counts"] == {"asked": 4, "ok": 2, "refused": 2, "failed": 0}
