@@ -50,9 +50,12 @@ def test_only_regular_files_are_input(name):
         files.read_input(name)
 
 
-@pytest.mark.parametrize("encoding", ["utf-16", "utf-32", "utf-8", "utf-8-sig"])
+@pytest.mark.parametrize(
+    "encoding", ["utf-16", "utf-16-le", "utf-16-be", "utf-32", "utf-8", "utf-8-sig"]
+)
 def test_readers_of_text_know_the_encodings_of_windows(tmp_path, encoding):
-    """A byte order mark states UTF-16. Control: without knowing it no line is text."""
+    """A byte order mark states UTF-16, or every second byte is zero. Control: without knowing it no line
+    is text."""
 
     def written(name, text):
         path = tmp_path / name

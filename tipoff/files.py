@@ -80,8 +80,17 @@ def open_input(path: str | Path) -> Iterator[io.BufferedReader]:
 
 def encoding(begin: bytes) -> str:
     """Encoding of a text by its first bytes: UTF-16 or UTF-32 with a byte order mark, as Windows writes
-    them, else UTF-8."""
-    return next((name for mark, name in _ENCODINGS.items() if begin.startswith(mark)), "utf-8-sig")
+    them, or UTF-16 without one, whose first characters are of ASCII, else UTF-8."""
+    for mark, name in _ENCODINGS.items():
+        if begin.startswith(mark):
+            return name
+    for name, zeros, letters in (
+        ("utf-16-le", begin[1:4:2], begin[0:4:2]),
+        ("utf-16-be", begin[0:4:2], begin[1:4:2]),
+    ):
+        if zeros == b"\0\0" and all(byte in b"\t\r\n" or 32 <= byte < 127 for byte in letters):
+            return name
+    return "utf-8-sig"
 
 
 def utf_8(content: bytes) -> bytes:

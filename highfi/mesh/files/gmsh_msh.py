@@ -139,7 +139,7 @@ def _names(file: _File) -> Names:
     )
     names: Names = {}
     for line in (found[1] if found else b"").splitlines()[1:]:
-        if one := _NAME.match(line):
+        if (one := _NAME.match(line)) and one[3]:  # an empty name is none
             names[int(one[1]), abs(int(one[2]))] = one[3].decode("utf-8", "replace")
     return names
 

@@ -25,6 +25,10 @@ def test_groups_of_gmsh_without_a_name_have_that_of_their_number(tmp_path, form)
     check_rail(read(tmp_path / "bare.msh", Asked(groups=groups)))
     with pytest.raises(MeshError):
         read(tmp_path / "bare.msh")
+    empty = re.sub(rb'^(\d \d+) ".*"', rb'\1 ""', content, flags=re.MULTILINE)
+    assert empty != content
+    (tmp_path / "empty.msh").write_bytes(empty)
+    check_rail(read(tmp_path / "empty.msh", Asked(groups=groups)))
 
 
 def test_parametric_nodes_are_nodes(tmp_path):

@@ -65,6 +65,27 @@ def test_units_are_converted_and_a_whole_log_leaves_no_note(tmp_path):
         read(written(tmp_path, in_other_units))
 
 
+@pytest.mark.parametrize("step", [0.25, 0.5, 1.0])
+def test_rates_in_coarse_steps_are_settled(tmp_path, step):
+    """The rate lies between two steps, and the noise is below half of one. Control: rates of such a
+    scatter in a log with fine steps."""
+    head, names, *samples = SAMPLES[1].with_suffix(".csv").read_text().splitlines()
+    cells = [line.split(",") for line in samples]
+    for row in cells:
+        row[1:4] = [f"{step * round(float(cell) / step):.3f}" for cell in row[1:4]]
+    (tmp_path / "simulated1.csv").write_text("\n".join([head, names, *map(",".join, cells)]) + "\n")
+    sheet = SAMPLES[1].read_text()
+    stated = re.sub(r'(\[gyro\][^[]*?resolution = )"[^"]*"', rf'\1"{step} deg/s"', sheet)
+    (tmp_path / "test.toml").write_text(stated)
+    assert stated != sheet
+    analysis.analyse(tmp_path / "test.toml")
+    if step > 0.25:  # twice the noise
+        (tmp_path / "test.toml").write_text(
+            stated.replace(f'"{step} deg/s"', f'"{step / 8} deg/s"')
+        )
+        assert "settled window" in refused(tmp_path / "test.toml")
+
+
 @pytest.mark.parametrize(
     "rows",
     [

@@ -151,12 +151,14 @@ def _require_settled(
     residuals: list[np.ndarray], tau: float, bent: np.ndarray, resolution: float, source: str
 ) -> None:
     """Check that residuals of the straight line are noise as small as in the reference window plus
-    the ``bent`` (3,) rad/s of a free tumble. Raises SceneError otherwise."""
+    the ``bent`` (3,) rad/s of a free tumble. A rate between two steps of the ``resolution``, with noise
+    below half a step, is rounded to either: its variance is up to a quarter of the square of a step.
+    Raises SceneError otherwise."""
     calm, settled = (
         (stretch**2).sum(axis=0) / (len(stretch) - lost) for stretch, lost in zip(residuals, (1, 2))
     )
     freedom = [max(1.0, len(stretch) / tau) for stretch in residuals]
-    expected = np.maximum(calm, resolution**2 / 12.0 + _TINY**2)
+    expected = np.maximum(calm, resolution**2 / 4.0 + _TINY**2)
     chance = scipy.stats.f.sf((settled - bent**2) / expected, freedom[1], freedom[0])
     if (chance < _UNSETTLED).any():
         worst = int(np.argmin(chance))
