@@ -82,9 +82,8 @@ class Contact(NamedTuple):
     """Contact springs."""
 
     law: ContactLaw
-    thermal_offset: (
-        ThermalOffset | None
-    )  # of the walls; a type, because a flag costs springs a tenth
+    # of the walls; None is a type, because a flag costs springs a tenth of their time
+    thermal_offset: ThermalOffset | None
     sticking: Sticking  # stick-slip law
 
 
