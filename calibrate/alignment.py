@@ -19,7 +19,7 @@ import math
 import numpy as np
 
 from tipoff.calibration.parameters import Parameter
-from tipoff.mechanics import scene_model
+from tipoff.scenes import scene_model
 from tipoff.scenes.body import tensor
 from tipoff.scenes.scene import Scene
 

@@ -13,9 +13,9 @@ import scipy  # its submodules load at their first use
 from tipoff.calibration.discrepancy import VELOCITY, Curve, deviations, likeliest
 from tipoff.calibration.objective import Target, sampled
 from tipoff.calibration.refine import STEP, UNIT
+from tipoff.mechanics.laws import thrust
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import ends
-from tipoff.scenes.effects import thrust
 
 _GRID = 201
 _LEVEL = 1.96  # standard deviations of a 95 % interval

@@ -15,10 +15,10 @@ import numpy as np
 from tipoff import cache, sources
 from tipoff.files import content_hash, tell
 from tipoff.highfi.statics import inputs
-from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance, content, digest, stored
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 from tipoff.remaining import Remaining
+from tipoff.scenes import scene_model
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.studies import element_size as own_size
 

@@ -11,8 +11,8 @@ from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.simulation import prepare
 from tipoff.highfi.state import nodes
 from tipoff.kernels.compiled import effects
+from tipoff.mechanics.laws.friction import coefficient_over_speed
 from tipoff.mechanics.ledger import BODY_FORCE
-from tipoff.scenes.effects.friction import coefficient_over_speed
 from tipoff.scenes.scene import Scene
 
 # For each effect, a kernel that only this effect calls. Mass offset, initial state and temperature

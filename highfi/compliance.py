@@ -28,7 +28,8 @@ from tipoff.highfi.simulation import prepare
 from tipoff.highfi.statics import inputs, joint_terms
 from tipoff.highfi.statics.held import HeldRail, distinct
 from tipoff.highfi.statics.places import Patches, one_of, part_of_wall, pressed_together
-from tipoff.mechanics import scene_model
+from tipoff.mechanics.laws.thermal import FIELDS
+from tipoff.mechanics.model import Faces, half_sizes
 from tipoff.mechanics.rail_compliance import (
     DEGREE,
     MODES,
@@ -42,7 +43,7 @@ from tipoff.mechanics.rail_compliance import (
 from tipoff.mechanics.rail_compliance import patterns as of_degree
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 from tipoff.mechanics.rail_compliance.patterns import DRAGGED, FARTHEST
-from tipoff.scenes.effects.thermal import FIELDS
+from tipoff.scenes import scene_model
 from tipoff.scenes.scene import Scene
 
 _SPACING = 2e-3  # m between stations; over an end, compliance changes within a quarter of a pad
@@ -158,7 +159,7 @@ def _drawn(scene: Scene, element_size: float) -> np.ndarray | None:
         return None
     own = inputs.of(scene)
     mesh = prepare(scene, Numerics(element_size=element_size))
-    half = scene_model.half_sizes(own.faces)[:, 1]
+    half = half_sizes(own.faces)[:, 1]
     return drawn_walls.offsets(mesh, own.faces, half, own.reach)
 
 
@@ -177,7 +178,7 @@ def walls(scene: Scene, element_size: float, spacing: float | None = None) -> Ra
         travel=stations,
         flexibility=None,
         rail=np.zeros(faces, dtype=np.int64),
-        half=scene_model.half_sizes(nominal),
+        half=half_sizes(nominal),
         frequency=np.zeros((1, 0)),
         shape=np.zeros((stations.size, faces, PATTERNS, 0)),
         made_for=digest(scene),
@@ -208,7 +209,7 @@ def along(
     """Compliance of the rails of ``scene`` in elements of about ``element_size`` (m), the payload
     aligned and moved by each ``travel`` (m) from its place at ignition.
 
-    Faces are those of ``mechanics.scene_model.Faces``. Raises SceneError, MeshError, and ValueError for
+    Faces are those of ``mechanics.model.Faces``. Raises SceneError, MeshError, and ValueError for
     an unavailable number of patterns or modes.
     """
     own, held = inputs.of(scene), _held(scene, element_size)
@@ -217,7 +218,7 @@ def along(
 
 def of_rails(
     held: Sequence[HeldRail],
-    faces: scene_model.Faces,
+    faces: Faces,
     reach: tuple[float, float],
     travel: Sequence[float] | np.ndarray,
     patterns: int = PATTERNS,
@@ -237,7 +238,7 @@ def of_rails(
         raise ValueError(f"patterns: given {patterns!r}, expected 1 to {most}")
     stations = np.asarray(travel, dtype=float)
     count = faces.axis.size
-    half = scene_model.half_sizes(faces)
+    half = half_sizes(faces)
     gram = np.zeros((stations.size, count, patterns, patterns))
     middle = faces.centre[:, 0] + stations[:, None]
     part = np.stack(

@@ -43,9 +43,8 @@ from tipoff.highfi.statics.held import HeldRail
 from tipoff.highfi.statics.operator import internal_force
 from tipoff.highfi.statics.places import Patches, one_of, reported
 from tipoff.highfi.statics.solve import Clamped, one_thread
-from tipoff.mechanics import scene_model
+from tipoff.mechanics.model import Faces, half_sizes
 from tipoff.mechanics.rail_compliance import RailCompliance
-from tipoff.mechanics.scene_model import Faces
 from tipoff.scenes.rail import MeshTable
 from tipoff.scenes.scene import Scene
 
@@ -111,7 +110,7 @@ def of_rails(
     travel: np.ndarray,
 ) -> Uncertainty:
     """Uncertainty of ``compliance.of_rails``. Raises MeshError as it does."""
-    half = scene_model.half_sizes(faces)
+    half = half_sizes(faces)
     coarse, fine = (np.zeros((travel.size, faces.axis.size)) for _ in range(2))
     lowest: list[tuple[float, float]] = []
     for before, held in enumerate(rails):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tipoff.mechanics.scene_model import Model
+from tipoff.mechanics.model import Model
 
 # Columns: centre in payload body axes (m); y and z of the outward normal, and the distance of the
 # wall along it (m), in platform axes; half the length (m); its number. For the ends of the wall

@@ -9,10 +9,10 @@ from tipoff.lowfi.contact.compliant import neglected, record
 from tipoff.lowfi.dynamics import cases, integrate, local_error, plan, settle
 from tipoff.lowfi.dynamics.loop import Loop, Plan
 from tipoff.lowfi.numerics import Numerics
+from tipoff.mechanics.model import Model
 from tipoff.mechanics.outcome import Milestones
 from tipoff.mechanics.promises import Promises
 from tipoff.mechanics.rail_compliance import RailCompliance
-from tipoff.mechanics.scene_model import Model
 from tipoff.scenes import settled
 from tipoff.scenes.scene import Scene
 

@@ -14,7 +14,7 @@ from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.step_limit import mobility
 from tipoff.lowfi.pushers import place_of, slip_at
 from tipoff.lowfi.system import Body
-from tipoff.scenes.effects import pusher_law as law
+from tipoff.mechanics.laws import pushers as law
 
 
 class Moving(NamedTuple):

@@ -15,7 +15,7 @@ from tipoff.kernels.reference import by_reference
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.springs import relative_pose
 from tipoff.lowfi.contact.step_limit import inverse_mass
-from tipoff.scenes.effects import pusher_law as law
+from tipoff.mechanics.laws import pushers as law
 
 _NONE = law.Pushers(
     direction=np.zeros((0, 3)),

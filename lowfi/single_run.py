@@ -11,9 +11,10 @@ from tipoff.lowfi.dynamics.loop import Sampling
 from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
 from tipoff.lowfi.numerics import Numerics, promises_of
 from tipoff.lowfi.preparation import prepare
-from tipoff.mechanics import comoving, ending, outcome, promises, scene_model
+from tipoff.mechanics import comoving, ending, outcome, promises
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes import scene_model
 from tipoff.scenes.scene import Scene
 
 _ROWS = 65_536  # samples allocated at first

@@ -27,7 +27,7 @@ import numpy as np
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import entry, kernel
 from tipoff.mechanics import comoving
-from tipoff.mechanics.scene_model import Model
+from tipoff.mechanics.model import Model
 
 # Offsets inside a body's slots.
 PLACE, VELOCITY, QUATERNION, SPIN, BODY_SIZE = 0, 3, 6, 10, 13

@@ -12,14 +12,14 @@ from tipoff.lowfi.contact.springs import SMOOTH
 from tipoff.lowfi.contact.thermal_offset import ThermalOffset
 from tipoff.lowfi.pushers import Pushing, pushing
 from tipoff.mechanics import ledger
-from tipoff.mechanics.scene_model import Model
-from tipoff.scenes.effects.body_force import BodyForce
-from tipoff.scenes.effects.contact import NO_CONTACT, ContactLaw
-from tipoff.scenes.effects.friction import Friction
-from tipoff.scenes.effects.hold_down import HoldDown
-from tipoff.scenes.effects.sticking import Sticking
-from tipoff.scenes.effects.thrust_law import Thrust, complete
-from tipoff.scenes.effects.thrust_offset import ThrustOffset
+from tipoff.mechanics.laws.body_force import BodyForce
+from tipoff.mechanics.laws.contact import NO_CONTACT, ContactLaw
+from tipoff.mechanics.laws.friction import Friction
+from tipoff.mechanics.laws.hold_down import HoldDown
+from tipoff.mechanics.laws.sticking import Sticking
+from tipoff.mechanics.laws.thrust import Thrust, complete
+from tipoff.mechanics.laws.thrust_offset import ThrustOffset
+from tipoff.mechanics.model import Model
 
 # Effects whose evaluations a run counts.
 (

@@ -24,13 +24,13 @@ from tipoff import sources as digests
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGES = (
-    *("kernels", "scenes", "mechanics", "comparison", "meshes", "highfi", "lowfi"),
+    *("kernels", "mechanics", "scenes", "comparison", "meshes", "highfi", "lowfi"),
     *("calibration", "workspace", "studies"),
 )
 FORBIDDEN = {
     "kernels": {*PACKAGES[1:], "gmsh", "matplotlib"},
-    "scenes": {*PACKAGES[2:], "gmsh", "matplotlib"},
     "mechanics": {*PACKAGES[3:], "gmsh", "matplotlib"},
+    "scenes": {*PACKAGES[3:], "gmsh", "matplotlib"},
     "comparison": {*PACKAGES[4:], "gmsh", "matplotlib"},
     "meshes": set(PACKAGES) - {"meshes"},
     "highfi": {"lowfi", "comparison", *PACKAGES[7:]},

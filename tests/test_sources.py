@@ -55,7 +55,7 @@ def digests(*modules: str) -> list[str]:
 
 
 def test_docstrings_comments_and_layout_do_not_count(project):
-    law, before = project / "tipoff" / "scenes" / "effects" / "friction.py", digests(*SOLVERS)
+    law, before = project / "tipoff" / "mechanics" / "laws" / "friction.py", digests(*SOLVERS)
     edit(law, '"""', '"""Other words. ')
     edit(law, "\n\n\n", "\n\n\n# a remark\n\n\n")
     assert digests(*SOLVERS) == before
@@ -63,7 +63,7 @@ def test_docstrings_comments_and_layout_do_not_count(project):
 
 def test_a_constant_of_the_friction_law_counts_wherever_the_law_is_used(project):
     law, before = (
-        project / "tipoff" / "scenes" / "effects" / "friction.py",
+        project / "tipoff" / "mechanics" / "laws" / "friction.py",
         digests(*SOLVERS, "tipoff.kernels.rotation"),
     )
     edit(law, "3.0", "3.0000001")
@@ -135,7 +135,7 @@ def test_the_look_of_the_page_makes_only_the_page_again(project):
 
 def test_a_law_makes_every_stage_again_that_rests_on_it(project):
     before = digests(*STAGES)
-    edit(project / "tipoff" / "scenes" / "effects" / "friction.py", "3.0", "3.0000001")
+    edit(project / "tipoff" / "mechanics" / "laws" / "friction.py", "3.0", "3.0000001")
     assert not set(digests(*STAGES)) & set(before)
 
 

@@ -3,7 +3,7 @@ Newton's and Euler's equations.
 
     m v' = F,    I w' = M - w x I w    (w and M in body axes, M about the body's own mass centre),    q' = q w / 2
 
-It shares only the laws in ``scenes.effects``, the thermal offset (``lowfi.contact.thermal_offset``) and
+It shares only the laws in ``mechanics.laws``, the thermal offset (``lowfi.contact.thermal_offset``) and
 the rotations with the fast solver. It has other state variables, another integrator, no events and no
 error control, and it continues after a pad strikes an edge of a wall. Tests compare the fast solver with
 it; benchmarks use it as the baseline.
@@ -18,12 +18,13 @@ from tipoff.kernels.jit import kernel, njit
 from tipoff.lowfi.contact import thermal_offset
 from tipoff.lowfi.faces import BACK, NUMBER, SIDE_MIDDLE, SIDE_REACH
 from tipoff.lowfi.system import System, build
-from tipoff.mechanics import scene_model
+from tipoff.mechanics.laws import contact as law
+from tipoff.mechanics.laws.body_force import acceleration
+from tipoff.mechanics.laws.friction import coefficient_over_speed
+from tipoff.mechanics.laws.thrust import magnitude
 from tipoff.mechanics.rail_compliance import RailCompliance
-from tipoff.scenes.effects import contact as law
-from tipoff.scenes.effects.body_force import acceleration
-from tipoff.scenes.effects.friction import coefficient_over_speed, require_two_step
-from tipoff.scenes.effects.thrust_law import magnitude
+from tipoff.scenes import scene_model
+from tipoff.scenes.effects.friction import require_two_step
 from tipoff.scenes.scene import Scene
 
 _BODY = 13  # place, velocity, quaternion, body rate

@@ -10,8 +10,8 @@ from tipoff.highfi.state.pose import Pose, triple
 from tipoff.highfi.state.records import Active, Surface
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined, kernel
-from tipoff.mechanics.scene_model import Faces
-from tipoff.scenes.effects.friction import coefficient_over_speed
+from tipoff.mechanics.laws.friction import coefficient_over_speed
+from tipoff.mechanics.model import Faces
 
 
 class Touch(NamedTuple):

@@ -13,7 +13,7 @@ from tipoff.highfi.state.pose import body_matrix, body_rate, origin_of_frame, tr
 from tipoff.highfi.state.records import AXIAL, TOTAL
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined, kernel
-from tipoff.scenes.effects.thrust import magnitude
+from tipoff.mechanics.laws.thrust import magnitude
 
 
 @kernel

@@ -21,7 +21,7 @@ from tipoff.highfi.state.pose import body_matrix, body_rate, triple
 from tipoff.highfi.state.records import AXIAL, TOTAL, Inertia, Pushing
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined, kernel
-from tipoff.scenes.effects import pusher_law as law
+from tipoff.mechanics.laws import pushers as law
 
 SPEED, GAINED, FORCE, SHARE = range(4)  # rows of ``Inertia.values``
 

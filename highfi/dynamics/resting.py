@@ -20,8 +20,8 @@ from tipoff.highfi.dynamics.system import System, moving_walls
 from tipoff.highfi.mesh import pieces
 from tipoff.highfi.state import records
 from tipoff.highfi.statics.inertial import TERMS, Deflection, deflections
-from tipoff.scenes.effects import thrust
-from tipoff.scenes.effects.thrust_law import sample
+from tipoff.mechanics.laws import thrust
+from tipoff.mechanics.laws.thrust import sample
 from tipoff.scenes.scene import Scene
 
 MOST_LEFT_OUT = 1e-9  # m, vibration of the walls

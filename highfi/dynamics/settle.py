@@ -17,8 +17,8 @@ import numpy as np
 from tipoff.highfi.dynamics.setup import Setup
 from tipoff.highfi.dynamics.stepper import Stepper
 from tipoff.kernels import rotation
+from tipoff.mechanics.laws.thrust import Thrust
 from tipoff.mechanics.lowered import lowered
-from tipoff.scenes.effects.thrust_law import Thrust
 from tipoff.scenes.settled import no_rest
 
 # Energy of a peak over that of the first one in contact: forces then differ from the weight by the root

@@ -40,8 +40,8 @@ import numpy as np
 
 from tipoff.highfi.dynamics.stable_step import critical_step
 from tipoff.highfi.dynamics.system import System
-from tipoff.scenes.effects.pusher_law import SLOW
-from tipoff.scenes.effects.structural_damping import Damping
+from tipoff.mechanics.laws.pushers import SLOW
+from tipoff.mechanics.laws.structural_damping import Damping
 
 
 def contact_frequency_squared(system: System) -> float:

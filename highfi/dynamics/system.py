@@ -13,11 +13,13 @@ from tipoff.highfi.state import records
 from tipoff.highfi.statics import assembly, thermal
 from tipoff.kernels import rotation
 from tipoff.kernels.memory import zeros
-from tipoff.mechanics import comoving, scene_model
+from tipoff.mechanics import comoving
+from tipoff.mechanics.laws.hold_down import HoldDown
+from tipoff.mechanics.laws.pushers import Pushers
+from tipoff.mechanics.laws.structural_damping import Damping
+from tipoff.mechanics.model import Faces, Model
+from tipoff.scenes import scene_model
 from tipoff.scenes.body import inverse, tensor
-from tipoff.scenes.effects.hold_down import HoldDown
-from tipoff.scenes.effects.pusher_law import Pushers
-from tipoff.scenes.effects.structural_damping import Damping
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
@@ -28,7 +30,7 @@ _SAME = 1e-9  # m: two places closer than this are the same
 class System(NamedTuple):
     """Constant records of a run; they do not depend on its step."""
 
-    model: scene_model.Model
+    model: Model
     mesh: RailMesh
     operator: assembly.Operator
     number: np.ndarray  # (n,) place of each mesh node in the nodal arrays
@@ -37,7 +39,7 @@ class System(NamedTuple):
     nodes: slice  # part of the nodal arrays that contains all stepped nodes
     walls: np.ndarray  # numbers of the wall nodes that move in the frame
     surface: records.Surface
-    faces: scene_model.Faces
+    faces: Faces
     frame: records.Frame | None  # None: fixed platform
     drive: records.Drive
     pushers: Pushers | None  # in frame axes from the frame's origin
@@ -119,7 +121,7 @@ def moving_walls(surfaces: records.Surface, moving_mass: np.ndarray) -> np.ndarr
 
 
 def _warmed(
-    scene: Scene, model: scene_model.Model, mesh: RailMesh, rail: records.Rail, number: np.ndarray
+    scene: Scene, model: Model, mesh: RailMesh, rail: records.Rail, number: np.ndarray
 ) -> np.ndarray | None:
     if model.thermal is None:
         return None

@@ -20,7 +20,7 @@ from tipoff.highfi.mesh import facets as geometry
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.statics.pressure import every, located
 from tipoff.mechanics.drawn_walls import ACROSS, grid
-from tipoff.mechanics.scene_model import Faces
+from tipoff.mechanics.model import Faces
 
 SAME = 1e-6  # m, below the manufacturing tolerance of a rail, above the rounding of mesh formats
 _SAMPLES = 6  # places across the width of a face, in the middle of equal strips

@@ -15,7 +15,8 @@ from tipoff.highfi.mesh.asked import axes_along
 from tipoff.highfi.mesh.rail_mesh import MeshError, RailMesh
 from tipoff.highfi.rail import drawn_walls
 from tipoff.highfi.rail.drawn_walls import SAME
-from tipoff.mechanics import scene_model
+from tipoff.mechanics.model import Faces
+from tipoff.scenes import scene_model
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.rail import GeometryTable, MeshTable, SectionTable
@@ -190,7 +191,7 @@ def _wall_faults(
 
 
 def _hole_faults(
-    near: np.ndarray, faces: scene_model.Faces, face: int, name: str, ends: tuple[float, float]
+    near: np.ndarray, faces: Faces, face: int, name: str, ends: tuple[float, float]
 ) -> list[tuple[str, str, str]]:
     """Pieces of the track of a face without any wall."""
     low, high = near[:, :, 0].min(axis=1), near[:, :, 0].max(axis=1)
@@ -212,7 +213,7 @@ def _hole_faults(
 def _shape_faults(
     near: np.ndarray,
     found: drawn_walls.Track,
-    faces: scene_model.Faces,
+    faces: Faces,
     face: int,
     name: str,
     most: float,

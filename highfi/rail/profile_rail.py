@@ -1,8 +1,8 @@
 """The rail of a scene that has a section of its own, as it is meshed: its walls are the sides that face
 the pads."""
 
-from tipoff.mechanics import scene_model
 from tipoff.meshes.profile import Profile
+from tipoff.scenes import scene_model
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.scene import Scene

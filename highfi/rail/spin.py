@@ -18,10 +18,9 @@ from tipoff.highfi.rail.geometry import geometry
 from tipoff.highfi.rail.scene_mesh import make_mesh
 from tipoff.highfi.rail.step_cost import spacing
 from tipoff.highfi.statics import held
-from tipoff.mechanics import scene_model
-from tipoff.scenes import ends
-from tipoff.scenes.effects import thrust
-from tipoff.scenes.effects.mount_stiffness import MountStiffness
+from tipoff.mechanics.laws import thrust
+from tipoff.mechanics.laws.mount_stiffness import MountStiffness
+from tipoff.scenes import ends, scene_model
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import MeshTable, SectionTable
 from tipoff.scenes.rail_base import MaterialTable

@@ -15,16 +15,16 @@ import numpy as np
 
 from tipoff.highfi.extruded.mesh import Columns
 from tipoff.kernels.reference import by_reference
+from tipoff.mechanics.laws.body_force import BodyForce
+from tipoff.mechanics.laws.friction import Friction
+from tipoff.mechanics.laws.hold_down import HoldDown
+from tipoff.mechanics.laws.pushers import Pushers
+from tipoff.mechanics.laws.structural_damping import Damping
+from tipoff.mechanics.laws.thrust import Thrust
+from tipoff.mechanics.laws.thrust_offset import ThrustOffset
 from tipoff.mechanics.ledger import BODY_FORCE, ENTRIES
+from tipoff.mechanics.model import Faces, Payload
 from tipoff.mechanics.outcome import Milestones
-from tipoff.mechanics.scene_model import Faces, Payload
-from tipoff.scenes.effects.body_force import BodyForce
-from tipoff.scenes.effects.friction import Friction
-from tipoff.scenes.effects.hold_down import HoldDown
-from tipoff.scenes.effects.pusher_law import Pushers
-from tipoff.scenes.effects.structural_damping import Damping
-from tipoff.scenes.effects.thrust_law import Thrust
-from tipoff.scenes.effects.thrust_offset import ThrustOffset
 
 
 @by_reference

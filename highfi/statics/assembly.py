@@ -18,7 +18,7 @@ from tipoff.highfi.mesh.cells import thickness
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.statics import mounts
 from tipoff.kernels.memory import aligned
-from tipoff.scenes.effects.mount_stiffness import MountStiffness
+from tipoff.mechanics.laws.mount_stiffness import MountStiffness
 from tipoff.scenes.rail_base import MaterialTable
 
 _SAME_SHAPE = 1e-9  # of the thinnest element; smaller differences of coordinates are ignored

@@ -8,7 +8,7 @@ from tipoff.highfi.mesh import pieces
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.statics import assembly, vibration
 from tipoff.highfi.statics.solve import Clamped
-from tipoff.scenes.effects.mount_stiffness import MountStiffness
+from tipoff.mechanics.laws.mount_stiffness import MountStiffness
 from tipoff.scenes.rail_base import MaterialTable
 
 

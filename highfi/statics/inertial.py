@@ -19,7 +19,7 @@ from tipoff.highfi.mesh import pieces
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.statics import assembly
 from tipoff.highfi.statics.solve import Clamped
-from tipoff.scenes.effects.mount_stiffness import MountStiffness
+from tipoff.mechanics.laws.mount_stiffness import MountStiffness
 from tipoff.scenes.rail_base import MaterialTable
 
 TERMS = 12  # b, then G row by row

@@ -7,9 +7,9 @@ import numpy as np
 
 from tipoff.files import content_hash
 from tipoff.highfi.rail.geometry import geometry
-from tipoff.mechanics import scene_model
-from tipoff.mechanics.scene_model import Faces
-from tipoff.scenes.effects.mount_stiffness import MountStiffness
+from tipoff.mechanics.laws.mount_stiffness import MountStiffness
+from tipoff.mechanics.model import Faces
+from tipoff.scenes import scene_model
 from tipoff.scenes.rail_base import MaterialTable
 from tipoff.scenes.scene import Scene
 

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from tipoff.highfi.mesh import facets as geometry
-from tipoff.scenes.effects.mount_stiffness import MountStiffness
+from tipoff.mechanics.laws.mount_stiffness import MountStiffness
 
 _POINTS = 3  # along each edge: exact for products of two nodal functions on a flat facet
 

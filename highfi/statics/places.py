@@ -16,10 +16,10 @@ from tipoff.highfi.statics import joint_terms, thermal
 from tipoff.highfi.statics.held import HeldRail
 from tipoff.highfi.statics.pressure import Pressed, Wall
 from tipoff.highfi.statics.solve import Clamped, one_thread
-from tipoff.mechanics import scene_model
+from tipoff.mechanics.laws.thermal import FIELDS
+from tipoff.mechanics.model import Faces
 from tipoff.mechanics.rail_compliance import PATTERNS
 from tipoff.mechanics.rail_compliance.patterns import LOW_DEGREE, count
-from tipoff.scenes.effects.thermal import FIELDS
 
 # of the length of a pad: the least length of the part of its wall that is seen near an end of the
 # rail, so that the patterns keep well apart; for patterns of the second degree, and for others
@@ -74,7 +74,7 @@ class Patches:
 
     def under(
         self,
-        faces: scene_model.Faces,
+        faces: Faces,
         half: np.ndarray,
         signs: np.ndarray,
         reach: tuple[float, float],

@@ -21,8 +21,8 @@ from tipoff.highfi.mesh import pieces
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.statics import assembly
 from tipoff.highfi.statics.solve import Clamped
-from tipoff.scenes.effects.mount_stiffness import MountStiffness
-from tipoff.scenes.effects.thermal import FIELDS, Thermal, fields
+from tipoff.mechanics.laws.mount_stiffness import MountStiffness
+from tipoff.mechanics.laws.thermal import FIELDS, Thermal, fields
 from tipoff.scenes.rail_base import MaterialTable
 
 

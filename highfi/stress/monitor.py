@@ -20,7 +20,7 @@ from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.stress import gauge as patch
 from tipoff.highfi.stress import peaks
 from tipoff.highfi.stress.peak import ROTATION, STRAIN, STRESS, Peak
-from tipoff.scenes.effects.thermal import Thermal, fields
+from tipoff.mechanics.laws.thermal import Thermal, fields
 from tipoff.scenes.rail_base import MaterialTable
 
 _SHARE = 0.05  # largest share of scans in the run

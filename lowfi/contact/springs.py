@@ -17,8 +17,8 @@ from tipoff.kernels.jit import kernel
 from tipoff.lowfi.contact.thermal_offset import offset_and_slope
 from tipoff.lowfi.faces import NORMAL_Y, NORMAL_Z, NUMBER, WALL
 from tipoff.lowfi.state import velocity_at
-from tipoff.scenes.effects import contact as law
-from tipoff.scenes.effects.friction import Friction, coefficient_over_speed
+from tipoff.mechanics.laws import contact as law
+from tipoff.mechanics.laws.friction import Friction, coefficient_over_speed
 
 SMOOTH = Friction(static=0.0, dynamic=0.0, static_speed=1.0, dynamic_speed=2.0)  # no friction
 

@@ -28,8 +28,8 @@ from tipoff.lowfi.contact.springs import (
     rubs,
 )
 from tipoff.lowfi.contact.stick_slip import STICKS, acts, heading
-from tipoff.scenes.effects import contact as law
-from tipoff.scenes.effects.friction import coefficient_over_speed
+from tipoff.mechanics.laws import contact as law
+from tipoff.mechanics.laws.friction import coefficient_over_speed
 
 # relative change of p or s in a difference quotient: truncation and rounding are both below 1e-5
 _NUDGE = 1e-6

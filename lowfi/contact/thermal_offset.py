@@ -20,8 +20,8 @@ import scipy  # its parts load when they are first used
 from tipoff.kernels.jit import kernel
 from tipoff.kernels.reference import by_reference
 from tipoff.mechanics import drawn_walls
+from tipoff.mechanics.model import Model
 from tipoff.mechanics.rail_compliance import RailCompliance, cubic
-from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import GeometryTable, MeshTable
 from tipoff.scenes.scene import Scene

@@ -19,9 +19,9 @@ from tipoff.lowfi.dynamics.sample import (
     WORKS,
 )
 from tipoff.mechanics import ledger, momenta
+from tipoff.mechanics.model import Model
 from tipoff.mechanics.outcome import Motion
 from tipoff.mechanics.promises import Promises
-from tipoff.mechanics.scene_model import Model
 
 _ENTRY = {name: index for index, name in enumerate(ledger.ENTRIES)}
 

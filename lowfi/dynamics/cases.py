@@ -16,10 +16,10 @@ from tipoff.lowfi.contact.springs import rubs
 from tipoff.lowfi.faces import CENTRE, WALL
 from tipoff.lowfi.system import NO_LATCH, Body, Contact, Offset, System, offset
 from tipoff.mechanics.ending import BOOK_SIZE
-from tipoff.mechanics.scene_model import Model
-from tipoff.scenes.effects.friction import Friction
-from tipoff.scenes.effects.hold_down import HoldDown
-from tipoff.scenes.effects.sticking import Sticking
+from tipoff.mechanics.laws.friction import Friction
+from tipoff.mechanics.laws.hold_down import HoldDown
+from tipoff.mechanics.laws.sticking import Sticking
+from tipoff.mechanics.model import Model
 
 # Columns of the results: whether the case is left to ``lowfi.run``, steps, the book.
 LEFT_OPEN, STEPS, BOOK = range(3)

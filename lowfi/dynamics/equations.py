@@ -31,9 +31,9 @@ from tipoff.lowfi.pusher_inertia import resist
 from tipoff.lowfi.pushers import place_of, push_of, slip_at
 from tipoff.lowfi.state import IMPULSE, PAYLOAD, PLACE, PLATFORM, QUATERNION, SPIN, TURN, VELOCITY
 from tipoff.lowfi.system import Body
-from tipoff.scenes.effects.friction import Friction
-from tipoff.scenes.effects.pusher_law import direction_of
-from tipoff.scenes.effects.thrust_law import magnitude
+from tipoff.mechanics.laws.friction import Friction
+from tipoff.mechanics.laws.pushers import direction_of
+from tipoff.mechanics.laws.thrust import magnitude
 
 
 class Bodies(NamedTuple):

@@ -5,8 +5,8 @@ import numpy as np
 
 from tipoff.lowfi.dynamics.loop import Plan
 from tipoff.lowfi.numerics import Numerics
-from tipoff.mechanics.scene_model import Model
-from tipoff.scenes.effects import thrust_law
+from tipoff.mechanics.laws import thrust as thrust_law
+from tipoff.mechanics.model import Model
 
 # A Gaussian is below 2e-14 of its peak beyond this many widths. Stages of a step inside are at most
 # half of it apart, so any three widths contain four of them.

@@ -21,7 +21,7 @@ from tipoff.lowfi.dynamics.integrate import reset
 from tipoff.lowfi.dynamics.loop import Loop, allocate
 from tipoff.lowfi.system import System
 from tipoff.mechanics.lowered import lowered
-from tipoff.mechanics.scene_model import Model
+from tipoff.mechanics.model import Model
 from tipoff.scenes.settled import no_rest
 
 LONG_AGO = -1e9  # s: no thrust acts yet

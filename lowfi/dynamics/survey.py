@@ -36,7 +36,7 @@ from tipoff.lowfi.contact.wall_ends import (
     strikes,
 )
 from tipoff.lowfi.faces import BACK, SIDE_MIDDLE
-from tipoff.scenes.effects.contact import stored_energy
+from tipoff.mechanics.laws.contact import stored_energy
 
 
 @kernel

@@ -14,16 +14,17 @@ from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
 from tipoff.lowfi.numerics import AUTO, Numerics, promises_of
 from tipoff.lowfi.preparation import prepare
 from tipoff.lowfi.simulation import solved
-from tipoff.mechanics import comoving, ending, outcome, scene_model
+from tipoff.mechanics import comoving, ending, outcome
+from tipoff.mechanics.laws.friction import Friction
+from tipoff.mechanics.laws.hold_down import HoldDown
+from tipoff.mechanics.laws.sticking import Sticking
+from tipoff.mechanics.model import Faces, Model
 from tipoff.mechanics.rail_compliance import RailCompliance, may_vibrate
-from tipoff.mechanics.scene_model import Built, Faces
-from tipoff.scenes import changes
+from tipoff.scenes import changes, scene_model
 from tipoff.scenes.calibration import Calibration
-from tipoff.scenes.effects.friction import Friction
-from tipoff.scenes.effects.hold_down import HoldDown
-from tipoff.scenes.effects.sticking import Sticking
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.scene import Scene
+from tipoff.scenes.scene_model import Built
 from tipoff.scenes.variation import Variations
 
 _NONE = np.zeros(0)
@@ -45,7 +46,7 @@ class _Group(NamedTuple):
     scene: Scene
     marks: outcome.Milestones
     rows: list[tuple[int, Mapping[str, Any]]]  # number and overrides of each case
-    models: list[scene_model.Model]  # of each case
+    models: list[Model]  # of each case
 
 
 class Family:
@@ -209,9 +210,7 @@ class Family:
     def _run_alone(self, number: int, item: Mapping[str, Any] | Case) -> list[tuple[int, Case]]:
         return [(number, item if isinstance(item, Case) else self._run_whole(item))]
 
-    def _case(
-        self, model: scene_model.Model, row: Mapping[str, Any], result: np.ndarray, share: float
-    ) -> Case:
+    def _case(self, model: Model, row: Mapping[str, Any], result: np.ndarray, share: float) -> Case:
         if result[cases.LEFT_OPEN]:
             return self._run_whole(row)
         status, found = ending.found(result[cases.BOOK :])

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from tipoff import calibration, lowfi, scenes
 from tipoff.calibration import Curves, alignment, choice, compliant
 from tipoff.calibration.search import Plan
-from tipoff.mechanics import scene_model
+from tipoff.scenes import scene_model
 from validation.recovery.draws import LOCAL, noisy
 
 CONDITIONS = ("phi15", "phi35")

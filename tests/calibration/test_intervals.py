@@ -12,7 +12,7 @@ from tests.exact.contact import hunt_crossley_restitution
 from tests.exact.friction import stopping
 from tipoff.calibration import information, intervals
 from tipoff.calibration.correlation import correlation_time
-from tipoff.scenes.effects.contact import ContactLaw, parts
+from tipoff.mechanics.laws.contact import ContactLaw, parts
 
 G = 9.80665
 CONSTANTS = np.array([70_000 * 1e3**1.5, 1.5, 2.0])

@@ -24,10 +24,9 @@ from tipoff.highfi.mesh.asked import AS_DRAWN, Asked
 from tipoff.highfi.mesh.rail_mesh import read
 from tipoff.highfi.rail import fit, solid_process, step_cost
 from tipoff.lowfi.ensemble.table import TableFile
-from tipoff.mechanics import scene_model
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.meshes import generator
-from tipoff.scenes import implausible, reading, uncertainty
+from tipoff.scenes import implausible, reading, scene_model, uncertainty
 from tipoff.scenes.faults import InputError
 from tipoff.scenes.rail import SectionTable
 from tipoff.studies.calibration.files import constants

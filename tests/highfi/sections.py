@@ -4,7 +4,7 @@ presses it. Its back is clamped on all of its width, or both sides of the web of
 import numpy as np
 
 from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
-from tipoff.mechanics.scene_model import Faces
+from tipoff.mechanics.model import Faces
 from tipoff.meshes import bricks
 from tipoff.scenes.rail_base import MaterialTable
 

@@ -15,7 +15,7 @@ from tipoff.highfi.mesh.rail_mesh import MeshError, boundary_facets
 from tipoff.highfi.rail.scene_mesh import make_mesh
 from tipoff.highfi.statics import pressure
 from tipoff.highfi.statics.held import distinct
-from tipoff.mechanics.scene_model import Faces
+from tipoff.mechanics.model import Faces
 from tipoff.scenes.rail_base import MaterialTable
 
 LENGTH, WIDTH, HEIGHT, MODULUS = 0.6, 0.03, 0.04, 72e9

@@ -13,7 +13,7 @@ from tipoff.highfi.dynamics.step import perform
 from tipoff.kernels import called
 from tipoff.kernels.jit import entry, kernel
 from tipoff.lowfi.dynamics.integrate import integrate
-from tipoff.scenes.effects import friction
+from tipoff.mechanics.laws import friction
 
 FACTOR = 2.0
 TABLE = np.array([1.0, 2.0])

@@ -58,7 +58,7 @@ def test_one_pad_that_touches_adds_its_impulse():
     interval = run.time[1] - run.time[0]
     found = hand_calculation.rates(scene, run)
     assert found.pad == 1 and "pad 2 alone touches" in found.words
-    from tipoff.mechanics.scene_model import build
+    from tipoff.scenes.scene_model import build
 
     model = build(scene)
     moment = 50.0 * 99 * interval * np.cross(model.faces.centre[2], [0.0, 1.0, 0.0])

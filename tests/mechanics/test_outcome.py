@@ -9,8 +9,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from tests.scenes.support import motion
-from tipoff.mechanics import ending, outcome, scene_model
-from tipoff.scenes import load
+from tipoff.mechanics import ending, outcome
+from tipoff.scenes import load, scene_model
 
 
 def quaternions(rotation: Rotation) -> np.ndarray:

@@ -8,10 +8,10 @@ import pytest
 
 from tipoff import lowfi, scenes
 from tipoff.files import write_sealed
+from tipoff.mechanics.laws.thermal import FIELDS
 from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, content, digest, pairs
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 from tipoff.mechanics.rail_compliance.patterns import DRAGGED
-from tipoff.scenes.effects.thermal import FIELDS
 from tipoff.scenes.faults import SceneError
 
 SCENE = scenes.load("reference")

@@ -28,9 +28,9 @@ from tipoff.highfi.mesh.rail_mesh import MeshError, boundary_facets
 from tipoff.highfi.rail.fit import check_areas
 from tipoff.highfi.rail.scene_mesh import make_mesh
 from tipoff.highfi.statics.held import distinct
-from tipoff.mechanics.scene_model import built
 from tipoff.meshes import solid
 from tipoff.scenes import load
+from tipoff.scenes.scene_model import built
 
 pytestmark = pytest.mark.gmsh
 TOP = flat(2, 0.008, [(0, 0), (0.04, 0.02)])

@@ -11,8 +11,7 @@ from tests.scenes.test_calibration import CALIBRATION
 from tipoff import lowfi
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.rows import Listed
-from tipoff.mechanics import scene_model
-from tipoff.scenes import SceneError, changes, load
+from tipoff.scenes import SceneError, changes, load, scene_model
 from tipoff.workspace.run import Run
 
 SCENE = load("clamped")

@@ -5,8 +5,7 @@ import pytest
 
 from tests.scenes.support import CONTACT, SMALL, small
 from tipoff.calibration import parameters
-from tipoff.mechanics import scene_model
-from tipoff.scenes import SceneError, load, parse
+from tipoff.scenes import SceneError, load, parse, scene_model
 from tipoff.scenes.rail import MeshTable, SectionTable
 
 MATERIAL = SMALL["rail"]["material"]

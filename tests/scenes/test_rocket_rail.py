@@ -10,10 +10,9 @@ from scipy.integrate import solve_ivp
 from tests.exact import pivot
 from tests.scenes.neighbours import both_models
 from tipoff import highfi, lowfi
-from tipoff.mechanics import scene_model
+from tipoff.mechanics.laws.thrust import impulse
 from tipoff.mechanics.outcome import EXIT_WINDOW
-from tipoff.scenes import load, uncertainty
-from tipoff.scenes.effects.thrust import impulse
+from tipoff.scenes import load, scene_model, uncertainty
 
 SCENE = load("rocket_rail")
 # Typed here a second time on purpose, from the public sources: 80/20, catalogue 21, page 60.

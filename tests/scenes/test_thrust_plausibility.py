@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from tests.scenes.support import refused, small
+from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.scenes import implausible, load, parse
-from tipoff.scenes.effects import thrust_law
 
 BURN, PEAK = (0.2, 0.8), 200.0  # s, N
 IMPULSE = PEAK * (BURN[1] - BURN[0]) * 2.0 / np.pi  # of a half sine

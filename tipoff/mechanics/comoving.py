@@ -12,7 +12,7 @@ with the payload's displacement r_0 and the platform's velocity V at ignition, a
 per mass a. They return positions and velocities in scene axes. Contact, thrust, rates, attitudes
 and times are the same in both frames. In the moving frame no body force acts; ledgers and momenta
 are those of this frame. If the rails are fixed in space, r_0, V and a are zero, and the body force
-acts on the payload (``mechanics.scene_model``).
+acts on the payload (``mechanics.model``).
 """
 
 from typing import NamedTuple

@@ -15,10 +15,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tipoff.kernels import rotation
-from tipoff.mechanics import scene_model
+from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.mechanics.outcome import relative_motion
-from tipoff.scenes import ends
-from tipoff.scenes.effects import thrust_law
+from tipoff.scenes import ends, scene_model
 from tipoff.scenes.scene import Scene
 
 if TYPE_CHECKING:

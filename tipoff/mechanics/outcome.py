@@ -26,8 +26,8 @@ import numpy as np
 
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
+from tipoff.mechanics.laws import thrust
 from tipoff.scenes import ends, stop, travel
-from tipoff.scenes.effects import thrust
 from tipoff.scenes.ends import EXIT_WINDOW as EXIT_WINDOW
 from tipoff.scenes.ends import JAM_DURATION as JAM_DURATION
 from tipoff.scenes.ends import SETTLE_DELAY

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tipoff.mechanics import ledger
+from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.mechanics.outcome import BEHIND, SETTLE_DELAY, SETTLE_WINDOW, relative_motion
 from tipoff.scenes import ends, stop, travel
-from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.tables import MOST_SAMPLES
 from tipoff.scenes.units import LONGEST

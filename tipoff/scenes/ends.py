@@ -19,9 +19,10 @@ from typing import Any
 
 import numpy as np
 
+from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.scenes import pushed, stop
 from tipoff.scenes.body import tensor
-from tipoff.scenes.effects import registry, thrust_law
+from tipoff.scenes.effects import registry
 from tipoff.scenes.effects.spring import PushedTable
 from tipoff.scenes.faults import within
 from tipoff.scenes.rounding import at_most, below

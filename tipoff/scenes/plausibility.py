@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
+from tipoff.mechanics.laws.thermal import fields
 from tipoff.scenes import plausible_ranges, sinking, thrust_plausibility
-from tipoff.scenes.effects.thermal import fields
 from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.rail_base import HeldBySpans
 from tipoff.scenes.rounding import below

@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tipoff.mechanics.laws.thrust import Curve
 from tipoff.scenes.effects.spring import PushedTable
-from tipoff.scenes.effects.thrust_law import Curve
 
 _CELLS = 1000
 

@@ -7,7 +7,8 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field, ValidationInfo, field_validator
 
-from tipoff.scenes.effects.mount_stiffness import MountStiffness, MountStiffnessTable
+from tipoff.mechanics.laws.mount_stiffness import MountStiffness
+from tipoff.scenes.effects.mount_stiffness import MountStiffnessTable
 from tipoff.scenes.effects.structural_damping import DampingTable
 from tipoff.scenes.faults import Fault
 from tipoff.scenes.rounding import below
@@ -129,7 +130,7 @@ class DrawnTable(RailBase):
     ``clearance`` (m) is that of the drawing; a scene with another one has shims of the difference
     under its pads. ``thickness`` (m) of the walls and ``leg`` (m), their unsupported width, scale
     the bounds of a calibration. They also bound the walls for a pad that comes from behind or from
-    the side (``mechanics.scene_model.Plate``).
+    the side (``mechanics.model.Plate``).
     """
 
     #: Clearance for which the rail is drawn; a scene with another one has shims of the

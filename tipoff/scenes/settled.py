@@ -2,8 +2,8 @@
 
 from typing import Any
 
+from tipoff.mechanics.laws.initial import Initial
 from tipoff.scenes.effects import registry
-from tipoff.scenes.effects.initial import Initial
 from tipoff.scenes.effects.spring import PushedTable
 from tipoff.scenes.faults import Fault, SceneError
 

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tipoff.cards import Carded
+from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.scenes import ends
-from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.effects.measured_table import MeasuredTable
 from tipoff.scenes.effects.spring import PushedTable
 

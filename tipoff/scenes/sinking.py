@@ -19,8 +19,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tipoff.mechanics.laws import thrust
 from tipoff.scenes import ends, moments
-from tipoff.scenes.effects import registry, thrust
+from tipoff.scenes.effects import registry
 
 _STRAIN = 0.01  # of a pad's shortest side
 _LAYER = "pad_layer"

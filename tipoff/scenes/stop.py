@@ -14,9 +14,10 @@ import math
 
 import numpy as np
 
+from tipoff.mechanics.laws import thrust as thrust_law
+from tipoff.mechanics.laws.hold_down import HoldDown
 from tipoff.scenes import pushed
-from tipoff.scenes.effects import hold_down, registry, thrust_law, thrust_offset
-from tipoff.scenes.effects.hold_down import HoldDown
+from tipoff.scenes.effects import hold_down, registry, thrust_offset
 from tipoff.scenes.effects.spring import PushedTable
 
 HOP = 1e-4  # m

@@ -11,8 +11,8 @@ and after burn-out; any other reading adds to the impulse.
 
 import numpy as np
 
+from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.scenes import ends
-from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.effects.load_cell import Level
 from tipoff.scenes.effects.measured import FIT_IMPULSE, MeasuredCurve
 from tipoff.scenes.rounding import at_most, below

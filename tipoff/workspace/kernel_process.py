@@ -15,10 +15,10 @@ from contextlib import contextmanager, suppress
 
 import numpy as np
 
-from tipoff.mechanics import scene_model
+from tipoff.mechanics.laws.thermal import FIELDS
+from tipoff.mechanics.model import half_sizes
 from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance, digest, patterns
-from tipoff.scenes import parse
-from tipoff.scenes.effects.thermal import FIELDS
+from tipoff.scenes import parse, scene_model
 from tipoff.scenes.scene import Scene
 from tipoff.workspace import kernel_marks, machine
 from tipoff.workspace.compiling import warm_up
@@ -79,7 +79,7 @@ def request(scene: Scene, degree: int = DEGREE) -> Run:
         travel=np.array([0.0, 1.0]),
         flexibility=np.zeros((2, count, count, size, size)),
         rail=np.zeros(count, dtype=np.int64),
-        half=scene_model.half_sizes(faces),
+        half=half_sizes(faces),
         frequency=np.zeros((1, 0)),
         shape=np.zeros((2, count, size, 0)),
         made_for=digest(scene),

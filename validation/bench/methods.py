@@ -11,9 +11,10 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
 from tipoff.lowfi.dynamics import cases
-from tipoff.mechanics import ending, outcome, scene_model
+from tipoff.mechanics import ending, outcome
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.scenes import scene_model
 from tipoff.scenes.scene import Scene
 
 TOLERANCES: tuple[float, ...] = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.highfi.mesh.rail_mesh import RailMesh
-from tipoff.scenes.effects.mount_stiffness import MountStiffness
+from tipoff.mechanics.laws.mount_stiffness import MountStiffness
 from validation.peers.case import PeerMissing
 
 LINEAR, QUADRATIC = "C3D8I", "C3D20R"

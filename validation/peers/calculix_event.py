@@ -15,8 +15,8 @@ from tipoff import highfi
 from tipoff.highfi.mesh import pieces
 from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
 from tipoff.kernels import rotation
-from tipoff.mechanics import scene_model
 from tipoff.meshes import bricks
+from tipoff.scenes import scene_model
 from tipoff.scenes.scene import Scene, load
 from validation.peers import calculix
 from validation.peers.calculix import LINEAR

@@ -12,9 +12,10 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff import lowfi
-from tipoff.mechanics import outcome, scene_model
+from tipoff.mechanics import outcome
 from tipoff.mechanics.model_names import SPRINGS
 from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes import scene_model
 from tipoff.scenes.scene import Scene, load
 
 # Conditions of the catalogue in which pads touch and 1 um of clearance changes little.

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tipoff import Scene, Trajectory
-from tipoff.scenes.effects import thrust_law
+from tipoff.mechanics.laws import thrust as thrust_law
 
 MOST_ROWS = 400  # more than a chart has pixels, and 30 kB
 _MM = 1e3

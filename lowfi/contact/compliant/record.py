@@ -9,10 +9,10 @@ from tipoff.kernels.reference import by_reference
 from tipoff.lowfi.contact.compliant.parts import PART_SIZE
 from tipoff.mechanics import drawn_walls
 from tipoff.mechanics import rail_compliance as data
+from tipoff.mechanics.laws.structural_damping import Damping
+from tipoff.mechanics.model import Model
 from tipoff.mechanics.rail_compliance.patterns import count
-from tipoff.mechanics.scene_model import Model
 from tipoff.scenes.effects.friction import require_two_step
-from tipoff.scenes.effects.structural_damping import Damping
 from tipoff.scenes.scene import Scene
 
 # Columns of a face's lever: penetration (m) of its flat face at the middle, and its change per xi

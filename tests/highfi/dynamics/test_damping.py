@@ -14,8 +14,8 @@ from tipoff.highfi.dynamics import stable_step
 from tipoff.highfi.dynamics.step_limit import step_limit, used
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.simulation import Loop
+from tipoff.mechanics.laws.structural_damping import Damping
 from tipoff.scenes import parse
-from tipoff.scenes.effects.structural_damping import Damping
 
 LENGTH, WIDTH, CYCLES = 0.06, 0.02, 20
 TWO_STEPS = pytest.mark.parametrize("safety", [0.9, 0.45])

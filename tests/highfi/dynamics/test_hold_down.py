@@ -7,10 +7,10 @@ from scipy.integrate import quad
 from tests.highfi.support import COARSE, tiny
 from tipoff import highfi
 from tipoff.mechanics import unfinished
+from tipoff.mechanics.laws.thrust import sample
 from tipoff.mechanics.outcome import EXIT_WINDOW
 from tipoff.scenes import ends
 from tipoff.scenes.effects.hold_down import release_time
-from tipoff.scenes.effects.thrust_law import sample
 
 
 @pytest.mark.case("O91")

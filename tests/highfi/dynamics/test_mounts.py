@@ -18,7 +18,7 @@ from tipoff.highfi.dynamics import mounts, observe, stable_step
 from tipoff.highfi.dynamics.checkpoint import Checkpoint, restore
 from tipoff.highfi.statics import assembly
 from tipoff.highfi.statics import mounts as statics
-from tipoff.scenes.effects.mount_stiffness import MountStiffness
+from tipoff.mechanics.laws.mount_stiffness import MountStiffness
 
 SIDE, DENSITY, MODULUS = 0.02, 2810.0, 72e9
 # The block is stiffer than its springs by E / (k l) = 3.6e5.

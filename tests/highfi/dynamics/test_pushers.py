@@ -18,7 +18,7 @@ from tests.pushed import (
 )
 from tipoff import highfi
 from tipoff.highfi.dynamics.step_limit import of_pushers
-from tipoff.mechanics import scene_model
+from tipoff.scenes import scene_model
 
 LIGHT = {"mass": 20.0, "inertia": {"xx": 1.0, "yy": 1.0, "zz": 1.0}}
 MASS = 9.9

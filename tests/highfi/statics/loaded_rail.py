@@ -13,8 +13,8 @@ from tipoff.highfi.mesh.rail_mesh import RailMesh, read
 from tipoff.highfi.statics import assembly, vibration
 from tipoff.highfi.statics.pressure import Wall
 from tipoff.highfi.statics.solve import Clamped
+from tipoff.mechanics.laws.mount_stiffness import MountStiffness
 from tipoff.meshes import l_rail
-from tipoff.scenes.effects.mount_stiffness import MountStiffness
 
 MATERIAL = (2810.0, 72e9, 0.33)  # kg/m3, Pa, 1
 GEOMETRY = l_rail.LRailGeometry()

@@ -7,7 +7,7 @@ import pytest
 
 from tests.highfi.statics import quadratic_rail as other
 from tests.highfi.statics.loaded_rail import MATERIAL, rail, solved
-from tipoff.scenes.effects.mount_stiffness import MountStiffness
+from tipoff.mechanics.laws.mount_stiffness import MountStiffness
 
 FILLET = 2e-3  # m
 JOINT = MountStiffness(normal=1e13, shear=5e12)

@@ -14,8 +14,8 @@ from tests.highfi.tets import split
 from tipoff.highfi.mesh.rail_mesh import MeshError
 from tipoff.highfi.statics import assembly, mounts, thermal
 from tipoff.highfi.statics.solve import Clamped
-from tipoff.scenes.effects.mount_stiffness import MountStiffness
-from tipoff.scenes.effects.thermal import FIELDS, Thermal
+from tipoff.mechanics.laws.mount_stiffness import MountStiffness
+from tipoff.mechanics.laws.thermal import FIELDS, Thermal
 from tipoff.scenes.rail_base import MaterialTable
 
 SIZE = (0.06, 0.02, 0.01)  # m

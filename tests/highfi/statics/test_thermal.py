@@ -15,8 +15,8 @@ from tipoff.highfi.mesh.rail_mesh import read
 from tipoff.highfi.rail.scene_mesh import make_mesh
 from tipoff.highfi.statics import assembly, thermal
 from tipoff.highfi.statics.solve import Clamped
+from tipoff.mechanics.laws.thermal import Thermal
 from tipoff.meshes import l_rail
-from tipoff.scenes.effects.thermal import Thermal
 from tipoff.scenes.rail_base import MaterialTable
 
 MATERIAL = MaterialTable.model_validate(ALUMINIUM, context={"bare_numbers_are_si": True})

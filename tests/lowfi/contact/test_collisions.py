@@ -12,8 +12,8 @@ from tipoff import lowfi
 from tipoff.lowfi import state, system
 from tipoff.lowfi.contact import springs
 from tipoff.lowfi.faces import FACE_SIZE
-from tipoff.mechanics import scene_model
-from tipoff.scenes.effects import contact as law
+from tipoff.mechanics.laws import contact as law
+from tipoff.scenes import scene_model
 
 K = PAPER_PAD["stiffness"]
 TWO_TOLERANCES = pytest.mark.parametrize("tolerance", [1e-7, 1e-9])

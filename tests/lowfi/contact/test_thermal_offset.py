@@ -12,10 +12,10 @@ from tipoff import lowfi
 from tipoff.lowfi import Numerics
 from tipoff.lowfi import system as systems
 from tipoff.lowfi.contact import springs, thermal_offset
-from tipoff.mechanics import scene_model
+from tipoff.mechanics.laws.thermal import FIELDS
 from tipoff.mechanics.rail_compliance import PATTERNS
 from tipoff.mechanics.rail_compliance.patterns import gram
-from tipoff.scenes.effects.thermal import FIELDS
+from tipoff.scenes import scene_model
 from validation import oracle
 
 MEAN = 1.0 / REFERENCE.rail.material.expansion  # K: one of the first field

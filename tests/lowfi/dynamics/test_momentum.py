@@ -7,7 +7,7 @@ import pytest
 from tests.lowfi.support import PAPER_PAD, corners, scene, unwatched
 from tipoff import lowfi
 from tipoff.kernels import rotation
-from tipoff.mechanics import scene_model
+from tipoff.scenes import scene_model
 from validation import oracle
 
 # Undamped pads and little friction, so that the payload goes on rattling in a rail that has no end.

@@ -18,7 +18,7 @@ from tests.pushed import (
 )
 from tipoff import lowfi
 from tipoff.lowfi.single_run import SingleRun
-from tipoff.mechanics import scene_model
+from tipoff.scenes import scene_model
 
 MASS = 9.9
 INERTIA = {"xx": 0.066, "yy": 0.134, "zz": 0.128, "xy": 0.004, "xz": -0.002}

@@ -5,8 +5,8 @@ import pytest
 from scipy.integrate import quad
 
 from tests.scenes.support import CONTACT, small
+from tipoff.mechanics.laws import contact
 from tipoff.scenes import parse
-from tipoff.scenes.effects import contact
 
 HUNT = {
     "law": "hunt-crossley",

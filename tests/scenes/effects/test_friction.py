@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tipoff.scenes.effects.friction import Friction, coefficient_over_speed
+from tipoff.mechanics.laws.friction import Friction, coefficient_over_speed
 
 LAW = Friction(0.3, 0.1, 0.01, 0.02)
 # Zero or a coefficient some surface may have: below 1e-300 a relative tolerance means nothing.

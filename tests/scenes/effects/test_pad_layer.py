@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from tests.scenes.support import CONTACT, refused, small
-from tipoff.mechanics import scene_model
-from tipoff.scenes import load, parse
+from tipoff.scenes import load, parse, scene_model
 
 POLYMER = {"thickness": "5 mm", "youngs_modulus": "0.5 GPa"}
 JOINT = 2e12

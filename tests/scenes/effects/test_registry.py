@@ -6,10 +6,11 @@ from pathlib import Path
 import pytest
 
 from tests.scenes.support import small
-from tipoff.mechanics import ledger, scene_model
+from tipoff.mechanics import ledger
+from tipoff.mechanics.laws.body_force import BodyForce
 from tipoff.scenes import scene as scenes
+from tipoff.scenes import scene_model
 from tipoff.scenes.effects import registry
-from tipoff.scenes.effects.body_force import BodyForce
 from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import Acceleration

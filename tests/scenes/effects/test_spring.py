@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from tests.scenes.support import refused, small, write
-from tipoff.mechanics import scene_model
-from tipoff.scenes import ends, parse
-from tipoff.scenes.effects import thrust_law
+from tipoff.mechanics.laws import thrust as thrust_law
+from tipoff.mechanics.laws.pushers import energy_given_up
+from tipoff.scenes import ends, parse, scene_model
 from tipoff.scenes.effects.push_file import read_push
-from tipoff.scenes.effects.pusher_law import energy_given_up
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.variation import Variations
 

@@ -3,10 +3,9 @@
 import pytest
 
 from tests.scenes.support import CONTACT, FRICTION, STICKING, small
-from tipoff.mechanics import scene_model
-from tipoff.scenes import ends, load, parse
-from tipoff.scenes.effects.friction import Friction
-from tipoff.scenes.effects.sticking import Sticking
+from tipoff.mechanics.laws.friction import Friction
+from tipoff.mechanics.laws.sticking import Sticking
+from tipoff.scenes import ends, load, parse, scene_model
 
 
 def test_record():

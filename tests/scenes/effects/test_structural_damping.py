@@ -6,8 +6,8 @@ import math
 import pytest
 
 from tests.scenes.support import SMALL, small
+from tipoff.mechanics.laws.structural_damping import Damping
 from tipoff.scenes import SceneError, load, parse
-from tipoff.scenes.effects.structural_damping import Damping
 
 FREQUENCIES = ["500 Hz", "5 kHz"]
 

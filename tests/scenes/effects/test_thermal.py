@@ -5,10 +5,9 @@ import numpy as np
 import pytest
 
 from tests.scenes.support import small
-from tipoff.mechanics import scene_model
+from tipoff.mechanics.laws.thermal import fields
 from tipoff.mechanics.rail_compliance import digest
-from tipoff.scenes import SceneError, load, parse
-from tipoff.scenes.effects.thermal import fields
+from tipoff.scenes import SceneError, load, parse, scene_model
 from tipoff.scenes.variation import Variations
 
 EXPANSION = "23.6e-6 1/K"

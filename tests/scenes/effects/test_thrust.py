@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from tests.exact.thrust import gaussian_peak, kept_by_cut
 from tests.scenes.support import small
+from tipoff.mechanics.laws import thrust
+from tipoff.mechanics.laws.thrust import Pulses, Thrust
 from tipoff.scenes import SceneError, load, parse
-from tipoff.scenes.effects import thrust, thrust_law
 from tipoff.scenes.effects.measured import MeasuredCurve, fit_gaussian
-from tipoff.scenes.effects.thrust_law import Pulses, Thrust
 
 DURATION = 0.05
 O41 = {"kind": "gaussian", "impulse": "100 N*s", "width": "4 ms", "centre": "20 ms"}
@@ -113,7 +113,7 @@ def test_python_and_the_compiled_law_give_the_same_bits():
         [thrust.sample(record, part)[0] for part in time[:, None]],
     )
     assert (many == few).all() and 0 < np.count_nonzero(many) < len(many)
-    about = thrust_law.estimated(record, time)
+    about = thrust.estimated(record, time)
     np.testing.assert_allclose(about, many, rtol=1e-14)
 
 

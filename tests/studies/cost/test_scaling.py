@@ -10,7 +10,7 @@ from tests.studies import kept
 from tests.studies.shown import html
 from tipoff import scenes
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
-from tipoff.mechanics.scene_model import build
+from tipoff.scenes.scene_model import build
 from tipoff.studies.ablation.stage import Ablation, Row
 from tipoff.studies.cost import scaling, trends
 from tipoff.studies.cost import scaling_page as page

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from tipoff.mechanics.laws import thrust
 from tipoff.scenes import load, moments
-from tipoff.scenes.effects import thrust, thrust_offset
+from tipoff.scenes.effects import thrust_offset
 from tipoff.studies.cli import app
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Surrogate

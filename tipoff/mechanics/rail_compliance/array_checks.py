@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from tipoff.mechanics import drawn_walls
+from tipoff.mechanics.laws.thermal import FIELDS
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST
 from tipoff.mechanics.rail_compliance.patterns import DRAGGED, degree_of
-from tipoff.scenes.effects.thermal import FIELDS
 
 _ROUNDING = 1e-6
 

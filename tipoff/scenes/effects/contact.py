@@ -3,15 +3,8 @@
 ``clearance_y`` and ``clearance_z`` replace the ``clearance`` of the faces along that axis. The
 walls stay one ``clearance`` off the pads as drawn; shims on the faces give the difference.
 
-With penetration p > 0 and closing speed q = dp/dt the normal force is F = max(0, raw), where raw
-is::
-
-    IMPACT          k p^e + c s(p/d) q,   s(x) = x^2 (3 - 2 x) on 0..1 and 1 beyond     (ADAMS/Solver)
-    Hunt-Crossley   k p^e (1 + a q)                                                     (Hunt and Crossley 1975)
-    linear          k p + c q
-
-Stored energy is k p^(e+1) / (e+1) in each law. These are the laws of springs. The finite elements
-and compliant contact have a pressure over approach k_i (N/m3) on the crowned pads, without damping:
+The laws of springs are in ``mechanics.laws.contact``. The finite elements and compliant contact
+have a pressure over approach k_i (N/m3) on the crowned pads, without damping:
 the interface stiffness of asperities and coating, in series with the material of the pad, if the
 scene states the thickness t of its layer::
 
@@ -23,12 +16,12 @@ Source of M: Johnson, Contact Mechanics, Cambridge 1985, section 4.3. Values of 
 stiffness with their sources are in ``docs/interface_stiffness.md``.
 """
 
-from typing import Annotated, Any, Literal, NamedTuple, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
 from pydantic import Field, ValidationInfo, field_validator
 
-from tipoff.kernels.jit import njit
+from tipoff.mechanics.laws.contact import ContactLaw
 from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.rounding import at_most
 from tipoff.scenes.table import Table, is_absent
@@ -150,7 +143,7 @@ class ImpactTable(_ContactTable):
     #: Penetration at which the damping is full.
     damping_depth: PositiveLength
 
-    def record(self) -> "ContactLaw":
+    def record(self) -> ContactLaw:
         """Kernel record."""
         return ContactLaw(
             stiffness=self.stiffness,
@@ -168,7 +161,7 @@ class HuntCrossleyTable(_ContactTable):
     #: Dissipation factor a.
     dissipation: Dissipation
 
-    def record(self) -> "ContactLaw":
+    def record(self) -> ContactLaw:
         """Kernel record."""
         return ContactLaw(
             stiffness=self.stiffness, exponent=self.exponent, dissipation=self.dissipation
@@ -185,65 +178,9 @@ class LinearTable(_ContactTable):
     #: Damping coefficient.
     damping: ContactDamping = 0.0
 
-    def record(self) -> "ContactLaw":
+    def record(self) -> ContactLaw:
         """Kernel record."""
         return ContactLaw(stiffness=self.stiffness, damping=self.damping)
 
 
 ContactTable = Annotated[ImpactTable | HuntCrossleyTable | LinearTable, Field(discriminator="law")]
-
-
-class ContactLaw(NamedTuple):
-    """Kernel record of a law."""
-
-    stiffness: float  # N/m^e
-    exponent: float = 1.0  # e
-    damping: float = 0.0  # N s/m
-    damping_depth: float = 0.0  # m, depth of full damping; zero for any
-    dissipation: float = 0.0  # s/m
-
-
-NO_CONTACT = ContactLaw(stiffness=0.0)
-
-
-@njit
-def parts(law, penetration, closing):
-    """Elastic and damping part (N) for penetration > 0 (m) and closing speed (m/s), before the
-    no-pull rule."""
-    elastic = law.stiffness * _power(penetration, law.exponent)
-    coefficient = _coefficient(
-        law.damping, law.damping_depth, law.dissipation, elastic, penetration
-    )
-    return elastic, coefficient * closing
-
-
-@njit
-def _power(base, exponent):
-    if exponent == 1.0:
-        return base
-    # sqrt is several times cheaper than pow, and 1.5 (Hertz) is by far the most common exponent
-    return base * np.sqrt(base) if exponent == 1.5 else base**exponent
-
-
-@njit
-def _coefficient(damping, damping_depth, dissipation, elastic, penetration):
-    """Damping force over closing speed (N s/m)."""
-    if damping == 0.0:
-        return elastic * dissipation
-    if damping_depth == 0.0:
-        return damping
-    x = min(penetration / damping_depth, 1.0)
-    return damping * x * x * (3.0 - 2.0 * x)
-
-
-@njit
-def stored_energy(law, penetration):
-    """Elastic energy (J) stored at penetration > 0 (m)."""
-    return _stored(law.stiffness, law.exponent, penetration)
-
-
-@njit
-def _stored(stiffness, exponent, penetration):
-    if exponent == 1.0:
-        return 0.5 * stiffness * penetration * penetration
-    return stiffness * penetration ** (exponent + 1.0) / (exponent + 1.0)

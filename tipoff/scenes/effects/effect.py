@@ -8,7 +8,7 @@ class Effect(NamedTuple):
 
     ``key`` is the dotted key of the effect's table in a scene. ``example`` has small overrides that
     add the effect to a scene, None if the values depend on the scene. An effect with
-    ``is_body_force`` has a table with the method ``body_force`` (``effects.body_force``).
+    ``is_body_force`` has a table with the method ``body_force`` (``mechanics.laws.body_force``).
     """
 
     key: str

@@ -1,6 +1,6 @@
 """Uniform gravity: every body is accelerated by g, ``F = m g``. Absent table: no body force."""
 
-from tipoff.scenes.effects.body_force import BodyForce
+from tipoff.mechanics.laws.body_force import BodyForce
 from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import Acceleration

@@ -2,17 +2,12 @@
 thrust first reaches a value. Absent table: no latch, but a stop where the weight pulls the payload back
 (``scenes.stop``).
 
-The latch takes the force lambda along the rail that keeps the travel constant, and gives it back to
-the platform. It acts on the line of the nominal mass centre along the rail, in both directions, and
-never holds again::
-
-    lambda = -a / w      a: acceleration of the travel by all other forces, w: that by a unit force
+The latch acts in both directions (``mechanics.laws.hold_down``).
 """
 
 import math
-from typing import NamedTuple
 
-from tipoff.scenes.effects import thrust_law
+from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.effects.spring import PushedTable
 from tipoff.scenes.faults import Fault, SceneError
@@ -28,14 +23,6 @@ class HoldDownTable(Table):
     #: Thrust at which the payload is released, once for all; 0 is the ignition. With 0 there is no
     #: stop behind the payload either, and its weight may pull it back.
     release: NonNegativeForce
-
-
-class HoldDown(NamedTuple):
-    """Kernel record."""
-
-    release: float  # s, time of the release
-    line: tuple  # (2,) m, places along Y and Z of the line on which it acts, in platform axes
-    is_stop: bool  # whether it is released when the payload leaves its stop (``scenes.stop``)
 
 
 def release_time(scene) -> float:

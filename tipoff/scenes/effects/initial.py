@@ -1,14 +1,11 @@
 """Initial state of payload and platform at ignition. Absent table: centred, aligned, at rest.
 
-Position is the displacement of the payload from its centred place; attitude is a rotation vector
-(axis times angle) from scene axes to body axes. Velocities are inertial, in scene axes; rates are
-in the body's own axes.
+``mechanics.laws.initial`` states the axes.
 """
-
-from typing import NamedTuple
 
 from pydantic import Field
 
+from tipoff.mechanics.laws.initial import Initial
 from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.table import Table, is_zero
 from tipoff.scenes.units import Angle, Length, Rate, Velocity
@@ -81,7 +78,7 @@ class InitialTable(Table):
     #: Inertial rate of the platform.
     platform_rate: AngularRate = AngularRate()
 
-    def record(self) -> "Initial":
+    def record(self) -> Initial:
         """Kernel record."""
         return Initial(
             position=_triple(self.position),
@@ -96,15 +93,3 @@ class InitialTable(Table):
 
 def _triple(part: Table) -> tuple:
     return tuple(part.model_dump().values())
-
-
-class Initial(NamedTuple):
-    """Plain record of the initial state."""
-
-    position: tuple = (0.0, 0.0, 0.0)  # m
-    attitude: tuple = (0.0, 0.0, 0.0)  # rad, rotation vector
-    velocity: tuple = (0.0, 0.0, 0.0)  # m/s
-    rate: tuple = (0.0, 0.0, 0.0)  # rad/s
-    platform_velocity: tuple = (0.0, 0.0, 0.0)  # m/s
-    platform_rate: tuple = (0.0, 0.0, 0.0)  # rad/s
-    settled: bool = False  # whether the payload rests on its rails

@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_validator
 
+from tipoff.mechanics.laws.thrust import Curve, Pulses, Thrust
 from tipoff.scenes.effects import load_cell
 from tipoff.scenes.effects.load_cell import Levels
 from tipoff.scenes.effects.measured import (
@@ -18,7 +19,6 @@ from tipoff.scenes.effects.measured import (
     read_record,
     without_baseline,
 )
-from tipoff.scenes.effects.thrust_law import Curve, Pulses, Thrust
 from tipoff.scenes.effects.timed import TimedTable
 from tipoff.scenes.faults import within
 from tipoff.scenes.rounding import below

@@ -16,8 +16,7 @@ with nu = 0.33, as long as nothing slips: Mindlin, J. Appl. Mech. 16 (1949) 259-
 and Mueser, J. Phys.: Condens. Matter 23 (2011) 085001.
 """
 
-from typing import NamedTuple
-
+from tipoff.mechanics.laws.mount_stiffness import MountStiffness
 from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import InterfaceStiffness, PositiveNumber
@@ -26,13 +25,6 @@ EFFECT = Effect(
     "rail.mount_stiffness",
     {"rail.mount_stiffness.normal": "1e13 N/m**3", "rail.mount_stiffness.shear": "5e12 N/m**3"},
 )
-
-
-class MountStiffness(NamedTuple):
-    """Plain record of the stiffness."""
-
-    normal: float  # N/m3
-    shear: float  # N/m3
 
 
 class MountStiffnessTable(Table):

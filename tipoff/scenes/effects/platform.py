@@ -4,10 +4,7 @@ are fixed in space.
 Mass, inertia and mass centre are those of the whole platform *with* its undeformed rails.
 """
 
-from typing import NamedTuple
-
-import numpy as np
-
+from tipoff.mechanics.laws.platform import Platform
 from tipoff.scenes.body import InertiaTensor, inverse, tensor
 from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.effects.initial import Displacement
@@ -28,17 +25,8 @@ class PlatformTable(Table):
     #: Mass centre at ignition, in scene axes.
     mass_centre: Displacement = Displacement()
 
-    def record(self) -> "Platform":
+    def record(self) -> Platform:
         """Kernel record."""
         inertia = tensor(self.inertia)
         centre = self.mass_centre
         return Platform(self.mass, inertia, inverse(inertia), (centre.x, centre.y, centre.z))
-
-
-class Platform(NamedTuple):
-    """Kernel record of the platform."""
-
-    mass: float  # kg
-    inertia: np.ndarray  # (3,3) kg m2
-    inverse_inertia: np.ndarray  # (3,3) 1/(kg m2)
-    mass_centre: tuple  # (3,) m, at ignition

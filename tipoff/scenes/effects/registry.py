@@ -5,6 +5,7 @@ A new effect is one file in this folder, an entry here and a field of ``Scene``.
 
 from operator import attrgetter
 
+from tipoff.mechanics.laws.body_force import BodyForce
 from tipoff.scenes.effects import (
     contact,
     friction,
@@ -18,7 +19,6 @@ from tipoff.scenes.effects import (
     thermal,
     thrust_offset,
 )
-from tipoff.scenes.effects.body_force import BodyForce
 from tipoff.scenes.effects.effect import Effect
 
 EFFECTS: tuple[Effect, ...] = (

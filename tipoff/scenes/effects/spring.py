@@ -1,7 +1,7 @@
 """``[thrust] kind = "spring"`` and ``"springs"``: spring pushers, whose force depends on travel.
 
 Each pusher has a preload, a rate and a stroke, or a table of force over travel from a CSV file, and
-a constant friction. Its law is in ``pusher_law``. It ends when its stroke is used up, and it reacts
+a constant friction. Its law is in ``mechanics.laws.pushers``. It ends when its stroke is used up, and it reacts
 on the platform.
 """
 
@@ -18,9 +18,9 @@ from pydantic import (
     model_validator,
 )
 
+from tipoff.mechanics.laws.pushers import Pushers
+from tipoff.mechanics.laws.thrust import Thrust
 from tipoff.scenes.effects.push_file import Push, read_push
-from tipoff.scenes.effects.pusher_law import Pushers
-from tipoff.scenes.effects.thrust_law import Thrust
 from tipoff.scenes.effects.thrust_offset import Misalignment
 from tipoff.scenes.faults import within
 from tipoff.scenes.rounding import below

@@ -1,19 +1,10 @@
-"""Coulomb friction with stick: a touching face is held by a spring and a damper up to mu_s N, or
-slides under mu_d N.
+"""Coulomb friction with stick (``mechanics.laws.sticking``): a table of ``[friction]``."""
 
-    held      F = -k xi - c u         while |F| <= mu_s N        (xi: displacement from the anchor, u: slip velocity)
-    sliding   F = -mu_d N u/|u|       until |u| <= the capture speed
-
-``lowfi.contact.stick_slip`` has the transitions. The spring is the tangential compliance of one pad
-face: a held face moves by F/k but does not creep. A damping of 2 sqrt(k m), with the mass m per
-face, is critical. Sources: Cundall and Strack, Geotechnique 29 (1979) 47 (spring and slider);
-Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100 (a band about rest).
-"""
-
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from pydantic import ValidationInfo, field_validator
 
+from tipoff.mechanics.laws.sticking import Sticking
 from tipoff.scenes.rounding import below
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import CaptureSpeed, ContactDamping, NonNegativeNumber, Stiffness
@@ -43,16 +34,6 @@ class StickingTable(Table):
             raise ValueError("at most static; otherwise a face that slips would stick at once")
         return dynamic
 
-    def record(self) -> "Sticking":
+    def record(self) -> Sticking:
         """Kernel record."""
         return Sticking(self.static, self.dynamic, self.stiffness, self.damping, self.capture_speed)
-
-
-class Sticking(NamedTuple):
-    """Kernel record of friction with sticking."""
-
-    static: float  # coefficient
-    dynamic: float  # coefficient
-    stiffness: float  # N/m, of a held face
-    damping: float  # N s/m, of a held face
-    capture_speed: float  # m/s

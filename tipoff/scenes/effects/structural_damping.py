@@ -7,10 +7,10 @@ is smaller between them and larger outside.
 """
 
 import math
-from typing import NamedTuple
 
 from pydantic import ValidationInfo, field_validator
 
+from tipoff.mechanics.laws.structural_damping import Damping
 from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.rounding import below
 from tipoff.scenes.table import Table
@@ -23,13 +23,6 @@ EFFECT = Effect(
         "rail.damping.frequencies": ["500 Hz", "5 kHz"],
     },
 )
-
-
-class Damping(NamedTuple):
-    """Kernel record of Rayleigh damping."""
-
-    mass_rate: float  # 1/s, alpha
-    stiffness_time: float  # s, beta
 
 
 class DampingTable(Table):

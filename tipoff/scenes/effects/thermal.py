@@ -1,28 +1,11 @@
-"""Rails at an uneven temperature: linear in position, and constant during a launch.
-
-T is the change of temperature since the rails were mounted free of stress, X_m the middle of their
-length on the payload's axis, alpha the coefficient of expansion and s the strain of the platform
-that carries the mounts::
-
-    T = mean + gradient . (X - X_m),      free strain alpha T in every direction,      mounts moved by s (X - X_m)
-
-Example: rails that are 20 K warmer than those at a distance of 0.2 m have a gradient of 0.1 K/mm. A
-platform with the temperature and the expansion of its rails has s = alpha mean, and the rails stay
-free of stress. Absent table: T = 0.
-"""
-
-from typing import NamedTuple
+"""Rails at an uneven temperature (``mechanics.laws.thermal``). Absent table: T = 0."""
 
 import numpy as np
 
+from tipoff.mechanics.laws.thermal import Thermal
 from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import Number, TemperatureChange, TemperatureGradient
-
-# every [thermal] is a sum of these fields: a free strain, its gradients along x, y and z, and the
-# strain of the platform
-FIELDS = 5
-
 
 EFFECT = Effect("thermal", {"thermal.mean": "5 K", "thermal.gradient.y": "20 K/m"})
 
@@ -49,22 +32,8 @@ class ThermalTable(Table):
     #: Growth of the platform between the mounts, as a strain.
     platform_strain: Number = 0.0
 
-    def record(self, rail) -> "Thermal":
+    def record(self, rail) -> Thermal:
         """Plain record for the ``[rail]`` of a scene."""
         expansion, gradient = rail.material.expansion, self.gradient
         strains = expansion * np.array([self.mean, gradient.x, gradient.y, gradient.z])
         return Thermal(np.append(strains, self.platform_strain), 0.5 * (rail.start + rail.end))
-
-
-class Thermal(NamedTuple):
-    """Plain record of the temperature."""
-
-    # (FIELDS,) amount of each field: free strain at X_m (1), its gradients (1/m), strain of the
-    # platform (1)
-    amounts: np.ndarray
-    middle: float  # m, X_m in scene axes
-
-
-def fields(points: np.ndarray, middle: float) -> np.ndarray:
-    """Unit values of the four fields of free strain (n,4) at ``points`` (n,3) m in scene axes."""
-    return np.column_stack([np.ones(len(points)), np.subtract(points, [middle, 0.0, 0.0])])

@@ -4,8 +4,7 @@ travel is in ``spring``.
     F(t) = sum_i P_i exp(-(t - t_i)^2 / (2 s_i^2))   begin <= t <= end,        impulse of one pulse J = P s sqrt(2 pi)
 
 A pulse cut at ``n`` widths keeps erf(n / sqrt 2) of its impulse; ``rescale`` restores it. A
-measured curve is in ``measured_table``. The law is in ``thrust_law``; its names
-are exported here too.
+measured curve is in ``measured_table``. The law is in ``mechanics.laws.thrust``.
 """
 
 import math
@@ -20,23 +19,9 @@ from pydantic import (
     model_validator,
 )
 
+from tipoff.mechanics.laws.thrust import ROOT_TWO_PI, Curve, Pulses, Thrust, kept
 from tipoff.scenes.effects.measured_table import MeasuredTable
 from tipoff.scenes.effects.spring import SpringsTable, SpringTable
-from tipoff.scenes.effects.thrust_law import (
-    ROOT_TWO_PI,
-    Curve,
-    Pulses,
-    Thrust,
-    burnout,
-    burnouts,
-    corners,
-    impulse,
-    kept,
-    magnitude,
-    peak,
-    sample,
-    shortest_feature,
-)
 from tipoff.scenes.effects.timed import TimedTable
 from tipoff.scenes.table import Table, at_least_one, limited
 from tipoff.scenes.units import (
@@ -47,22 +32,6 @@ from tipoff.scenes.units import (
     PositiveTime,
     Time,
 )
-
-__all__ = [
-    "Curve",
-    "Pulse",
-    "Pulses",
-    "Thrust",
-    "ThrustTable",
-    "burnout",
-    "burnouts",
-    "corners",
-    "impulse",
-    "magnitude",
-    "peak",
-    "sample",
-    "shortest_feature",
-]
 
 
 class Pulse(Table):

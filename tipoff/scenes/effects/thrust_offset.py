@@ -4,8 +4,7 @@ Angles are counted as in ``scenes.polar``; the eccentricity is measured from the
 Absent table: a centred axial force.
 """
 
-from typing import NamedTuple
-
+from tipoff.mechanics.laws.thrust_offset import ThrustOffset
 from tipoff.scenes import polar
 from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.effects.mass_offset import Eccentricity
@@ -41,13 +40,6 @@ class ThrustOffsetTable(Table):
     misalignment: Misalignment = Misalignment()
     #: Offset of the line of the thrust from the axis.
     eccentricity: Eccentricity = Eccentricity()
-
-
-class ThrustOffset(NamedTuple):
-    """Kernel record, in body axes."""
-
-    direction: tuple  # unit vector
-    arm: tuple  # m, from the actual mass centre
 
 
 def record(thrust_offset, mass_offset, arm: float) -> ThrustOffset | None:

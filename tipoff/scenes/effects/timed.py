@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Literal
 
-from tipoff.scenes.effects.thrust_law import Thrust, impulse, peak
+from tipoff.mechanics.laws.thrust import Thrust, impulse, peak
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import PositiveLength
 

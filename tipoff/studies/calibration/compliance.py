@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.scenes import scene_model
 from tipoff.scenes.scene import Scene
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study

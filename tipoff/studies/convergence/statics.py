@@ -26,7 +26,7 @@ def quantities(
     if scene.contact is None:
         return
     from tipoff.highfi import compliance  # slow to load
-    from tipoff.mechanics import scene_model
+    from tipoff.scenes import scene_model
 
     faces = scene_model.built(scene).nominal
     way = (scene.rail.end - faces.half_length - faces.centre[:, 0]).max()

@@ -19,7 +19,7 @@ from tipoff.highfi.mesh.cells import HEXAHEDRON, kind
 from tipoff.highfi.statics import inputs, mounts
 from tipoff.highfi.statics.held import HeldRail
 from tipoff.highfi.statics.places import Patches
-from tipoff.mechanics import scene_model
+from tipoff.mechanics.model import half_sizes
 from tipoff.scenes.scene import Scene
 
 FORCE, MODES = 100.0, 4  # N, modes
@@ -53,7 +53,7 @@ def _under_first_pad(scene: Scene, held: HeldRail) -> np.ndarray | None:
     if scene.contact is None:
         return None
     own, patches = inputs.of(scene), Patches(held.rail, 1)
-    half = scene_model.half_sizes(own.faces)
+    half = half_sizes(own.faces)
     number = patches.under(own.faces, half, held.images[0], own.reach, np.zeros(1))[0]
     if not (number >= 0).any():
         return None

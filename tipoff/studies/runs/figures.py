@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.mechanics import ledger
+from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import ends
-from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.scene import Scene
 from tipoff.studies.convergence.contact_loads import by_pad
 from tipoff.studies.render.chart import Chart, Line, Panel

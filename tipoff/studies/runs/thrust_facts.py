@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from tipoff.scenes.effects import thrust_law
+from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.scenes.effects.measured import GaussianFit
 from tipoff.scenes.effects.spring import PushedTable
 from tipoff.scenes.effects.thrust import GaussiansTable, GaussianTable

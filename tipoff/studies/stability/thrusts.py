@@ -1,7 +1,7 @@
 """Hard thrusts for the rigid surrogate: a pulse shorter than a step, and corners between steps. v = J / m
 (momentum)."""
 
-from tipoff.scenes.effects import thrust_law
+from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.studies.stability import weaker_methods as weaker
 from tipoff.studies.stability.contacts import DEFAULT_STEP, run_on_springs, single_pad
 from tipoff.studies.stability.verdict import Control, Measure, Verdict, stability, verdict

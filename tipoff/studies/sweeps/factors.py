@@ -11,9 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.lowfi.ensemble.rows import Listed, numbers
-from tipoff.mechanics import scene_model
-from tipoff.scenes import ends, moments
-from tipoff.scenes.effects import thrust
+from tipoff.mechanics.laws import thrust
+from tipoff.scenes import ends, moments, scene_model
 from tipoff.scenes.scene import Scene
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from tipoff.highfi.elements import hexahedral_recovery, hexahedron
 from tipoff.highfi.stress import peaks
 from tipoff.kernels import rotation
-from tipoff.mechanics.scene_model import Model
+from tipoff.mechanics.model import Model
 from tipoff.scenes.scene import Scene
 
 _BATCH = 8192  # elements at once, which limits the memory

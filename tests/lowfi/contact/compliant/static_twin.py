@@ -18,7 +18,7 @@ import numpy as np
 from tipoff.highfi import compliance
 from tipoff.highfi.contact import surface
 from tipoff.highfi.statics import inputs
-from tipoff.mechanics import scene_model
+from tipoff.mechanics.model import half_sizes
 from tipoff.scenes.scene import Scene
 
 _MOST = 60  # corrections of the set of pressed cells
@@ -52,7 +52,7 @@ class StaticTwin:
 
     def __init__(self, scene: Scene, element_size: float, cells: int, follow: bool = False):
         own = inputs.of(scene)
-        self.model_faces, self._half = own.faces, scene_model.half_sizes(own.faces)
+        self.model_faces, self._half = own.faces, half_sizes(own.faces)
         self._reach, self._cells, self._follow = own.reach, cells, follow
         self._interface = scene.contact.series_stiffness()
         self.held = compliance.rails(scene, element_size)[0]

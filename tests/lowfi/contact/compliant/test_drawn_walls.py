@@ -20,7 +20,8 @@ from tests.lowfi.contact.compliant.test_statics import (
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant import cells
 from tipoff.lowfi.faces import WALL
-from tipoff.mechanics import drawn_walls, scene_model
+from tipoff.mechanics import drawn_walls
+from tipoff.scenes import scene_model
 
 PLACES = drawn_walls.grid(REFERENCE.rail.start, REFERENCE.rail.end)
 

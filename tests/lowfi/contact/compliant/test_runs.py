@@ -19,8 +19,9 @@ from tipoff import lowfi
 from tipoff.highfi import compliance
 from tipoff.lowfi import Numerics
 from tipoff.lowfi.contact.compliant import loads
-from tipoff.mechanics import ledger, scene_model
+from tipoff.mechanics import ledger
 from tipoff.mechanics.rail_compliance import DEGREE
+from tipoff.scenes import scene_model
 from tipoff.scenes.scene import load, parse
 
 AREA = 0.016**2  # m2, of a pad face

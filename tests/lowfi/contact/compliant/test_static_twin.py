@@ -18,9 +18,9 @@ from tipoff.highfi.state.records import OVER
 from tipoff.kernels import rotation
 from tipoff.lowfi import system as systems
 from tipoff.lowfi.contact.compliant import record, solution
-from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance
 from tipoff.mechanics.rail_compliance.patterns import powers
+from tipoff.scenes import scene_model
 
 ELEMENT, FINE, CELLS = 4e-3, 2e-3, 16  # m; along each edge of a face, as in the reference
 LENGTH = 16e-3  # m, of a pad

@@ -33,8 +33,8 @@ from tipoff.highfi.statics import assembly
 from tipoff.kernels import rotation
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant import cells, solution, step_limit
-from tipoff.mechanics import scene_model
 from tipoff.mechanics.rail_compliance import PATTERNS
+from tipoff.scenes import scene_model
 
 
 @pytest.fixture(scope="module")

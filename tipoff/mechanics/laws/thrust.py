@@ -44,7 +44,7 @@ class Curve(NamedTuple):
 @by_reference
 class Thrust(NamedTuple):
     """Kernel record: one of the two is not None, or none of them for a force over travel
-    (``pusher_law``)."""
+    (``mechanics.laws.pushers``)."""
 
     pulses: Pulses | None
     curve: Curve | None

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from tests.scenes.support import CONTACT, FRICTION, small
-from tipoff.mechanics import scene_model
-from tipoff.scenes import load, parse
-from tipoff.scenes.effects.body_force import BodyForce, acceleration
-from tipoff.scenes.effects.initial import Initial
+from tipoff.mechanics.laws.body_force import BodyForce, acceleration
+from tipoff.mechanics.laws.initial import Initial
+from tipoff.scenes import load, parse, scene_model
 
 PLATFORM = {
     "mass": "80 kg",

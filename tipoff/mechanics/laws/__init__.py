@@ -1,0 +1,3 @@
+"""One law a file, over numpy and kernels only: record, force, energy. ``scenes.effects`` has the tables
+that become these records.
+"""
