@@ -80,6 +80,10 @@ def test_rates_in_coarse_steps_are_settled(tmp_path, step):
     assert stated != sheet
     analysis.analyse(tmp_path / "test.toml")
     if step > 0.25:  # twice the noise
+        rng = np.random.default_rng(5)
+        for row in cells:
+            row[1:4] = [f"{float(cell) + 0.1 * step * rng.random():.6f}" for cell in row[1:4]]
+        (tmp_path / "simulated1.csv").write_text("\n".join([head, names, *map(",".join, cells)]))
         (tmp_path / "test.toml").write_text(
             stated.replace(f'"{step} deg/s"', f'"{step / 8} deg/s"')
         )
@@ -298,3 +302,48 @@ def test_a_gyro_without_an_inverse_is_refused(tmp_path):
     sheet = re.sub(r"scale_error = .*", "scale_error = [-1, 0, 0]", SHEET, count=1)
     assert sheet != SHEET
     assert "gyro.scale_error.0" in refused(written(tmp_path, sheet))
+
+
+def rounded(step):
+    """Every rate rounded to a ``step`` (deg/s)."""
+
+    def change(cells):
+        for row in cells:
+            row[1:4] = [f"{step * round(float(cell) / step):.6g}" for cell in row[1:4]]
+        return cells
+
+    return change
+
+
+@pytest.mark.parametrize("step", [0.0625, 0.125, 0.25, 0.5])
+@pytest.mark.parametrize("stated", ["0.01 deg/s", "0.001 deg/s", "1e-6 deg/s", "0 deg/s"])
+def test_the_steps_of_the_samples_count_where_they_are_coarser_than_stated(tmp_path, step, stated):
+    """A whole log without a clipped sample. Control: the sheet that states the step."""
+    found = {}
+    for name in (stated, f"{step} deg/s"):
+        sheet = re.sub('resolution = ".*"', f'resolution = "{name}"', SHEET)
+        path = written(tmp_path, sheet, rounded(step))
+        read_sheet, log = read(path)
+        assert np.degrees(read_sheet.gyro.resolution) == pytest.approx(step)
+        assert not log.doubtful.any()
+        assert any(f"steps of {step:.3g} deg/s" in note for note in log.notes) == (
+            name == stated != "0 deg/s"
+        )
+        found[name] = analysis.analyse(path).reduced
+    for name, part in found[f"{step} deg/s"].parts.items():
+        np.testing.assert_allclose(found[stated].parts[name], part)
+
+
+def test_samples_without_steps_leave_the_stated_resolution(tmp_path):
+    """Control: the smallest difference of all samples is larger than this resolution."""
+    rng = np.random.default_rng(3)
+
+    def fine(cells):
+        for row in cells:
+            row[1:4] = [f"{float(cell) + 0.02 * rng.standard_normal():.9f}" for cell in row[1:4]]
+        return cells
+
+    sheet, log = read(written(tmp_path, SHEET.replace('"0.01 deg/s"', '"1e-7 deg/s"'), fine))
+    assert np.degrees(sheet.gyro.resolution) == pytest.approx(1e-7)
+    assert np.abs(np.diff(log.rate, axis=0)).min() > sheet.gyro.resolution
+    assert not any("steps" in note for note in log.notes) and not log.doubtful.any()

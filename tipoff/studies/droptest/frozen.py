@@ -25,6 +25,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tipoff.studies.droptest.quantisation import steps
+
 _CHANCE = 1e-9  # expected number of runs of a working channel that are called frozen
 _BLOCK, _EVERY = 64, 16  # samples in which sigma is judged, and from block to block
 _BLOCKS = 12  # a single step in a few blocks looks like noise
@@ -32,7 +34,6 @@ _LAGS = (1, 2, 4, 8)
 _GROWS = 1.5  # ratio of D at twice the lag; a random walk has 2, a ramp 4
 _ALIKE = 5.0  # ratio of the noise of two axes, at most
 _LEAST = 0.02  # probability of an equal sample, at least: loggers repeat single samples
-_EQUAL = 1e-9  # relative
 
 
 class Run(NamedTuple):
@@ -47,10 +48,9 @@ class Run(NamedTuple):
 
 def frozen(values: np.ndarray, resolution: float = 0.0) -> list[Run]:
     """Stretches of samples (n,k) of the axes of one sensor in which an axis is frozen;
-    ``resolution`` is its step, or less, in the same unit. Raises nothing."""
-    steps = [_step(column, resolution) for column in values.T]
-    steps = [step if np.isfinite(step) else min(steps) for step in steps]  # a constant column
-    noise = [_noise(column, step) for column, step in zip(values.T, steps)]
+    ``resolution`` is its stated step, in the same unit. Raises nothing."""
+    step = steps(values, resolution)
+    noise = [_noise(column, one) for column, one in zip(values.T, step)]
     lag, count = max(map(_lag, noise), default=1), len(values)
     found = []
     for axis, column in enumerate(values.T):
@@ -66,7 +66,7 @@ def frozen(values: np.ndarray, resolution: float = 0.0) -> list[Run]:
             own = min(before[first], after[len(sigma) - last])
             if shown[first] + shown[-1] - shown[last] < _BLOCKS:
                 own = 0.0
-            allowed = _allowed(max(own, alike / _ALIKE), lag, steps[axis], count)
+            allowed = _allowed(max(own, alike / _ALIKE), lag, float(step[axis]), count)
             if allowed is not None and end - begin > allowed:
                 found.append(Run(axis, begin, end, allowed))
     return found
@@ -84,17 +84,10 @@ def _most(same: float, lag: int, count: int) -> int:
     return lag * ceil(1.0 + log(_CHANCE / count) / log(same))
 
 
-def _step(column: np.ndarray, resolution: float) -> float:
-    """Smallest difference of two samples; a log may be rounded more coarsely than its sheet says."""
-    steps = np.abs(np.diff(column))
-    least = _EQUAL * np.abs(column).max(initial=0.0)
-    return max(resolution, float(steps[steps > least].min(initial=np.inf)))
-
-
 def _noise(column: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
     """sigma (m,) and lag (m,) of the blocks in order; sigma is 0 in a quiet block, infinite in one
     that moves too much."""
-    if len(column) < _BLOCK or not np.isfinite(step):
+    if len(column) < _BLOCK:
         return np.zeros(0), np.zeros(0, dtype=int)
     blocks = np.lib.stride_tricks.sliding_window_view(column, _BLOCK)[::_EVERY]
     square = [np.var(blocks[:, m:] - blocks[:, :-m], axis=1) for m in (*_LAGS, 2 * _LAGS[-1])]

@@ -24,6 +24,7 @@ from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.droptest import columns, sampling
 from tipoff.studies.droptest import sheet as sheets
 from tipoff.studies.droptest.frozen import frozen
+from tipoff.studies.droptest.quantisation import steps
 from tipoff.studies.droptest.saturation import saturated
 from tipoff.studies.droptest.sheet import Sheet
 from tipoff.workspace.words import counted
@@ -31,6 +32,7 @@ from tipoff.workspace.words import counted
 _BRIDGED = 2  # missing samples that a straight line may replace
 _JITTER = 0.01  # of an interval: a smaller jitter is rounding of the clock and stays
 _UNEVEN = 0.45  # of an interval: with more jitter the instant of a sample is not clear
+_COARSER = 1.01  # steps in a log of few digits differ from the stated one by less
 _MOST_MISSING = 10.0  # instants of the even grid per sample; a wrong time would make billions
 
 
@@ -68,14 +70,34 @@ class Log(NamedTuple):
 
 
 def read(path: str | Path) -> tuple[Sheet, Log]:
-    """A sheet and its log. Raises SceneError listing every fault of either."""
+    """A sheet and its log. The resolution of the sheet is the step that the log shows, if that is
+    coarser. Raises SceneError listing every fault of either."""
     sheet = sheets.load(path)
     source = Path(path).parent / sheet.file
     values, notes = columns.read(source, sheet)
-    return sheet, _even(sheet, str(source), values, notes)
+    stated = sheet.gyro.resolution
+    axes = {"rate": steps(values["rate"], stated)}
+    if "acceleration" in values:
+        axes["acceleration"] = steps(values["acceleration"])
+    if (step := float(axes["rate"].min())) > _COARSER * stated:
+        if stated:
+            notes.append(
+                f"rate: the samples have steps of {np.degrees(step):.3g} deg/s, gyro.resolution is "
+                f"{np.degrees(stated):.3g} deg/s: the steps of the samples count"
+            )
+        gyro = sheet.gyro.model_copy(update={"resolution": step})
+        sheet = sheet.model_copy(update={"gyro": gyro})
+    return sheet, _even(sheet, str(source), values, axes, notes)
 
 
-def _even(sheet: Sheet, source: str, values: dict[str, np.ndarray], notes: list[str]) -> Log:
+def _even(
+    sheet: Sheet,
+    source: str,
+    values: dict[str, np.ndarray],
+    axes: dict[str, np.ndarray],
+    notes: list[str],
+) -> Log:
+    """The log of ``values`` on an even grid; ``axes``: steps (3,) of the sensors by name."""
     time = values["time"][:, 0]
     place, start, interval = _places(sheet, source, values)
     off = np.abs(time - start - interval * place).max() / interval
@@ -97,27 +119,31 @@ def _even(sheet: Sheet, source: str, values: dict[str, np.ndarray], notes: list[
             every = sampling.every(found, place) if name == "acceleration" else 1
             filled[name], gone = _bridged((time, place), found, grid, name, every, notes)
             doubtful |= gone
-            held += _held(sheet, source, name, (values["time"][:, 0], found))
-    return _marked(sheet, filled, doubtful, notes)._replace(frozen=tuple(held))
+            held += _held(sheet, source, name, (values["time"][:, 0], found), axes[name])
+    return _marked(sheet, filled, axes, doubtful, notes)._replace(frozen=tuple(held))
 
 
 def _held(
-    sheet: Sheet, source: str, name: str, samples: tuple[np.ndarray, np.ndarray]
+    sheet: Sheet,
+    source: str,
+    name: str,
+    samples: tuple[np.ndarray, np.ndarray],
+    step: np.ndarray,
 ) -> list[Frozen]:
-    """Where the rates or the accelerations, ``samples`` with their times, are frozen. A value at
-    which a channel is saturated is not frozen."""
+    """Where the rates or the accelerations, ``samples`` with their times and with the ``step`` (3,) of
+    each axis, are frozen. A value at which a channel is saturated is not frozen."""
     known = np.isfinite(samples[1]).all(axis=1)
     time, values = samples[0][known], samples[1][known]
     if name == "rate":
         names, unit, shown = sheet.columns.rate, "deg/s", values * np.degrees(1.0)
-        largest, step = sheet.gyro.range, sheet.gyro.resolution
+        largest = sheet.gyro.range
     else:
         assert sheet.columns.acceleration is not None and sheet.accelerometer is not None
         names, unit, shown = sheet.columns.acceleration, "m/s2", values
-        largest, step = sheet.accelerometer.range, 0.0
+        largest = sheet.accelerometer.range
     at_end = saturated(values, largest, step)
     found = []
-    for run in frozen(values, step):
+    for run in frozen(values, float(step.min())):
         if not at_end[run.begin, run.axis]:
             begin, end = float(time[run.begin]), float(time[run.end - 1])
             given = (
@@ -230,9 +256,9 @@ def _drifting(time, values, grid, source: str, notes: list[str]) -> np.ndarray:
     return np.interp(grid, time[good], values[good])
 
 
-def _marked(sheet: Sheet, filled: dict, doubtful: np.ndarray, notes: list[str]) -> Log:
+def _marked(sheet: Sheet, filled: dict, axes: dict, doubtful: np.ndarray, notes: list[str]) -> Log:
     rate, force, temperature = filled["rate"], filled.get("acceleration"), filled.get("temperature")
-    at_end = saturated(rate, sheet.gyro.range, sheet.gyro.resolution)
+    at_end = saturated(rate, sheet.gyro.range, axes["rate"])
     clipped = np.zeros(len(at_end), dtype=bool)
     if at_end.any():
         where = _level(np.degrees(rate), at_end, np.degrees(sheet.gyro.range), "deg/s")
@@ -243,7 +269,7 @@ def _marked(sheet: Sheet, filled: dict, doubtful: np.ndarray, notes: list[str]) 
     if force is not None:
         assert sheet.accelerometer is not None  # every sheet with accelerations has it
         largest = sheet.accelerometer.range
-        pushed = saturated(force, largest)
+        pushed = saturated(force, largest, axes["acceleration"])
         clipped = np.asarray(pushed.any(axis=1))
         if clipped.any():
             where = _level(force, pushed, largest, "m/s2")

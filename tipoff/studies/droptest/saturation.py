@@ -19,6 +19,8 @@ range, a settled rate with less noise than before looks the same.
 
 import numpy as np
 
+from tipoff.studies.droptest.quantisation import steps
+
 _AT = 1e-3  # of the range: a low-pass after the clipping may reduce the level by this
 _NEAR, _NEAR_NOISY, _RUN = 0.02, 0.005, 3  # shares of the range, and samples in a row there
 _LIKELY = 0.1  # share of the range within which a level with noise is searched
@@ -34,28 +36,24 @@ _QUIET = 1.5  # steps between samples of a sensor that may stay at one value
 _EQUAL = 1e-6  # relative: a value in single precision, or converted from another unit
 
 
-def saturated(values: np.ndarray, largest: float, resolution: float = 0.0) -> np.ndarray:
+def saturated(
+    values: np.ndarray, largest: float, step: float | np.ndarray | None = None
+) -> np.ndarray:
     """Samples (n,k) of ``values`` (n,k) of a sensor with the range ``largest`` that are saturated;
-    ``resolution`` is the step of the sensor, all in one unit. Without it the step is the smallest
-    difference of two samples."""
+    ``step`` () or (k,) is that of the sensor, all in one unit. Without it ``values`` show the step."""
     found = np.abs(values) >= largest * (1.0 - _AT)
-    for axis, column in enumerate(values.T):
+    sizes = np.broadcast_to(steps(values) if step is None else step, values.shape[1])
+    for axis, (column, size) in enumerate(zip(values.T, sizes.tolist())):
         for sign in (1.0, -1.0):
-            found[:, axis] |= _plateau(sign * column, largest, resolution)
+            found[:, axis] |= _plateau(sign * column, largest, size)
     return found
 
 
-def _plateau(column: np.ndarray, largest: float, resolution: float) -> np.ndarray:
+def _plateau(column: np.ndarray, largest: float, step: float) -> np.ndarray:
     """Where (n,) a column (n,) is at its maximum, if that is a level of saturation."""
     level = np.nanmax(column, initial=-np.inf)
     equal = _EQUAL * abs(level)
-    steps = np.abs(np.diff(column))
-    step = max(
-        resolution, equal, steps[steps > equal].min(initial=np.inf) if not resolution else 0.0
-    )
-    if not np.isfinite(step):
-        step = equal
-    same = max(0.5 * resolution, equal)
+    same, step = max(0.5 * step, equal), max(step, equal)
     for width in (same, *(factor * step for factor in _NOISY)):
         top = column >= level - width
         is_noisy = width > same
