@@ -235,3 +235,14 @@ def test_listed_cases_are_not_drawn(solvers):
     with pytest.raises(tipoff.SceneError, match="one of compliant, springs"):
         tipoff.ensemble(SCENE, [{}], "finite-elements")
     assert solvers == []
+
+
+@pytest.mark.parametrize("model", ["compliant", "springs", "finite-elements"])
+def test_every_model_refuses_pads_on_the_fillet(solvers, found, model):
+    scene = SCENE.replace({"rail.fillet": "4.5 mm"})
+    with pytest.raises(tipoff.SceneError, match="pads beside the fillet"):
+        tipoff.run(scene, model)
+    if model != "finite-elements":
+        with pytest.raises(tipoff.SceneError, match="pads beside the fillet"):
+            tipoff.ensemble(scene, [{}], model)
+    assert not solvers and not found

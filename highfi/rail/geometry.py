@@ -1,5 +1,7 @@
 """Geometry of the rails of a scene, from which their mesh is made."""
 
+from collections.abc import Collection
+
 from tipoff.files import content_hash
 from tipoff.highfi.rail import profile_rail
 from tipoff.meshes import l_rail, profile
@@ -25,6 +27,25 @@ def geometry(scene: Scene) -> l_rail.LRailGeometry | Profile | str:
         scene.rail.model_dump(mode="json", exclude={"damping", "mount_stiffness"})
         | scene.rail.contents()
     )
+
+
+def require_walls(scene: Scene, conditions: Collection[str] = ()) -> None:
+    """Raise SceneError with every fault of pads that do not lie beside the walls of their rail as the
+    tables state them, in a scene and in some of its ``conditions``. Such a scene is wrong in every
+    model. Walls in the file of a mesh or of a solid are checked when the file is read
+    (``highfi.rail.fit``)."""
+    faults = _beside_no_wall(scene)
+    for name in conditions:
+        own = [fault for fault in _beside_no_wall(scene.condition(name)) if fault not in faults]
+        faults += [fault._replace(source=f"{fault.source}, {name}") for fault in own]
+    if faults:
+        raise SceneError(faults)
+
+
+def _beside_no_wall(scene: Scene) -> list[Fault]:
+    if isinstance(scene.rail, ProfileTable):
+        return profile_rail.facing(scene, scene.rail)[1]
+    return _on_fillet(scene, scene.rail) if isinstance(scene.rail, SectionTable) else []
 
 
 def elements(scene: Scene, element_size: float) -> int | None:

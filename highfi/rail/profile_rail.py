@@ -6,7 +6,7 @@ from tipoff.scenes import scene_model
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.scene import Scene
-from tipoff.scenes.sections.outline import SAME, Side
+from tipoff.scenes.sections.outline import SAME
 
 _FACING = 1e-6  # of a unit normal: sides that are turned less face along an axis
 
@@ -14,14 +14,11 @@ _FACING = 1e-6  # of a unit normal: sides that are turned less face along an axi
 def profile(scene: Scene, rail: ProfileTable) -> Profile:
     """The rail as meshed. Raises SceneError if nothing holds it, or a pad has no wall."""
     outline = rail.outline().at(rail.at)
-    faults, sides = rail.unheld(scene.name), outline.sides()
     mounted = {rail.outline().side_at(point) for point in rail.mounted}
-    if scene.contact is not None:
-        walls, missing = _walls(scene, sides, rail.signs())
-        faults += missing
-    else:  # nothing presses, but a mesh needs a wall
-        walls = {*range(len(sides))} - mounted
-    if faults:
+    walls, missing = facing(scene, rail)
+    if scene.contact is None:  # nothing presses, but a mesh needs a wall
+        walls = {*range(len(outline.sides()))} - mounted
+    if faults := rail.unheld(scene.name) + missing:
         raise SceneError(faults)
     return Profile(
         loops=outline.loops,
@@ -36,10 +33,12 @@ def profile(scene: Scene, rail: ProfileTable) -> Profile:
     )
 
 
-def _walls(
-    scene: Scene, sides: list[Side], images: tuple[tuple[int, int], ...]
-) -> tuple[set[int], list[Fault]]:
-    """Numbers of the sides that face the pads, and the faults of pads that face none."""
+def facing(scene: Scene, rail: ProfileTable) -> tuple[set[int], list[Fault]]:
+    """Numbers of the sides that face the pads, and the faults of pads that face none. Both are empty
+    without contact."""
+    if scene.contact is None:
+        return set(), []
+    sides, images = rail.outline().at(rail.at).sides(), rail.signs()
     faces = scene_model.in_scene_axes(scene, scene_model.built(scene).nominal)
     walls: set[int] = set()
     faults: list[Fault] = []

@@ -66,6 +66,37 @@ def test_every_stage_refuses_an_unknown_scene(tmp_path, stage):
     assert not (tmp_path / "out").exists()
 
 
+OWN_SECTION = """extends = "tiny"
+[rail]
+section = [["0 mm", "0 mm"], ["20 mm", "0 mm"], ["20 mm", "20 mm"], ["0 mm", "20 mm"]]
+start = "-88 mm"
+end = "132 mm"
+mounts = [{ start = "0 mm", end = "20 mm" }]
+mounted = [["10 mm", "0 mm"]]
+material = { density = "2700 kg/m**3", youngs_modulus = "70 GPa", poisson_ratio = 0.33 }
+"""
+
+
+@pytest.mark.parametrize("stage", STAGES)
+def test_every_stage_refuses_pads_without_a_wall(tmp_path, stage):
+    """Springs do not need the drawing, and did not look at it."""
+    (tmp_path / "own.toml").write_text(OWN_SECTION)
+    result = call(stage, "--scene", tmp_path / "own.toml", "--out", tmp_path / "out")
+    assert result.exit_code == 2 and "Traceback" not in result.output
+    assert "own: pads.0: given a face " in result.stderr and "without a wall" in result.stderr
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("stage", STAGES)
+def test_every_stage_refuses_pads_on_the_fillet(tmp_path, stage):
+    """Also where one condition alone has it."""
+    (tmp_path / "wide.toml").write_text(
+        'extends = "tiny"\n[conditions.wide]\nrail.fillet = "4.5 mm"\n'
+    )
+    result = call(stage, "--scene", tmp_path / "wide.toml", "--out", tmp_path / "out")
+    assert result.exit_code == 2 and "wide: rail.fillet: given" in result.stderr
+
+
 @pytest.mark.parametrize("stage", [name for name in STAGES if "condition" in PARAMETERS[name]])
 def test_every_stage_refuses_an_unknown_condition(tmp_path, stage):
     result = call(stage, "--scene", "tiny", "--condition", "phi99", "--out", tmp_path / "out")

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from tipoff import highfi, lowfi, sources
+from tipoff.highfi.rail.geometry import require_walls
 from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance
 from tipoff.scenes import Calibration, Fault, Scene, SceneError, arguments, studies, uncertainty
@@ -107,6 +108,8 @@ def walls(
 
 
 def require_model(scene: Scene, model: str, models: Sequence[str]) -> None:
-    """Raise SceneError for a name that is not one of ``models``."""
+    """Raise SceneError for a name that is not one of ``models``, and for pads beside no wall of
+    their rail, which no model can run."""
+    require_walls(scene)
     if not isinstance(model, str) or model not in models:
         raise SceneError([Fault(scene.name, "model", repr(model), f"one of {', '.join(models)}")])

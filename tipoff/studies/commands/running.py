@@ -45,6 +45,7 @@ def study_of(
     fault listed.
     """
     from tipoff import scenes
+    from tipoff.highfi.rail.geometry import require_walls
     from tipoff.scenes import implausible, reading
     from tipoff.scenes.faults import Fault, SceneError
     from tipoff.workspace.progress import say
@@ -82,6 +83,7 @@ def study_of(
         )
     for warning in doubtful:
         say(f"implausible: {warning}")
+    require_walls(found, found.conditions)
     _require_time(study)  # after the warnings, which may state why a thrust lasts too long
     replaced = _replaced(changes, study)
     for warning in [*reading.replaced_by_conditions(scene), *replaced]:
