@@ -48,8 +48,9 @@ calibrate: $(READY) ## take the surrogate's contact from the finite elements: ra
 compare: $(READY) ## agreement of both, fitted and held-out conditions, beside the floor
 	$(TIPOFF) compare $(ASKED)
 
-cost: $(READY) ## what accuracy costs in time
+cost: $(READY) ## what accuracy costs in time, and how it grows with elements, pads and effects
 	$(TIPOFF) cost $(ASKED)
+	$(EVIDENCE) scaling $(ASKED)
 
 stability: $(READY) ## hard cases, with the weaker methods that fail on them
 	$(TIPOFF) stability $(ASKED)
@@ -76,7 +77,7 @@ sweeps: $(READY) ## how large misalignment and eccentricities may be: 3,600 case
 	$(TIPOFF) sweeps $(ASKED)
 
 montecarlo: $(READY) ## the paper's random errors, its 1,000 cases and 1,000,000 (CASES=10000 for fewer): rates, tails, readings (REFERENCE=60: checked by 60 runs of the reference)
-	$(TIPOFF) montecarlo $(ASKED) $(if $(CASES),--cases $(CASES)) $(if $(REFERENCE),--reference $(REFERENCE))
+	$(EVIDENCE) montecarlo $(ASKED) $(if $(CASES),--cases $(CASES)) $(if $(REFERENCE),--reference $(REFERENCE))
 
 limits: $(READY) ## tolerances that keep the rates below limits (LIMIT="5 deg/s" PROBABILITY=0.99; CERTIFY=200: checked by runs of the reference), beside those the paper advises
 	$(TIPOFF) limits $(ASKED) $(if $(LIMIT),--limit "$(LIMIT)") $(if $(PROBABILITY),--probability $(PROBABILITY)) $(if $(CERTIFY),--certify $(CERTIFY))

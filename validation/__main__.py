@@ -7,7 +7,7 @@ from validation import STUDIES
 
 def main() -> None:
     """Run the command line."""
-    registry.add(*STUDIES)
+    registry.add(*STUDIES, program="python -m validation")
     cli.add("Evidence about tipoff", STUDIES)
     program.main()
 

@@ -125,7 +125,7 @@ def _small(words: tuple[str, ...]) -> list[str]:
     found = [*words]
     if "--cases" in found:
         found[found.index("--cases") + 1] = FEWEST
-    elif words[0] in ("ensemble", "flight", "montecarlo", "droptest"):
+    elif words[0] in ("ensemble", "flight", "droptest"):
         found += ["--cases", FEWEST] if "--table" not in found else []
     if "--case" in found:
         found[found.index("--case") + 1] = "7"

@@ -50,7 +50,6 @@ STAGES = (
     "flight.stage",
     "limits.stage",
     "mesh.stage",
-    "montecarlo.stage",
     "nominal.stage",
     "sensitivity.stage",
     "stability.stage",
@@ -123,7 +122,7 @@ def main(folder: str | None = None) -> None:
     """Take results over from a ``folder``, and write the texts."""
     if folder is not None:
         FOLDER.mkdir(parents=True, exist_ok=True)
-        names = {stage.name for _, stage in modules()} | {"highfi", "lowfi", "cost_study", "tails"}
+        names = {stage.name for _, stage in modules()} | {"highfi", "lowfi", "cost_study"}
         for name in sorted(names):
             if (path := Path(folder) / f"{name}.json").exists():
                 json.loads(path.read_text(encoding="utf-8"))

@@ -194,20 +194,6 @@ def test_cost_has_three_meshes_and_three_tolerances(pipeline):
     assert any(point["pareto"] for point in points)
 
 
-def test_cost_grows_with_elements_and_hardly_with_pads(pipeline):
-    """Elements are the work of the reference on any mesh; pads only where they touch."""
-    found = result(pipeline[0], "cost_study")["scaling"]
-    assert [point["n"] for point in found["elements"]["points"]] == sorted(
-        point["n"] for point in found["elements"]["points"]
-    )
-    assert found["elements"]["run"]["exponent"] > 0.0
-    assert [law["model"] for law in found["pads"]] == ["finite-elements", "springs", "compliant"]
-    assert all([point["n"] for point in law["points"]] == [1, 2, 4, 8, 16] for law in found["pads"])
-    assert all(point["status"] == "exited" for law in found["pads"] for point in law["points"])
-    assert found["pads"][0]["run"]["exponent"] < 0.5
-    assert all(item["ratio"] > 0.0 for item in found["effects"])
-
-
 def test_growth_of_a_micrometre_in_both_models(pipeline):
     """Both on the condition of the floor at least, whose figure it must repeat."""
     found = result(pipeline[0], "agreement")
@@ -254,7 +240,6 @@ def test_page_is_whole_and_self_contained(pipeline):
         "energy-ledgers.png",
         "cost.png",
         "growth.png",
-        "scaling.png",
     } <= figures
 
 

@@ -9,7 +9,7 @@ import pytest
 from tipoff.studies import registry
 from validation import STUDIES
 
-NAMES = ("paper", "recovery", "bench", "peers")
+NAMES = ("montecarlo", "paper", "recovery", "scaling", "bench", "peers")
 
 
 def call(module: str, *arguments: str) -> subprocess.CompletedProcess:
@@ -33,11 +33,19 @@ def test_a_bad_option_is_refused(name):
     assert "no_such_scene" in found.stderr or "No such option" in found.stderr
 
 
+def test_options_without_effect_are_refused():
+    """Every one of them."""
+    words = ["montecarlo", "--scene", "tiny", "--finer", "5", "--interface", "--model", "springs"]
+    found = call("validation", *words)
+    assert found.returncode == 2 and "--finer: " in found.stderr and "--interface: " in found.stderr
+
+
 def test_added_studies_are_on_the_page(monkeypatch):
     monkeypatch.setattr(registry, "ADDED", [])
+    monkeypatch.setattr(registry, "PROGRAMS", {})
     before = [section.anchor for section in registry.sections()]
-    registry.add(*STUDIES)
-    registry.add(*STUDIES)
+    registry.add(*STUDIES, program="python -m validation")
+    registry.add(*STUDIES, program="python -m validation")
     after = [section.anchor for section in registry.sections()]
     assert after[: len(before)] == before
-    assert after[len(before) :] == ["paper", "recovery", "bench", "peers"]
+    assert after[len(before) :] == ["montecarlo", "tails", *NAMES[1:]]

@@ -14,7 +14,6 @@ from tipoff.studies import (
     flight,
     limits,
     mesh,
-    montecarlo,
     nominal,
     runs,
     sensitivity,
@@ -45,12 +44,12 @@ QUESTIONS: tuple[Entry, ...] = (
     blind.QUESTION,
     sensitivity.QUESTION,
     sweeps.QUESTION,
-    montecarlo.ENTRY,
     limits.QUESTION,
     flight.QUESTION,
     droptest.QUESTION,
 )
 ADDED: list[Entry] = []
+PROGRAMS: dict[str, str] = {}  # by the names of the commands of ADDED
 
 # The first sections of the page in their order; those of all other studies follow.
 _FIRST = (
@@ -73,10 +72,16 @@ _FIRST = (
 )
 
 
-def add(*entries: Entry) -> None:
+def add(*entries: Entry, program: str) -> None:
     """Add studies from outside the package: this process makes their results and shows their sections.
-    ``cli.add`` adds their commands."""
+    ``cli.add`` adds their commands, which ``program`` runs."""
     ADDED.extend(entry for entry in entries if entry not in ADDED)
+    PROGRAMS.update({made.__name__: program for entry in entries for made in entry.commands})
+
+
+def program(command: str) -> str:
+    """The program that has a ``command``, with or without options, as the user would type it."""
+    return PROGRAMS.get(command.split()[0], "tipoff")
 
 
 def _loaded() -> list[Contents]:

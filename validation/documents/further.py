@@ -11,26 +11,30 @@ from tipoff.studies.agreement.distributions import Distribution
 from tipoff.studies.convergence import page
 from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.convergence.stage import Convergence
-from tipoff.studies.cost import scaling_page
 from tipoff.studies.cost import stage as cost_study
-from tipoff.studies.cost.results import Cost, Growth, Laws, Match, Scaling
+from tipoff.studies.cost.results import Cost, Match
 from tipoff.studies.render.document import Bullets, Part, markdown
 from tipoff.studies.render.table import Cells, Column, Table, number
 from tipoff.workspace.study import read
 from validation.bench import reference
+from validation.scaling import page as scaling_page
+from validation.scaling import stage as growing
+from validation.scaling.results import Growth, Laws, Scaling
 
 
 def details(folder: Path) -> str:
     """Markdown of all these tables; raises DamageError or OSError without the runs of both models."""
     highfi, lowfi = (read_json(folder / f"{name}.json") for name in ("highfi", "lowfi"))
-    refined, cost, agreement = (
-        read(folder / f"{name}.json") for name in ("convergence", "cost_study", "agreement")
+    refined, cost, scaling, agreement = (
+        read(folder / f"{name}.json")
+        for name in ("convergence", "cost_study", "scaling", "agreement")
     )
     parts: list[Part] = [_promises(highfi, lowfi)]
     parts += (
         distributions(compare.STAGE.read(agreement).distributions) if agreement is not None else []
     )
-    parts += _cost(cost_study.STAGE.read(cost)) if cost is not None else []
+    parts += [_cost(cost_study.STAGE.read(cost))] if cost is not None else []
+    parts += [_scaling(growing.STAGE.read(scaling))] if scaling is not None else []
     parts += _convergence(convergence.STAGE.read(refined)) if refined is not None else []
     if (found := reference.stored(folder.parent)) is not None:
         parts += [_bench(found["rows"])] if found["rows"] else []
@@ -51,7 +55,7 @@ def distributions(found: Sequence[Distribution]) -> list[Part]:
     return [Table(table.columns, table.rows, title=title)]
 
 
-def _cost(found: Cost) -> list[Part]:
+def _cost(found: Cost) -> Table:
     columns: tuple = (
         ("model", lambda match: f"{match.model}, {match.numerics}"),
         (Column("error, deg/s", form=".2g"), attrgetter("error_deg_s")),
@@ -68,8 +72,7 @@ def _cost(found: Cost) -> list[Part]:
         f"Time at equal accuracy (`make cost`, {found.condition}): each surrogate, and the coarsest "
         "mesh whose error is not larger."
     )
-    matched = Table.of_records(found.matched, *columns, title=title, kind=Match)
-    return [matched, _scaling(found.scaling)]
+    return Table.of_records(found.matched, *columns, title=title, kind=Match)
 
 
 def _scaling(found: Scaling) -> Table:

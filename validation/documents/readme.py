@@ -25,9 +25,6 @@ from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.cost import page as cost_page
 from tipoff.studies.cost import stage as cost_study
 from tipoff.studies.cost.results import Cost
-from tipoff.studies.montecarlo import tails as checked
-from tipoff.studies.montecarlo import tails_page
-from tipoff.studies.montecarlo.results import Tails
 from tipoff.studies.render import chart
 from tipoff.studies.render.document import Part, markdown
 from tipoff.studies.render.table import Column, Table, number, percent
@@ -35,6 +32,9 @@ from tipoff.studies.render.uncertain import STEPS
 from tipoff.workspace.study import read
 from tipoff.workspace.timing import Speedup
 from validation.documents import further
+from validation.montecarlo import tails as checked
+from validation.montecarlo import tails_page
+from validation.montecarlo.results import Tails
 
 _ROOT = Path(__file__).resolve().parents[2]
 _TITLE = """# Results on the reference scene
@@ -49,7 +49,7 @@ tests free flight."""
 _TAILS = """# Random errors checked by the reference
 
 Scene {scene}. Written by `python -m validation.documents.readme` from the file of
-`tipoff montecarlo --cases {cases} --reference {draws} --finer {fine}`. All runs of the surrogate have the
+`python -m validation montecarlo --cases {cases} --reference {draws} --finer {fine}`. All runs of the surrogate have the
 [number of rail modes](rail_modes.md#one-number-in-a-study) that pilot cases of the population chose. The
 table by settings has runs with others too."""
 _BEGIN, _END = "<!-- {name}: python -m validation.documents.readme -->", "<!-- end of {name} -->"

@@ -1,6 +1,6 @@
 """Made-up results of the cost study."""
 
-from tipoff.studies.cost.results import Cost, Point, Scaling
+from tipoff.studies.cost.results import Cost, Point
 
 _POINT = {
     "model": "m",
@@ -22,7 +22,7 @@ def point(**given) -> Point:
     return Point(**_POINT | given)
 
 
-def cost(points: list[Point], band: float | None, scaling: Scaling | None = None) -> Cost:
+def cost(points: list[Point], band: float | None) -> Cost:
     """A result on the condition phi15."""
     return Cost(
         condition="phi15",
@@ -30,6 +30,5 @@ def cost(points: list[Point], band: float | None, scaling: Scaling | None = None
         band_deg_s=band,
         points=tuple(points),
         matched=(),
-        scaling=scaling,
         hardware={},
     )

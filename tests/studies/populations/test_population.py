@@ -15,11 +15,11 @@ from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.scenes import load
 from tipoff.studies.limits import stage as limits
-from tipoff.studies.montecarlo import stage as montecarlo
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Surrogate
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study, StudyError
+from validation.montecarlo import stage as montecarlo
 
 SCENE = load("reference")
 FLEXIBLE = SimpleNamespace(flexibility=1.0)

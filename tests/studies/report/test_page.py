@@ -3,7 +3,6 @@ network."""
 
 import re
 from dataclasses import asdict, replace
-from importlib import import_module
 
 import numpy as np
 import pytest
@@ -18,6 +17,7 @@ from tipoff.studies import registry
 from tipoff.studies.agreement import other_rails, verdicts
 from tipoff.studies.agreement.page import starred
 from tipoff.studies.cost.page import picture as cost_picture
+from tipoff.studies.limits import stage as limiting
 from tipoff.studies.populations import exceedance
 from tipoff.studies.render.chart import Chart, Line, Panel, to_files
 from tipoff.studies.render.table import Table, markdown, number
@@ -31,6 +31,8 @@ from tipoff.studies.runs.stage import row
 from tipoff.workspace.errors import StudyError
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.study import Study
+from validation import montecarlo as evidence
+from validation.montecarlo import stage as montecarlo
 
 
 @pytest.mark.parametrize(
@@ -343,14 +345,14 @@ def test_a_study_the_scene_gives_no_occasion_for_stops_nothing(tmp_path, monkeyp
 def test_limits_of_the_report_are_those_of_the_studies_that_it_makes(tmp_path, monkeypatch):
     """Control: without a limit each study has its own default."""
     asked = {}
-    for name in ("limits", "montecarlo"):
-        owner = import_module(f"tipoff.studies.{name}.stage")
+    for name, owner in {"limits": limiting, "montecarlo": montecarlo}.items():
 
         def run(study, options=None, name=name):
             asked[name] = options and options.limits
             raise StudyError("not made here")
 
         monkeypatch.setattr(owner, "run", run)
+    monkeypatch.setattr(registry, "ADDED", [evidence.ENTRY])
     mine = [item for item in registry.results() if item.name in ("limits", "montecarlo")]
     monkeypatch.setattr(stage, "results", lambda: mine)
     study = Study(scenes.load("tiny"), tmp_path / "tiny", defaults("tiny"))

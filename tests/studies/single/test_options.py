@@ -36,7 +36,6 @@ def test_numerics_of_the_command_are_those_of_the_run(options, numerics, tmp_pat
             "ensemble --case 1 --at exit --limit 1 --scheduler tcp://a:1 --export csv a.csv",
             ["--at", "--limit", "--scheduler", "--export"],
         ),
-        ("montecarlo --finer 5 --interface --model springs", ["--finer", "--interface"]),
         ("curves a=a.csv --model finite-elements --calibration c.toml", ["--model"]),
     ],
 )

@@ -1,5 +1,4 @@
-"""Measure error over wall time, and growth of time with elements, pads and effects; writes
-cost.json and cost_study.json."""
+"""Measure error over wall time; writes cost.json and cost_study.json."""
 
 from tipoff.studies.question import Question
 

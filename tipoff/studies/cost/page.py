@@ -1,4 +1,4 @@
-"""Error over wall time, and its growth, on the page."""
+"""Error over wall time on the page."""
 
 from collections.abc import Callable
 from operator import attrgetter, itemgetter
@@ -6,11 +6,11 @@ from typing import Any
 
 from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.studies.agreement import verdicts
-from tipoff.studies.cost import choice, scaling_page
+from tipoff.studies.cost import choice
 from tipoff.studies.cost.results import BY_MODES, Cost, Match, Point
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.column import Column, of_record
-from tipoff.studies.render.document import Figure, Heading, Notice, Part
+from tipoff.studies.render.document import Figure, Notice, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Table
 
@@ -36,15 +36,11 @@ _LOOKS = (
 
 
 def draw(found: Cost) -> list[Part]:
-    """Errors over wall time, and the growth of the run time."""
-    growth = scaling_page.CAPTION.format(condition=found.condition)
+    """Errors over wall time."""
     return [
         *_unranked(found),
         Figure(picture(found), _ERRORS.format(condition=found.condition)),
         *tables(found),
-        Heading("Growth of the run time"),
-        Figure(scaling_page.picture(found.scaling), growth),
-        *scaling_page.tables(found.scaling),
     ]
 
 

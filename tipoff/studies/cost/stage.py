@@ -1,6 +1,4 @@
-"""Stage ``cost``: error of the settled rates over wall time, both fidelities on one condition; and
-growth of time with elements, pads and effects (``studies.cost.scaling``), and with length of the
-rails, cases and threads (``studies.cost.trends``).
+"""Stage ``cost``: error of the settled rates over wall time, both fidelities on one condition.
 
 Errors are relative to the finest finite-element mesh. Its uncertainty is the band below which an error
 cannot be distinguished from zero; a smaller error counts as the band in the Pareto front. Every run is
@@ -23,14 +21,13 @@ from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
 from tipoff.mechanics.rail_compliance import MODES as ALL_MODES
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.studies.ablation import stage as ablation
 from tipoff.studies.agreement import refinement, verdicts
 from tipoff.studies.agreement.candidates import Candidate, candidates
 from tipoff.studies.agreement.verdicts import Context
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.cost import choice, scaling, trends
+from tipoff.studies.cost import choice
 from tipoff.studies.cost.choice import Trusted
-from tipoff.studies.cost.results import BY_MODES, BY_PATTERNS, Cost, Match, Point, Scaling
+from tipoff.studies.cost.results import BY_MODES, BY_PATTERNS, Cost, Match, Point
 from tipoff.workspace import machine
 from tipoff.workspace.compiling import warm_up
 from tipoff.workspace.progress import Board
@@ -48,7 +45,7 @@ NAME, POINTS = "cost_study", "cost.json"
 
 def run(study: Study) -> dict:
     """The content of ``Cost``."""
-    name = _condition(study)
+    name = condition(study)
     compared = surrogates(study)
 
     def make() -> tuple[Cost, list[Path]]:
@@ -57,13 +54,6 @@ def run(study: Study) -> dict:
             points += surrogate_points(study, name, candidate, finest, study.settings.tolerances)
         points += points_by_modes(study, name, compared[-1], finest)
         points += points_by_patterns(study, name, compared[-1], finest)
-        without = ablation.STAGE.read(ablation.run(study))
-        growing = Scaling(
-            elements=scaling.elements(study, name),
-            pads=scaling.pads(study, name),
-            effects=scaling.effects(study.condition(name), without),
-            trends=trends.measured(study, name),
-        )
         path, points = study.path(POINTS), marked(points, band)
         write_text(path, json.dumps(list(map(asdict, points)), indent=1, allow_nan=False) + "\n")
         found = Cost(
@@ -72,7 +62,6 @@ def run(study: Study) -> dict:
             band_deg_s=band,
             points=tuple(points),
             matched=tuple(matched(points)),
-            scaling=growing,
             hardware=machine.describe(),
         )
         return found, [path]
@@ -81,14 +70,15 @@ def run(study: Study) -> dict:
 
 
 def _inputs(study: Study, _: None) -> list:
-    return [_condition(study), calibrate.constants(study)]
+    return [condition(study), calibrate.constants(study)]
 
 
 STAGE = Stage(NAME, __name__, inputs=_inputs, result=Cost)
 stored = STAGE.stored
 
 
-def _condition(study: Study) -> str:
+def condition(study: Study) -> str:
+    """The condition of the study: the first refined one, or the first fitted one."""
     return (study.scene.agreement.refined or study.fitted())[0]
 
 

@@ -8,6 +8,7 @@ from typing import Any
 from markupsafe import Markup
 
 from tipoff.scenes.scene import Scene
+from tipoff.studies import registry
 from tipoff.studies.agreement.equal_accuracy import EqualAccuracy
 from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.populations.exceedance import Limit
@@ -71,7 +72,7 @@ class Page:
     def command(self, name: str) -> str:
         """The command ``name`` for this scene and folder, as the user would type it."""
         scene, out = map(shlex.quote, (self.scene.origin, str(self.folder.parent)))
-        return f"tipoff {name} --scene {scene} --out {out}"
+        return f"{registry.program(name)} {name} --scene {scene} --out {out}"
 
     def figure(self, chart: Chart | Picture, words: str) -> Markup:
         """A chart with a caption as HTML. Writes the chart as PNG and SVG."""

@@ -3,13 +3,13 @@ terminal. Nothing where the rails have no modes."""
 
 from tipoff.lowfi.numerics import AUTO, Numerics
 from tipoff.mechanics.model_names import SPRINGS
-from tipoff.studies.montecarlo.results import ByRung, Tails
 from tipoff.studies.populations import answers
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Part
 from tipoff.studies.render.palette import GREY, NAVY, VERMILION
 from tipoff.studies.render.table import Table, number, percent
 from tipoff.workspace.words import counted
+from validation.montecarlo.results import ByRung, Tails
 
 _RATES = tuple(item.name for item in answers.RATES)
 _NOTE = (

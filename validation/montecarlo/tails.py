@@ -10,26 +10,18 @@ from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.derived import Derived
 from tipoff.scenes.faults import Fault, SceneError, together
 from tipoff.studies.agreement import verdicts
-from tipoff.studies.montecarlo import paired_statistics
-from tipoff.studies.montecarlo import stage as montecarlo
-from tipoff.studies.montecarlo.options import FEWEST_FINE, Options
-from tipoff.studies.montecarlo.paired_statistics import RATES, both_settled
-from tipoff.studies.montecarlo.results import Cost, Tails
-from tipoff.studies.populations import (
-    answers,
-    control_variate,
-    exceedance,
-    population,
-    random_factors,
-    rungs,
-    spread,
-)
+from tipoff.studies.populations import answers, exceedance, population, random_factors, spread
 from tipoff.studies.populations import draws as paired
 from tipoff.studies.populations.draws import Draws
 from tipoff.studies.populations.population import Population
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study, StudyError
 from tipoff.workspace.words import counted
+from validation.montecarlo import control_variate, paired_statistics, rungs
+from validation.montecarlo import stage as montecarlo
+from validation.montecarlo.options import FEWEST_FINE, Options
+from validation.montecarlo.paired_statistics import RATES, both_settled
+from validation.montecarlo.results import Cost, Tails
 
 NAME = "tails"
 FEWEST = 10  # draws; fewer give no useful interval
@@ -44,8 +36,8 @@ def run(study: Study, options: Options) -> dict:
     limits, source, count = checked(study, options)
 
     def make() -> tuple[Tails, list[Path]]:
-        from tipoff.studies.montecarlo import tails_page
         from tipoff.studies.render.document import with_figures
+        from validation.montecarlo import tails_page
 
         whole = population.run(
             study,

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 from scipy import stats
 
-from tipoff.studies.populations.control_variate import Pairs
+from validation.montecarlo.control_variate import Pairs
 
 
 class Normal:

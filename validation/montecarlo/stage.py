@@ -15,8 +15,13 @@ from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.scenes.faults import together
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.limits import within
-from tipoff.studies.montecarlo.options import Cases
-from tipoff.studies.montecarlo.results import (
+from tipoff.studies.populations import answers, exceedance, population, random_factors, spread
+from tipoff.studies.populations.population import Population
+from tipoff.studies.populations.random_factors import READINGS
+from tipoff.workspace.stage import Stage
+from tipoff.workspace.study import Study, StudyError
+from validation.montecarlo.options import Cases
+from validation.montecarlo.results import (
     Compared,
     Converging,
     Difference,
@@ -26,11 +31,6 @@ from tipoff.studies.montecarlo.results import (
     Spread,
     Tail,
 )
-from tipoff.studies.populations import answers, exceedance, population, random_factors, spread
-from tipoff.studies.populations.population import Population
-from tipoff.studies.populations.random_factors import READINGS
-from tipoff.workspace.stage import Stage
-from tipoff.workspace.study import Study, StudyError
 
 NAME = "montecarlo"
 PAPER = 1000  # number of cases in the paper
@@ -51,8 +51,8 @@ def run(study: Study, options: Cases = Cases()) -> dict:
     )
 
     def make() -> tuple[MonteCarlo, list[Path]]:
-        from tipoff.studies.montecarlo import page
         from tipoff.studies.render.document import with_figures
+        from validation.montecarlo import page
 
         model = population.surrogate(study, options.model)
         population.require_settling(model, within.without_errors(model))

@@ -5,9 +5,9 @@ The paper has 1,000 cases. Its Table 3 can be read in several ways; all readings
 Both surrogates run the same cases. With --reference the first cases also run in the finite
 elements. They correct rates, quantiles and probabilities; this writes tails.json.
 
-  tipoff montecarlo --cases 1000000 --limit "x=2 deg/s" --limit "8 deg/s"
-  tipoff montecarlo --reading half --angles shared --initial
-  tipoff montecarlo --reference 200
+  python -m validation montecarlo --cases 1000000 --limit "x=2 deg/s" --limit "8 deg/s"
+  python -m validation montecarlo --reading half --angles shared --initial
+  python -m validation montecarlo --reference 200
 """
 
 from typing import TYPE_CHECKING
@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 from tipoff.studies.commands.declared import command
 from tipoff.studies.commands.request import Request
 from tipoff.studies.commands.running import Output
-from tipoff.studies.montecarlo.options import Cases, Options
 from tipoff.studies.question import Contents, Entry, Result, Section
+from validation.montecarlo.options import Cases, Options
 
 if TYPE_CHECKING:
     from tipoff.studies.render.document import Part
@@ -26,7 +26,7 @@ _DRAWS = 60  # of the reference, by the report
 
 
 def _answer(request: Request, options: Options) -> Output:
-    from tipoff.studies.montecarlo import page, stage, tails, tails_page
+    from validation.montecarlo import page, stage, tails, tails_page
 
     def shown(found: dict) -> "list[Part]":
         checked = found.get("reference")
@@ -58,7 +58,7 @@ def _require(options: Options) -> None:
 
 
 def _load() -> Contents:
-    from tipoff.studies.montecarlo import page, stage, tails, tails_page
+    from validation.montecarlo import page, stage, tails, tails_page
 
     def errors(shown: "Page") -> "list[Part]":
         return shown.shown(stage.NAME, lambda found: page.draw(stage.STAGE.read(found)), stage.NAME)

@@ -7,7 +7,12 @@ import numpy as np
 
 from tipoff.lowfi.ensemble import twins
 from tipoff.lowfi.ensemble.columns import Columns
-from tipoff.studies.montecarlo.results import (
+from tipoff.studies.populations import answers, exceedance, spread
+from tipoff.studies.populations.draws import Draws
+from tipoff.studies.populations.population import Population
+from validation.montecarlo import allocation, control_variate, poststratified, rungs
+from validation.montecarlo.control_variate import Estimate, Pairs
+from validation.montecarlo.results import (
     Agreement,
     Apart,
     ByContacts,
@@ -19,18 +24,6 @@ from tipoff.studies.montecarlo.results import (
     Optimal,
     Statistic,
 )
-from tipoff.studies.populations import (
-    allocation,
-    answers,
-    control_variate,
-    exceedance,
-    poststratified,
-    rungs,
-    spread,
-)
-from tipoff.studies.populations.control_variate import Estimate, Pairs
-from tipoff.studies.populations.draws import Draws
-from tipoff.studies.populations.population import Population
 
 RATES = (*answers.RATES, answers.TOTAL_RATE)
 _MOST_CONTACTS = 4  # draws with more contacts are in the same row

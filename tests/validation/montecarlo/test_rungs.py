@@ -8,17 +8,17 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.studies.montecarlo.synthetic_draws import drawn, results
 from tests.studies.shown import html
+from tests.validation.montecarlo.synthetic_draws import drawn, results
 from tipoff import lowfi
 from tipoff.lowfi import Numerics
 from tipoff.scenes import load
-from tipoff.studies.montecarlo import ladder_page, paired_statistics
-from tipoff.studies.populations import draws, rungs
+from tipoff.studies.populations import draws
 from tipoff.studies.populations.population import Surrogate
-from tipoff.studies.populations.rungs import OTHERS, Rung, Rungs
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
+from validation.montecarlo import ladder_page, paired_statistics, rungs
+from validation.montecarlo.rungs import OTHERS, Rung, Rungs
 
 # modes that do not matter, and one that does
 ROWS = [{"thrust_offset.misalignment.radial": math.radians(angle)} for angle in (45.0, 15.0)]

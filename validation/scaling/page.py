@@ -5,7 +5,11 @@ import math
 from collections.abc import Sequence
 
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
-from tipoff.studies.cost.results import (
+from tipoff.studies.render.chart import Chart, Line, Panel
+from tipoff.studies.render.document import Figure, Part
+from tipoff.studies.render.palette import AMBER, NAVY, VERMILION
+from tipoff.studies.render.table import Noted, Table, number
+from validation.scaling.results import (
     EffectTime,
     EffectTimes,
     Growth,
@@ -17,10 +21,6 @@ from tipoff.studies.cost.results import (
     Timing,
     Trend,
 )
-from tipoff.studies.render.chart import Chart, Line, Panel
-from tipoff.studies.render.document import Part
-from tipoff.studies.render.palette import AMBER, NAVY, VERMILION
-from tipoff.studies.render.table import Noted, Table, number
 
 CAPTION = (
     "Processor time on {condition}: of a whole run of the reference, of the time loop of the "
@@ -48,6 +48,11 @@ _TIMES = (
     "Rows below, from the ablation study: time with all effects minus time without this effect. "
     "It is negative if the motion without the effect takes longer."
 )
+
+
+def draw(found: Scaling) -> list[Part]:
+    """The picture and the tables."""
+    return [Figure(picture(found), CAPTION.format(condition=found.condition)), *tables(found)]
 
 
 def picture(found: Scaling) -> Chart:

@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from operator import attrgetter
 
 from tipoff.highfi.rail.step_cost import in_words
-from tipoff.studies.montecarlo import ladder_page
-from tipoff.studies.montecarlo.results import Tails
 from tipoff.studies.populations import population
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table, bounded, estimate, number, percent, span
+from validation.montecarlo import ladder_page
+from validation.montecarlo.results import Tails
 
 _NAMES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
 _Rate = tuple[str, dict[str, tuple[float, ...]], tuple[int, ...]]  # name, rates by model, contacts

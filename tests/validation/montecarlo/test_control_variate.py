@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from tests.studies.populations.synthetic_pairs import Exponential, Normal, covered, repetitions
-from tipoff.studies.populations import allocation, control_variate
-from tipoff.studies.populations.allocation import Allocation
-from tipoff.studies.populations.control_variate import Pairs
+from tests.validation.montecarlo.synthetic_pairs import Exponential, Normal, covered, repetitions
+from validation.montecarlo import allocation, control_variate
+from validation.montecarlo.allocation import Allocation
+from validation.montecarlo.control_variate import Pairs
 
 REPETITIONS = 400
 # 2.6 standard deviations of a share of 400 about 95 %

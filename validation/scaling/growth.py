@@ -28,7 +28,12 @@ from tipoff.scenes.faults import SceneError
 from tipoff.scenes.rail import MeshTable
 from tipoff.scenes.scene import Scene
 from tipoff.studies.ablation.stage import Ablation
-from tipoff.studies.cost.results import (
+from tipoff.workspace.compiling import warm_up
+from tipoff.workspace.progress import Board
+from tipoff.workspace.run import Run
+from tipoff.workspace.study import Study
+from tipoff.workspace.timing import timed
+from validation.scaling.results import (
     EffectTime,
     EffectTimes,
     Growth,
@@ -38,11 +43,6 @@ from tipoff.studies.cost.results import (
     Rung,
     Timing,
 )
-from tipoff.workspace.compiling import warm_up
-from tipoff.workspace.progress import Board
-from tipoff.workspace.run import Run
-from tipoff.workspace.study import Study
-from tipoff.workspace.timing import timed
 
 _TIME = {"highfi": "cpu_s", "lowfi": "kernel_s"}
 _SHARES = (0.125, 0.25, 0.5, 1.0, 2.0)  # of the scene's own number of pads
@@ -92,7 +92,7 @@ def elements(study: Study, name: str) -> MeshGrowth:
         study.settings.element_size: [study.highfi(each) for each in names],
     }
     runs = iter(
-        study.store.fill("cost, elements", [run for group in wanted.values() for run in group])
+        study.store.fill("growth, elements", [run for group in wanted.values() for run in group])
     )
     points = [
         _median([next(runs).cost for _ in group], "cpu_s", element_size_m=size)
@@ -150,7 +150,7 @@ def pads(study: Study, name: str) -> tuple[Growth, ...]:
             )
             for count, change in variants.items()
         ]
-    with Board("cost, pads", len(wanted)) as board:
+    with Board("growth, pads", len(wanted)) as board:
         return tuple(
             over_pads(model, runs, list(variants), board) for model, runs in wanted.items()
         )

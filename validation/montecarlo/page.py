@@ -6,19 +6,19 @@ from functools import partial
 
 import numpy as np
 
-from tipoff.studies.montecarlo.results import (
-    Compared,
-    Converging,
-    Distribution,
-    MonteCarlo,
-    ReadingRow,
-)
 from tipoff.studies.populations import population
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
 from tipoff.studies.render.palette import AMBER, GREY, NAVY, TEAL, VERMILION
 from tipoff.studies.render.table import Column, Table, estimate, percent, span
 from tipoff.studies.render.uncertain import LEAST, number, uncertain
+from validation.montecarlo.results import (
+    Compared,
+    Converging,
+    Distribution,
+    MonteCarlo,
+    ReadingRow,
+)
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
 _LOOKS = {0.5: (NAVY, "-", "o"), 0.95: (VERMILION, "--", "s"), 0.99: (TEAL, "-.", "^")}

@@ -1,24 +1,24 @@
 """Growth of cost: exponents against exact laws, scenes of other pads, prices of effects."""
 
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from tests.studies import kept
 from tests.studies.shown import html
 from tipoff import scenes
+from tipoff.files import read_json
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.scenes.scene_model import build
 from tipoff.studies.ablation.stage import Ablation, Row
-from tipoff.studies.cost import scaling, trends
-from tipoff.studies.cost import scaling_page as page
-from tipoff.studies.cost.results import Laws, MeshGrowth, PowerLaw, Scaling, Timing
-from tipoff.studies.cost.scaling import effects, fitted, power_law, shares, with_pads
-from tipoff.studies.cost.stage import STAGE
 from tipoff.workspace.settings import defaults
 from tipoff.workspace.study import Study
+from validation.scaling import growth as scaling
+from validation.scaling import page, stage, trends
+from validation.scaling.growth import effects, fitted, power_law, shares, with_pads
+from validation.scaling.results import Laws, MeshGrowth, PowerLaw, Scaling, Timing
 
 SIZES = [520, 2420, 4500, 19360]
 
@@ -40,7 +40,14 @@ def growth(meshes, finest, fixed, each, pads) -> Scaling:
     """All growth of the scene tiny."""
     elements = MeshGrowth(**vars(meshes), finest=finest, fixed_s=fixed, element_s=each)
     priced = effects(scenes.load("tiny"), ABLATION)
-    return Scaling(elements=elements, pads=(pads,), effects=priced, trends=())
+    return Scaling(
+        condition="phi15",
+        elements=elements,
+        pads=(pads,),
+        effects=priced,
+        trends=(),
+        hardware={},
+    )
 
 
 def test_exponent_of_an_exact_law():
@@ -62,7 +69,7 @@ def test_single_size_has_no_exponent():
     assert "there is only one" in shown and "gravity alone" in shown
     assert [len(panel.lines) for panel in page.picture(found).panels] == [2, 1, 2]
     # Control: several sizes, and pads in three models
-    several = page.picture(kept.result(STAGE).scaling)
+    several = page.picture(stage.STAGE.read(read_json(Path(__file__).with_name("kept.json"))))
     assert [len(panel.lines) for panel in several.panels] == [3, 6, 2]
 
 
@@ -231,3 +238,20 @@ def test_prices_of_effects():
     others = {name: seconds for name, seconds in TIMES.items() if name != "without contact"}
     without = replace(ABLATION, rows=rows(others))
     assert [rung.on for rung in effects(scene, without)[0].ladder] == [0, 2]
+
+
+@pytest.mark.slow
+def test_cost_grows_with_elements_and_hardly_with_pads(tmp_path):
+    """Elements are the work of the reference on any mesh; pads only where they touch."""
+    study = Study(scenes.load("tiny"), tmp_path / "tiny", defaults("tiny"))
+    found = stage.run(study)
+    assert "4/3" in html(page.draw(stage.STAGE.read(found)))
+    assert [point["n"] for point in found["elements"]["points"]] == sorted(
+        point["n"] for point in found["elements"]["points"]
+    )
+    assert found["elements"]["run"]["exponent"] > 0.0
+    assert [law["model"] for law in found["pads"]] == ["finite-elements", "springs", "compliant"]
+    assert all([point["n"] for point in law["points"]] == [1, 2, 4, 8, 16] for law in found["pads"])
+    assert all(point["status"] == "exited" for law in found["pads"] for point in law["points"])
+    assert found["pads"][0]["run"]["exponent"] < 0.5
+    assert all(item["ratio"] > 0.0 for item in found["effects"])

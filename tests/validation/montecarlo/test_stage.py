@@ -15,15 +15,15 @@ from tests.studies.shown import html
 from tipoff.lowfi.ensemble import columns
 from tipoff.scenes import load
 from tipoff.studies.cli import app
-from tipoff.studies.montecarlo import page as pictures
-from tipoff.studies.montecarlo import stage as montecarlo
-from tipoff.studies.montecarlo.options import Cases as Options
 from tipoff.studies.populations import answers, population, spread
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render import chart
 from tipoff.studies.render.document import terminal
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study, StudyError
+from validation.montecarlo import page as pictures
+from validation.montecarlo import stage as montecarlo
+from validation.montecarlo.options import Cases as Options
 
 OPTIONS = Options(cases=1500, limits=("y=6 deg/s", "8 deg/s"))
 

@@ -9,11 +9,9 @@ import pytest
 from typer.testing import CliRunner
 
 from tests.studies import free_flight
-from tests.studies.montecarlo.synthetic_draws import drawn, results
+from tests.validation.montecarlo.synthetic_draws import drawn, results
 from tipoff.scenes import load
 from tipoff.studies.cli import app
-from tipoff.studies.montecarlo import paired_statistics, tails, tails_page
-from tipoff.studies.montecarlo.options import Cases, Options
 from tipoff.studies.populations import answers, draws, exceedance, random_factors
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.populations.reading import Reading
@@ -22,6 +20,8 @@ from tipoff.studies.render.document import terminal
 from tipoff.workspace import store
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
+from validation.montecarlo import paired_statistics, tails, tails_page
+from validation.montecarlo.options import Cases, Options
 
 DRAWS = 10
 OPTIONS = Options(Cases(cases=120, limits=("y=6 deg/s", "8 deg/s")), DRAWS)

@@ -5,15 +5,15 @@ from typing import Annotated
 
 from pydantic import Field
 
-from tipoff.studies.montecarlo.options import Cases, Options
-from tipoff.studies.populations.allocation import Allocation
 from tipoff.studies.populations.answers import Named
-from tipoff.studies.populations.control_variate import Estimate
 from tipoff.studies.populations.draws import Lost
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.population import Answering
 from tipoff.studies.populations.spread import Histogram, Moments, Quantile
 from tipoff.studies.render.column import Column
+from validation.montecarlo.allocation import Allocation
+from validation.montecarlo.control_variate import Estimate
+from validation.montecarlo.options import Cases, Options
 
 _MEDIAN, _MOST = Column("median error", "deg/s", ".2g"), Column("largest", "deg/s", ".2g")
 

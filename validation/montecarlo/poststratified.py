@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.stats import norm
 
-from tipoff.studies.populations.control_variate import Estimate, Pairs
+from validation.montecarlo.control_variate import Estimate, Pairs
 
 _GRID = 2000  # values of the population at which its distribution function is corrected
 

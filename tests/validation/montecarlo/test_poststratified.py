@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from scipy.stats import beta, binomtest
 
-from tests.studies.populations.synthetic_pairs import Exponential, Normal, covered, repetitions
-from tipoff.studies.populations import poststratified
-from tipoff.studies.populations.control_variate import Pairs
+from tests.validation.montecarlo.synthetic_pairs import Exponential, Normal, covered, repetitions
+from validation.montecarlo import poststratified
+from validation.montecarlo.control_variate import Pairs
 
 REPETITIONS = 400
 NOMINAL = (0.92, 0.98)

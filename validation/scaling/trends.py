@@ -1,6 +1,6 @@
 """Growth of time with the length of the rails, with the cases of an ensemble, and with threads.
 
-    t = c n^p, as in ``studies.cost.scaling``
+    t = c n^p, as in ``scaling.growth``
 
 Length: rails as long as several of the scene's end to end, with the mounts of each. The statics of a
 rail treat it as a chain of layers, so the rail compliance has p = 1. Cases: p = 1, because cases share
@@ -19,12 +19,12 @@ from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.rail_base import HeldBySpans
 from tipoff.scenes.scene import Scene
-from tipoff.studies.cost.results import Trend
-from tipoff.studies.cost.scaling import coarse_walls, power_law
 from tipoff.workspace.compiling import warm_up
 from tipoff.workspace.progress import Board
 from tipoff.workspace.run import execute
 from tipoff.workspace.study import Study
+from validation.scaling.growth import coarse_walls, power_law
+from validation.scaling.results import Trend
 
 _LENGTHS = (1, 2, 4)  # of the scene's rails
 _CASES = (256, 1024, 4096)
@@ -34,7 +34,7 @@ _TOLERANCE = 1e-2  # of studies with many cases
 def measured(study: Study, name: str) -> tuple[Trend, ...]:
     """The trends of the condition ``name``; without contact there is no rail compliance, and a rail
     from a file has one length."""
-    with Board("cost, growth", 4) as board:
+    with Board("growth, trends", 4) as board:
         found = [
             _over_length(study, name, board),
             *_over_cases_and_threads(study, name, board),

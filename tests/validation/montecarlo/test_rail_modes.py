@@ -22,16 +22,16 @@ from tipoff.studies.limits import page as limits_page
 from tipoff.studies.limits import stage as limits
 from tipoff.studies.limits import within
 from tipoff.studies.limits.options import Options as Limits
-from tipoff.studies.montecarlo import page, tails, tails_page
-from tipoff.studies.montecarlo import stage as montecarlo
-from tipoff.studies.montecarlo.options import Cases, Options
-from tipoff.studies.populations import draws, population, rungs
+from tipoff.studies.populations import draws, population
 from tipoff.studies.populations.draws import Kept
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render import chart
 from tipoff.studies.render.document import terminal
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
+from validation.montecarlo import page, rungs, tails, tails_page
+from validation.montecarlo import stage as montecarlo
+from validation.montecarlo.options import Cases, Options
 
 WALLS = handmade(REFERENCE, {})
 HELD = 5  # modes of each rail
