@@ -6,6 +6,7 @@ import json
 import typing
 
 import pytest
+import typer
 from typer.testing import CliRunner
 
 from tests.studies import kept
@@ -15,8 +16,9 @@ from tipoff.studies.cli import app
 from tipoff.studies.runs import stage as runs
 from tipoff.workspace import options as rules
 from tipoff.workspace.errors import StudyError
+from validation import STUDIES
 
-ENTRIES = (*registry.COMPARISON, *registry.ON_DEMAND, *registry.QUESTIONS)
+ENTRIES = (*registry.COMPARISON, *registry.ON_DEMAND, *registry.QUESTIONS, *STUDIES)
 COMMANDS = [
     command for entry in ENTRIES for command in entry.commands if getattr(command, "options", None)
 ]
@@ -62,7 +64,9 @@ def test_there_are_options_with_rules():
 @pytest.mark.parametrize("command, path, flag, value, words", CASES)
 def test_an_option_beyond_its_rule_is_bad_input(command, path, flag, value, words, tmp_path):
     out = tmp_path / "out"
-    asked = [command.__name__, "--scene", "tiny", "--out", str(out), f"{flag}={value}"]
+    app = typer.Typer()
+    app.command()(command)
+    asked = ["--scene", "tiny", "--out", str(out), f"{flag}={value}"]
     found = CliRunner().invoke(app, asked, catch_exceptions=False)
     assert found.exit_code == 2 and flag in found.stderr, found.output
     assert not out.exists()

@@ -8,19 +8,18 @@ import numpy as np
 import pytest
 from scipy import stats
 from scipy.special import j0
-from typer.testing import CliRunner
 
 from tests.studies import free_flight
 from tests.studies.shown import html
 from tipoff.lowfi.ensemble import columns
 from tipoff.scenes import load
-from tipoff.studies.cli import app
 from tipoff.studies.populations import answers, population, spread
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.render import chart
 from tipoff.studies.render.document import terminal
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study, StudyError
+from validation.montecarlo import ENTRY
 from validation.montecarlo import page as pictures
 from validation.montecarlo import stage as montecarlo
 from validation.montecarlo.options import Cases as Options
@@ -209,8 +208,8 @@ def test_distance_and_probability_of_two_samples():
     assert spread.apart([np.arange(3.0)], [np.arange(3.0) + 5.0])[0] == 1.0
 
 
-def test_bad_input_is_refused_and_nothing_written(tmp_path):
-    arguments = ["montecarlo", "--out", str(tmp_path / "out"), "--cases", "100"]
+def test_bad_input_is_refused_and_nothing_written(tmp_path, call):
+    arguments = ["--out", str(tmp_path / "out"), "--cases", "100"]
     for more, words in (
         (["--limit", "w=1 deg/s", "--limit", "x=1 mm"], ("--limit", "w=1", "1 mm", "2 faults")),
         (
@@ -219,7 +218,7 @@ def test_bad_input_is_refused_and_nothing_written(tmp_path):
         ),
         (["--reading", "both"], ("components",)),
     ):
-        result = CliRunner().invoke(app, arguments + more)
+        result = call(*ENTRY.commands, arguments + more)
         assert (
             result.exit_code == 2
             and all(word in result.stderr for word in words)

@@ -6,12 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from tests.studies import free_flight
 from tests.validation.montecarlo.synthetic_draws import drawn, results
 from tipoff.scenes import load
-from tipoff.studies.cli import app
 from tipoff.studies.populations import answers, draws, exceedance, random_factors
 from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.populations.reading import Reading
@@ -20,7 +18,7 @@ from tipoff.studies.render.document import terminal
 from tipoff.workspace import store
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
-from validation.montecarlo import paired_statistics, tails, tails_page
+from validation.montecarlo import ENTRY, paired_statistics, tails, tails_page
 from validation.montecarlo.options import Cases, Options
 
 DRAWS = 10
@@ -175,8 +173,8 @@ def test_a_biased_surrogate_is_corrected_and_a_case_that_does_not_settle_is_abov
     assert found.low < (np.abs(truth[:, 1]) > 5.0).mean() < found.high
 
 
-def test_the_command_refuses_before_it_computes(tmp_path):
-    arguments = ["montecarlo", "--cases", "100", "--reference", "5", "--finer", "9"]
-    told = CliRunner().invoke(app, [*arguments, "--limit", "w=1 deg/s", "--out", str(tmp_path)])
+def test_the_command_refuses_before_it_computes(tmp_path, call):
+    arguments = ["--cases", "100", "--reference", "5", "--finer", "9"]
+    told = call(*ENTRY.commands, [*arguments, "--limit", "w=1 deg/s", "--out", str(tmp_path)])
     assert told.exit_code == 2 and list(tmp_path.iterdir()) == []
     assert all(words in told.stderr for words in ("10 to 100", "4 to 5", "w=1 deg/s"))
