@@ -112,7 +112,8 @@ def abaqus(elements: str = "*ELEMENT, TYPE=S4, ELSET={name}") -> str:
 
 
 def nastran(width: int = 8) -> str:
-    """Bulk data in fields of 8 or 16 columns, or free for 0, with the names that Femap writes."""
+    """Bulk data in fields of 8 or 16 columns, or free with commas for 0 and with blanks for 1, with
+    the names that Femap writes."""
     points, cells, surfaces = rail()
     lines = ["SOL 101", "CEND", "BEGIN BULK"]
     lines += [f"$ Femap Property {owner} : {name}" for owner, name in enumerate(surfaces, 2)]
@@ -136,8 +137,9 @@ def _card(name: str, fields: list, width: int) -> list[str]:
     for number, row in enumerate(rows):
         first = (name if number == 0 else "+") + ("*" if width == 16 and number == 0 else "")
         first = "*" if width == 16 and number else first
-        if width == 0:
-            lines.append(",".join([first, *map(str, row)]))
+        if width < 2:  # blanks cannot stand for an empty field
+            texts = [str(field) or ("0" if width else "") for field in row]
+            lines.append(", "[width].join([first, *texts]))
         else:
             lines.append(f"{first:8}" + "".join(f"{field!s:>{width}}" for field in row))
     return lines
@@ -151,7 +153,7 @@ def write(form: str, path: Path) -> Path:
     elif form.startswith("Abaqus"):
         file.write_text(abaqus(), encoding="utf-8")
     elif form.startswith("Nastran"):
-        width = {"small": 8, "large": 16, "free": 0}[form.split()[1]]
+        width = {"small": 8, "large": 16, "free": 0, "blanks": 1}[form.split()[1]]
         file.write_text(nastran(width), encoding="utf-8")
     else:
         _meshio(form, file)
@@ -167,4 +169,5 @@ FORMS = {
     "Nastran small": ".bdf",
     "Nastran large": ".nas",
     "Nastran free": ".dat",
+    "Nastran blanks": ".bdf",
 }

@@ -1,4 +1,5 @@
-"""What bulk data of Nastran and OptiStruct say about sets, coordinate systems and bodies."""
+"""What bulk data of Nastran and OptiStruct say about sets, coordinate systems and bodies, and fields
+between blanks."""
 
 import numpy as np
 import pytest
@@ -185,3 +186,44 @@ def test_elements_of_all_orders_as_gmsh_writes_them(tmp_path, kind, form):
     assert areas(mesh) == pytest.approx(WHOLE, rel=1e-4)  # columns of eight characters
     assert len(mesh.points) == len(own.points) and len(mesh.cells) == len(own.cells)
     assert lowest(mesh) == pytest.approx(lowest(own), rel=1e-3)
+
+
+def free(card: str) -> str:
+    """A card of eight columns with single blanks between its fields."""
+    fields = card.split()
+    return " ".join([*fields[:2], "0", *fields[2:]] if fields[0].startswith("GRID") else fields)
+
+
+@pytest.mark.parametrize("kind", ["GRID", "CHEXA", "CQUAD4", "PSHELL", "+"])
+def test_single_cards_of_nastran_may_have_blanks_between_fields(tmp_path, kind):
+    """Beside cards in columns. A continuation follows its card, with a mark or without."""
+    lines = seeds.nastran().split("\n")
+    also = ("CHEXA", "+") if kind in ("CHEXA", "+") else (kind,)
+    lines = [free(line) if line.startswith(also) else line for line in lines]
+    if kind == "+":
+        lines = [f"{line} +C" if line.startswith("CHEXA") else line for line in lines]
+        lines = [f"+C{line[1:]}" if line.startswith("+ ") else line for line in lines]
+    check_rail(read_text(tmp_path, "\n".join(lines), "rail.bdf"))
+    small = [line.lower() if line.startswith(also) else line for line in lines]
+    check_rail(read_text(tmp_path, "\n".join(small), "rail.bdf"))
+    tabs = [line.replace(" ", "\t") if line.startswith(also) else line for line in lines]
+    check_rail(read_text(tmp_path, "\n".join(tabs), "rail.bdf"))
+
+
+def test_cards_of_sixteen_columns_may_have_blanks_between_fields(tmp_path):
+    lines = [
+        free(line) if line.startswith("GRID") else " ".join(line.split())
+        for line in seeds.nastran(16).split("\n")
+    ]
+    assert "GRID* 1 0 0.0000 0.0000" in lines
+    check_rail(read_text(tmp_path, "\n".join(lines), "rail.nas"))
+
+
+def test_a_grid_between_blanks_has_all_its_fields(tmp_path):
+    """The system of a grid is empty in most files, which blanks cannot say."""
+    lines = [
+        " ".join(line.split()) if line.startswith("GRID") else line
+        for line in seeds.nastran().split("\n")
+    ]
+    with pytest.raises(MeshError, match="GRID with 4 fields between blanks: .* commas stand for"):
+        read_text(tmp_path, "\n".join(lines), "rail.bdf")
