@@ -3,33 +3,36 @@
 The layers are the levels of a breadth-first search through the graph of the stiffness from one end
 of the solid, in an extruded rail its stations. Each is coupled only to its neighbours, so the
 stiffness is block-tridiagonal, with D_k on the diagonal and B_k between layers k and k+1. All layers
-before k, or after it, are condensed onto k (Schur complements)::
+before k are condensed onto k (Schur complement). The inverse follows from behind, layer by layer::
 
-    S_k = D_k - B_k-1' S_k-1^-1 B_k-1,    R_k = D_k - B_k R_k+1^-1 B_k',    (K^-1)_kk = (S_k + R_k - D_k)^-1
+    S_k = D_k - B_k-1' S_k-1^-1 B_k-1,    X_k = S_k^-1 B_k
+    (K^-1)_kk = S_k^-1 + X_k (K^-1)_k+1,k+1 X_k',    (K^-1)_kl = -X_k (K^-1)_k+1,l,    k < l
 
-The loads f_i and f_j of two places are condensed in the same way: y onto a layer from those before
-it, v from those after it. With m the later one of the first layers of both places, that of j::
+Pads press few degrees of freedom of a layer, and many places of a pad share them. So displacements
+of places follow from those of the degrees of freedom, with the loads f_i and f_j of two places::
 
-    f_i' K^-1 f_j = (y_i + v_i - f_i)_m' (K^-1)_mm v_j,m + sum over k > m of v_i,k' R_k^-1 v_j,k
+    f_i' K^-1 f_j = sum over layers k of i and l of j of f_i,k' (K^-1)_kl f_j,l
 
-So a load is condensed only over the layers between places that are pressed at the same travel.
+Only layers of places that are pressed at the same travel are computed. Layers l form blocks, and each
+block has one product of the X between it and the layers k before it.
 
 Source: Golub and Van Loan, Matrix Computations, 4th ed. 2013, section 4.5.
 """
 
+import math
 from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
-from scipy.linalg import cho_solve
 from scipy.linalg.lapack import dpotrf, dpotri, dtrtrs
 from scipy.sparse import csc_array, csr_array
+
+from tipoff.highfi.statics.local_loads import LocalLoads
 
 # Measured on an AMD EPYC at 2.6 GHz, s: a chain for each cube of a layer's width and for each layer,
 # and a sparse factor for each load and each square of a width
 _CUBE, _LAYER, _SQUARE = 3e-10, 1.5e-3, 1.1e-9
 _MOST_BYTES = 4e9  # of both matrices of each layer
-_BEHIND = 0.8  # share of the work on places that is done from behind
 _PASSES = 3  # of the search: it ends with the whole layer at one end as its start
 
 
@@ -151,140 +154,110 @@ class Chain(Layered):
         """Displacements (q,w,w) of the ``width`` loads of a place under those of another one, for
         the ``pairs`` (q,2) of places; ``loads`` (d,pw) N of p places. ``report`` gets the fraction
         that is done."""
-        placed = csr_array(loads[self._order])
-        begin, end = self._reach(placed, width)
+        sizes = [part.stop - part.start for part in self._parts]
+        layer = np.repeat(np.arange(len(sizes)), sizes)
+        places = LocalLoads(csc_array(csr_array(loads)[self._order]), width, layer)
+        begin = places.begin
         # The second place of a pair is that which begins later.
         turned = begin[pairs[:, 0]] > begin[pairs[:, 1]]
         turned |= (begin[pairs[:, 0]] == begin[pairs[:, 1]]) & (pairs[:, 0] > pairs[:, 1])
         sorted_pairs = np.where(turned[:, None], pairs[:, ::-1], pairs)
         one, number = np.unique(sorted_pairs, axis=0, return_inverse=True)
         found = np.zeros((len(one), width, width))
-        moved = self._from_behind(placed, (begin, end), one, found, report)
-        self._from_front(placed, begin, one, found, moved, report)
+        walls = _Walls(self._parts, places.loaded)
+        begins, ends = begin[one], places.end[one]
+        together = self._together(begins, walls)
+        inverse = np.zeros((0, 0))
+        for first in reversed(range(0, len(sizes), together)):
+            for each in reversed(range(first, min(first + together, len(sizes)))):
+                inverse = self._inverse_at(each, inverse)
+                walls.keep(each, inverse)
+            here = np.flatnonzero((first <= begins[:, 1]) & (begins[:, 1] < first + together))
+            if here.size:
+                asked = _covered(begins[here, 0], ends[here, 0], len(sizes))
+                front, last = min(first, int(begins[here, 0].min())), int(ends[here].max())
+                between = self._between(walls, front, first, last, asked)
+                found[here] = places.products(
+                    one[here], between, walls.starts[front], walls.starts[first]
+                )
+            walls.forget(int(ends[begins[:, 1] < first].max(initial=-1)))
+            report(1.0 - first / len(sizes))
         every = found[number.reshape(-1)]
         return np.where(turned[:, None, None], every.transpose(0, 2, 1), every)
 
-    def _reach(self, placed: csr_array, width: int) -> tuple[np.ndarray, np.ndarray]:
-        """First and last layer (p,) of the loads of each place."""
-        layer = np.repeat(
-            np.arange(len(self._parts)), [part.stop - part.start for part in self._parts]
-        )
-        rows, columns = placed.nonzero()
-        begin = np.full(placed.shape[1] // width, len(self._parts))
-        end = np.full(begin.size, -1)
-        np.minimum.at(begin, columns // width, layer[rows])
-        np.maximum.at(end, columns // width, layer[rows])
-        return begin, end
+    def _together(self, begins: np.ndarray, walls: "_Walls") -> int:
+        """Number of layers in a block with the least work: the columns of its layers pass through half of
+        it, and one square matrix through the layers before it, up to the first place of a pair."""
+        span = int((begins[:, 1] - begins[:, 0]).max(initial=0))
+        width, loaded = len(self._order) / len(self._parts), walls.loaded.size / len(self._parts)
+        least = math.sqrt(2.0 * (span + 1) * width / max(loaded, 1.0))
+        return int(np.clip(round(least), 1, len(self._parts)))
 
-    def _from_behind(
-        self,
-        placed: csr_array,
-        reach: tuple[np.ndarray, np.ndarray],
-        pairs: np.ndarray,
-        found: np.ndarray,
-        report: Callable[[float], None],
+    def _inverse_at(self, layer: int, after: np.ndarray) -> np.ndarray:
+        """(K^-1)_kk of a layer from that of the layer ``after`` it."""
+        if layer == len(self._across):
+            return self._inverse[layer]
+        across = self._across[layer]
+        return self._inverse[layer] + across @ after @ across.T
+
+    def _between(
+        self, walls: "_Walls", front: int, first: int, last: int, asked: np.ndarray
     ) -> np.ndarray:
-        """Adds to ``found`` the terms of all ``pairs`` with loads condensed from behind. Returns
-        the displacement (p,w,n) of each place in its first layer."""
-        (begin, end), width = reach, found.shape[1]
-        widest = max(part.stop - part.start for part in self._parts)
-        moved = np.zeros((begin.size, width, widest))
-        seconds = begin[pairs[:, 1]]
-        shared = np.minimum(end[pairs[:, 0]], end[pairs[:, 1]])
-        active, z, coupled = np.zeros(0, dtype=np.int64), np.zeros((0, 0)), np.zeros((0, 0))
-        for layer in reversed(range(len(self._parts))):
-            part = self._parts[layer]
-            size = part.stop - part.start
-            block = self._block(layer, layer)
-            if coupled.size:
-                block -= coupled.T @ coupled
-            here = np.flatnonzero((begin <= layer) & (layer <= end))
-            own = _columns(placed[part], here, width)
-            v = own.copy()
-            if active.size:
-                kept = _spread(np.searchsorted(here, active), width)
-                v[:, kept] -= coupled.T @ z
-            starting = np.flatnonzero(begin[here] == layer)
-            if starting.size:
-                whole = block - (
-                    self._block(layer - 1, layer).T @ self._across[layer - 1] if layer else 0.0
-                )
-                factor = dpotrf(whole, lower=True)[0], True
-                u = cho_solve(factor, v[:, _spread(starting, width)], check_finite=False)
-                moved[here[starting], :, :size] = u.T.reshape(-1, width, size)
-                now = np.flatnonzero((seconds == layer) & (layer <= end[pairs[:, 0]]))
-                first = np.searchsorted(here, pairs[now, 0])
-                second = np.searchsorted(here[starting], pairs[now, 1])
-                found[now] += _picked((v - own).T @ u, first, second, width)
-            going = np.flatnonzero(begin[here] < layer)
-            active = here[going]
-            lower = dpotrf(block, lower=True)[0]
-            if layer:
-                coupled = dtrtrs(lower, self._block(layer - 1, layer).T, lower=True)[0]
-            if active.size:
-                z = dtrtrs(lower, v[:, _spread(going, width)], lower=True)[0]
-                both = np.flatnonzero((seconds < layer) & (layer <= shared))
-                first, second = np.searchsorted(active, pairs[both].T)
-                found[both] += _picked(z.T @ z, first, second, width)
-            report(_BEHIND * (1.0 - layer / len(self._parts)))
-        return moved
+        """Displacements (a,b) m/N of the loaded degrees of freedom of the layers ``front`` to ``last``
+        under unit forces on those of ``first`` to ``last``; before ``first`` only of the layers that
+        are ``asked`` for."""
+        starts = walls.starts
+        found = np.zeros((starts[last + 1] - starts[front], starts[last + 1] - starts[first]))
+        moved = np.zeros((self._parts[last].stop - self._parts[last].start, 0))
+        for layer in reversed(range(first, last + 1)):
+            if layer < last:
+                moved = -(self._across[layer] @ moved)
+            moved = np.concatenate([walls.columns[layer], moved], axis=1)
+            rows = slice(starts[layer] - starts[front], starts[layer + 1] - starts[front])
+            found[rows, starts[layer] - starts[first] :] = moved[walls.local(layer)]
+        square = found[starts[first] - starts[front] :]
+        square[:] = np.triu(square) + np.triu(square, 1).T
+        # One square matrix takes the place of more columns than it has.
+        passed, source = (moved, None) if moved.shape[1] <= len(moved) else (None, moved)
+        for layer in reversed(range(front, first)):
+            across = self._across[layer]
+            passed = -(across if passed is None else across @ passed)
+            if asked[layer]:
+                own = passed[walls.local(layer)]
+                rows = slice(starts[layer] - starts[front], starts[layer + 1] - starts[front])
+                found[rows] = own if source is None else own @ source
+        return found
 
-    def _from_front(
-        self,
-        placed: csr_array,
-        begin: np.ndarray,
-        pairs: np.ndarray,
-        found: np.ndarray,
-        moved: np.ndarray,
-        report: Callable[[float], None],
-    ) -> None:
-        """Adds to ``found`` the terms of all ``pairs`` with loads condensed from the front."""
-        width = found.shape[1]
-        until, seconds = begin.copy(), begin[pairs[:, 1]]
-        np.maximum.at(until, pairs[:, 0], seconds)
-        active, y = np.zeros(0, dtype=np.int64), np.zeros((0, 0))
-        for layer, part in enumerate(self._parts):
-            here = np.flatnonzero((begin <= layer) & (layer <= until))
-            before, y_before = active, y
-            active, y = here, _columns(placed[part], here, width)
-            left = until[before] >= layer
-            if left.any():
-                kept = _spread(np.searchsorted(here, before[left]), width)
-                passed = y_before[:, _spread(np.flatnonzero(left), width)]
-                y[:, kept] -= self._across[layer - 1].T @ passed
-            now = np.flatnonzero(seconds == layer)
-            if now.size:
-                starting = np.flatnonzero(begin == layer)
-                u = moved[starting, :, : part.stop - part.start].reshape(starting.size * width, -1)
-                first = np.searchsorted(here, pairs[now, 0])
-                second = np.searchsorted(starting, pairs[now, 1])
-                found[now] += _picked(y.T @ u.T, first, second, width)
-            report(_BEHIND + (1.0 - _BEHIND) * (layer + 1) / len(self._parts))
+
+class _Walls:
+    """The ``loaded`` degrees of freedom (u,), ascending, by the ``parts`` of each layer."""
+
+    def __init__(self, parts: list[slice], loaded: np.ndarray):
+        ends = [part.start for part in parts] + [parts[-1].stop]
+        self.loaded, self._parts = loaded, parts
+        self.starts: list[int] = np.searchsorted(loaded, ends).tolist()
+        self.columns: dict[int, np.ndarray] = {}  # of (K^-1)_kk, of each layer that was kept
+
+    def local(self, layer: int) -> np.ndarray:
+        """Numbers within the ``layer`` of its loaded degrees of freedom."""
+        return self.loaded[self.starts[layer] : self.starts[layer + 1]] - self._parts[layer].start
+
+    def keep(self, layer: int, inverse: np.ndarray) -> None:
+        """Keep the columns of the ``inverse`` (K^-1)_kk that the loads need."""
+        self.columns[layer] = inverse[:, self.local(layer)]
+
+    def forget(self, last: int) -> None:
+        """Forget the layers after ``last``."""
+        self.columns = {layer: own for layer, own in self.columns.items() if layer <= last}
+
+
+def _covered(begin: np.ndarray, end: np.ndarray, count: int) -> np.ndarray:
+    """Whether each of ``count`` layers is between the ``begin`` and the ``end`` (q,) of a place."""
+    change = np.bincount(begin, minlength=count + 1) - np.bincount(end + 1, minlength=count + 1)
+    return np.cumsum(change[:count]) > 0
 
 
 def _inverse(block: np.ndarray) -> np.ndarray:
     """Inverse of a symmetric positive definite ``block``."""
     found = dpotri(dpotrf(block, lower=True)[0], lower=True)[0]  # zero above its diagonal
     return found + np.tril(found, -1).T
-
-
-def _spread(places: np.ndarray, width: int) -> np.ndarray:
-    """Columns of ``places`` with ``width`` each."""
-    return (places[:, None] * width + np.arange(width)).ravel()
-
-
-def _columns(placed: csr_array, places: np.ndarray, width: int) -> np.ndarray:
-    """Dense columns (n,aw) of ``places`` (a,) of sparse rows; no other place has entries there that
-    are needed."""
-    found = np.zeros((placed.shape[0], places.size * width))
-    rows = np.repeat(np.arange(placed.shape[0]), np.diff(placed.indptr))
-    place, column = placed.indices // width, placed.indices % width
-    number: np.ndarray = np.searchsorted(places, place)
-    inside = np.isin(place, places)
-    found[rows[inside], number[inside] * width + column[inside]] = placed.data[inside]
-    return found
-
-
-def _picked(product: np.ndarray, first: np.ndarray, second: np.ndarray, width: int) -> np.ndarray:
-    """Blocks (q,w,w) of a ``product`` of columns of places."""
-    return product.reshape(-1, width, product.shape[1] // width, width)[first, :, second]
