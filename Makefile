@@ -37,10 +37,10 @@ mesh: $(READY) ## mesh the rails of the scene
 	$(TIPOFF) mesh $(ASKED)
 
 highfi: $(READY) ## run the finite-element reference
-	$(TIPOFF) highfi $(ASKED)
+	$(TIPOFF) run --all --model finite-elements $(ASKED)
 
 lowfi: $(READY) ## run the surrogate, model compliant
-	$(TIPOFF) lowfi $(ASKED)
+	$(TIPOFF) run --all $(ASKED)
 
 calibrate: $(READY) ## take the surrogate's contact from the finite elements: rail compliance, constants of springs
 	$(TIPOFF) calibrate $(ASKED)
@@ -68,7 +68,7 @@ curves: $(READY) ## curves of other codes against the first (FILES="dyna=rbdout 
 	$(TIPOFF) curves $(FILES) $(ASKED) $(WITH)
 
 blind: $(READY) ## agreement on conditions drawn now, by a seed that nobody chose
-	$(TIPOFF) blind $(ASKED)
+	$(TIPOFF) compare --blind 8 $(ASKED)
 
 sensitivity: $(READY) ## which numbers the answer depends on: contact constants, Sobol' indices
 	$(TIPOFF) sensitivity $(ASKED)

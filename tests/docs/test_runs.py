@@ -34,10 +34,9 @@ LEFT_OUT = {
     ("sweeps",): "3,600 cases: tests/studies/sweeps",
     ("limits",): "searches of minutes: tests/studies/limits",
     ("view",): "tests/studies/view",
-    ("blind",): "tests/studies/blind",
     ("convergence",): "minutes: tests/studies/convergence",
     ("stability",): "minutes: tests/studies/stability",
-    ("compare",): "tests/studies/agreement",
+    ("compare",): "tests/studies/agreement and blind",
     ("--install-completion",): "it changes the shell of the user",
 }
 SCHEDULER, ACCURACY, FITTED = "--scheduler", "--accuracy", "--calibration"
@@ -132,7 +131,7 @@ def _small(words: tuple[str, ...]) -> list[str]:
     if "--settled-from" in found:
         at = found.index("--settled-from")
         del found[at : at + 2]  # the curves here end with the settled window
-    if "--scene" not in found and words[0] not in ("scenes", "schema", "doctor", "bench", "new"):
+    if "--scene" not in found and words[0] not in ("scenes", "doctor", "bench", "new"):
         found += ["--scene", "tiny"]
     return found
 

@@ -15,7 +15,7 @@ from pathlib import Path
 _KILLS = 10
 _SIZES = ("64k", "128k", "256k", "512k", "1m", "2m")
 ENSEMBLE = ("ensemble", "--scene", "tiny", "--model", "springs", "--cases", "20000")
-LOWFI = ("lowfi", "--scene", "tiny")
+LOWFI = ("run", "--all", "--scene", "tiny")
 MESH = ("mesh", "--scene", "tiny")
 
 

@@ -25,6 +25,8 @@ PARAMETERS = {
     name: {item.name for item in command.params}
     for name, command in typer.main.get_command(app).commands.items()
 }
+ONE = ("run", "--model", "finite-elements", "--condition", "phi15")
+HIGHFI = ("run", "--model", "finite-elements", "--all")
 STAGES = [name for name, given in PARAMETERS.items() if "scene" in given]
 
 
@@ -51,7 +53,7 @@ def call(*arguments):
 )
 def test_bad_override_lists_every_fault_and_writes_nothing(tmp_path, overrides, words):
     options = [part for item in overrides for part in ("--set", item)]
-    result = call("highfi", "--scene", "tiny", "--out", tmp_path / "out", *options)
+    result = call(*HIGHFI, "--scene", "tiny", "--out", tmp_path / "out", *options)
     assert result.exit_code == 2
     assert all(word in result.stderr for word in words)
     assert "Traceback" not in result.output
@@ -115,7 +117,7 @@ def test_scene_without_fitted_conditions_cannot_be_calibrated(tmp_path):
 
 def test_failed_run_is_exit_code_1_with_its_status(tmp_path, stub):
     stub(status="diverged", message="energy grew")
-    result = call("highfi", "--scene", "tiny", "--condition", "phi15", "--out", tmp_path)
+    result = call(*HIGHFI, "--scene", "tiny", "--out", tmp_path)
     assert result.exit_code == 1
     assert "phi15: diverged: energy grew" in result.stderr
     assert (
@@ -127,13 +129,9 @@ def test_failed_run_is_exit_code_1_with_its_status(tmp_path, stub):
 def test_json_is_the_stage_file_on_standard_output(tmp_path, stub):
     stub()
     result = call(
-        "highfi",
+        *HIGHFI,
         "--scene",
         "tiny",
-        "--condition",
-        "phi15",
-        "--condition",
-        "h1",
         "--json",
         "--out",
         tmp_path,
@@ -141,7 +139,7 @@ def test_json_is_the_stage_file_on_standard_output(tmp_path, stub):
     assert result.exit_code == 0
     printed = json.loads(result.stdout)
     assert printed == json.loads((tmp_path / "tiny" / "highfi.json").read_text())
-    assert [row["condition"] for row in printed["conditions"]] == ["phi15", "h1"]
+    assert [row["condition"] for row in printed["conditions"]] == ["phi15", "phi60", "h1", "h2"]
     keys = RUN_ROW | {"elements", "ns_per_element_step", "ns_per_element_stepped"}
     assert all(keys <= set(row) for row in printed["conditions"])
     assert set(printed["conditions"][0]["settled"]) >= {"velocity_m_s", "rate_deg_s"}
@@ -181,9 +179,9 @@ def test_an_implausible_thrust_is_said_once_stored_and_on_the_page(tmp_path, stu
     thrust = 'kind = "measured"\nfile = "thrust.csv"\n'
     text = 'extends = "tiny"\nname = "own"\nduration = "3100 ms"\n[thrust]\n' + thrust
     own.write_text(text)
-    asked = ["--scene", own, "--out", tmp_path, "--condition", "phi15"]
+    asked = ["--scene", own, "--out", tmp_path]
     said = "implausible: thrust.baseline: the force does not return to zero: 40 N"
-    for command in (["run", "--model", "finite-elements"], ["highfi"]):
+    for command in (ONE, HIGHFI):
         found = call(*command, *asked, "--json")
         assert " ".join(found.stderr.split()).count(said) == 1, found.stderr
         (words,) = [w for w in json.loads(found.stdout)["implausible"] if "baseline" in w]
@@ -192,15 +190,15 @@ def test_an_implausible_thrust_is_said_once_stored_and_on_the_page(tmp_path, stu
     assert words in stored["implausible"]
     acted = stored["conditions"][0]["thrust"]
     assert acted["impulse_requested_Ns"] == pytest.approx(np.trapezoid(force, time), rel=1e-12)
-    shown = call("run", "--model", "finite-elements", *asked).stdout
+    shown = call(*ONE, *asked).stdout
     assert f"impulse requested {np.trapezoid(force, time):.7g} N s" in shown
     assert f"relative residual {acted['fit_relative_residual']:.3g}" in shown
-    short = call("highfi", *asked, "--set", "duration=30 ms")  # the offset counts as thrust
+    short = call(*HIGHFI, *asked, "--set", "duration=30 ms")  # the offset counts as thrust
     assert short.exit_code == 2 and said in " ".join(short.stderr.split())
     html = assembly.render(Page(load(str(own)), tmp_path, {}, Runs({}, {}), {}))
     assert html.count("Implausible: thrust.baseline") == 1
     own.write_text(text + 'baseline = ["40 N", "40 N"]\n')
-    found = call("highfi", *asked, "--json")
+    found = call(*HIGHFI, *asked, "--json")
     assert "thrust.baseline" not in found.stderr
     assert json.loads(found.stdout)["implausible"] == []
 

@@ -144,9 +144,9 @@ def test_faults_name_the_option(arguments, words, tmp_path, monkeypatch):
 
 def test_every_result_says_which_units_it_has(tmp_path, stub):
     stub()
-    asked = ["--scene", "tiny", "--condition", "phi15", "--out", tmp_path, "--json"]
-    for command in (["highfi"], ["run", "--model", "finite-elements"]):
-        found = json.loads(call(*command, *asked).stdout)
+    asked = ["run", "--scene", "tiny", "--model", "finite-elements", "--out", tmp_path, "--json"]
+    for conditions in (["--all"], ["--condition", "phi15"]):
+        found = json.loads(call(*asked, *conditions).stdout)
         assert "rate_deg_s" in found["quantities"] and "SI" in found["quantities"]
     stored = json.loads((tmp_path / "tiny" / "highfi.json").read_text())
     assert stored["quantities"] == found["quantities"]
@@ -168,7 +168,7 @@ def test_a_stage_ends_with_a_table_and_its_files_also_when_nothing_changed(
 ):
     monkeypatch.setenv("COLUMNS", "200")  # no cell of a table is wrapped
     stub()
-    asked = ["highfi", "--scene", "tiny", "--condition", "phi15,h1", "--out", tmp_path]
+    asked = ["run", "--all", "--model", "finite-elements", "--scene", "tiny", "--out", tmp_path]
     first, second = call(*asked), call(*asked)
     assert first.stdout == second.stdout and "nothing changed" in second.stderr
     assert "off axis (deg)" in first.stdout and "phi15" in first.stdout
@@ -187,10 +187,9 @@ def test_files_of_a_stage(tmp_path):
 
 def test_a_run_that_ends_too_early_is_no_success(tmp_path, stub):
     stub(status="time_limit", outcome=flight().outcome._replace(rate=None, velocity=None))
-    for command in ("highfi", "run"):
-        model = ["--model", "finite-elements"] if command == "run" else []
-        asked = [command, "--scene", "tiny", "--condition", "phi15", "--out", tmp_path, *model]
-        found = call(*asked)
+    for conditions in (["--all"], ["--condition", "phi15"]):
+        asked = ["run", "--scene", "tiny", "--model", "finite-elements", "--out", tmp_path]
+        found = call(*asked, *conditions)
         assert found.exit_code == 1
         assert "phi15: time_limit: " in found.stderr and "duration of" in found.stderr
 

@@ -250,7 +250,7 @@ def test_blind_conditions_are_judged_beside_what_was_made(pipeline):
     fitted = (pipeline[0] / "calibration.toml").stat().st_mtime_ns
     found = CliRunner().invoke(
         app,
-        ["blind", "--scene", "tiny", "--out", out, "--cases", "2", "--seed", "5"],
+        ["compare", "--scene", "tiny", "--out", out, "--blind", "2", "--seed", "5"],
         catch_exceptions=False,
     )
     assert found.exit_code == 0 and "2 conditions drawn with seed 5" in found.stdout

@@ -6,6 +6,7 @@ that it needs, so that ``--help`` is fast.
 """
 
 import inspect
+import json
 from collections.abc import Callable, Iterable
 from typing import Annotated
 
@@ -13,7 +14,7 @@ import typer
 
 from tipoff.studies.commands.options import Json
 from tipoff.studies.commands.running import Output, guarded
-from tipoff.studies.new_scene.command import new, schema
+from tipoff.studies.new_scene.command import new
 from tipoff.studies.question import Entry
 from tipoff.studies.registry import COMPARISON, ON_DEMAND, QUESTIONS
 from tipoff.studies.report.command import report
@@ -64,18 +65,37 @@ def scenes(
             "--show", metavar="NAME", help="Print the file of this scene, for a changed copy."
         ),
     ] = None,
+    schema: Annotated[
+        bool,
+        typer.Option(
+            "--schema",
+            help="Print the JSON schema of scene files. With it, an editor completes and checks these "
+            "files.",
+        ),
+    ] = False,
     json_: Json = False,
 ) -> None:
     """List the scenes of the catalogue: name, number of conditions, description.
 
-    tipoff scenes --show reference > my_launcher.toml
+      tipoff scenes --show reference > my_launcher.toml
+      tipoff scenes --schema > tipoff.schema.json
+
+    An editor with Even Better TOML or taplo uses the schema if a file begins with the line
+    #:schema ./tipoff.schema.json
     """
 
     def work() -> Output:
         from tipoff.scenes import catalog, load
         from tipoff.scenes.faults import Fault, SceneError, close
         from tipoff.scenes.scene import CATALOG
+        from tipoff.scenes.schema import schema as rules
 
+        if schema:
+            if show is not None:
+                raise SceneError([Fault("--show", "option", show, "none with --schema")])
+            return Output(
+                {"schema": rules()}, lambda found: [json.dumps(found["schema"], indent=1)]
+            )
         if show is not None:
             if show not in catalog():
                 known = catalog()
@@ -123,7 +143,7 @@ def add(title: str, entries: Iterable[Entry]) -> None:
     _listed(title, [command for entry in entries for command in entry.commands])
 
 
-_listed("Scenes and this machine", [new, schema, scenes, doctor])
+_listed("Scenes and this machine", [new, scenes, doctor])
 add("Answers", ON_DEMAND)
 _listed("Answers", [report])
 add("Surrogate against finite elements", COMPARISON)

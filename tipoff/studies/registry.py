@@ -22,6 +22,7 @@ from tipoff.studies import (
     sweeps,
     view,
 )
+from tipoff.studies.commands.running import PROGRAMS
 from tipoff.studies.question import Contents, Entry, Result, Section
 
 # In the order of their commands; the report makes their results in this order.
@@ -31,6 +32,7 @@ COMPARISON: tuple[Entry, ...] = (
     runs.ENTRY,
     calibration.ENTRY,
     agreement.ENTRY,
+    blind.ENTRY,
     curves.QUESTION,
     cost.QUESTION,
     stability.QUESTION,
@@ -41,7 +43,6 @@ COMPARISON: tuple[Entry, ...] = (
 ON_DEMAND: tuple[Entry, ...] = (single.ENTRY, ensemble.ENTRY)
 # Studies for the questions of an engineer.
 QUESTIONS: tuple[Entry, ...] = (
-    blind.QUESTION,
     sensitivity.QUESTION,
     sweeps.QUESTION,
     limits.QUESTION,
@@ -49,7 +50,6 @@ QUESTIONS: tuple[Entry, ...] = (
     droptest.QUESTION,
 )
 ADDED: list[Entry] = []
-PROGRAMS: dict[str, str] = {}  # by the names of the commands of ADDED
 
 # The first sections of the page in their order; those of all other studies follow.
 _FIRST = (
@@ -77,11 +77,6 @@ def add(*entries: Entry, program: str) -> None:
     ``cli.add`` adds their commands, which ``program`` runs."""
     ADDED.extend(entry for entry in entries if entry not in ADDED)
     PROGRAMS.update({made.__name__: program for entry in entries for made in entry.commands})
-
-
-def program(command: str) -> str:
-    """The program that has a ``command``, with or without options, as the user would type it."""
-    return PROGRAMS.get(command.split()[0], "tipoff")
 
 
 def _loaded() -> list[Contents]:

@@ -34,7 +34,6 @@ class Settings:
     safeties: tuple[float, ...] = (0.9, 0.45, 0.225)  # of the step; other stages use the first
     contact_cells: tuple[int, ...] = (8, 16, 32)
     interface_stiffness_factors: tuple[float, ...] = (0.25, 1.0, 4.0, 16.0)
-    step_everything: bool = False  # also rails of the reference at rest
     workers: int = os.cpu_count() or 1  # parallel runs
     checkpoint_every: float = 60.0  # s, wall clock, of a run of the reference
     resume: bool = True  # continue interrupted runs of the reference

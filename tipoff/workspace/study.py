@@ -101,7 +101,7 @@ class Study:
         numbers = _numerics(
             highfi.Numerics,
             element_size=element_size or self.settings.element_size,
-            **{"step_everything": self.settings.step_everything} | numerics,
+            **numerics,
         )
         return Run("highfi", name + tag, self.condition(name).replace(overrides or {}), numbers)
 

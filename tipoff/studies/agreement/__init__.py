@@ -1,21 +1,6 @@
-"""Compare the surrogates with the reference on fitted and held-out conditions: agreement, floor,
-speed-up; writes agreement.json.
+"""Agreement of the surrogates with the reference, on the conditions of the scene."""
 
-tipoff curves compares files of other codes.
-"""
-
-from tipoff.studies.agreement.options import Options
-from tipoff.studies.commands.declared import command
-from tipoff.studies.commands.request import Request
-from tipoff.studies.commands.running import Output
 from tipoff.studies.question import Contents, Entry, Result, Section
-
-
-def _answer(request: Request, options: Options) -> Output:
-    from tipoff.studies.agreement import page, stage
-
-    found = stage.run(request.study(), options)
-    return Output(found, lambda found: page.terminal(stage.STAGE.read(found)), request.out)
 
 
 def _load() -> Contents:
@@ -37,4 +22,4 @@ def _load() -> Contents:
     )
 
 
-ENTRY = Entry((command("compare", __doc__ or "", Options, _answer),), _load)
+ENTRY = Entry((), _load)

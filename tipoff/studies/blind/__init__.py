@@ -1,8 +1,67 @@
-"""Compare the surrogates with the reference on random conditions, drawn after all constants are
-fixed; writes blind.json.
+"""Compare the surrogates with the reference on fitted and held-out conditions: agreement, floor,
+speed-up; writes agreement.json.
+
+With --blind the conditions are drawn at random, after all constants are fixed. tipoff curves
+compares files of other codes.
+
+  tipoff compare --neighbours 64
+  tipoff compare --blind 8
 """
 
-from tipoff.studies.blind.options import Options
-from tipoff.studies.question import Question
+from typing import TYPE_CHECKING
 
-QUESTION = Question(__name__, __doc__, "Agreement on blind conditions", "Blind", Options)
+from tipoff.studies.blind.options import Options
+from tipoff.studies.commands.declared import command
+from tipoff.studies.commands.request import Request
+from tipoff.studies.commands.running import Output
+from tipoff.studies.question import Contents, Entry, Result, Section
+
+if TYPE_CHECKING:
+    from tipoff.studies.render.document import Part
+    from tipoff.studies.report.page import Page
+
+
+def _answer(request: Request, asked: Options) -> Output:
+    if asked.cases is not None:
+        from tipoff.studies.blind import page as drawn
+        from tipoff.studies.blind import stage as blind
+
+        found = blind.run(request.study(), asked)
+        return Output(found, lambda found: drawn.terminal(blind.STAGE.read(found)), request.out)
+    from tipoff.studies.agreement import page, stage
+    from tipoff.studies.agreement.options import Options as OfScene
+
+    _require(asked)
+    found = stage.run(request.study(), OfScene(asked.neighbours))
+    return Output(found, lambda found: page.terminal(stage.STAGE.read(found)), request.out)
+
+
+def _require(asked: Options) -> None:
+    """Raise SceneError for options that would have no effect, every fault listed."""
+    from tipoff.scenes.faults import Fault, SceneError
+
+    given = {"--vary": asked.vary, "--seed": asked.seed}
+    faults = [
+        Fault(name, "option", str(value), "--blind for this option")
+        for name, value in given.items()
+        if value is not None
+    ]
+    if faults:
+        raise SceneError(faults)
+
+
+def _load() -> Contents:
+    from tipoff.studies.blind import page, stage
+    from tipoff.studies.blind.options import CASES
+
+    def draw(shown: "Page") -> "list[Part]":
+        command = f"compare --blind {CASES}"
+        return shown.shown(stage.NAME, lambda found: page.draw(stage.STAGE.read(found)), command)
+
+    return Contents(
+        (Result(stage.NAME, stage.run, stage.STAGE.stored),),
+        (Section(stage.NAME, "Blind", draw, "Agreement on blind conditions"),),
+    )
+
+
+ENTRY = Entry((command("compare", __doc__ or "", Options, _answer),), _load)

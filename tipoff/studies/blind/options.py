@@ -1,4 +1,4 @@
-"""Options of ``tipoff blind``."""
+"""Options of blind conditions, a part of ``tipoff compare``."""
 
 from dataclasses import dataclass
 from typing import Annotated
@@ -7,21 +7,25 @@ import typer
 
 from tipoff.studies.commands.options import Neighbours, Vary
 
+CASES = 8  # of a report
+
 
 @dataclass(frozen=True)
 class Options:
-    """``seed`` None: the digest of the code and the scene; ``neighbours`` None: those of the settings."""
+    """``cases`` None: those of a report, or none for ``tipoff compare``; ``seed`` None: the digest of
+    the code and the scene; ``neighbours`` None: those of the settings."""
 
     cases: Annotated[
-        int,
+        int | None,
         typer.Option(
-            "--cases",
+            "--blind",
             metavar="N",
             min=1,
-            help="Number of conditions. Each needs several runs of the reference. A condition that is "
-            "judged as a distribution also needs runs of its neighbours.",
+            help="Compare on N random conditions in place of those of the scene; writes blind.json. Each "
+            "needs several runs of the reference. A condition that is judged as a distribution also needs "
+            "runs of its neighbours.",
         ),
-    ] = 8
+    ] = None
     vary: Vary = None
     seed: Annotated[
         int | None,
@@ -29,7 +33,7 @@ class Options:
             "--seed",
             metavar="N",
             min=0,
-            help="Seed of the draws; default: a digest of the sources and the scene.",
+            help="Seed of --blind; default: a digest of the sources and the scene.",
         ),
     ] = None
     neighbours: Neighbours = None

@@ -18,7 +18,7 @@ from tipoff.studies.agreement.candidates import calibrated, compliant
 from tipoff.studies.agreement.distributions import Distribution
 from tipoff.studies.agreement.growth import Growth
 from tipoff.studies.agreement.verdicts import Gates, Row
-from tipoff.studies.blind.options import Options
+from tipoff.studies.blind.options import CASES, Options
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.workspace.stage import Stage
 from tipoff.workspace.study import Study
@@ -78,13 +78,14 @@ def with_drawn_conditions(study: Study, options: Options) -> Study:
         uncertainty.load(
             uncertainty.chosen(options.vary, study.scene),
             study.scene,
-            cases=options.cases,
+            cases=options.cases or CASES,
             seed=seed_of(study, options),
             sampling="random",
         )
     )
     conditions = {
-        f"blind{number + 1}": row for number, row in enumerate(source.rows(0, options.cases))
+        f"blind{number + 1}": row
+        for number, row in enumerate(source.rows(0, options.cases or CASES))
     }
     names = list(conditions)
     roles = {

@@ -318,12 +318,3 @@ Resume = Annotated[
         "same.",
     ),
 ]
-
-StepEverything = Annotated[
-    bool,
-    typer.Option(
-        "--step-everything",
-        help="Step all rails at every step, and take no long steps. Default: a rail that no pad has "
-        "touched, or that the payload has left, is not stepped.",
-    ),
-]

@@ -157,6 +157,14 @@ def quantity(option: str, text: str | None, unit: str, example: str) -> float | 
     return value
 
 
+PROGRAMS: dict[str, str] = {}  # by the names of commands of studies from outside the package
+
+
+def program(command: str) -> str:
+    """The program that has a ``command``, with or without options, as the user would type it."""
+    return PROGRAMS.get(command.split()[0], "tipoff")
+
+
 def guarded(work: Callable[[], Output], as_json: bool = False) -> None:
     """Run ``work`` and print its result as JSON or as text.
 

@@ -1,6 +1,5 @@
-"""``tipoff new`` and ``tipoff schema``."""
+"""``tipoff new``."""
 
-import json
 import os
 import sys
 from pathlib import Path
@@ -257,20 +256,3 @@ def _require_pads(pads: int | None) -> None:
 
     if pads is not None and (faults := template.pads_faults(pads)):
         raise SceneError(faults)
-
-
-def schema() -> None:
-    """Print the JSON schema of scene files. With it, an editor completes and checks these files.
-
-      tipoff schema > tipoff.schema.json
-
-    An editor with Even Better TOML or taplo uses the schema if a file begins with the line
-    #:schema ./tipoff.schema.json
-    """
-
-    def work() -> Output:
-        from tipoff.scenes.schema import schema
-
-        return Output({"schema": schema()}, lambda found: [json.dumps(found["schema"], indent=1)])
-
-    guarded(work)

@@ -8,8 +8,8 @@ from typing import Any
 from markupsafe import Markup
 
 from tipoff.scenes.scene import Scene
-from tipoff.studies import registry
 from tipoff.studies.agreement.equal_accuracy import EqualAccuracy
+from tipoff.studies.commands.running import program
 from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.render import document
@@ -66,13 +66,14 @@ class Page:
         """The reason why a result is missing, or the command ``target`` that makes it."""
         if reason := self.problems.get(stage):
             return Notice(reason)
+        target = runs.EVERY.get(target, target)
         self.lacking.append(target)
         return Missing(f"No result yet. `{self.command(target)}` makes it.")
 
     def command(self, name: str) -> str:
         """The command ``name`` for this scene and folder, as the user would type it."""
         scene, out = map(shlex.quote, (self.scene.origin, str(self.folder.parent)))
-        return f"{registry.program(name)} {name} --scene {scene} --out {out}"
+        return f"{program(name)} {name} --scene {scene} --out {out}"
 
     def figure(self, chart: Chart | Picture, words: str) -> Markup:
         """A chart with a caption as HTML. Writes the chart as PNG and SVG."""

@@ -1,7 +1,6 @@
 """Runs of all conditions in both models."""
 
 from tipoff.studies.question import Contents, Entry, Result, Section
-from tipoff.studies.runs import command
 
 
 def _load() -> Contents:
@@ -22,4 +21,4 @@ def _load() -> Contents:
     )
 
 
-ENTRY = Entry((command.highfi, command.lowfi), _load)
+ENTRY = Entry((), _load)

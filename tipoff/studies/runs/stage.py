@@ -53,6 +53,8 @@ def _stage(fidelity: str) -> Stage:
     return Stage(fidelity, __name__, inputs=inputs, result=Runs)
 
 
+# what the user types after "tipoff" for all conditions
+EVERY = {"highfi": "run --all --model finite-elements", "lowfi": "run --all"}
 STAGES = {fidelity: _stage(fidelity) for fidelity in ("highfi", "lowfi")}
 
 

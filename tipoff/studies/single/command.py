@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tipoff.studies.render.document import Part
 
 
-@scene_command(without=["workers"])
+@scene_command()
 def run(
     request: Request,
     condition: Annotated[
@@ -34,6 +34,14 @@ def run(
             help="Named condition. Repeatable, or several with commas. Default: the scene itself.",
         ),
     ] = None,
+    all_: Annotated[
+        bool,
+        typer.Option(
+            "--all",
+            help="Run each condition of the scene; writes lowfi.json, or highfi.json with --model "
+            "finite-elements. Model compliant has its defaults.",
+        ),
+    ] = False,
     model: Model = None,
     modes: Modes = None,
     degree: Degree = None,
@@ -80,14 +88,15 @@ def run(
       tipoff run --condition phi35
       tipoff run --condition phi15,phi35,phi60
       tipoff run --condition phi35 --model finite-elements
+      tipoff run --all --model finite-elements
       tipoff run --condition h4 --accuracy "0.1 deg/s"
       tipoff run --condition h4 --modes 20 --degree 3 --cells 16
       tipoff run --export rocketpy exit.json
     """
-    from tipoff.mechanics.model_names import COMPLIANT
+    from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
     from tipoff.scenes.faults import Fault, SceneError, together
     from tipoff.scenes.names import NOMINAL
-    from tipoff.studies.runs import page
+    from tipoff.studies.runs import page, stage
     from tipoff.studies.single import single
     from tipoff.workspace import models
 
@@ -108,6 +117,21 @@ def run(
         "--degree": degree,
         "--cells": cells,
     }
+    if all_:
+        usual = {"--model": model if model == SPRINGS else None}
+        rest = {"--condition": condition and ", ".join(condition), "--export": export}
+        flags = {"--accuracy": accuracy, "--budget": budget, "--range": range_ or None}
+        expected = "none: --all runs each condition with the defaults of its model"
+        without(own | usual | rest | flags, expected)
+        models.require(models.Options(model), checkpoint_every=checkpoint_every)
+        fidelity = "highfi" if model == FINITE_ELEMENTS else "lowfi"
+        every = request.study(checkpoint_every=checkpoint_every, resume=resume)
+        read = stage.STAGES[fidelity].read
+        return Output(
+            stage.run(every, fidelity),
+            lambda found: [page.settled(read(found).conditions)],
+            request.out,
+        )
     if range_:
         usual = {"--model": None} if model == COMPLIANT else {}
         chosen = {"--accuracy": accuracy, "--budget": budget}
