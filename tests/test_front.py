@@ -1,6 +1,7 @@
 """What ``import tipoff`` offers: which solver answers, and options that are refused before any work."""
 
 import re
+from copy import deepcopy
 from dataclasses import fields, replace
 from inspect import signature
 from pathlib import Path
@@ -18,6 +19,7 @@ from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.scenes import uncertainty
 from tipoff.studies import cli
 from tipoff.studies.ensemble.options import Options
+from tipoff.workspace import disturbed
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -183,6 +185,28 @@ def test_a_sensitive_run_warns(condition, warned):
     alone = tipoff.run(scene, "springs", sensitivity=False)
     assert alone.message == "" and "sensitivity" not in alone.summary()
     assert alone.outcome == run.outcome
+
+
+def test_a_run_is_disturbed_when_its_checks_or_its_message_are_used(monkeypatch, tmp_path):
+    """Once: by name, in a copy, and in a file. Control: a loop that reads the outcome makes no further run."""
+    calls, execute = [], disturbed.execute
+    monkeypatch.setattr(disturbed, "execute", lambda run: calls.append(run) or execute(run))
+    scene = tipoff.load("reference").condition("h8")
+    run, other, third, fourth = (tipoff.run(scene, "springs") for _ in range(4))
+    assert run.outcome.rate and run.status == "exited" and repr(run) and run.rate.any()
+    assert not calls
+    with pytest.raises(AttributeError, match="no attribute 'check'"):
+        getattr(run, "check")  # noqa: B009
+    assert "sensitive" in run.message and run.checks["rate_change_by_clearance_deg_s"] > 0.1
+    assert len(calls) == 3
+    copied = deepcopy(other)
+    assert set(vars(copied)) == {item.name for item in fields(copied)}
+    assert copied.checks == replace(third, status="jammed").checks == run.checks
+    assert len(calls) == 9
+    fourth.save(tmp_path / "run.nc")
+    loaded = tipoff.Trajectory.load(tmp_path / "run.nc")
+    assert len(calls) == 12
+    assert (loaded.message, loaded.checks) == (run.message, run.checks)
 
 
 @pytest.mark.parametrize("stored", [False, True])

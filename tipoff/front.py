@@ -89,9 +89,11 @@ def run(
         compliance: rail compliance, for the model ``compliant``; computed by default.
         calibration: constants that were fitted on the same model.
         progress: called with the completed fraction of the expected time, 0 to 1.
-        sensitivity: whether a surrogate runs three times more, with 1 um more and less of every
-            clearance and with a tolerance of 1e-10. ``checks`` has the changes of the rates (deg/s),
-            and ``message`` warns of a change above the limit of the scene's ``[agreement]``.
+        sensitivity: whether ``checks`` of a surrogate has the changes of the rates (deg/s) by 1 um
+            more and less of every clearance and by a tolerance of 1e-10, and ``message`` a warning of
+            a change above the limit of the scene's ``[agreement]``. These three runs are made when
+            one of the two is first used: by its name, ``summary``, ``save``, ``to_xarray`` or a
+            notebook.
         numerics: fields of ``lowfi.Numerics`` or ``highfi.Numerics``, such as ``modes=4``, and
             ``element_size=2e-3`` (m) or ``"2 mm"``, of the reference and of the computed rail
             compliance. The scene may state the size of elements (``[studies]``).

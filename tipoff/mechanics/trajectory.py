@@ -11,7 +11,7 @@ import json
 import math
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from tipoff.files import (
     write_sealed,
 )
 from tipoff.mechanics import finite, hand_over, ledger, outcome, shown
+from tipoff.mechanics.completion import Completed
 from tipoff.mechanics.model_names import MODELS
 
 if TYPE_CHECKING:
@@ -76,7 +77,7 @@ def versions() -> dict[str, str]:
 
 
 @dataclass(frozen=True, eq=False)
-class Trajectory(Carded):
+class Trajectory(Carded, Completed):
     """Sampled motion of payload and platform, pad forces and both energy ledgers, of n samples. A
     diverged or refused run has no settled values.
 
@@ -89,6 +90,8 @@ class Trajectory(Carded):
         >>> run.rate.shape == (run.time.size, 3)
         True
     """
+
+    PUT_OFF: ClassVar = "checks", "message"
 
     #: One of ``mechanics.model_names.MODELS``.
     model: str
@@ -120,7 +123,7 @@ class Trajectory(Carded):
     cost: dict[str, float]
     #: Resolved inputs.
     scene: dict
-    message: str = ""
+    message: str = field(default_factory=str)
     numerics: dict = field(default_factory=dict)
     #: Stress of flexible rails, None for rigid rails and diverged runs. It has peak_stress_pa, the
     #: largest von Mises stress, at peak_stress_place_m (scene axes, undeformed) of peak_stress_rail

@@ -6,6 +6,7 @@ the accuracy of any single run of such a case. The changes are stored beside the
 """
 
 from dataclasses import asdict, dataclass, fields, replace
+from functools import partial
 
 from tipoff import cache, sources
 from tipoff.files import content_hash
@@ -99,11 +100,16 @@ def warnings(found: Disturbed, limit: float) -> list[str]:
 
 def told(run: Run, nominal: Trajectory, limit: float) -> Trajectory:
     """``nominal``, which is of ``run``, with its changes among its checks and the ``warnings`` in its
-    message; unchanged if it does not settle."""
-    from tipoff.lowfi.ensemble import twins  # slow to load
-
+    message; unchanged if it does not settle. The disturbed runs are made when one of the two is first
+    used: a loop over many runs that reads neither takes no time for them."""
     if nominal.outcome.rate is None:
         return nominal
+    return nominal.completed_by(partial(_told, run, nominal, limit))
+
+
+def _told(run: Run, nominal: Trajectory, limit: float) -> Trajectory:
+    from tipoff.lowfi.ensemble import twins  # slow to load
+
     found = of(run, nominal, twins.CLEARANCE_CHANGE)
     changes = {
         "rate_change_by_tolerance_deg_s": found.by_tolerance_deg_s,
