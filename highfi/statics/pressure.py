@@ -8,11 +8,13 @@ independent of the facets' borders. Nodal functions sum to one and reproduce the
 moment are exact; only their distribution to neighbouring nodes is approximate.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from tipoff.highfi.mesh import facets as geometry
+from tipoff.highfi.statics import wall_grid
 from tipoff.mechanics.rail_compliance.patterns import MOST_DEGREE, powers
 
 _CELLS_PER_FACET = 2  # along each edge
@@ -44,6 +46,8 @@ class Wall:
         self._order = np.argsort(self._control[:, :, 0].min(axis=1), kind="stable")
         self._starts = self._control[self._order, :, 0].min(axis=1)
         self._longest = np.ptp(self._control[:, :, 0], axis=1).max()
+        self._grid = wall_grid.of(facets, self._plane)
+        self._across: dict[tuple[float, ...], wall_grid.Axis] = {}  # the same at every X
 
     def pressed(self, middle: np.ndarray, half: np.ndarray, patterns: int) -> Pressed | None:
         """The first so many ``patterns`` on a face with its ``middle`` (2,) m and ``half`` its size
@@ -51,10 +55,22 @@ class Wall:
 
         xi and eta run from -1 to 1 over the face, opposite to the axis if ``half`` is negative.
         """
+        if self._grid is None or (bounds := self._bounds(middle, half)) is None:
+            return self.facet_by_facet(middle, half, patterns)
+        return self._on_grid(self._grid, bounds, middle, half, patterns)
+
+    def _bounds(self, middle: np.ndarray, half: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+        """Lowest and highest corner (2,) m of the part of a face that may have a wall; None without
+        one."""
         low = np.maximum(middle - np.abs(half), self._low)
         high = np.minimum(middle + np.abs(half), self._high)
-        if (high - low < _SAME).any():
+        return None if (high - low < _SAME).any() else (low, high)
+
+    def facet_by_facet(self, middle: np.ndarray, half: np.ndarray, patterns: int) -> Pressed | None:
+        """As ``pressed``, for facets of any shape."""
+        if (bounds := self._bounds(middle, half)) is None:
             return None
+        low, high = bounds
         place, area = _gauss(low, high, self._cell)
         near = self._near(low[0], high[0])
         found, facet, weight = located(self._plane[near], self._control[near], place)
@@ -66,6 +82,31 @@ class Wall:
         share[np.arange(len(found))[:, None], number.reshape(weight.shape)] = weight
         return Pressed(part * phi.T @ phi, node, part * phi.T @ share)
 
+    def _on_grid(
+        self,
+        grid: wall_grid.Grid,
+        bounds: tuple[np.ndarray, np.ndarray],
+        middle: np.ndarray,
+        half: np.ndarray,
+        patterns: int,
+    ) -> Pressed:
+        """As ``pressed`` between ``bounds`` on a wall that is a ``grid``."""
+        low, high = bounds
+
+        def sums(axis: int) -> wall_grid.Axis:
+            place = _on_axis(low[axis], high[axis], self._cell[axis])
+            return grid.along(axis, place, (place - middle[axis]) / half[axis], MOST_DEGREE)
+
+        key = low[1], high[1], middle[1], half[1]
+        x, y = sums(0), self._across.get(key) or self._across.setdefault(key, sums(1))
+        i, j = powers(MOST_DEGREE)[:patterns].T
+        part = (high - low).prod() / (4.0 * np.abs(half).prod() * x.moment[0] * y.moment[0])
+        node = grid.nodes(x, y).ravel()
+        order = np.argsort(node)
+        load = (x.weight[i][:, :, None] * y.weight[j][:, None]).reshape(patterns, -1)
+        gram = x.moment[i[:, None] + i] * y.moment[j[:, None] + j]
+        return Pressed(part * gram, node[order], part * load[:, order])
+
     def _near(self, first: float, last: float) -> np.ndarray:
         """Facets, ascending, that may be between two X (m)."""
         slack = (1.0 + geometry.INSIDE) * self._longest
@@ -76,14 +117,19 @@ class Wall:
 def _gauss(low: np.ndarray, high: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, float]:
     """Gauss points (q,2) of the rectangle from ``low`` to ``high`` in cells no larger than ``size``
     (2,), and the area of each."""
-    count = np.ceil((high - low) / size - _SAME / size).astype(np.int64).clip(min=1)
+    axes = [_on_axis(*each) for each in zip(low, high, size)]
+    place = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    return place, (high - low).prod() / len(place)
+
+
+def _on_axis(low: float, high: float, size: float) -> np.ndarray:
+    """Gauss points (q,) from ``low`` to ``high`` in cells no larger than ``size``, ascending."""
+    count = max(math.ceil((high - low) / size - _SAME / size), 1)
     width = (high - low) / count
-    axes = [
-        start
-        + step * (np.arange(cells)[:, None] + 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)).ravel()
-        for start, step, cells in zip(low, width, count)
-    ]
-    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2), 0.25 * width.prod()
+    return (
+        low
+        + width * (np.arange(count)[:, None] + 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)).ravel()
+    )
 
 
 def located(

@@ -13,7 +13,7 @@ from tipoff.highfi import compliance
 from tipoff.highfi.mesh import pieces
 from tipoff.highfi.mesh.rail_mesh import MeshError, boundary_facets
 from tipoff.highfi.rail.scene_mesh import make_mesh
-from tipoff.highfi.statics import pressure
+from tipoff.highfi.statics import pressure, wall_grid
 from tipoff.highfi.statics.held import distinct
 from tipoff.mechanics.model import Faces
 from tipoff.scenes.rail_base import MaterialTable
@@ -191,6 +191,36 @@ def test_a_place_needs_only_the_facets_near_it():
     near = on(0.25, 0.36)
     assert np.array_equal(near.node, whole.node) and np.array_equal(near.load, whole.load)
     assert on(0.29, 0.36).gram[0, 0] < 0.9 < whole.gram[0, 0]
+
+
+@pytest.mark.parametrize("half", [(0.0307, 0.0121), (0.0307, -0.0121), (0.002, 0.001), (0.5, 0.5)])
+def test_a_grid_of_facets_has_the_loads_of_its_facets(half):
+    """On a grid the integrals over a face are products; facet by facet they are the same. Facets in
+    another order, and a wall that is shorter than the face. Control: walls that are no grid are found."""
+    mesh = beam((40, 5, 1))
+    facets = mesh.surfaces["contact"]
+    facets = facets[np.random.default_rng(1).permutation(len(facets))]
+    middle, half = np.array([0.3071, 0.0143]), np.array(half)
+    wall = pressure.Wall(mesh.points, facets, 1)
+    plane = mesh.points[facets][:, :, :2]
+    grid = wall_grid.of(facets, plane)
+    assert [line.size for line in grid.lines] == [41, 6]
+    found, alone = wall.pressed(middle, half, 21), wall.facet_by_facet(middle, half, 21)
+    assert np.array_equal(found.gram, found.gram.T) and found.gram.shape == (21, 21)
+    assert found.gram == pytest.approx(alone.gram, rel=1e-12, abs=1e-15)
+    loads = np.zeros((2, 21, len(mesh.points)))
+    for load, each in zip(loads, (found, alone)):
+        assert (np.diff(each.node) > 0).all()
+        load[:, each.node] = each.load
+    assert loads[0] == pytest.approx(loads[1], rel=1e-12, abs=1e-15)
+    moved = plane.copy()
+    moved[facets == facets[50, 0]] += (0.0, 1e-6)
+    apart = facets.copy()
+    apart[50, 0] += 1  # another node at one corner
+    for other, at in ((facets, moved), (facets[1:], plane[1:]), (apart, plane)):
+        assert wall_grid.of(other, at) is None
+    twice = np.concatenate([facets[1:], facets[1:2]])
+    assert wall_grid.of(twice, mesh.points[twice][:, :, :2]) is None
 
 
 @pytest.fixture(scope="module")
