@@ -3,15 +3,11 @@
 import re
 from pathlib import Path
 
-import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from PIL import Image
 
-import tipoff
 import tipoff.studies
-from tipoff import highfi
-from tipoff.studies.mesh import picture
 from tipoff.studies.render import document
 from tipoff.studies.render.chart import save
 from tipoff.studies.render.palette import DARK, NAVY, VERMILION, css, themed
@@ -44,7 +40,7 @@ def test_every_colour_of_the_studies_has_a_dark_one():
     used = {
         colour: path.name
         for path in folder.rglob("*.py")
-        if path.parent.name not in ("render", "report", "view", "mesh")
+        if path.parent.name not in ("render", "report", "view")
         for colour in re.findall(r'"(#[0-9a-f]{6})"', path.read_text())
     }
     assert used and not {colour: name for colour, name in used.items() if colour not in DARK}
@@ -73,22 +69,6 @@ def test_the_style_has_both_values_of_each_colour():
     assert "@media screen and (prefers-color-scheme: dark)" in rules  # not on paper
     for colour in DARK:
         assert rules.count(f"--c{colour[1:]}: ") == 2
-
-
-def test_a_mesh_has_a_picture_for_each_page(tmp_path):
-    """Its text has the contrast of text, 4.5, with the paper behind it, which shows through.
-    Control: the text for a light page has not on a dark one."""
-    mesh = highfi.prepare(tipoff.load("tiny"), highfi.Numerics(element_size=16e-3))
-    ink = {}
-    for name, dark in (("light", False), ("dark", True)):
-        picture.draw_mesh(mesh, tmp_path / f"{name}.png", dark)
-        pixels = np.asarray(Image.open(tmp_path / f"{name}.png")).reshape(-1, 4)
-        assert pixels[0, 3] == 0 and (pixels[:, 3] == 0).mean() > 0.5
-        solid = pixels[pixels[:, 3] == 255, :3].astype(int)
-        ends = solid[solid.sum(axis=1).argmax() if dark else solid.sum(axis=1).argmin()]
-        ink[name] = "#" + "".join(f"{value:02x}" for value in ends)
-    assert contrast(ink["light"], "#ffffff") > 4.5 < contrast(ink["dark"], DARK["#ffffff"])
-    assert contrast(ink["light"], DARK["#ffffff"]) < 4.5
 
 
 def test_a_page_has_the_dark_picture_for_dark_screens_alone(tmp_path):

@@ -231,8 +231,6 @@ def test_page_is_whole_and_self_contained(pipeline):
     assert page.count("/*! For license information") <= 1 and 'src="http' not in page
     figures = {path.name for path in (pipeline[0] / "figures").glob("*.png")}
     assert {
-        "mesh.png",
-        "mesh-dark.png",
         "compliance.png",
         "thrust.png",
         "figure6.png",

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from tipoff.studies.mesh.stage import STAGE, Deck, Mesh
-from tipoff.studies.render.document import Caption, Image, Notice, Part
+from tipoff.studies.render.document import Caption, Notice, Part
 from tipoff.studies.render.table import Column, Table
 
 if TYPE_CHECKING:
@@ -12,19 +12,17 @@ if TYPE_CHECKING:
 
 
 def draw(page: "Page") -> list[Part]:
-    """The picture of the mesh, its figures, and its surfaces."""
+    """The figures of the mesh, and its surfaces."""
 
     def body(content: dict) -> list[Part]:
         found: Mesh = STAGE.read(content)
-        pictures = (page.folder / found.picture, page.folder / found.dark_picture)
         return [
-            Image(pictures[0], "mesh of the rails", pictures[1]),
             Caption(
                 f"{found.elements:,} {found.kind}, {found.nodes:,} nodes, elements of about "
                 f"{1e3 * found.element_size_m:g} mm. Edges: {1e3 * found.shortest_edge_m:.3g} to "
                 f"{1e3 * found.longest_edge_m:.3g} mm. Smallest scaled Jacobian: "
                 f"{found.smallest_scaled_jacobian:.3f} (1 for a brick and for a regular "
-                "tetrahedron)."
+                f"tetrahedron). ParaView shows {found.mesh}."
             ),
             *terminal(content),
             *map(Notice, found.warnings),

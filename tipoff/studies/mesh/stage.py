@@ -1,4 +1,4 @@
-"""Stage ``mesh``: the mesh of the rails for the reference, its size and quality, and pictures."""
+"""Stage ``mesh``: the mesh of the rails for the reference, its size and quality."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,7 +35,7 @@ class Deck:
 @dataclass(frozen=True, kw_only=True)
 class Mesh:
     """``surfaces`` by name; ``low_m`` and ``high_m`` the least and largest coordinates in scene
-    axes; ``mesh`` and pictures are files in the folder of the scene."""
+    axes; ``mesh`` is a file in the folder of the scene."""
 
     element_size_m: float
     elements: int
@@ -50,8 +50,6 @@ class Mesh:
     surfaces: dict[str, Surface]
     mesh: str
     deck: Deck | None  # None if no pad is on the first rail
-    picture: str
-    dark_picture: str
 
 
 def _request(study: Study) -> Run:
@@ -62,7 +60,7 @@ STAGE = Stage("mesh", __name__, inputs=lambda study, _: _request(study).key, res
 
 
 def run(study: Study) -> dict:
-    """The content of ``Mesh``; writes ``mesh.vtu``, ``rail.inp`` and pictures."""
+    """The content of ``Mesh``; writes ``mesh.vtu`` and ``rail.inp``."""
     request = _request(study)
 
     def make() -> tuple[Mesh, list[Path]]:
@@ -73,13 +71,8 @@ def run(study: Study) -> dict:
         mesh = highfi.prepare(request.scene, request.numerics)
         for warning in mesh.warnings:
             say(f"mesh: {warning}")
-        from tipoff.studies.mesh.picture import draw_mesh
-
-        path, folder = study.path("mesh.vtu"), study.path("figures")
-        pictures = [folder / "mesh.png", folder / "mesh-dark.png"]
+        path = study.path("mesh.vtu")
         _save(mesh, path)
-        for picture, dark in zip(pictures, (False, True)):
-            draw_mesh(mesh, picture, dark)
         lengths = checks.edge_lengths(mesh.points, mesh.cells)
         _, scaled = checks.jacobians(mesh.points, mesh.cells)
         surfaces = {
@@ -104,11 +97,9 @@ def run(study: Study) -> dict:
             surfaces=surfaces,
             mesh=study.relative(path),
             deck=_deck(study, request),
-            picture=study.relative(pictures[0]),
-            dark_picture=study.relative(pictures[1]),
         )
         decks = [study.path(found.deck.file)] if found.deck else []
-        return found, [path, *decks, *pictures]
+        return found, [path, *decks]
 
     return STAGE.run(study, None, make)
 
