@@ -280,3 +280,28 @@ def test_friction_that_grows_when_a_pad_slides(static, dynamic, warned):
     scene = load("tiny").replace({"friction.static": static, "friction.dynamic": dynamic})
     found = [text for text in scene.warnings if text.startswith("friction.static")]
     assert len(found) == warned
+
+
+def test_cases_are_examined_as_scenes_are():
+    """A refused case has no message, and neither has what the scene itself has."""
+    rows = [{"payload.mass": "9 kg"}, {"payload.mass": "-1 kg"}, {"rail.material.density": 20.0}]
+    found = implausible.of_cases(load("tiny"), 3, lambda low, high: rows[low:high])
+    assert all(words.endswith("(case 2)") for words in found)
+    assert [words.partition(": ")[0] for words in found] == [
+        "rail.material.youngs_modulus, rail.material.density",
+        "rail.material.density",
+    ]
+    light = load("tiny").replace(rows[2])
+    assert implausible.of_cases(light, 3, lambda low, high: rows[low:high]) == []
+
+
+def test_many_cases_are_examined_at_even_distances():
+    count, seen = 10 * implausible.MOST_CASES, []
+
+    def rows(low, high):
+        seen.append(low)
+        return [{"friction.static": 0.1 if low > count / 2 else 0.3}]
+
+    (found,) = implausible.of_cases(load("tiny"), count, rows)
+    assert len(seen) == implausible.MOST_CASES and seen[0] == 0 and seen[-1] == count - 1
+    assert f"and 499 more of {implausible.MOST_CASES:,} examined)" in found

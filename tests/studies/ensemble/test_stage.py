@@ -36,6 +36,21 @@ def test_compliant_contact_is_the_default(tmp_path):
     assert "tiny, model springs, with the scene's constants: 8 cases" in call(*options).stdout
 
 
+def test_implausible_cases_of_a_table_are_said_and_stored(tmp_path):
+    """Static friction below dynamic friction. Control: the scene and the other cases are plausible."""
+    table = tmp_path / "cases.csv"
+    table.write_text("friction.static,friction.dynamic\n0.3,0.2\n0.1,0.2\n0.2,0.2\n0.1,0.3\n")
+    options = ("--scene", "tiny", "--out", tmp_path, "--table", table)
+    found = call(*options)
+    words = "friction.static, friction.dynamic: 0.1 and 0.2, plausible"
+    assert found.exit_code == 0 and f"implausible: {words}" in found.stderr
+    assert "(case 1, and 1 more of 4)" in found.stderr
+    (stored,) = json.loads((tmp_path / "tiny" / "ensemble.json").read_text())["implausible"]
+    assert stored.startswith(words)
+    table.write_text("friction.static,friction.dynamic\n0.3,0.2\n0.2,0.2\n")
+    assert "implausible" not in call(*options).stderr
+
+
 def test_default_errors_run_and_are_kept(tmp_path):
     first = call("--cases", 300, "--out", tmp_path)
     assert first.exit_code == 0, first.output

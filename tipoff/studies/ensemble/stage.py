@@ -180,7 +180,7 @@ def run(study: Study, options: Options) -> Ran:
         **vars(summary.of(ensemble, store, calibrated, at, limits)),
         scene=study.scene.name,
         quantities=words.QUANTITIES,
-        implausible=implausible.of_all_conditions(study.scene),
+        implausible=[*implausible.of_all_conditions(study.scene), *population.doubtful(ensemble)],
         store=str(path),
         sensitivity=told,
         agreement=_agreement(study, options),

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tipoff import lowfi
+from tipoff.files import content_hash
 from tipoff.lowfi.ensemble import columns, pilot
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.lowfi.ensemble.fill import fill
@@ -28,17 +29,19 @@ from tipoff.mechanics.instant import Instant
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes import implausible
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import kept
 from tipoff.studies.agreement.kept import require_accepted
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.workspace import kernel_marks, words
-from tipoff.workspace.progress import Board
+from tipoff.workspace.progress import Board, say
 from tipoff.workspace.run import Run
 from tipoff.workspace.study import Study, StudyError
 from tipoff.workspace.words import counted
 
+_DOUBTFUL: dict[str, list[str]] = {}  # of this process: examined once, said and stored
 TOLERANCE = 1e-2  # relative error of a step: 95 % of reference cases within 0.2 % of their rate
 
 
@@ -212,9 +215,21 @@ def model_line(found: Answering) -> str:
 
 
 def chosen_modes(name: str, ensemble: Ensemble, store: Path | None = None) -> Ensemble:
-    """``lowfi.ensemble.pilot.settled`` with progress under the ``name`` of a study."""
+    """``lowfi.ensemble.pilot.settled`` with progress under the ``name`` of a study. Says what is
+    implausible in the cases."""
+    for warning in doubtful(ensemble):
+        say(f"implausible: {warning}")
     with Board(name, 1) as board:
         return pilot.settled(ensemble, store, board.callback("pilot cases"))
+
+
+def doubtful(ensemble: Ensemble) -> list[str]:
+    """Messages on values of the cases that are implausible, though those of the scene are not."""
+    source = ensemble.source
+    key = content_hash([ensemble.scene.hash, source.identity])
+    if key not in _DOUBTFUL:
+        _DOUBTFUL[key] = implausible.of_cases(ensemble.scene, source.asked, source.rows)
+    return _DOUBTFUL[key]
 
 
 def run(
