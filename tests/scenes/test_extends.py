@@ -39,6 +39,42 @@ def test_a_table_is_dropped(scene):
     )
 
 
+ABSENT = ["friction", "gravity", "thermal", "rail.fillet", "payload.size", "rail.damping"]
+
+
+@pytest.mark.parametrize("key", ABSENT)
+@pytest.mark.parametrize("base", ["tiny", "sensitive"])
+def test_what_the_base_lacks_may_be_dropped_in_a_file_and_by_an_override(scene, base, key):
+    """One file of changes fits several bases. A table that loses its only key is no table."""
+    table, _, last = key.rpartition(".")
+    text = f'[{table}]\n{last} = "absent"\n' if table else f'{last} = "absent"\n'
+    whole = load(base).replace({key: "absent"})
+    assert scene(f'extends = "{base}"\n{text}').hash == whole.hash
+    assert whole.replace({key: "absent"}).hash == whole.hash
+    own = f'extends = "{base}"\n[conditions.own]\n"{key}" = "absent"\n'
+    assert scene(own).condition("own").hash == whole.hash
+
+
+def test_absent_needs_no_base():
+    raw = load("tiny").resolved()
+    raw["pads"][0]["relief"] = raw["gravity"] = raw["thermal"] = "absent"
+    found = scenes.parse(raw, bare_numbers_are_si=True)
+    assert found.gravity is None and found.thermal is None
+    assert found.hash == load("tiny").replace({"pads.0.relief": "absent"}).hash
+
+
+@pytest.mark.parametrize("key", ["conditions.h99", "gravitee", "rail.filet"])
+def test_a_name_that_is_misspelt_is_refused_both_ways(scene, key):
+    table, _, last = key.rpartition(".")
+    text = f'[{table}]\n{last} = "absent"\n' if table else f'{last} = "absent"\n'
+    for read in (
+        lambda: scene(f'extends = "reference"\n{text}'),
+        lambda: load("reference").replace({key: "absent"}),
+    ):
+        with pytest.raises(SceneError, match=key):
+            read()
+
+
 def test_another_kind_of_thrust_replaces_the_inherited_table(scene):
     """Mixed, the peak and width of the Gaussian would be keys that a constant push does not
     have."""

@@ -9,6 +9,8 @@ from typing import Annotated, Any, Union, get_args, get_origin
 from tipoff.scenes.faults import NO_SUCH_KEY, Fault, SceneError, kind_of
 from tipoff.scenes.table import Table
 
+_TEXTS = ("name", "description")
+_NAMED = ("conditions", "provenance", "rail.surfaces", "rail.groups")  # with names of the user
 DEEPEST = 32  # levels of tables and lists; a scene has five
 
 
@@ -145,9 +147,43 @@ def apply_all(
     for key, value in overrides.items():
         if is_drop(value) and not is_key(table_type, key):
             faults.append((key, repr(value), NO_SUCH_KEY))
+        elif is_drop(value) and (known := _unknown_name(raw, key)):
+            faults.append((key, repr(value), known))
         elif fault := apply(raw, key, plain(value)):
             faults.append(fault)
     return faults
+
+
+def _unknown_name(raw: dict, key: str) -> str | None:
+    """The expected names if ``key`` ends on a name of the user that ``raw`` lacks, such as a misspelt
+    condition; None for other keys."""
+    table, _, name = key.rpartition(".")
+    if table not in _NAMED:
+        return None
+    known: Any = raw
+    for part in table.split("."):
+        known = known.get(part) if isinstance(known, dict) else None
+    names = list(known) if isinstance(known, dict) else []
+    return None if name in names else f"one of {', '.join(names) or 'none'}"
+
+
+def without_absent(raw: Any, table_type: type, key: str = "") -> Any:
+    """``raw``, the value of the dotted ``key``, without the keys of a ``table_type`` that it sets to
+    "absent": what is not there may be dropped, as by an override. Texts stay, and names that are no keys
+    of the table or that the user gives: the validation refuses them."""
+    if isinstance(raw, list):
+        return [without_absent(item, table_type, f"{key}.{n}") for n, item in enumerate(raw)]
+    if not isinstance(raw, dict) or key in _NAMED:
+        return raw
+    found = {}
+    for name, value in raw.items():
+        own = f"{key}.{name}" if key else name
+        if value == "absent" and own not in _TEXTS and is_key(table_type, own):
+            continue
+        inner = without_absent(value, table_type, own)
+        if inner != {} or value == {}:
+            found[name] = inner
+    return found
 
 
 def apply(raw: dict, key: str, value: Any) -> tuple[str, str, str] | None:

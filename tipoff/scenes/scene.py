@@ -312,7 +312,7 @@ def parse(
         ...
     """
     keys.require_shallow(raw, source)
-    tables = keys.plain(raw)
+    tables = keys.without_absent(keys.plain(raw), Scene)
     if isinstance(tables, dict) and (wrong := pads.expand(tables)):
         raise SceneError(_reported(source, wrong))
     scene, faults = _validated(tables, bare_numbers_are_si)
