@@ -18,7 +18,7 @@ EXAMPLED = .venv/.exampled
 # A worker that crashes ends the run and its test is named. If pytest replaced the worker, it would wait without end.
 PARALLEL = --numprocesses=auto --dist=loadfile --max-worker-restart=0
 # Tests that take a second or two each where kernels are compiled.
-QUICK = tests/test_layers.py tests/test_sources.py tests/scenes tests/mechanics tests/meshes \
+QUICK = tests/test_layers.py tests/test_sources.py tests/scenes tests/mechanics tests/results tests/meshes \
   $(patsubst %,tests/highfi/%,elements mesh statics extruded contact/test_hertz.py test_compliance.py) \
   $(patsubst %,tests/highfi/dynamics/test_%.py,stable_step waves bars) \
   $(patsubst %,tests/lowfi/test_%.py,ejection flying numerics statuses tip_off) \
@@ -107,7 +107,7 @@ pictures: $(READY) ## add pyvista (0.6 GB) to .venv, with which `make view` draw
 peers: $(READY) ## the same work in other codes: installs exudyn, mujoco and rocketpy into .venv, runs them and ccx (apt-get install calculix-ccx)
 	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements-peers.lock
 	$(EVIDENCE) peers --out $(OUT) $(if $(KEEP),--keep)
-	.venv/bin/python -m pytest -q -n0 tests/mechanics/test_hand_over.py
+	.venv/bin/python -m pytest -q -n0 tests/results/test_hand_over.py
 
 convergence: $(READY) ## the error of the reference itself: meshes, steps, interface stiffness, quadrature (minutes)
 	$(TIPOFF) convergence $(ASKED)

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from tipoff.comparison.curves import Curves
 from tipoff.mechanics.laws import thrust
 from tipoff.mechanics.model_names import SPRINGS
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.faults import Fault, InputError, SceneError, kind_of
 from tipoff.scenes.scene import Scene
 

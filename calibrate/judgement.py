@@ -43,7 +43,7 @@ from tipoff.calibration.objective import Objective, Target, sampled
 from tipoff.calibration.offset import Offset, estimate
 from tipoff.calibration.posterior import Posterior
 from tipoff.mechanics.model_names import COMPLIANT
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 
 HALF = math.sqrt(0.5)  # misfit above which more is unexplained than explained
 SAID = 0.1  # misfit above which the verdict states it

@@ -28,9 +28,10 @@ from tipoff.calibration.faults import CalibrationError
 from tipoff.calibration.parameters import Parameter, overrides
 from tipoff.comparison.curves import Curves
 from tipoff.mechanics.model_names import COMPLIANT
-from tipoff.mechanics.rail_compliance import RailCompliance, model_of
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import changes as added
+from tipoff.scenes.rail_compliance import model_of, of_scene
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.variation import Variations
 
@@ -196,7 +197,7 @@ class Objective:
         values = self.values(shares)
         constants, changes = overrides(self.scene, values), alignment.changes(values)
         if self.compliance is not None and self.model == COMPLIANT:
-            self.compliance.of(self.scene.replace(constants))  # once, not in each thread
+            of_scene(self.compliance, self.scene.replace(constants))  # once, not in each thread
 
         def one(name: str) -> Trajectory:
             change = added.overrides(self.targets[name].scene, changes)

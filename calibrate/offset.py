@@ -14,7 +14,7 @@ from tipoff.calibration.discrepancy import VELOCITY, Curve, deviations, likelies
 from tipoff.calibration.objective import Target, sampled
 from tipoff.calibration.refine import STEP, UNIT
 from tipoff.mechanics.laws import thrust
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import ends
 
 _GRID = 201

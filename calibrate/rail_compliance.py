@@ -15,10 +15,11 @@ import numpy as np
 from tipoff import cache, sources
 from tipoff.files import content_hash, tell
 from tipoff.highfi.statics import inputs
-from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance, content, digest, stored
+from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance, content, stored
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 from tipoff.remaining import Remaining
 from tipoff.scenes import scene_model
+from tipoff.scenes.rail_compliance import digest
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.studies import element_size as own_size
 

@@ -15,7 +15,7 @@ import scipy  # its submodules load at their first use
 from tipoff.calibration.information import jacobian
 from tipoff.calibration.misfit import KINDS, NEAR, Kind, misfits
 from tipoff.calibration.objective import Objective
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 
 _ITERATIONS = 8
 

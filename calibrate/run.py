@@ -25,9 +25,10 @@ from tipoff.calibration.search import Found, Plan, search
 from tipoff.comparison.curves import Curves
 from tipoff.lowfi.models import require
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
-from tipoff.mechanics.rail_compliance import RailCompliance, model_of
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.rail_compliance import model_of
 from tipoff.scenes.scene import Scene
 
 WORKERS = 2  # threads

@@ -36,7 +36,6 @@ from tipoff.mechanics.rail_compliance import (
     MOST_DEGREE,
     PATTERNS,
     RailCompliance,
-    digest,
     on_part,
     pairs,
 )
@@ -44,6 +43,7 @@ from tipoff.mechanics.rail_compliance import patterns as of_degree
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 from tipoff.mechanics.rail_compliance.patterns import DRAGGED, FARTHEST
 from tipoff.scenes import scene_model
+from tipoff.scenes.rail_compliance import digest
 from tipoff.scenes.scene import Scene
 
 _SPACING = 2e-3  # m between stations; over an end, compliance changes within a quarter of a pad

@@ -10,7 +10,7 @@ from tipoff.highfi.recorded import Recorded
 from tipoff.highfi.stress import monitor
 from tipoff.mechanics import comoving, ledger, model_names, outcome
 from tipoff.mechanics.promises import FINITE_ELEMENTS, broken
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 
 
 def trajectory(stepper: Stepper, recorded: Recorded, cost: dict, numerics: Numerics) -> Trajectory:

@@ -28,7 +28,7 @@ from tipoff.highfi.recorded import Recorded
 from tipoff.highfi.state.threads import processors
 from tipoff.mechanics import outcome
 from tipoff.mechanics.ending import DONE, WINDOW, is_left_out
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import settled
 from tipoff.scenes.effects.friction import require_two_step
 from tipoff.scenes.scene import Scene

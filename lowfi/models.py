@@ -3,9 +3,10 @@
 from tipoff.lowfi.contact import thermal_offset
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.model_names import COMPLIANT, SURROGATES
-from tipoff.mechanics.rail_compliance import RailCompliance, model_of
+from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.rail_compliance import model_of
 from tipoff.scenes.scene import Scene
 
 

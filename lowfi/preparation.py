@@ -14,6 +14,7 @@ from tipoff.mechanics.outcome import Milestones
 from tipoff.mechanics.promises import Promises
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes import settled
+from tipoff.scenes.rail_compliance import of_scene
 from tipoff.scenes.scene import Scene
 
 
@@ -44,7 +45,7 @@ def prepare(
     settled.require(scene)
     model, modes = models[0], numerics.count
     thermal_offset.require(scene, compliance)
-    found = compliance.of(scene) if compliance and scene.contact else None
+    found = of_scene(compliance, scene) if compliance and scene.contact else None
     found = found.of_degree(numerics.known_degree or found.degree) if found else None
     common = system.build(
         model,

@@ -9,9 +9,10 @@ from tipoff.lowfi.models import require
 from tipoff.lowfi.numerics import AUTO, Numerics
 from tipoff.lowfi.single_run import SingleRun, integrated
 from tipoff.mechanics.model_names import COMPLIANT
-from tipoff.mechanics.rail_compliance import RailCompliance, may_vibrate
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.rail_compliance import may_vibrate
 from tipoff.scenes.scene import Scene
 
 

@@ -12,9 +12,10 @@ from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
 from tipoff.lowfi.numerics import Numerics, promises_of
 from tipoff.lowfi.preparation import prepare
 from tipoff.mechanics import comoving, ending, outcome, promises
-from tipoff.mechanics.rail_compliance import RailCompliance, model_of
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import scene_model
+from tipoff.scenes.rail_compliance import model_of
 from tipoff.scenes.scene import Scene
 
 _ROWS = 65_536  # samples allocated at first

@@ -24,7 +24,7 @@ from tests.written_names import ARRAYS_OF_REFERENCE
 from tipoff import calibration, highfi, lowfi, scenes
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from validation.bench.surrogate import varied
 
 CATALOG = ("channel", "clamped", "paper_like", "reference", "sensitive", "thin", "tiny", "titanium")

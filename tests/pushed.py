@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 
 from tests.exact.spring import end_of_stroke
 from tipoff.kernels import rotation
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 
 SPRING = {"kind": "spring", "preload": 2e4, "rate": 2e5, "stroke": 0.02}
 # Preload (N), rate (N/m), stroke (m), y and z (m) of springs at three corners and beside the middle.

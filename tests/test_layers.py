@@ -24,18 +24,20 @@ from tipoff import sources as digests
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGES = (
-    *("kernels", "mechanics", "scenes", "comparison", "meshes", "highfi", "lowfi"),
+    *("kernels", "mechanics", "scenes", "results", "comparison", "meshes"),
+    *("highfi", "lowfi"),
     *("calibration", "workspace", "studies"),
 )
 FORBIDDEN = {
     "kernels": {*PACKAGES[1:], "gmsh", "matplotlib"},
     "mechanics": {*PACKAGES[3:], "gmsh", "matplotlib"},
     "scenes": {*PACKAGES[3:], "gmsh", "matplotlib"},
-    "comparison": {*PACKAGES[4:], "gmsh", "matplotlib"},
+    "results": {*PACKAGES[4:], "gmsh", "matplotlib"},
+    "comparison": {*PACKAGES[5:], "gmsh", "matplotlib"},
     "meshes": set(PACKAGES) - {"meshes"},
-    "highfi": {"lowfi", "comparison", *PACKAGES[7:]},
-    "lowfi": {"highfi", "meshes", "comparison", *PACKAGES[7:], "skfem", "gmsh"},
-    "calibration": {*PACKAGES[8:]},
+    "highfi": {"lowfi", "comparison", *PACKAGES[8:]},
+    "lowfi": {"highfi", "meshes", "comparison", *PACKAGES[8:], "skfem", "gmsh"},
+    "calibration": {*PACKAGES[9:]},
     "workspace": {"studies"},
 }
 SERIALISERS = {"pickle", "cPickle", "dill", "cloudpickle", "joblib", "marshal", "shelve"}

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from tipoff import scenes
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
 from tipoff.mechanics.rail_compliance import DEGREE, LOW_DEGREE, MOST_DEGREE, RailCompliance
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import (
     Calibration,
     Fault,

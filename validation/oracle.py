@@ -25,6 +25,7 @@ from tipoff.mechanics.laws.thrust import magnitude
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes import scene_model
 from tipoff.scenes.effects.friction import require_two_step
+from tipoff.scenes.rail_compliance import of_scene
 from tipoff.scenes.scene import Scene
 
 _BODY = 13  # place, velocity, quaternion, body rate
@@ -94,7 +95,7 @@ def prepared(
     rows = np.zeros((samples + 1, _SIZE))
     rows[0] = _start(model)
     thermal_offset.require(scene, compliance)
-    walls = compliance.of(scene) if compliance and scene.contact else None
+    walls = of_scene(compliance, scene) if compliance and scene.contact else None
     return (
         build(model, thermal_offset=thermal_offset.under_pads(model, walls)),
         model.payload.inertia,

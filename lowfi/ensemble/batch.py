@@ -19,8 +19,8 @@ from tipoff.mechanics.laws.friction import Friction
 from tipoff.mechanics.laws.hold_down import HoldDown
 from tipoff.mechanics.laws.sticking import Sticking
 from tipoff.mechanics.model import Faces, Model
-from tipoff.mechanics.rail_compliance import RailCompliance, may_vibrate
-from tipoff.scenes import changes, scene_model
+from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.scenes import changes, rail_compliance, scene_model
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.scene import Scene
@@ -63,7 +63,7 @@ class Family:
         compliance: RailCompliance | None = None,
         widening: float = 0.0,
     ):
-        if numerics.modes == AUTO and may_vibrate(scene, compliance):
+        if numerics.modes == AUTO and rail_compliance.may_vibrate(scene, compliance):
             raise ValueError("modes: cases of an ensemble need a number, which its pilot chooses")
         if numerics.degree == AUTO:
             raise ValueError("degree: cases of an ensemble need a number")
@@ -143,7 +143,7 @@ class Family:
         if changed and scene.contact is not None:
             thermal_offset.require(scene, self.compliance)
             if self.compliance is not None:
-                self.compliance.require(scene)
+                rail_compliance.require(self.compliance, scene)
 
     def _group(self, groups: dict, built: Built) -> _Group:
         scene, limit, marks = built.scene, built.scene.time_limit, self._marks(built)

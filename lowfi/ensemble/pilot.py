@@ -32,8 +32,8 @@ from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.numerics import AUTO, Numerics
 from tipoff.lowfi.simulation import solved
 from tipoff.lowfi.single_run import SingleRun, integrated
-from tipoff.mechanics.rail_compliance import may_vibrate
 from tipoff.scenes.faults import SceneError
+from tipoff.scenes.rail_compliance import may_vibrate
 from tipoff.scenes.scene import Scene
 
 PILOT = 16  # cases

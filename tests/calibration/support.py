@@ -7,7 +7,7 @@ import numpy as np
 
 from tipoff import lowfi, scenes
 from tipoff.calibration.search import Plan
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 
 CONDITIONS = ("phi15", "phi60")
 SMALL = Plan(points=32, starts=1, evaluations=80, polish=12)

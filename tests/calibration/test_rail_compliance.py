@@ -13,8 +13,8 @@ from tipoff.calibration import rail_compliance
 from tipoff.highfi import compliance as statics
 from tipoff.highfi import discretisation
 from tipoff.highfi.statics import places
-from tipoff.mechanics.rail_compliance import digest
 from tipoff.scenes import SceneError, load
+from tipoff.scenes.rail_compliance import digest
 from tipoff.scenes.scene import Scene
 
 # Every effect that a scene of tests can have without a file, so that every number of it is there.

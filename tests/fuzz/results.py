@@ -27,8 +27,9 @@ from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.lowfi.ensemble.store import CHUNK, Chunk, Store, StoreError
 from tipoff.mechanics.rail_compliance import RailCompliance
-from tipoff.mechanics.trajectory import Trajectory, content
+from tipoff.results.trajectory import Trajectory, content
 from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.rail_compliance import of_scene
 from tipoff.studies.agreement import other_rails
 from tipoff.studies.calibration import forecast
 from tipoff.studies.calibration import stage as calibrate
@@ -113,7 +114,7 @@ def _compliance(rng: Rng, folder: Path) -> None:
     except ValueError as fault:
         raise _refused(file, fault) from None
     scene = _stiffened(rng.choice((1.0, 1.5)))
-    found.of(scene).cubic()
+    of_scene(found, scene).cubic()
     found.rigid().summary()
 
 

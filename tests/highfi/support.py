@@ -17,7 +17,7 @@ from tipoff.highfi.dynamics.system import System, build
 from tipoff.highfi.mesh.rail_mesh import RailMesh, read
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.simulation import Loop
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import load
 
 COARSE = Numerics(element_size=0.008)

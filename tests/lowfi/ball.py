@@ -4,7 +4,7 @@ import math
 
 from tests.lowfi.support import numerics, scene
 from tipoff import lowfi
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 
 
 def mass(radius: float, density: float) -> float:

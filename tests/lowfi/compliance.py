@@ -16,9 +16,10 @@ from tipoff.lowfi import system as systems
 from tipoff.lowfi.contact import springs
 from tipoff.lowfi.contact.compliant import loads, record, solution
 from tipoff.lowfi.dynamics import equations
-from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest, pairs, patterns
+from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, pairs, patterns
 from tipoff.mechanics.rail_compliance.patterns import powers
 from tipoff.scenes import scene_model
+from tipoff.scenes.rail_compliance import digest
 from tipoff.scenes.scene import Scene
 
 REFERENCE = scenes.load("clamped")

@@ -13,9 +13,10 @@ import pytest
 from tests.mechanics.test_trajectory import random_trajectory
 from tests.scenes.test_calibration import CALIBRATION, as_lists
 from tipoff import scenes
-from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import Calibration
+from tipoff.scenes.rail_compliance import digest
 
 PLACES = 150  # bits that are flipped in a file, evenly spread
 

@@ -9,10 +9,11 @@ import pytest
 from tipoff import lowfi, scenes
 from tipoff.files import write_sealed
 from tipoff.mechanics.laws.thermal import FIELDS
-from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, content, digest, pairs
+from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, content, pairs
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 from tipoff.mechanics.rail_compliance.patterns import DRAGGED
 from tipoff.scenes.faults import SceneError
+from tipoff.scenes.rail_compliance import digest, require
 
 SCENE = scenes.load("reference")
 FACES = 16
@@ -226,7 +227,7 @@ def test_another_rail_or_other_pads_are_refused(compliance, change):
     ids=str,
 )
 def test_other_keys_of_the_scene_may_change(compliance, change):
-    compliance.require(SCENE.replace(change))
+    require(compliance, SCENE.replace(change))
 
 
 def test_friction_that_sticks_is_refused(compliance):

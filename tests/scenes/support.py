@@ -7,7 +7,7 @@ import pytest
 
 from tipoff.mechanics import ledger
 from tipoff.mechanics.outcome import Outcome
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import SceneError, parse
 
 SMALL = {

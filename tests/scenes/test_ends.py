@@ -5,7 +5,7 @@ import math
 import pytest
 
 from tests.scenes.support import small
-from tipoff.mechanics import unfinished
+from tipoff.results import unfinished
 from tipoff.scenes import SceneError, ends, load, parse
 
 TINY = load("tiny").replace({"duration": None})

@@ -9,7 +9,7 @@ import pytest
 from tests.in_memory import memory
 from tipoff.mechanics import ledger
 from tipoff.mechanics.outcome import Outcome
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.studies.render import chart
 from tipoff.workspace import store
 

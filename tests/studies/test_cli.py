@@ -13,7 +13,7 @@ import typer
 from typer.testing import CliRunner
 
 from tests.written_names import RUN_ROW
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.scene import CATALOG, load
 from tipoff.studies.cli import app, flowed
 from tipoff.studies.report import assembly

@@ -11,7 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 from tests.written_names import RUN_ROW
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import load
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.effects import friction

@@ -13,7 +13,7 @@ from tests.scenes.test_calibration import CALIBRATION
 from tests.studies.synthetic import flight
 from tipoff import scenes
 from tipoff.files import write_json
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.studies.cli import app
 from tipoff.studies.runs import stage as runs
 from tipoff.studies.view import stage as view

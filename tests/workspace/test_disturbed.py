@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tipoff import lowfi, scenes
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.workspace import disturbed
 from tipoff.workspace.run import Run
 from tipoff.workspace.store import Store

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from tests.studies.synthetic import flight
 from tipoff import scenes
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.studies.cli import app
 from tipoff.workspace import store as store_module
 from tipoff.workspace.settings import Settings

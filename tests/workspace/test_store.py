@@ -16,7 +16,7 @@ import pytest
 from tests.studies.synthetic import flight
 from tipoff import highfi, lowfi, scenes, sources
 from tipoff.calibration import rail_compliance
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.workspace import store as store_module
 from tipoff.workspace.run import Run
 from tipoff.workspace.settings import Settings
@@ -218,7 +218,7 @@ MOMENTS = (0.0, 0.001, 0.002, 0.003, 0.005, 0.007, 0.009, 0.012)  # s after a sm
 KILLED = """
 import os, sys
 from tests.studies.synthetic import flight
-from tipoff.mechanics import trajectory
+from tipoff.results import trajectory
 run = flight(samples=int(sys.argv[1]))
 content = trajectory.content(run)
 trajectory.content = lambda _: content

@@ -14,7 +14,7 @@ import numpy as np
 from tipoff.comparison.curve_files import reading
 from tipoff.comparison.curve_files.layout import OF_THE_FORMAT, RATES, Layout
 from tipoff.mechanics.outcome import SETTLE_WINDOW
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.faults import Fault, SceneError
 
 # s; a pad contact lasts milliseconds, and the settled window needs several samples

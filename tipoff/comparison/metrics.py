@@ -18,7 +18,7 @@ from tipoff.cards import Carded
 from tipoff.comparison import iso18571
 from tipoff.comparison.curves import Curves
 from tipoff.mechanics.outcome import SETTLE_WINDOW
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 
 AXES = ("x", "y", "z")
 CHANNELS = ("velocity_x", "rate_x", "rate_y", "rate_z")

@@ -15,10 +15,8 @@ the frame of the solution (``mechanics.comoving``).
 import numpy as np
 
 from tipoff.mechanics import promises
-from tipoff.scenes.effects.registry import EFFECTS
 
-# One entry holds the work of all body forces. It has the name of the first one.
-BODY_FORCE = next(effect.key for effect in EFFECTS if effect.is_body_force)
+BODY_FORCE = "gravity"  # the entry of the work of all body forces has the name of the first one
 WORK = ("thrust", BODY_FORCE)
 ENTRIES = (
     *WORK,

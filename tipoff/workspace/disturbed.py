@@ -11,7 +11,7 @@ from functools import partial
 from tipoff import cache, sources
 from tipoff.files import content_hash
 from tipoff.mechanics import instant
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.workspace.run import Run, execute, with_modes_of
 from tipoff.workspace.store import Store
 

@@ -17,8 +17,9 @@ import numpy as np
 
 from tipoff.mechanics.laws.thermal import FIELDS
 from tipoff.mechanics.model import half_sizes
-from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance, digest, patterns
+from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance, patterns
 from tipoff.scenes import parse, scene_model
+from tipoff.scenes.rail_compliance import digest
 from tipoff.scenes.scene import Scene
 from tipoff.workspace import kernel_marks, machine
 from tipoff.workspace.compiling import warm_up

@@ -7,9 +7,10 @@ from typing import Any
 from tipoff import sources
 from tipoff.files import content_hash
 from tipoff.mechanics.model_names import FINITE_ELEMENTS
-from tipoff.mechanics.rail_compliance import RailCompliance, model_of
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.rail_compliance import model_of
 from tipoff.scenes.scene import Scene
 from tipoff.workspace.progress import say
 

@@ -20,7 +20,7 @@ from pathlib import Path
 
 from tipoff import cache
 from tipoff.files import discard
-from tipoff.mechanics.trajectory import Trajectory, content
+from tipoff.results.trajectory import Trajectory, content
 from tipoff.scenes.faults import InputError
 from tipoff.workspace import kernel_marks
 from tipoff.workspace.attempt import attempt

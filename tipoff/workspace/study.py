@@ -17,7 +17,7 @@ from typing import Any, TypeVar
 from tipoff import cache, sources
 from tipoff.files import content_hash, read_json
 from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import implausible
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError

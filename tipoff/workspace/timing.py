@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.workspace import machine
 from tipoff.workspace.compiling import warm_up
 from tipoff.workspace.errors import FAILED, StudyError

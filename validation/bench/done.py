@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.workspace.errors import StudyError
 
 

@@ -25,7 +25,7 @@ from xarray import Dataset
 
 from tipoff.files import write_json
 from tipoff.mechanics.rail_compliance import MODES, RailCompliance
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene, load
 from tipoff.studies.render.table import Column, Table

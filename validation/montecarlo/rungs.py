@@ -18,7 +18,8 @@ from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.lowfi.modes import FEWEST
 from tipoff.lowfi.numerics import AUTO, Numerics
 from tipoff.mechanics.model_names import SPRINGS
-from tipoff.mechanics.rail_compliance import MODES, may_vibrate
+from tipoff.mechanics.rail_compliance import MODES
+from tipoff.scenes.rail_compliance import may_vibrate
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.populations import draws, population
 from tipoff.studies.populations.draws import Kept, Rows

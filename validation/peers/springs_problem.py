@@ -14,7 +14,7 @@ import numpy as np
 from tipoff import lowfi
 from tipoff.mechanics import outcome
 from tipoff.mechanics.model_names import SPRINGS
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import scene_model
 from tipoff.scenes.scene import Scene, load
 

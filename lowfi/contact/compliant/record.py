@@ -13,6 +13,7 @@ from tipoff.mechanics.laws.structural_damping import Damping
 from tipoff.mechanics.model import Model
 from tipoff.mechanics.rail_compliance.patterns import count
 from tipoff.scenes.effects.friction import require_two_step
+from tipoff.scenes.rail_compliance import require_modes
 from tipoff.scenes.scene import Scene
 
 # Columns of a face's lever: penetration (m) of its flat face at the middle, and its change per xi
@@ -133,7 +134,7 @@ def under_pads(
     if found is None or found.flexibility is None:
         return None
     require_two_step(scene)
-    data.require_modes(scene.name, found, modes)
+    require_modes(scene.name, found, modes)
     return build(found, model, cells=cells, modes=modes, damping=damping_of(scene))
 
 

@@ -18,7 +18,7 @@ from tipoff import highfi
 from tipoff.highfi import Numerics
 from tipoff.highfi.dynamics.checkpoint import Checkpoint, arrays, digest, restore
 from tipoff.highfi.state.records import Active, Body, Motion, State, Stepped
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 
 pytestmark = pytest.mark.case("X20")
 ROOT = Path(__file__).resolve().parents[3]

@@ -6,9 +6,9 @@ from scipy.integrate import quad
 
 from tests.highfi.support import COARSE, tiny
 from tipoff import highfi
-from tipoff.mechanics import unfinished
 from tipoff.mechanics.laws.thrust import sample
 from tipoff.mechanics.outcome import EXIT_WINDOW
+from tipoff.results import unfinished
 from tipoff.scenes import ends
 from tipoff.scenes.effects.hold_down import release_time
 

@@ -21,7 +21,7 @@ from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.simulation import Loop
 from tipoff.kernels import rotation
 from tipoff.mechanics.ledger import ENTRIES
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 
 FINE = Numerics(element_size=0.004)
 EARLY = {

@@ -13,6 +13,7 @@ from tipoff.highfi.statics import inputs
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST
 from tipoff.scenes import SceneError
+from tipoff.scenes.rail_compliance import of_scene, require
 
 SIZE, KEY = 8e-3, "rail.mount_stiffness.factor"
 NORMAL, SHEAR = 1e13, 5e12
@@ -42,7 +43,7 @@ def test_a_factor_gives_what_condensation_there_gives(nominal, factor):
     left beside the modes is positive. Controls: the nominal stiffness is off by a tenth and more
     under whole faces,
     and linear interpolation in 1 / k between 1/4, 1 and 4 by more than 1e-4."""
-    found = nominal.of(on_joints().replace({KEY: factor}))
+    found = of_scene(nominal, on_joints().replace({KEY: factor}))
     exact = highfi.condense(on_joints(factor), SIZE)
     assert largest(found.flexibility, exact.flexibility) < 1e-6
     assert largest(found.warm, exact.warm) < 1e-6
@@ -53,7 +54,9 @@ def test_a_factor_gives_what_condensation_there_gives(nominal, factor):
     assert (found.frequency >= exact.frequency * (1.0 - 1e-9)).all()
     found.residual(20)
     softer, stiffer = ((LEAST, 1.0), (1.0, MOST))[int(factor > 1.0)]
-    ends = [nominal.of(on_joints().replace({KEY: end})).flexibility for end in (softer, stiffer)]
+    ends = [
+        of_scene(nominal, on_joints().replace({KEY: end})).flexibility for end in (softer, stiffer)
+    ]
     share = (1.0 / factor - 1.0 / stiffer) / (1.0 / softer - 1.0 / stiffer)
     assert largest(share * ends[0] + (1.0 - share) * ends[1], exact.flexibility) > 1e-4
 
@@ -61,15 +64,15 @@ def test_a_factor_gives_what_condensation_there_gives(nominal, factor):
 def test_what_it_is_made_for(nominal):
     """The nominal compliance serves every factor within its range, of the same two stiffnesses."""
     scene = on_joints()
-    assert nominal.of(scene) is nominal
-    nominal.require(scene.replace({KEY: MOST}))
+    assert of_scene(nominal, scene) is nominal
+    require(nominal, scene.replace({KEY: MOST}))
     for factor in (0.99 * LEAST, 1.01 * MOST):
         with pytest.raises(SceneError, match="0.25 to 4"):
-            nominal.require(scene.replace({KEY: factor}))
+            require(nominal, scene.replace({KEY: factor}))
     with pytest.raises(SceneError, match="another rail"):
-        nominal.require(on_joints(2.0))
+        require(nominal, on_joints(2.0))
     with pytest.raises(SceneError, match="fewer patterns"):
-        nominal.restricted(1).require(scene.replace({KEY: 2.0}))
+        require(nominal.restricted(1), scene.replace({KEY: 2.0}))
     half = highfi.condense(scene.replace({KEY: 0.5}), SIZE)
     np.testing.assert_array_equal(half.flexibility, nominal.flexibility)
 
@@ -83,15 +86,17 @@ def test_it_is_computed_for_the_first_factor(nominal, tmp_path):
         rail_compliance.kept(scene, tmp_path, SIZE, said.append),
     ):
         assert found.joints is None and found.hash == nominal.hash
-        half = found.of(scene.replace({KEY: 0.5}))
-        np.testing.assert_array_equal(half.shape, nominal.of(scene.replace({KEY: 0.5})).shape)
+        half = of_scene(found, scene.replace({KEY: 0.5}))
+        np.testing.assert_array_equal(
+            half.shape, of_scene(nominal, scene.replace({KEY: 0.5})).shape
+        )
         found.save(tmp_path / "rail.npz")
         read = RailCompliance.load(tmp_path / "rail.npz")
         np.testing.assert_array_equal(read.joints.moved, nominal.joints.moved)
     [stored] = tmp_path.glob("joints-*.npz")
     before = stored.stat().st_mtime_ns
     again = copy.deepcopy(found)  # as another process gets it: the fields alone
-    np.testing.assert_array_equal(again.of(scene.replace({KEY: 0.5})).shape, half.shape)
+    np.testing.assert_array_equal(of_scene(again, scene.replace({KEY: 0.5})).shape, half.shape)
     assert stored.stat().st_mtime_ns == before
 
 
@@ -100,7 +105,9 @@ def test_a_file_holds_it(nominal, tmp_path):
     read = RailCompliance.load(tmp_path / "rail.npz")
     assert read.hash == nominal.hash
     scene = on_joints().replace({KEY: 2.0})
-    np.testing.assert_array_equal(read.of(scene).flexibility, nominal.of(scene).flexibility)
+    np.testing.assert_array_equal(
+        of_scene(read, scene).flexibility, of_scene(nominal, scene).flexibility
+    )
 
 
 def test_one_pattern_that_friction_does_not_drag():

@@ -15,7 +15,7 @@ from tipoff.highfi.elements import hexahedral_recovery, hexahedron
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.rail.geometry import geometry
 from tipoff.highfi.stress import gauge, monitor
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 
 LAW = hexahedron.elasticity(72e9, 0.33)
 # Friction would damp nodes too fast for the step while the payload does not yet slide.

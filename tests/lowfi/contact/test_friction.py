@@ -10,7 +10,8 @@ from tests.exact import contact as collisions
 from tests.exact import friction as exact
 from tests.lowfi.support import G, numerics, scene
 from tipoff import lowfi, scenes
-from tipoff.mechanics import ledger, unfinished
+from tipoff.mechanics import ledger
+from tipoff.results import unfinished
 
 FEET = [{"position": (x, y, -0.02), "normals": ["-z"]} for x in (-0.1, 0.1) for y in (-0.1, 0.1)]
 GROUND = {"law": "linear", "clearance": 0.0, "stiffness": 1e8, "damping": 4e4}

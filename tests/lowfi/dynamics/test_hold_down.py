@@ -9,7 +9,7 @@ from tests.lowfi.support import CENTRED, PAPER_PAD, G, corners, scene
 from tipoff import lowfi
 from tipoff.lowfi import Numerics
 from tipoff.lowfi.ensemble.batch import Family
-from tipoff.mechanics import unfinished
+from tipoff.results import unfinished
 from tipoff.scenes import SceneError, ends, load
 from tipoff.scenes.effects.hold_down import release_time
 

@@ -4,8 +4,8 @@ import pytest
 
 from tests.scenes.support import SMALL, refused, small
 from tipoff.mechanics.laws.mount_stiffness import MountStiffness
-from tipoff.mechanics.rail_compliance import digest
 from tipoff.scenes import load, parse
+from tipoff.scenes.rail_compliance import digest
 
 JOINT = {"normal": "1e13 N/m^3", "shear": "5000 N/mm^3"}
 

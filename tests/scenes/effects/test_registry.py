@@ -56,7 +56,11 @@ def test_a_new_effect_is_listed_where_it_is_absent():
 
 
 def test_names_of_the_ledger_stay():
-    assert ledger.WORK == ("thrust", "gravity") and ledger.ENTRIES[:3] == (*ledger.WORK, "kinetic")
+    first = next(effect.key for effect in registry.EFFECTS if effect.is_body_force)
+    assert ledger.WORK == ("thrust", first) == ("thrust", "gravity") and ledger.ENTRIES[:3] == (
+        *ledger.WORK,
+        "kinetic",
+    )
 
 
 def test_an_effect_is_named_in_its_file_the_registry_and_the_scene():
@@ -64,6 +68,7 @@ def test_an_effect_is_named_in_its_file_the_registry_and_the_scene():
     folders = ("scenes", "mechanics", "calibration", "meshes", "kernels", "highfi", "lowfi")
     paths = [path for folder in folders for path in (package / folder).rglob("*.py")]
     named = {path.name for path in paths if re.search(r"\bgravity\b", path.read_text())}
-    # which way is up on the ground, and whether a payload has a weight to rest with
-    others = {"hand_over.py", "settled.py"}
+    # which way is up on the ground, whether a payload has a weight to rest with, and the name of the
+    # entry of all body forces
+    others = {"hand_over.py", "settled.py", "ledger.py"}
     assert named == {"gravity.py", "registry.py", "scene.py"} | others

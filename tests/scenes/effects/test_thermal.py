@@ -6,8 +6,8 @@ import pytest
 
 from tests.scenes.support import small
 from tipoff.mechanics.laws.thermal import fields
-from tipoff.mechanics.rail_compliance import digest
 from tipoff.scenes import SceneError, load, parse, scene_model
+from tipoff.scenes.rail_compliance import digest
 from tipoff.scenes.variation import Variations
 
 EXPANSION = "23.6e-6 1/K"

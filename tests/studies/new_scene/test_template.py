@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 import tipoff
 from tests.lowfi.support import IMMOVABLE, WEIGHTLESS
 from tipoff import lowfi, scenes
-from tipoff.mechanics import unfinished
+from tipoff.results import unfinished
 from tipoff.scenes import SceneError, implausible, uncertainty
 from tipoff.studies.cli import app
 from tipoff.studies.new_scene import template

@@ -5,8 +5,8 @@ import json
 import pytest
 from typer.testing import CliRunner
 
-from tipoff.mechanics import hand_over
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results import hand_over
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import load
 from tipoff.scenes.effects.hand_over import standing
 from tipoff.studies.cli import app

@@ -19,7 +19,7 @@ from tipoff import scenes
 from tipoff.highfi import Numerics
 from tipoff.highfi.stress import monitor
 from tipoff.highfi.stress.peak import STRESS, no_peak
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.studies.cli import app
 from tipoff.studies.report.page import Page
 from tipoff.studies.runs import stage as runs

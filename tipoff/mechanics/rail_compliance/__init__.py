@@ -26,14 +26,14 @@ rest is static::
     U = F_res P + W q,   F_res = F - sum_m W_m W_m' / omega_m^2,   W_iam(travel) the displacement in mode m
 
 F_res is positive semidefinite: it is the part of the other modes. A warm rail
-(``scenes.effects.thermal``) has the thermal offset T = sum_t amount_t warm_t in the same patterns,
+(``mechanics.laws.thermal``) has the thermal offset T = sum_t amount_t warm_t in the same patterns,
 to which U is added. Walls from a file that are not straight have a further offset W
 (``mechanics.drawn_walls``). Warm and rigid walls have T and W but no F. On joints of finite
-stiffness this holds for the nominal stiffness, and ``RailCompliance.of`` gives it for the factor of
-a scene (``mechanics.rail_compliance.joint_terms``).
+stiffness this holds for the nominal stiffness, and ``RailCompliance.at`` gives it for a factor
+(``mechanics.rail_compliance.joint_terms``).
 """
 
-from tipoff.mechanics.rail_compliance.models import may_vibrate, model_of, require_modes
+from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST
 from tipoff.mechanics.rail_compliance.patterns import (
     DEGREE,
     LEAST_DEGREE,
@@ -46,23 +46,20 @@ from tipoff.mechanics.rail_compliance.record import (
     MODES,
     RailCompliance,
     content,
-    digest,
 )
 from tipoff.mechanics.rail_compliance.stations import cubic
 
 __all__ = [
     "DEGREE",
+    "LEAST",
     "LEAST_DEGREE",
     "LOW_DEGREE",
     "MODES",
+    "MOST",
     "MOST_DEGREE",
     "PATTERNS",
     "RailCompliance",
     "content",
     "cubic",
-    "digest",
-    "may_vibrate",
-    "model_of",
     "on_part",
-    "require_modes",
 ]

@@ -1,16 +1,15 @@
 """The record of a rail compliance: its fields, its file, the models that it allows."""
 
 import hashlib
-import json
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
-from tipoff.files import DamageError, content_hash, write_sealed
+from tipoff.files import DamageError, write_sealed
 from tipoff.mechanics.rail_compliance import (
     array_checks,
     fewer,
@@ -22,8 +21,6 @@ from tipoff.mechanics.rail_compliance import (
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST, JointTerms
 from tipoff.mechanics.rail_compliance.shown import Shown
 from tipoff.mechanics.rail_compliance.stations import between_faces, breaks, cubic
-from tipoff.scenes.faults import Fault, SceneError
-from tipoff.scenes.scene import Scene
 
 MODES = 20  # of each rail, stored with its compliance
 
@@ -94,11 +91,8 @@ class RailCompliance(Shown):
         """Degree of the patterns."""
         return patterns.degree_of(self.shape.shape[2])
 
-    def of(self, scene: Scene) -> "RailCompliance":
-        """This compliance at the factor of ``scene`` on the stiffness of its mounts. Raises
-        SceneError as ``require`` does."""
-        self.require(scene)
-        factor = _factor(scene)
+    def at(self, factor: float) -> "RailCompliance":
+        """This compliance at a ``factor`` on the stiffness of the mounts, which ``allows`` it."""
         if factor == 1.0:
             return self
         found = self._at_factors.get(factor)
@@ -110,13 +104,23 @@ class RailCompliance(Shown):
                 self._at_factors[factor] = found
         return found
 
+    def allows(self, factor: float) -> bool:
+        """Whether the ``factor`` on the stiffness of the mounts is in the range of the joints; 1 always
+        is."""
+        return factor == 1.0 or (not self.is_of_fixed_joints and LEAST <= factor <= MOST)
+
+    @property
+    def is_of_fixed_joints(self) -> bool:
+        """Whether the effect of a factor is not known."""
+        return self.joints is None and self.find_joints is None
+
     @cached_property
     def _at_factors(self) -> dict[float, "RailCompliance"]:
         return {}
 
     def _at(self, factor: float) -> "RailCompliance":
         terms, flexibility, heat = self._terms, self.flexibility, self.warm
-        assert terms is not None  # checked by require
+        assert terms is not None  # since ``allows``
         if flexibility is not None:
             flexibility = joint_terms.flexibility(terms, factor, flexibility, self.rail)
         if heat is not None:
@@ -304,28 +308,6 @@ class RailCompliance(Shown):
         friction on the walls."""
         return replace(self, **fewer.restricted(self, count, coupled))
 
-    def require(self, scene: Scene) -> None:
-        """Raise SceneError if ``scene`` has another rail or other pads than this compliance, a
-        temperature while this has no thermal offset, or a factor on the stiffness of its mounts
-        outside its range."""
-        if self.made_for != digest(scene):
-            expected = "those of this compliance: compute it again"
-            raise SceneError([Fault(scene.name, "rail", "another rail, or other pads", expected)])
-        if scene.thermal is not None and self.warm is None:
-            given = "a compliance without thermal offset"
-            expected = "a compliance for warm rails: compute it again"
-            raise SceneError([Fault(scene.name, "thermal", given, expected)])
-        factor = _factor(scene)
-        fixed = self.joints is None and self.find_joints is None
-        if factor != 1.0 and (fixed or not LEAST <= factor <= MOST):
-            expected = (
-                "1, for a compliance of fewer patterns"
-                if fixed
-                else f"{LEAST:g} to {MOST:g}: change normal and shear for others"
-            )
-            key = "rail.mount_stiffness.factor"
-            raise SceneError([Fault(scene.name, key, f"{factor:g}", expected)])
-
     def save(self, path: str | Path) -> None:
         """Write atomically, as arrays with their digest. The file holds ``joints``, which are
         computed first if they are not known.
@@ -373,28 +355,3 @@ def content(compliance: RailCompliance) -> bytes:
     known = compliance.__getstate__()
     known.pop("find_joints")
     return stored.content(known)
-
-
-def _factor(scene: Scene) -> float:
-    table = scene.rail.mount_stiffness
-    return 1.0 if table is None else table.factor
-
-
-def digest(scene: Scene) -> str:
-    """Hexadecimal digest of the rail and pads of a compliance, without the clearance: one
-    compliance serves the cases of a population, whose clearances vary around that of their scene. A
-    compliance is stored under all its inputs, including the clearance
-    (``calibration.rail_compliance.made_from``)."""
-    text = scene.model_dump_json(include={"rail", "pads"})
-    return _digest(text, tuple(scene.rail.contents().items()))
-
-
-@lru_cache(maxsize=64)  # a run of the surrogate asks three times
-def _digest(text: str, contents: tuple[tuple[str, str], ...]) -> str:
-    """``digest`` of the JSON of rail and pads, and of the ``contents`` of the files of the rail."""
-    described = json.loads(text)
-    described["rail"] |= dict(contents)
-    described["rail"].pop("damping", None)  # statics do not use it
-    described["rail"].get("mount_stiffness", {}).pop("factor", None)  # see ``RailCompliance.of``
-    described["rail"]["material"].pop("expansion", None)  # the offset is per unit of each field
-    return content_hash(described)

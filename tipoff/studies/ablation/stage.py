@@ -16,7 +16,7 @@ from typing import Annotated
 
 import numpy as np
 
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import settled
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.scenes.faults import SceneError

@@ -13,7 +13,7 @@ import numpy as np
 
 from tipoff import lowfi
 from tipoff.mechanics.model_names import FINITE_ELEMENTS
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.studies.agreement import equivalence, neighbours, verdicts
 from tipoff.studies.agreement.candidates import Candidate
 from tipoff.studies.agreement.equivalence import Comparison

@@ -24,7 +24,7 @@ from typing import Annotated
 import numpy as np
 
 from tipoff.comparison.metrics import common_time
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.studies.agreement.verdicts import largest_known, settled_change
 from tipoff.studies.render.column import Column
 

@@ -18,7 +18,7 @@ from typing import Annotated, Any
 
 from tipoff.comparison.metrics import compare
 from tipoff.mechanics.model_names import FINITE_ELEMENTS
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.studies.agreement import growth, judging, verdicts
 from tipoff.studies.agreement.verdicts import AtFactor, Context, Judged, RateL2, SettledError
 from tipoff.studies.render.column import Column

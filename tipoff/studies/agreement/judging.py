@@ -10,7 +10,7 @@ from functools import partial
 from typing import NamedTuple, TypeVar
 
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.studies.agreement import distributions, growth, refinement, verdicts
 from tipoff.studies.agreement.candidates import Candidate, on_coarse
 from tipoff.studies.agreement.distributions import Distribution

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from tipoff import scenes
-from tipoff.mechanics.rail_compliance import digest
+from tipoff.scenes.rail_compliance import digest
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.stage import Agreement

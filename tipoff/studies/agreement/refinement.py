@@ -16,7 +16,7 @@ import numpy as np
 from tipoff.comparison.extrapolation import Estimate, estimate
 from tipoff.comparison.metrics import compare
 from tipoff.highfi.numerics import LEAST_CELLS, Numerics
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement.verdicts import Refinement
 from tipoff.workspace.progress import say

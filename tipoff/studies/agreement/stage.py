@@ -8,7 +8,7 @@ from typing import Any
 
 from tipoff.comparison import metrics
 from tipoff.mechanics.rail_compliance import PATTERNS
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.studies.agreement import interface, judging, verdicts
 from tipoff.studies.agreement.candidates import Candidate, candidates, on_coarse
 from tipoff.studies.agreement.distributions import Distribution

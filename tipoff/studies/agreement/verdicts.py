@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 from typing import Annotated, TypeVar
 
 from tipoff.comparison.metrics import Difference, compare, settled_rate_errors
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
 from tipoff.studies.render.column import Column
 

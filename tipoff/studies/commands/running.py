@@ -93,7 +93,7 @@ def study_of(
 
 def _require_time(study) -> None:
     """Refuse a stated duration in which no payload can settle, before anything is compiled."""
-    from tipoff.mechanics import unfinished
+    from tipoff.results import unfinished
     from tipoff.scenes.faults import Fault, SceneError
 
     asked = {name: study.scene.condition(name) for name in study.conditions}

@@ -9,7 +9,7 @@ forwards and backwards: no phase, half the amplitude at the cut-off).
 
 import numpy as np
 
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
 
 CUTOFF = 1000.0  # Hz

@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from tipoff.comparison.metrics import AXES
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
 from tipoff.studies.convergence import contact_loads, stresses
 

@@ -16,7 +16,7 @@ from typing import Annotated, Any
 
 from tipoff.comparison.extrapolation import Estimate, estimate
 from tipoff.highfi.numerics import Numerics
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import equal_accuracy, interface, refinement, verdicts
 from tipoff.studies.agreement.candidates import compliant

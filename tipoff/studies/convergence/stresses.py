@@ -8,7 +8,7 @@ There the stress of linear elasticity is infinite, so the peak grows with every 
 with a fillet on joints has neither.
 """
 
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
 from tipoff.studies.convergence import contact_loads

@@ -20,7 +20,7 @@ from tipoff.files import write_text
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
 from tipoff.mechanics.rail_compliance import MODES as ALL_MODES
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.studies.agreement import refinement, verdicts
 from tipoff.studies.agreement.candidates import Candidate, candidates
 from tipoff.studies.agreement.verdicts import Context

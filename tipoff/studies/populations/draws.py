@@ -20,7 +20,7 @@ from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.lowfi.ensemble.threads import completed
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.model_names import COMPLIANT
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.names import NOMINAL
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import growth

@@ -24,13 +24,15 @@ from tipoff.lowfi.ensemble.fill import fill
 from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.store import StoreError
 from tipoff.lowfi.numerics import AUTO, Numerics
-from tipoff.mechanics import instant, unfinished
+from tipoff.mechanics import instant
 from tipoff.mechanics.instant import Instant
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
-from tipoff.mechanics.rail_compliance import RailCompliance, model_of
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.results import unfinished
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import implausible
 from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.rail_compliance import model_of
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import kept
 from tipoff.studies.agreement.kept import require_accepted

@@ -4,7 +4,7 @@ the make target of the result."""
 import datetime
 from collections.abc import Sequence
 
-from tipoff.mechanics.trajectory import versions
+from tipoff.results.trajectory import versions
 from tipoff.scenes import implausible
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.calibration import stage as calibrate

@@ -9,7 +9,7 @@ import numpy as np
 
 from tipoff.mechanics import ledger
 from tipoff.mechanics.laws import thrust as thrust_law
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import ends
 from tipoff.scenes.scene import Scene
 from tipoff.studies.convergence.contact_loads import by_pad

@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from tipoff.mechanics import hand_calculation, unfinished
 from tipoff.mechanics.model_names import FINITE_ELEMENTS
 from tipoff.mechanics.outcome import Outcome, no_exit_values
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results import hand_calculation, unfinished
+from tipoff.results.trajectory import Trajectory
 from tipoff.studies.convergence import stresses
 from tipoff.studies.runs.results import AtExit, ByHand, Row, Runs, Settled, Vector
 from tipoff.workspace.run import Run

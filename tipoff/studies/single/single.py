@@ -9,10 +9,11 @@ from pathlib import Path
 from pydantic import TypeAdapter
 
 from tipoff.lowfi.numerics import AUTO, Numerics
-from tipoff.mechanics import hand_over, instant
+from tipoff.mechanics import instant
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.mechanics.rail_compliance import DEGREE
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results import hand_over
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import stop
 from tipoff.scenes.effects import hold_down
 from tipoff.scenes.faults import Fault, InputError, SceneError

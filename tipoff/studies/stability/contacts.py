@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from tipoff.mechanics import ledger
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.scene import Scene, parse
 from tipoff.studies.stability import weaker_methods as weaker
 from tipoff.studies.stability.verdict import Control, Measure, Verdict, stability, verdict

@@ -12,7 +12,7 @@ import numpy as np
 from tipoff.kernels import rotation
 from tipoff.mechanics import outcome
 from tipoff.mechanics.laws import thrust as thrust_law
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.scene import Scene, load, parse
 from tipoff.studies.stability import weaker_methods as weaker
 from tipoff.studies.stability.contacts import DEFAULT_STEP, run_on_springs

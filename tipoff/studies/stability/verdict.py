@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, NamedTuple
 
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.studies.render.column import Column
 
 _INFINITE = "infinite"

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.names import NOMINAL
 from tipoff.studies.view.options import Options
 from tipoff.workspace.progress import Board, say

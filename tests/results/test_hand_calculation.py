@@ -5,7 +5,7 @@ import pytest
 
 from tests.studies.synthetic import flight
 from tipoff import lowfi
-from tipoff.mechanics import hand_calculation
+from tipoff.results import hand_calculation
 from tipoff.scenes import load
 
 FREE = {"contact": None, "friction": None}

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tipoff.cards import fixed
-from tipoff.mechanics import hand_calculation, instant, unfinished
+from tipoff.mechanics import instant
 from tipoff.mechanics.outcome import Outcome
+from tipoff.results import hand_calculation, unfinished
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.scene import parse
 
 if TYPE_CHECKING:
-    from tipoff.mechanics.trajectory import Trajectory
+    from tipoff.results.trajectory import Trajectory
 
 
 def line(run: "Trajectory") -> str:

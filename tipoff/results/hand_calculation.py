@@ -21,7 +21,7 @@ from tipoff.scenes import ends, scene_model
 from tipoff.scenes.scene import Scene
 
 if TYPE_CHECKING:
-    from tipoff.mechanics.trajectory import Trajectory
+    from tipoff.results.trajectory import Trajectory
 
 
 _GROWTH = 0.1  # of the moment of the springs

@@ -18,7 +18,7 @@ from tipoff.scenes.tables import MOST_SAMPLES
 from tipoff.scenes.units import LONGEST
 
 if TYPE_CHECKING:
-    from tipoff.mechanics.trajectory import Trajectory
+    from tipoff.results.trajectory import Trajectory
 
 _HORIZON = 100.0  # durations of the scene in which the end of the thrust is searched
 _BURNT = 1e-3  # of the peak, as in ``mechanics.outcome``

@@ -17,7 +17,7 @@ from tests.written_names import ARRAYS
 from tipoff.files import content_hash, replacing, write_json, write_netcdf, write_text
 from tipoff.mechanics import ledger
 from tipoff.mechanics.outcome import Outcome
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import load
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from tests.lowfi.support import CENTRED, IMMOVABLE, WEIGHTLESS
 from tipoff import lowfi
-from tipoff.mechanics import unfinished
 from tipoff.mechanics.outcome import relative_motion
+from tipoff.results import unfinished
 from tipoff.scenes import load
 
 FREE = {"contact": None, "friction": None, "gravity": None}

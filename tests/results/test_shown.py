@@ -11,7 +11,7 @@ from tests.studies.synthetic import flight
 from tipoff import lowfi
 from tipoff.comparison import metrics
 from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance
-from tipoff.mechanics.trajectory import Trajectory
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import Calibration, load
 
 NOTEBOOK, PICTURE = "_repr_html_", "_repr_png_"  # the methods that notebooks call
