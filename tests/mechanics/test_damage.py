@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 import pytest
 
-from tests.mechanics.test_trajectory import random_trajectory
+from tests.results.test_trajectory import random_trajectory
 from tests.scenes.test_calibration import CALIBRATION, as_lists
 from tipoff import scenes
 from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance
