@@ -25,10 +25,10 @@ from tipoff.files import (
     write_csv,
     write_sealed,
 )
-from tipoff.mechanics.completion import Completed
 from tipoff.mechanics import ledger, outcome
 from tipoff.mechanics.model_names import MODELS
 from tipoff.results import finite, hand_over, shown
+from tipoff.results.completion import Completed
 
 if TYPE_CHECKING:
     import xarray
