@@ -7,7 +7,9 @@ from tipoff.mechanics.laws import thrust
 from tipoff.mechanics.model_names import SPRINGS
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.faults import Fault, InputError, SceneError, kind_of
+from tipoff.scenes.rounding import apart
 from tipoff.scenes.scene import Scene
+from tipoff.scenes.units import duration
 
 
 class CalibrationError(InputError):
@@ -78,14 +80,15 @@ def _unfit(scene: Scene, reference: Trajectory | Curves) -> list[str]:
     last_step = float(reference.time[-1] - reference.time[-2])
     found = []
     if reference.window_start < burnt - last_step:
+        settles, ends = apart(reference.window_start, burnt, 6, duration)
         found.append(
-            f"settles from {1e3 * reference.window_start:.6g} ms, expected no earlier than "
-            f"{1e3 * burnt:.6g} ms, when "
+            f"settles from {settles}, expected no earlier than {ends}, when "
             "thrust falls below 0.1 % of its peak: the record is too short"
         )
     if reference.time[-1] > scene.time_limit * (1.0 + 1e-12):
+        lasts, most = apart(float(reference.time[-1]), scene.time_limit, 6, duration)
         found.append(
-            f"lasts {1e3 * reference.time[-1]:.6g} ms, expected at most the scene's duration of "
-            f"{1e3 * scene.time_limit:.6g} ms: settle earlier, or raise the duration"
+            f"lasts {lasts}, expected at most the scene's duration of "
+            f"{most}: settle earlier, or raise the duration"
         )
     return found

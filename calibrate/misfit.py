@@ -10,6 +10,7 @@ import numpy as np
 from tipoff.calibration.discrepancy import LEAST, RATE
 from tipoff.calibration.objective import Target, sampled
 from tipoff.results.trajectory import Trajectory
+from tipoff.scenes.units import duration
 
 VELOCITY = 0.05  # largest relative error of v_x: thrust and mass of a test are known better
 _SIGNAL = 5.0  # standard deviations of the noise's power; a weaker segment is not judged
@@ -170,6 +171,6 @@ def shape_faults(name: str, wanted: Target, run: Trajectory, offset: float) -> l
         return []
     return [
         f"velocity_x of {name} differs from the model by {100.0 * misfit:.3g} % of its root mean "
-        f"square at the best offset in time, {1e3 * offset:.4g} ms, expected {100.0 * VELOCITY:g} % at "
+        f"square at the best offset in time, {duration(offset, 4)}, expected {100.0 * VELOCITY:g} % at "
         "most. Likely cause: time (unit or start), thrust curve, or another column"
     ]

@@ -44,7 +44,7 @@ WRONG = {
         ["relative_tolerance", "a number"],
     ),
     "no case": (lambda: tipoff.ensemble(TINY, [], "springs"), ["cases", "no case"]),
-    "cases by number": (lambda: tipoff.ensemble(TINY, 8, "springs"), ["cases", "given a int"]),
+    "cases by number": (lambda: tipoff.ensemble(TINY, 8, "springs"), ["cases", "given an int"]),
     "a case of text": (lambda: tipoff.ensemble(TINY, [{}, "x"], "springs"), ["as case 1"]),
     "unequal columns": (
         lambda: tipoff.ensemble(TINY, {"payload.mass": [1.0, 2.0], "friction.static": [0.1]}),

@@ -21,6 +21,7 @@ from tipoff.scenes import (
 )
 from tipoff.scenes import catalog as catalog
 from tipoff.scenes import parse as parse
+from tipoff.scenes.faults import kind_of
 
 _EXPECTED = {
     "compliance": arguments.kind(
@@ -349,7 +350,6 @@ def compare(reference: "Trajectory | Curves", surrogate: "Trajectory | Curves") 
 
     for name, given in (("reference", reference), ("surrogate", surrogate)):
         if not isinstance(given, (Trajectory, Curves)):
-            kind = "None" if given is None else f"a {type(given).__name__}"
             expected = "a Trajectory, which tipoff.run returns, or Curves"
-            raise SceneError([Fault("arguments", name, kind, expected)])
+            raise SceneError([Fault("arguments", name, kind_of(given), expected)])
     return metrics.compare(reference, surrogate)

@@ -20,6 +20,7 @@ from tipoff.scenes import scene_model
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.rail import GeometryTable, MeshTable, SectionTable
+from tipoff.scenes.rounding import apart
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.sections.paths import UNITS
 
@@ -223,12 +224,13 @@ def _shape_faults(
     faults, key = [], f"pads.{faces.pad[face]}"
     height, x = drawn_walls.step(near, faces, face)
     if height > SAME:
+        given, most_step = apart(1e6 * height, 1e6 * SAME, 3)
         ramp = 1e3 * height / np.tan(np.radians(STEEPEST))
         faults.append(
             (
                 key,
-                f"a face {name} whose wall has a step of {1e6 * height:.3g} um at x = {x:.6g} m",
-                f"at most {1e6 * SAME:g} um: contact at an edge is not modelled; draw a ramp of at most "
+                f"a face {name} whose wall has a step of {given} um at x = {x:.6g} m",
+                f"at most {most_step} um: contact at an edge is not modelled; draw a ramp of at most "
                 f"{STEEPEST:g} deg, here {ramp:.3g} mm or more along the rail",
             )
         )
@@ -236,22 +238,23 @@ def _shape_faults(
     slopes = np.degrees(np.arccos(cosines.clip(-1.0, 1.0)))
     if slopes.max() > STEEPEST:
         place = near[int(slopes.argmax())].mean(axis=0)
+        given, steepest = apart(float(slopes.max()), STEEPEST, 3)
         faults.append(
             (
                 key,
-                f"a face {name} whose wall has a slope of {slopes.max():.3g} deg at "
-                f"x = {place[0]:.6g} m",
-                f"at most {STEEPEST:g} deg: contact acts along {name[1]}",
+                f"a face {name} whose wall has a slope of {given} deg at x = {place[0]:.6g} m",
+                f"at most {steepest} deg: contact acts along {name[1]}",
             )
         )
     if found.missed.max() > most:
         where = found.place[int(found.missed.argmax())]
+        given, largest = apart(1e6 * float(found.missed.max()), 1e6 * most, 3)
         faults.append(
             (
                 key,
-                f"a face {name} whose wall deviates by {1e6 * found.missed.max():.3g} um from a "
+                f"a face {name} whose wall deviates by {given} um from a "
                 f"parabola across the face at x = {where:.6g} m",
-                f"at most {1e6 * most:.3g} um, 2 % of the clearance",
+                f"at most {largest} um, 2 % of the clearance",
             )
         )
     return faults

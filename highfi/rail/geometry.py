@@ -9,7 +9,7 @@ from tipoff.meshes.profile import Profile
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.rail import SectionTable
-from tipoff.scenes.rounding import at_most
+from tipoff.scenes.rounding import apart, at_most
 from tipoff.scenes.scene import Scene
 
 
@@ -94,11 +94,12 @@ def _on_fillet(scene: Scene, rail: SectionTable) -> list[Fault]:
     begin = min(pad.inset - 0.5 * pad.width for pad in scene.pads)
     if rail.fillet is None or at_most(rail.fillet, begin, max(pad.inset for pad in scene.pads)):
         return []
+    radius, free = apart(rail.fillet, begin)
     return [
         Fault(
             scene.name,
             "rail.fillet",
-            f"{rail.fillet:g} m, with pads from {begin:g} m on (inset less half of the width)",
+            f"{radius} m, with pads from {free} m on (inset less half of the width)",
             "pads beside the fillet: a smaller fillet, or a larger inset of the pads",
         )
     ]

@@ -24,6 +24,7 @@ from tipoff.scenes import ends, scene_model
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import MeshTable, SectionTable
 from tipoff.scenes.rail_base import MaterialTable
+from tipoff.scenes.rounding import apart
 from tipoff.scenes.scene import Scene
 
 MOST = 0.01  # (W / w)^2
@@ -113,9 +114,10 @@ def too_fast(rate: float, frequency: float) -> tuple[str, str] | None:
     share = (rate / frequency) ** 2
     if share <= MOST:
         return None
+    given, most = apart(rate, float(np.sqrt(MOST) * frequency), 4)
     return (
-        f"a platform that turns at {rate:.4g} rad/s",
-        f"at most {np.sqrt(MOST) * frequency:.4g} rad/s: the lowest frequency of the rails is "
+        f"a platform that turns at {given} rad/s",
+        f"at most {most} rad/s: the lowest frequency of the rails is "
         f"{frequency:.4g} rad/s, and linear rails leave out a share of {share:.2g} of their "
         f"stiffness, allowed {MOST:g}",
     )

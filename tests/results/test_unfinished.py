@@ -72,3 +72,17 @@ def test_thrust_without_an_end_and_a_payload_that_hardly_moves(scene):
     assert "the thrust does not end" in told(constant)
     still = scene.replace({"thrust.peak": "1 mN", "duration": "3 ms"})
     assert "needs more thrust" in told(still) and "lasts until" in told(still)
+
+
+@pytest.mark.parametrize("start", [0.0, -0.06])
+def test_a_rail_that_begins_in_front_of_the_rear_pads_is_named_where_a_run_diverges(start):
+    """The payload turns before its rear pads are at the rail. Control: a diverged run on a rail that
+    begins behind all pads has another cause."""
+    keys = {"rail.start": start, "rail.mounts": [], "initial.rate.z": 2.0}
+    scene = load("tiny").replace(keys)
+    run = lowfi.run(scene, "springs")
+    assert run.status == "diverged" and "strikes the rear end" in run.message
+    words = unfinished.advice(scene, run)
+    assert words.startswith(f"the rail starts at X = {start:g} m, in front of pads 0, 1, 2, 3: ")
+    assert words.endswith("start the rail at -0.088 m or behind that")
+    assert unfinished.advice(load("tiny"), run) == ""

@@ -4,7 +4,7 @@ import pytest
 
 from tests.scenes.support import refused, small, write
 from tipoff.scenes import csv_file, parse
-from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.faults import Fault, SceneError, close, kind_of
 
 
 def test_a_bad_column_is_a_short_message(tmp_path):
@@ -78,3 +78,12 @@ def test_a_condition_has_no_keys_of_the_whole_scene(key):
     found = {fault.key: fault.expected for fault in refused(small(conditions={"phi15": {key: 3}}))}
     assert "a key of the scene itself" in found[f"conditions.phi15.{key}"]
     parse(small(conditions={"phi15": {"payload.mass": "9 kg"}}))
+
+
+def test_a_name_that_is_there_twice_is_suggested_once_and_never_for_itself():
+    assert close("forse", ["time", "force", "force"]) == ", did you mean force?"
+    assert close("force", ["time", "force", "force"]) == ""
+
+
+def test_kinds_have_their_article():
+    assert [kind_of(each) for each in (1, "x", None)] == ["an int", "a str", "None"]

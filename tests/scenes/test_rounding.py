@@ -12,6 +12,7 @@ from tipoff import highfi
 from tipoff.comparison.curves import Curves
 from tipoff.scenes import SceneError, load, parse, rounding
 from tipoff.scenes.distributions import Uniform
+from tipoff.scenes.units import duration
 from tipoff.studies.commands.options import in_millimetres
 
 LENGTHS = {"m": 1e6, "cm": 1e4, "mm": 1e3, "um": 1.0, "inch": 25400.0, "ft": 304800.0}
@@ -193,3 +194,25 @@ def test_limits_that_are_computed():
             {"distribution": "uniform", "low": 0.3, "high": 0.1 + 0.2},
             context={"units": {}, "bare_numbers_are_si": True, "unit": None},
         )
+
+
+@pytest.mark.parametrize("limit", [-0.088, 1e-9, 0.25, 44.4, 6.5e10])
+@pytest.mark.parametrize("off", [1e-1, 1e-5, 1e-7, 1e-9, 1e-11])
+@pytest.mark.parametrize("shown", [rounding.plain, duration], ids=["number", "time"])
+def test_a_refused_value_and_its_limit_have_two_texts(limit, off, shown):
+    """Control: a fixed number of digits gives one text for both."""
+    given, most = rounding.apart(limit * (1.0 + off), limit, 4, shown)
+    assert given != most and len(most) <= len(f"{limit:.14g}") + 4
+    assert (shown(limit * (1.0 + off), 4) == shown(limit, 4)) == (off < 1e-4)
+
+
+def test_equal_values_have_one_short_text():
+    assert rounding.apart(0.1 + 0.2, 0.3) == ("0.3", "0.3")
+
+
+def test_a_rail_that_ends_just_behind_the_pads_is_told_apart_from_its_limit():
+    end = min(pad.position[0] - 0.5 * pad.length for pad in load("tiny").pads)
+    with pytest.raises(SceneError) as error:
+        load("tiny").replace({"rail.end": end - 1e-8, "rail.start": -0.4, "rail.mounts": []})
+    (fault,) = error.value.faults
+    assert fault.given == "-0.08800001 m" and fault.expected.startswith("more than -0.088 m")

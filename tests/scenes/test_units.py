@@ -119,3 +119,20 @@ print(len(found))
 """
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert run.stdout == "1\n", run.stderr
+
+
+@pytest.mark.parametrize(
+    "time, text",
+    [
+        (0.0, "0 ms"),
+        (-0.00125, "-1.25 ms"),
+        (0.04436, "44.36 ms"),
+        (0.9999, "999.9 ms"),
+        (0.99999, "1 s"),
+        (1.0, "1 s"),
+        (44.36, "44.36 s"),
+        (44360.0, "4.436e+04 s"),
+    ],
+)
+def test_a_time_is_in_milliseconds_up_to_a_second(time, text):
+    assert units.duration(time, 4) == text

@@ -16,6 +16,7 @@ from tipoff.comparison.curve_files.layout import OF_THE_FORMAT, RATES, Layout
 from tipoff.mechanics.outcome import SETTLE_WINDOW
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.units import duration
 
 # s; a pad contact lasts milliseconds, and the settled window needs several samples
 LONGEST_STEP = 0.5 * SETTLE_WINDOW
@@ -85,7 +86,7 @@ class Curves(NamedTuple):
             rate[keep],
             float(start),
             _mean(time, rate, start),
-            f"{path}, SHA-256 {digest}, settled from {1e3 * start:.6g} ms"
+            f"{path}, SHA-256 {digest}, settled from {duration(start)}"
             + (f"; {layout.words}" if layout.words else ""),
         )
 
@@ -111,24 +112,30 @@ def _time_faults(source: str, time: np.ndarray, settled_from: float | None) -> l
     found = []
     if steps[back] <= 0.0:
         found.append(
-            (f"{_ms(time[back + 1])} after {_ms(time[back])}", "times that rise from line to line")
+            (
+                f"{duration(time[back + 1])} after {duration(time[back])}",
+                "times that rise from line to line",
+            )
         )
     if not -_ROUNDING <= time[0] <= LONGEST_STEP + _ROUNDING:
         found.append(
-            (f"{_ms(time[0])} first", f"time since ignition, from 0 to {_ms(LONGEST_STEP)} on")
+            (
+                f"{duration(time[0])} first",
+                f"time since ignition, from 0 to {duration(LONGEST_STEP)} on",
+            )
         )
     if steps[gap] > LONGEST_STEP + _ROUNDING:
         found.append(
             (
-                f"a gap from {_ms(time[gap])} to {_ms(time[gap + 1])}",
-                f"steps of {_ms(LONGEST_STEP)} at most{_likely_unit(steps[gap])}",
+                f"a gap from {duration(time[gap])} to {duration(time[gap + 1])}",
+                f"steps of {duration(LONGEST_STEP)} at most{_likely_unit(steps[gap])}",
             )
         )
     if latest < time[0] - _ROUNDING:
         found.append(
             (
-                f"a record of {_ms(time[-1] - time[0])}",
-                f"at least the settled window of {_ms(SETTLE_WINDOW)}",
+                f"a record of {duration(time[-1] - time[0])}",
+                f"at least the settled window of {duration(SETTLE_WINDOW)}",
             )
         )
     elif settled_from is not None and not (
@@ -136,15 +143,11 @@ def _time_faults(source: str, time: np.ndarray, settled_from: float | None) -> l
     ):
         found.append(
             (
-                f"settled from {_ms(settled_from)}",
-                f"{_ms(time[0])} to {_ms(latest)}, to leave {_ms(SETTLE_WINDOW)}",
+                f"settled from {duration(settled_from)}",
+                f"{duration(time[0])} to {duration(latest)}, to leave {duration(SETTLE_WINDOW)}",
             )
         )
     return [Fault(source, "time", *fault) for fault in found]
-
-
-def _ms(time: float) -> str:
-    return f"{1e3 * time:.6g} ms"
 
 
 def _likely_unit(step: float) -> str:

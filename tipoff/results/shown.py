@@ -12,6 +12,7 @@ from tipoff.mechanics.outcome import Outcome
 from tipoff.results import hand_calculation, unfinished
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.scene import parse
+from tipoff.scenes.units import duration
 
 if TYPE_CHECKING:
     from tipoff.results.trajectory import Trajectory
@@ -20,7 +21,9 @@ if TYPE_CHECKING:
 def line(run: "Trajectory") -> str:
     """One line: model, status, samples, velocity and rates at the instant that counts."""
     end = (
-        f"{len(run.time)} samples to {1e3 * run.time[-1]:.4g} ms" if len(run.time) else "no samples"
+        f"{len(run.time)} samples to {duration(float(run.time[-1]), 4)}"
+        if len(run.time)
+        else "no samples"
     )
     at = instant.of(run.outcome)
     velocity, rate = instant.velocity(run.outcome, at), instant.rate(run.outcome, at)
@@ -39,7 +42,7 @@ def facts(run: "Trajectory") -> dict[str, str]:
     if run.message:
         text["message"] = run.message
     if found.exit_time is not None:
-        text["exit"] = f"{1e3 * found.exit_time:.4g} ms after ignition"
+        text["exit"] = f"{duration(found.exit_time, 4)} after ignition"
         if found.impulse_after_exit is not None:
             text["exit"] += f", {100.0 * found.impulse_after_exit:.3g} % of the impulse after it"
     if at == instant.SETTLED:

@@ -15,7 +15,7 @@ from tipoff.mechanics.outcome import BEHIND, SETTLE_DELAY, SETTLE_WINDOW, relati
 from tipoff.scenes import ends, stop, travel
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.tables import MOST_SAMPLES
-from tipoff.scenes.units import LONGEST
+from tipoff.scenes.units import LONGEST, duration
 
 if TYPE_CHECKING:
     from tipoff.results.trajectory import Trajectory
@@ -28,8 +28,10 @@ _MARGIN = 1e-3  # s: a payload that turns leaves the rail later than its mass ce
 
 
 def advice(scene: Scene, run: "Trajectory") -> str:
-    """Reason why a ``run`` of ``scene`` is jammed or has the status ``time_limit``, and what helps;
-    empty for any other status."""
+    """Reason why a ``run`` of ``scene`` is jammed, has the status ``time_limit``, or is diverged although
+    a pad begins behind its rail, and what helps; empty for any other run."""
+    if run.status == "diverged":
+        return _behind_the_rail(scene)
     if run.status == "jammed":
         return _jammed(scene, run)
     if run.status != "time_limit":
@@ -52,9 +54,7 @@ def foreseen(scene: Scene) -> str:
     least = ends.earliest(scene)
     if not math.isfinite(least):
         return "a thrust that moves the payload: without friction it does not leave the rail either"
-    return (
-        f"at least {_ms(_up(least))}: without friction its rates settle no earlier{_without(scene)}"
-    )
+    return f"at least {duration(_up(least))}: without friction its rates settle no earlier{_without(scene)}"
 
 
 def way_to_exit(scene: Scene) -> float:
@@ -72,11 +72,25 @@ def _without(scene: Scene) -> str:
 def _before_settling(exit_time: float, thrust_ends: float) -> str:
     start = max(exit_time + SETTLE_DELAY, thrust_ends)
     cause = (
-        f"thrust falls below 0.1 % of its peak at {_ms(thrust_ends)}"
+        f"thrust falls below 0.1 % of its peak at {duration(thrust_ends)}"
         if thrust_ends > exit_time + SETTLE_DELAY
-        else f"the payload leaves the rail at {_ms(exit_time)}"
+        else f"the payload leaves the rail at {duration(exit_time)}"
     )
-    return f"{cause}; settling needs a duration of {_ms(_up(start + SETTLE_WINDOW))}"
+    return f"{cause}; settling needs a duration of {duration(_up(start + SETTLE_WINDOW))}"
+
+
+def _behind_the_rail(scene: Scene) -> str:
+    """The pads that no wall guides to the rear end of the rail, if there are any."""
+    start = scene.rail.start
+    if scene.contact is None or not (behind := travel.pads_beyond(scene, start, -1.0)):
+        return ""
+    listed = ", ".join(map(str, behind))
+    begun = scene.initial.position.x if scene.initial is not None else 0.0
+    rear = begun + min(pad.position[0] - 0.5 * pad.length for pad in scene.pads)
+    return (
+        f"the rail starts at X = {start:.6g} m, in front of pads {listed}: no wall guides them, and they "
+        f"may strike its rear end; start the rail at {rear:.6g} m or behind that"
+    )
 
 
 def _jammed(scene: Scene, run: "Trajectory") -> str:
@@ -87,12 +101,12 @@ def _jammed(scene: Scene, run: "Trajectory") -> str:
         if stop.release_time(scene) == math.inf:
             return f"it rests on its stop: it needs a thrust of more than the {weight}"
         if way < -0.5 * BEHIND:
-            at = _ms(float(run.time[-1]))
+            at = duration(float(run.time[-1]))
             return f"fell back on its stop at {at}: it needs thrust that stays above the {weight}"
     elif begun + way < travel.way_off_the_rear_end(scene) + BEHIND:
         pulled = stop.weight(scene) > 0.0
         cause = "its weight pulls it, and no stop or latch holds it ([hold_down] release)"
-        fell = f"fell off the rear end of the rail at {_ms(float(run.time[-1]))}"
+        fell = f"fell off the rear end of the rail at {duration(float(run.time[-1]))}"
         return f"{fell}: {cause if pulled else 'nothing holds it there'}"
     work = dict(zip(ledger.ENTRIES, run.energy[-1].tolist(), strict=True))
     weight = work[ledger.BODY_FORCE]
@@ -135,12 +149,14 @@ def _on_the_rail(scene: Scene, run: "Trajectory", thrust_ends: float) -> str:
     text = f"still on the rail: {1e3 * way:.3g} of {1e3 * whole:.3g} mm"
     exit_time = now + (whole - way) / speed if speed > 0.0 else math.inf
     if exit_time > LONGEST:
-        lasts = f" (it lasts until {_ms(thrust_ends)})" if thrust_ends > scene.time_limit else ""
+        lasts = (
+            f" (it lasts until {duration(thrust_ends)})" if thrust_ends > scene.time_limit else ""
+        )
         return f"{text}, at {speed:.2g} m/s: it needs more thrust{lasts}{_rubbed(scene)}"
     settled = max(exit_time + SETTLE_DELAY, thrust_ends) + SETTLE_WINDOW + _MARGIN
-    enough = f"at this speed a duration of {_ms(_up(settled))} is enough"
+    enough = f"at this speed a duration of {duration(_up(settled))} is enough"
     if scene.duration is None and settled > ends.longest(scene):
-        enough += f", with output.interval of at least {_ms(settled / MOST_SAMPLES)}"
+        enough += f", with output.interval of at least {duration(settled / MOST_SAMPLES)}"
     return f"{text}, at {speed:.3g} m/s; {enough}{_without(scene)}"
 
 
@@ -151,7 +167,3 @@ def _rubbed(scene: Scene) -> str:
 
 def _up(time: float) -> float:
     return math.ceil(time / _STEP - 1e-9) * _STEP
-
-
-def _ms(time: float) -> str:
-    return f"{1e3 * time:.6g} ms"

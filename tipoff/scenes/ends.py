@@ -25,7 +25,7 @@ from tipoff.scenes.body import tensor
 from tipoff.scenes.effects import registry
 from tipoff.scenes.effects.spring import PushedTable
 from tipoff.scenes.faults import within
-from tipoff.scenes.rounding import at_most, below
+from tipoff.scenes.rounding import apart, at_most, below
 from tipoff.scenes.tables import MOST_SAMPLES, OutputTable
 from tipoff.scenes.travel import ends_behind_the_pads, nominal_way, strokes_too_long
 from tipoff.scenes.travel import way as way
@@ -125,10 +125,11 @@ def require(tables: dict[str, Any], output: OutputTable) -> None:
         return
     needed = burns_too_long(SimpleNamespace(**tables, output=output))
     if needed is not None:
+        given, fits_ = apart(output.interval, needed / MOST_SAMPLES, 3)
         raise within(
             "interval",
-            f"{output.interval:g} s, no duration, and a thrust whose rates settle at {needed:.6g} s",
-            f"at least {needed / MOST_SAMPLES:.3g} s (at most {MOST_SAMPLES:,} samples), a thrust "
+            f"{given} s, no duration, and a thrust whose rates settle at {needed:.6g} s",
+            f"at least {fits_} s (at most {MOST_SAMPLES:,} samples), a thrust "
             f"that ends within {longest(SimpleNamespace(output=output)):g} s, or a duration",
         )
 

@@ -51,13 +51,17 @@ _ALIKE = 0.7  # of difflib: one or two letters in ten differ
 def close(name: str, known: Iterable[str]) -> str:
     """The ``known`` names that are similar to ``name``, as the end of a message; empty without
     any."""
-    found = difflib.get_close_matches(name, list(known), MOST_NAMES, _ALIKE)
+    others = dict.fromkeys(
+        word for word in known if word != name
+    )  # a header may name columns twice
+    found = difflib.get_close_matches(name, list(others), MOST_NAMES, _ALIKE)
     return f", did you mean {' or '.join(found)}?" if found else ""
 
 
 def kind_of(given: object) -> str:
     """Text on the kind of an argument."""
-    return "None" if given is None else f"a {type(given).__name__}"
+    name = type(given).__name__
+    return "None" if given is None else f"{'an' if name[0] in 'aeiouAEIO' else 'a'} {name}"
 
 
 class InputError(ValueError):

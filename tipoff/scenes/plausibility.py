@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from tipoff.mechanics.laws.thermal import fields
-from tipoff.scenes import plausible_ranges, sinking, thrust_plausibility
+from tipoff.scenes import plausible_ranges, sinking, thrust_plausibility, travel
 from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.rail_base import HeldBySpans
 from tipoff.scenes.rounding import below
@@ -135,14 +135,8 @@ def _of_length(rail) -> list[str]:
 
 def _of_pads(scene) -> list[str]:
     """Pads that begin beyond an end of the rail. Beyond the open end they never touch it."""
-    begun = scene.initial.position.x if scene.initial is not None else 0.0
     for end, way in ((scene.rail.end, 1.0), (scene.rail.start, -1.0)):
-        outside = [
-            number
-            for number, pad in enumerate(scene.pads)
-            if below(way * end, way * (pad.position[0] + begun) - 0.5 * pad.length)
-        ]
-        if outside:
+        if outside := travel.pads_beyond(scene, end, way):
             listed = ", ".join(map(str, outside))
             return [
                 f"pads, rail.start, rail.end: at ignition pads {listed} are outside the rail, "

@@ -6,7 +6,9 @@ so that a scene is accepted or refused equally in all units.
 """
 
 import math
+from collections.abc import Callable
 
+MOST_DIGITS = 17  # of a number in double precision
 ROUNDING = 1e-12  # relative: above thousands of operations, below any measurement
 
 
@@ -20,6 +22,24 @@ def at_most(value: float, limit: float, scale: float = 0.0) -> bool:
 def below(value: float, limit: float, scale: float = 0.0) -> bool:
     """Whether ``value < limit`` by more than rounding."""
     return not at_most(limit, value, scale)
+
+
+def plain(value: float, digits: int) -> str:
+    """A number as text."""
+    return f"{value:.{digits}g}"
+
+
+def apart(
+    value: float, limit: float, digits: int = 6, shown: Callable[[float, int], str] = plain
+) -> tuple[str, str]:
+    """Texts of a refused value and of its limit, by ``shown`` with ``digits`` or as many more as tell
+    them apart. Both have the same text if they are equal up to rounding."""
+    equal = at_most(value, limit) and at_most(limit, value)
+    texts = shown(value, digits), shown(limit, digits)
+    while texts[0] == texts[1] and not equal and digits < MOST_DIGITS:
+        digits += 1
+        texts = shown(value, digits), shown(limit, digits)
+    return texts
 
 
 def on(value: float, limits: tuple[float, ...]) -> float:

@@ -9,6 +9,7 @@ from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.scenes import ends
 from tipoff.scenes.effects.measured_table import MeasuredTable
 from tipoff.scenes.effects.spring import PushedTable
+from tipoff.scenes.units import duration
 
 if TYPE_CHECKING:
     from tipoff.plots import Figure
@@ -94,7 +95,7 @@ def _thrust(scene: "Scene") -> str:
 
 def _duration(scene: "Scene") -> str:
     if scene.duration is not None:
-        return f"{1e3 * scene.duration:g} ms"
+        return duration(scene.duration)
     return f"until settled or jammed, at most {scene.time_limit:.4g} s"
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from tipoff.scenes.effects.spring import PushedTable
 from tipoff.scenes.faults import within
-from tipoff.scenes.rounding import below
+from tipoff.scenes.rounding import apart, below
 
 
 def way(scene: Any) -> float:
@@ -29,13 +29,25 @@ def way_off_the_rear_end(scene: Any) -> float:
     return place if place < begun else -math.inf
 
 
+def pads_beyond(scene: Any, end: float, way: float) -> list[int]:
+    """Numbers of the pads that begin wholly beyond an ``end`` (m) of the rail; ``way``: 1 for the open
+    end, -1 for the rear end."""
+    begun = scene.initial.position.x if scene.initial is not None else 0.0
+    return [
+        number
+        for number, pad in enumerate(scene.pads)
+        if below(way * end, way * (pad.position[0] + begun) - 0.5 * pad.length)
+    ]
+
+
 def require_way(scene: Any) -> None:
     """Refuse a ``scene`` whose rail ends behind every pad."""
     if not ends_behind_the_pads(scene):
         return
     end = scene.rail.end
-    least = f"more than {end - nominal_way(scene):.6g} m, the rear edge of the rearmost pad"
-    raise within("rail.end", f"{end:.6g} m", f"{least}: the rail is behind every pad")
+    given, least = apart(end, end - nominal_way(scene))
+    words = f"more than {least} m, the rear edge of the rearmost pad"
+    raise within("rail.end", f"{given} m", f"{words}: the rail is behind every pad")
 
 
 def ends_behind_the_pads(scene: Any) -> bool:
@@ -50,11 +62,13 @@ def with_strokes_on_the_rail(thrust: Any, tables: dict[str, Any]) -> Any:
     if not {"pads", "rail"} <= tables.keys():  # these have other faults
         return thrust
     if wrong := strokes_too_long(SimpleNamespace(**tables, thrust=thrust)):
-        strokes = {key: spring.push().travel[-1] for key, spring in thrust.named()}
+        strokes = {key: float(spring.push().travel[-1]) for key, spring in thrust.named()}
+        texts = [apart(strokes[key], longest) for key, longest in wrong]
+        way = max((text for _, text in texts), key=len)
         raise within(
             ".".join(filter(None, [wrong[0][0].rstrip("."), "stroke"])),
-            ", ".join(f"{strokes[key]:g} m" for key, _ in wrong),
-            f"at most {wrong[0][1]:.6g} m, the way to the exit: a pusher reaches its stop on the rail",
+            ", ".join(f"{given} m" for given, _ in texts),
+            f"at most {way} m, the way to the exit: a pusher reaches its stop on the rail",
         )
     return thrust
 

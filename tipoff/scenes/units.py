@@ -155,6 +155,12 @@ def parse(value: Any, unit: str, bare_numbers_are_si: bool) -> float:
     return number
 
 
+def duration(time: float, digits: int = 6) -> str:
+    """A time (s) as text with its unit: in milliseconds up to a second, then in seconds."""
+    text = f"{1e3 * time:.{digits}g}"
+    return f"{text} ms" if abs(float(text)) < 1e3 else f"{time:.{digits}g} s"
+
+
 def is_number(value: Any) -> bool:
     """Whether a value is a real number of Python or numpy; text and True are not."""
     return isinstance(value, Real) and not isinstance(value, bool)

@@ -15,7 +15,7 @@ def model(scene: Scene, calibrated: bool, compliance: RailCompliance | None) -> 
     """The surrogate model with the origin of its constants, ``calibrated`` or the scene's. A
     ``compliance`` without flexibility means springs on rigid walls, as for warm rails."""
     if scene.contact is None:
-        return f"{COMPLIANT}, without contact"
+        return f"{COMPLIANT} or {SPRINGS}, which are the same without contact"
     if compliance is not None and compliance.flexibility is not None:
         return f"{COMPLIANT}, calibrated" if calibrated else COMPLIANT
     return f"{SPRINGS}, calibrated" if calibrated else f"{SPRINGS}, with the scene's constants"

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from tipoff.comparison.curve_files.table import BODY, SCENE
 from tipoff.scenes.faults import Fault, SceneError, close
-from tipoff.scenes.units import to_si
+from tipoff.scenes.units import duration, to_si
 
 QUANTITIES = {
     "time": "s",
@@ -43,7 +43,7 @@ class Layout(NamedTuple):
         ]
         said += [f"body {self.body}"] if self.body is not None else []
         said += [f"rates in {self.axes} axes"] if self.axes is not None else []
-        said += [f"ignition at {1e3 * self.ignition:.6g} ms"] if self.ignition else []
+        said += [f"ignition at {duration(self.ignition)}"] if self.ignition else []
         return "; ".join(said)
 
     def unit(self, name: str) -> str | None:

@@ -23,7 +23,7 @@ from tipoff.mechanics.laws.thrust import Thrust
 from tipoff.scenes.effects.push_file import Push, read_push
 from tipoff.scenes.effects.thrust_offset import Misalignment
 from tipoff.scenes.faults import within
-from tipoff.scenes.rounding import below
+from tipoff.scenes.rounding import apart, below
 from tipoff.scenes.table import Table, at_least_one, is_absent, is_zero, limited
 from tipoff.scenes.units import (
     Length,
@@ -99,10 +99,11 @@ class Spring(Table):
         self._points = tuple(made.travel.tolist()), tuple(made.force.tolist())
         least = float(made.force.min())
         if below(least, self.friction):
+            given, most = apart(self.friction, least)
             raise within(
                 "friction",
-                f"{self.friction:g} N",
-                f"at most {least:.6g} N, the least force within the stroke, where the pusher would "
+                f"{given} N",
+                f"at most {most} N, the least force within the stroke, where the pusher would "
                 "stop; or a shorter stroke",
             )
         return self

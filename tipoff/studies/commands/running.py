@@ -95,12 +95,13 @@ def _require_time(study) -> None:
     """Refuse a stated duration in which no payload can settle, before anything is compiled."""
     from tipoff.results import unfinished
     from tipoff.scenes.faults import Fault, SceneError
+    from tipoff.scenes.units import duration
 
     asked = {name: study.scene.condition(name) for name in study.conditions}
     faults: dict[tuple[str, str], Fault] = {}
     for name, scene in asked.items():
         if words := unfinished.foreseen(scene):
-            given = f"{1e3 * scene.duration:.6g} ms"
+            given = duration(scene.duration)
             faults.setdefault(
                 (given, words), Fault(f"{scene.name}, {name}", "duration", given, words)
             )

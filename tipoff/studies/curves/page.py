@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
+from tipoff.scenes.units import duration
 from tipoff.studies.curves.results import Compared, Drawn
 from tipoff.studies.render.chart import Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Fold, Part
@@ -44,7 +45,7 @@ def _tables(found: Compared) -> list[Part]:
     notes = [_NOTE.format(reference=found.reference)]
     starts = [row.settled_from_s for row in found.rows]
     if max(starts) - min(starts) > _APART:
-        notes.append(_APART_NOTE.format(first=f"{1e3 * min(starts):.4g} ms"))
+        notes.append(_APART_NOTE.format(first=duration(min(starts), 4)))
     return [
         Table.of_records(found.rows, notes=tuple(notes)),
         Table.of_records(found.ratings, title="ISO 18571 of each channel:"),

@@ -18,6 +18,7 @@ from tipoff.mechanics.instant import MOST, SETTLED, Instant
 from tipoff.scenes import uncertainty
 from tipoff.scenes.faults import Fault, SceneError, together
 from tipoff.scenes.scene import Scene
+from tipoff.scenes.units import duration
 from tipoff.studies.droptest import judgement, power, sheet, signals
 from tipoff.studies.droptest.analysis import Drop, analyse
 from tipoff.studies.droptest.events import WINDOWS
@@ -261,7 +262,7 @@ def _doubts(study: Study, drop: Drop, exits: np.ndarray) -> list[str]:
         <= exits.max() + 3.0 * windows.exit_uncertainty
     ):
         notes.append(
-            f"exit {1e3 * windows.exit:.4g} ms after ignition, in the simulated cases after "
-            f"{1e3 * exits.min():.4g} to {1e3 * exits.max():.4g} ms"
+            f"exit {duration(windows.exit, 4)} after ignition, in the simulated cases after "
+            f"{duration(float(exits.min()), 4)} to {duration(float(exits.max()), 4)}"
         )
     return notes

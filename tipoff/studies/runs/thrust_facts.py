@@ -9,6 +9,7 @@ from tipoff.scenes.effects.measured import GaussianFit
 from tipoff.scenes.effects.spring import PushedTable
 from tipoff.scenes.effects.thrust import GaussiansTable, GaussianTable
 from tipoff.scenes.scene import Scene
+from tipoff.scenes.units import duration
 from tipoff.studies.render.table import Table
 
 
@@ -48,7 +49,7 @@ def _fit(fit: GaussianFit | None) -> str:
     if fit is None:
         return "none fits"
     return (
-        f"peak {fit.peak:.5g} N at {1e3 * fit.centre:.4g} ms, width {1e3 * fit.width:.4g} ms, "
+        f"peak {fit.peak:.5g} N at {duration(fit.centre, 4)}, width {duration(fit.width, 4)}, "
         f"impulse {fit.impulse:.5g} N s against {fit.curve_impulse:.5g} N s of the curve, "
         f"residual {100.0 * fit.relative_residual:.3g} %"
     )

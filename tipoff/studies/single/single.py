@@ -18,6 +18,7 @@ from tipoff.scenes import stop
 from tipoff.scenes.effects import hold_down
 from tipoff.scenes.faults import Fault, InputError, SceneError
 from tipoff.scenes.scene import Scene, catalog
+from tipoff.scenes.units import duration
 from tipoff.studies.agreement import kept, verdicts
 from tipoff.studies.calibration.files import constants
 from tipoff.studies.render.uncertain import uncertain
@@ -226,7 +227,7 @@ def lines(row: Single, made_with: str, study: Study) -> list[str]:
     if row.advice and not row.failed:
         text.append(f"  advice        {row.advice}")
     if row.exit_time_s is not None:
-        text.append(f"  exit          {1e3 * row.exit_time_s:.4g} ms after ignition{_after(row)}")
+        text.append(f"  exit          {duration(row.exit_time_s, 4)} after ignition{_after(row)}")
     text += _answer(row)
     text += _stress(row)
     if row.disturbed:
@@ -249,7 +250,7 @@ def _stop(scene: Scene) -> list[str]:
     if not stop.is_there(scene) or hold_down.release_time(scene) == stop.release_time(scene) > 0.0:
         return []
     left = stop.release_time(scene)
-    until = f"until {1e3 * left:.4g} ms: then" if math.isfinite(left) else "to the end: never"
+    until = f"until {duration(left, 4)}: then" if math.isfinite(left) else "to the end: never"
     weight = f"the thrust exceeds its weight along the rail, {stop.weight(scene):.4g} N"
     return [f"  stop          the payload rests on a stop behind it {until} {weight}"]
 
@@ -315,6 +316,6 @@ def _stress(row: Row) -> list[str]:
     return [
         f"  peak stress   {1e-6 * row.peak_stress_pa:.4g} MPa (von Mises) at x, y, z = "
         f"{place} mm, rail {row.peak_stress_rail}, "
-        f"{1e3 * row.peak_stress_time_s:.4g} ms after ignition",
+        f"{duration(row.peak_stress_time_s, 4)} after ignition",
         *(f"  warning       {warning}" for warning in row.warnings),
     ]
