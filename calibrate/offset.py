@@ -13,9 +13,10 @@ import scipy  # its submodules load at their first use
 from tipoff.calibration.discrepancy import VELOCITY, Curve, deviations, likeliest
 from tipoff.calibration.objective import Target, sampled
 from tipoff.calibration.refine import STEP, UNIT
+from tipoff.mechanics.estimates import ends
 from tipoff.mechanics.laws import thrust
 from tipoff.results.trajectory import Trajectory
-from tipoff.scenes import ends
+from tipoff.scenes import launch
 
 _GRID = 201
 _LEVEL = 1.96  # standard deviations of a 95 % interval
@@ -42,7 +43,9 @@ class Offset(NamedTuple):
 def estimate(wanted: Target, run: Trajectory) -> Offset:
     """The offset of the curves ``wanted`` from a run, at most the duration of the thrust in both
     directions."""
-    (limit,) = thrust.burnouts(ends.over_time(wanted.scene), (1e-3,), wanted.scene.time_limit)
+    (limit,) = thrust.burnouts(
+        ends.over_time(launch.of(wanted.scene)), (1e-3,), wanted.scene.time_limit
+    )
     limit = float(min(limit, 0.5 * wanted.time[-1]))
 
     def squares(offset: float) -> float:

@@ -26,8 +26,8 @@ from tipoff.highfi.rail.memory_check import check_before, check_mesh
 from tipoff.highfi.rail.scene_mesh import make_mesh
 from tipoff.highfi.recorded import Recorded
 from tipoff.highfi.state.threads import processors
-from tipoff.mechanics import outcome
 from tipoff.mechanics.ending import DONE, WINDOW, is_left_out
+from tipoff.mechanics.run_limits import SETTLE_WINDOW
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import settled
 from tipoff.scenes.effects.friction import require_two_step
@@ -178,7 +178,7 @@ class Loop:
             if observer and len(recorded.rows) > taken:
                 observer(self)
             if progress and checks % _REPORT_EVERY == 0:
-                end = min(self.setup.expected, book[WINDOW] + outcome.SETTLE_WINDOW)
+                end = min(self.setup.expected, book[WINDOW] + SETTLE_WINDOW)
                 progress(min(1.0, self.stepper.time / end))
             recorded.wall, recorded.cpu = clock.perf_counter() - began, clock.thread_time() - cpu
             if kept:

@@ -14,7 +14,7 @@ from tipoff.lowfi.preparation import prepare
 from tipoff.mechanics import comoving, ending, outcome, promises
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.results.trajectory import Trajectory
-from tipoff.scenes import scene_model
+from tipoff.scenes import launch, scene_model
 from tipoff.scenes.rail_compliance import model_of
 from tipoff.scenes.scene import Scene
 
@@ -54,7 +54,7 @@ class SingleRun:
         self.interval = scene.output.interval
         self.end = scene.output.last(scene.time_limit)
         self.expected = scene.output.last(scene.expected_end)
-        marks = outcome.milestones(scene, model)
+        marks = outcome.milestones(launch.of(scene), scene.time_limit)
         self.system, self.plan, self.tolerance, self.marks, self.loop, self.cases = prepare(
             scene, [model], marks, self.used, self.promised, compliance, watches
         )

@@ -15,6 +15,7 @@ from tipoff.highfi.state.records import Exit
 from tipoff.highfi.state.threads import Team, team_of
 from tipoff.highfi.stress import monitor
 from tipoff.mechanics import outcome
+from tipoff.scenes import launch
 from tipoff.scenes.scene import Scene
 
 _ROUNDING = 1e-9
@@ -72,7 +73,7 @@ def set_up(
         stepping=stepping,
         rails=rails,
         exit=ending.place(system),
-        milestones=outcome.milestones(scene, system.model),
+        milestones=outcome.milestones(launch.of(scene), scene.time_limit),
         monitor=monitor.build(system, scene.rail.material, stepping.steps_per_sample, threads),
         team=team_of(threads),
         alone=team_of(1),

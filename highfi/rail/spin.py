@@ -18,9 +18,10 @@ from tipoff.highfi.rail.geometry import geometry
 from tipoff.highfi.rail.scene_mesh import make_mesh
 from tipoff.highfi.rail.step_cost import spacing
 from tipoff.highfi.statics import held
+from tipoff.mechanics.estimates import ends
 from tipoff.mechanics.laws import thrust
 from tipoff.mechanics.laws.mount_stiffness import MountStiffness
-from tipoff.scenes import ends, scene_model
+from tipoff.scenes import launch, scene_model
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import MeshTable, SectionTable
 from tipoff.scenes.rail_base import MaterialTable
@@ -47,7 +48,7 @@ def expected_rate(scene: Scene) -> float:
     if model.pushers is not None:
         pushes = model.pushers
         turning = np.cross(pushes.point + centre, pushes.direction)
-        kick = model.platform.inverse_inertia @ (ends.spring_impulses(scene) @ turning)
+        kick = model.platform.inverse_inertia @ (ends.spring_impulses(launch.of(scene)) @ turning)
         return rate + float(np.linalg.norm(kick))
     offset = model.thrust_offset
     place = np.array([-model.thrust_arm, 0.0, 0.0]) if offset is None else np.array(offset.arm)

@@ -20,7 +20,7 @@ from tipoff.mechanics.laws.hold_down import HoldDown
 from tipoff.mechanics.laws.sticking import Sticking
 from tipoff.mechanics.model import Faces, Model
 from tipoff.mechanics.rail_compliance import RailCompliance
-from tipoff.scenes import changes, rail_compliance, scene_model
+from tipoff.scenes import changes, launch, rail_compliance, scene_model
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.scene import Scene
@@ -77,7 +77,7 @@ class Family:
         self.stated = Variations(scene) if self.changes else None
         self.base = scene_model.built(calibrated)
         self.base_parts = _parts(self.base)
-        self.burnouts = outcome.burnouts(calibrated, self.base.model)
+        self.burnouts = outcome.burnouts(launch.of(calibrated), calibrated.time_limit)
 
     def jobs(
         self, table: Sequence[Mapping[str, Any]]
@@ -164,7 +164,9 @@ class Family:
     def _marks(self, built: Built) -> outcome.Milestones:
         scene, base = built.scene, self.base.scene
         same = scene.thrust is base.thrust and scene.time_limit == base.time_limit
-        return outcome.milestones(scene, built.model, self.burnouts if same else None)
+        return outcome.milestones(
+            launch.of(scene), scene.time_limit, self.burnouts if same else None
+        )
 
     def _shared(self, built: Built) -> tuple:
         """Content of all records of a model that ``cases.Cases`` does not take from each case; None

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from tipoff.mechanics.outcome import EXIT_WINDOW, Outcome
+from tipoff.mechanics.outcome import Outcome
+from tipoff.mechanics.run_limits import EXIT_WINDOW
 from tipoff.results import hand_over
 from tipoff.scenes import SceneError, load
 from tipoff.scenes.effects.hand_over import standing

@@ -11,7 +11,7 @@ from tests.exact import pivot
 from tests.scenes.neighbours import both_models
 from tipoff import highfi, lowfi
 from tipoff.mechanics.laws.thrust import impulse
-from tipoff.mechanics.outcome import EXIT_WINDOW
+from tipoff.mechanics.run_limits import EXIT_WINDOW
 from tipoff.scenes import load, scene_model, uncertainty
 
 SCENE = load("rocket_rail")

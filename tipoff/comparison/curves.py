@@ -13,7 +13,7 @@ import numpy as np
 
 from tipoff.comparison.curve_files import reading
 from tipoff.comparison.curve_files.layout import OF_THE_FORMAT, RATES, Layout
-from tipoff.mechanics.outcome import SETTLE_WINDOW
+from tipoff.mechanics.run_limits import SETTLE_WINDOW
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.units import duration

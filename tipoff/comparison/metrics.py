@@ -17,7 +17,7 @@ import numpy as np
 from tipoff.cards import Carded
 from tipoff.comparison import iso18571
 from tipoff.comparison.curves import Curves
-from tipoff.mechanics.outcome import SETTLE_WINDOW
+from tipoff.mechanics.run_limits import SETTLE_WINDOW
 from tipoff.results.trajectory import Trajectory
 
 AXES = ("x", "y", "z")

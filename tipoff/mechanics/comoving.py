@@ -19,7 +19,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.mechanics.outcome import EXIT_WINDOW, SETTLE_WINDOW, Motion, Outcome
+from tipoff.mechanics.outcome import Motion, Outcome
+from tipoff.mechanics.run_limits import EXIT_WINDOW, SETTLE_WINDOW
 
 
 class Frame(NamedTuple):

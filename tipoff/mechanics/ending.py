@@ -8,13 +8,8 @@ import numpy as np
 
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import entry, inlined, kernel
-from tipoff.mechanics.outcome import (
-    EXIT_WINDOW,
-    JAM_DURATION,
-    SETTLE_WINDOW,
-    Outcome,
-    window_start,
-)
+from tipoff.mechanics.outcome import Outcome, window_start
+from tipoff.mechanics.run_limits import EXIT_WINDOW, JAM_DURATION, SETTLE_WINDOW
 
 # A row: payload and platform, each with place (m), velocity (m/s), quaternion and rate in body axes
 # (rad/s) from this offset.

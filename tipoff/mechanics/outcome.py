@@ -12,7 +12,7 @@ definitions.
   if friction has none) of a payload that would be faster without friction: friction holds it. A payload
   that is as slow without friction coasts. Its jam speed is that of a payload at rest: at it, the rail
   lasts an hour. It is zero, and no payload is jammed, if the weight pulls along rails without friction.
-* **Fallen back**: the payload comes back to its stop (``scenes.stop``) and is 1 mm behind its start.
+* **Fallen back**: the payload comes back to its stop (``mechanics.estimates.stop``) and is 1 mm behind its start.
   Without a stop, all pads are behind the start of the rail. Such a run ends as a jam.
 
 All values come from the steps of a run (``mechanics.ending``), independent of the sampling
@@ -26,13 +26,10 @@ import numpy as np
 
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
+from tipoff.mechanics.estimates import ends, stop
+from tipoff.mechanics.estimates.launch import Launch
 from tipoff.mechanics.laws import thrust
-from tipoff.scenes import ends, stop, travel
-from tipoff.scenes.ends import EXIT_WINDOW as EXIT_WINDOW
-from tipoff.scenes.ends import JAM_DURATION as JAM_DURATION
-from tipoff.scenes.ends import SETTLE_DELAY
-from tipoff.scenes.ends import SETTLE_WINDOW as SETTLE_WINDOW
-from tipoff.scenes.scene import Scene
+from tipoff.mechanics.run_limits import EXIT_WINDOW, SETTLE_DELAY
 
 BEHIND = 1e-3  # m behind its start, at which a run of a payload that falls back on its stop ends
 _ROUNDING = 1e-12  # relative error of a difference of two equal impulses
@@ -133,30 +130,32 @@ class Milestones(NamedTuple):
     behind: float = -math.inf
 
 
-def burnouts(scene: Scene, model) -> tuple[float, float]:
-    """Times (s) after which the thrust is below 0.1 % and 1 % of its peak."""
-    settled, spent = thrust.burnouts(model.thrust, (1e-3, 1e-2), scene.time_limit)
+def burnouts(launch: Launch, until: float) -> tuple[float, float]:
+    """Times (s) after which the thrust is below 0.1 % and 1 % of its peak in 0..``until`` (s)."""
+    settled, spent = thrust.burnouts(launch.thrust, (1e-3, 1e-2), until)
     return settled, spent
 
 
-def milestones(scene: Scene, model, burnt: tuple[float, float] | None = None) -> Milestones:
-    """Milestones of a run of ``scene``; ``burnt``: its ``burnouts``, if known."""
-    settled, spent = burnt or burnouts(scene, model)
-    slow = ends.slow(scene)
+def milestones(
+    launch: Launch, until: float, burnt: tuple[float, float] | None = None
+) -> Milestones:
+    """Milestones of a run that ends at the latest at the time ``until`` (s); ``burnt``: its
+    ``burnouts``, if known."""
+    settled, spent = burnt or burnouts(launch, until)
     return Milestones(
         settled_thrust=settled,
-        spent_thrust=max(spent, ends.slides(scene, slow)),
-        jam_speed=ends.jam_speed(scene),
-        constant_thrust=ends.starts_briskly(scene, slow),
-        behind=_behind(scene),
+        spent_thrust=max(spent, ends.slides(launch, launch.slow)),
+        jam_speed=ends.jam_speed(launch),
+        constant_thrust=ends.starts_briskly(launch, launch.slow),
+        behind=_behind(launch),
     )
 
 
-def _behind(scene: Scene) -> float:
+def _behind(launch: Launch) -> float:
     """``Milestones.behind``."""
-    if stop.is_there(scene):
-        return -ends.way(scene) - BEHIND
-    return travel.way_off_the_rear_end(scene) - travel.nominal_way(scene)
+    if stop.is_there(launch):
+        return -launch.way - BEHIND
+    return launch.rear_end - launch.nominal_way
 
 
 def relative_motion(motion) -> dict[str, np.ndarray]:

@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tipoff.kernels import rotation
+from tipoff.mechanics.estimates import ends
 from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.mechanics.outcome import relative_motion
-from tipoff.scenes import ends, scene_model
+from tipoff.scenes import launch, scene_model
 from tipoff.scenes.scene import Scene
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ def rates(scene: Scene, run: "Trajectory") -> ByHand | None:
         return None
     moment = np.zeros(3)
     if model.pushers is not None:
-        pushes, impulses = model.pushers, ends.spring_impulses(scene)
+        pushes, impulses = model.pushers, ends.spring_impulses(launch.of(scene))
         moment += impulses @ np.cross(pushes.point, pushes.direction)
         grown = _turned(run, pushes.travel.max()) * impulses @ np.linalg.norm(pushes.point, axis=1)
         if grown > _GROWTH * np.linalg.norm(moment):

@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tipoff.mechanics import ledger
+from tipoff.mechanics.estimates import ends, stop
 from tipoff.mechanics.laws import thrust as thrust_law
-from tipoff.mechanics.outcome import BEHIND, SETTLE_DELAY, SETTLE_WINDOW, relative_motion
-from tipoff.scenes import ends, stop, travel
+from tipoff.mechanics.outcome import BEHIND, relative_motion
+from tipoff.mechanics.run_limits import LONGEST, MOST_SAMPLES, SETTLE_DELAY, SETTLE_WINDOW
+from tipoff.scenes import launch
+from tipoff.scenes.rounding import below
 from tipoff.scenes.scene import Scene
-from tipoff.scenes.tables import MOST_SAMPLES
-from tipoff.scenes.units import LONGEST, duration
+from tipoff.scenes.units import duration
 
 if TYPE_CHECKING:
     from tipoff.results.trajectory import Trajectory
@@ -49,17 +51,12 @@ def advice(scene: Scene, run: "Trajectory") -> str:
 def foreseen(scene: Scene) -> str:
     """Reason why no run of ``scene`` can settle within its stated duration, for any friction, and a
     remedy; empty if this cannot be known in advance."""
-    if not ends.is_too_short(scene):
+    least = 0.0 if scene.duration is None else ends.earliest(launch.of(scene))
+    if scene.duration is None or not below(scene.duration, least):
         return ""
-    least = ends.earliest(scene)
     if not math.isfinite(least):
         return "a thrust that moves the payload: without friction it does not leave the rail either"
     return f"at least {duration(_up(least))}: without friction its rates settle no earlier{_without(scene)}"
-
-
-def way_to_exit(scene: Scene) -> float:
-    """``scenes.ends.way``."""
-    return ends.way(scene)
 
 
 def _without(scene: Scene) -> str:
@@ -82,7 +79,7 @@ def _before_settling(exit_time: float, thrust_ends: float) -> str:
 def _behind_the_rail(scene: Scene) -> str:
     """The pads that no wall guides to the rear end of the rail, if there are any."""
     start = scene.rail.start
-    if scene.contact is None or not (behind := travel.pads_beyond(scene, start, -1.0)):
+    if scene.contact is None or not (behind := launch.pads_beyond(scene, start, -1.0)):
         return ""
     listed = ", ".join(map(str, behind))
     begun = scene.initial.position.x if scene.initial is not None else 0.0
@@ -95,16 +92,16 @@ def _behind_the_rail(scene: Scene) -> str:
 
 def _jammed(scene: Scene, run: "Trajectory") -> str:
     way, whole, speeds = _progress(scene, run)
-    begun = scene.initial.position.x if scene.initial is not None else 0.0
-    if stop.is_there(scene):
-        weight = f"{stop.weight(scene):.4g} N of its weight along the rail"
-        if stop.release_time(scene) == math.inf:
+    along = launch.of(scene)
+    if stop.is_there(along):
+        weight = f"{stop.weight(along):.4g} N of its weight along the rail"
+        if stop.release_time(along) == math.inf:
             return f"it rests on its stop: it needs a thrust of more than the {weight}"
         if way < -0.5 * BEHIND:
             at = duration(float(run.time[-1]))
             return f"fell back on its stop at {at}: it needs thrust that stays above the {weight}"
-    elif begun + way < travel.way_off_the_rear_end(scene) + BEHIND:
-        pulled = stop.weight(scene) > 0.0
+    elif along.place + way < along.rear_end + BEHIND:
+        pulled = stop.weight(along) > 0.0
         cause = "its weight pulls it, and no stop or latch holds it ([hold_down] release)"
         fell = f"fell off the rear end of the rail at {duration(float(run.time[-1]))}"
         return f"{fell}: {cause if pulled else 'nothing holds it there'}"
@@ -137,13 +134,13 @@ def _progress(scene: Scene, run: "Trajectory") -> tuple[float, float, np.ndarray
     m/s."""
     moved = relative_motion(run)
     place = moved["relative_position"][:, 0]
-    return float(place[-1] - place[0]), way_to_exit(scene), moved["relative_velocity"][:, 0]
+    return float(place[-1] - place[0]), launch.of(scene).way, moved["relative_velocity"][:, 0]
 
 
 def _on_the_rail(scene: Scene, run: "Trajectory", thrust_ends: float) -> str:
     way, whole, speeds = _progress(scene, run)
     speed, now = float(speeds[-1]), float(run.time[-1])
-    if way < 0.0 and speed < 0.0 and stop.weight(scene) > 0.0:
+    if way < 0.0 and speed < 0.0 and stop.weight(launch.of(scene)) > 0.0:
         slid = f"slid back along the rail: {-1e3 * way:.3g} mm behind its start, at {speed:.2g} m/s"
         return f"{slid}: its weight pulls it, and no stop or latch holds it ([hold_down] release)"
     text = f"still on the rail: {1e3 * way:.3g} of {1e3 * whole:.3g} mm"
@@ -155,7 +152,7 @@ def _on_the_rail(scene: Scene, run: "Trajectory", thrust_ends: float) -> str:
         return f"{text}, at {speed:.2g} m/s: it needs more thrust{lasts}{_rubbed(scene)}"
     settled = max(exit_time + SETTLE_DELAY, thrust_ends) + SETTLE_WINDOW + _MARGIN
     enough = f"at this speed a duration of {duration(_up(settled))} is enough"
-    if scene.duration is None and settled > ends.longest(scene):
+    if scene.duration is None and settled > ends.longest(scene.output.interval):
         enough += f", with output.interval of at least {duration(settled / MOST_SAMPLES)}"
     return f"{text}, at {speed:.3g} m/s; {enough}{_without(scene)}"
 

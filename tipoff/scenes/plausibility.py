@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from tipoff.mechanics.laws.thermal import fields
-from tipoff.scenes import plausible_ranges, sinking, thrust_plausibility, travel
+from tipoff.scenes import launch, plausible_ranges, sinking, thrust_plausibility
 from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.rail_base import HeldBySpans
 from tipoff.scenes.rounding import below
@@ -136,7 +136,7 @@ def _of_length(rail) -> list[str]:
 def _of_pads(scene) -> list[str]:
     """Pads that begin beyond an end of the rail. Beyond the open end they never touch it."""
     for end, way in ((scene.rail.end, 1.0), (scene.rail.start, -1.0)):
-        if outside := travel.pads_beyond(scene, end, way):
+        if outside := launch.pads_beyond(scene, end, way):
             listed = ", ".join(map(str, outside))
             return [
                 f"pads, rail.start, rail.end: at ignition pads {listed} are outside the rail, "

@@ -21,8 +21,9 @@ from pydantic import (
 )
 
 from tipoff.files import content_hash
+from tipoff.mechanics.run_limits import MOST_SAMPLES
 from tipoff.scenes import (
-    ends,
+    launch,
     names,
     pads,
     plausibility,
@@ -31,7 +32,6 @@ from tipoff.scenes import (
     roles,
     shown,
     suggestions,
-    travel,
     unchanged,
 )
 from tipoff.scenes import overrides as keys
@@ -53,7 +53,7 @@ from tipoff.scenes.names import NOMINAL
 from tipoff.scenes.rail import RailTable
 from tipoff.scenes.studies import StudiesTable
 from tipoff.scenes.table import MOST, Table, at_least_one, is_absent, limited
-from tipoff.scenes.tables import MOST_SAMPLES, AgreementTable, OutputTable, PadTable, PayloadTable
+from tipoff.scenes.tables import AgreementTable, OutputTable, PadTable, PayloadTable
 from tipoff.scenes.units import Duration
 
 CATALOG = reading.CATALOG
@@ -62,7 +62,7 @@ _BESIDE = ("conditions", "agreement", "provenance")
 _NOT_PHYSICS = {"name", "description", "flight", "hand_over", "studies", *_BESIDE}
 
 
-class Scene(shown.Shown, ends.Timed, Table):
+class Scene(shown.Shown, launch.Timed, Table):
     """Everything a run needs, in SI; an absent effect is None. ``replace`` makes variations.
 
     Example:
@@ -83,7 +83,7 @@ class Scene(shown.Shown, ends.Timed, Table):
     pads: Annotated[tuple[PadTable, ...], limited, AfterValidator(at_least_one)]
     #: The elastic guide: the built-in L section, a mesh file or a CAD solid.
     rail: RailTable
-    #: The force of the thruster over time, or of springs over travel.
+    #: The force of the thruster over time, or of springs over launch.
     thrust: ThrustTable
     #: Errors of the direction and of the line of the thrust.
     thrust_offset: ThrustOffsetTable | None = None
@@ -123,7 +123,7 @@ class Scene(shown.Shown, ends.Timed, Table):
     @field_validator("thrust")
     @classmethod
     def _within_the_rail(cls, thrust: ThrustTable, info: ValidationInfo):
-        return travel.with_strokes_on_the_rail(thrust, info.data)
+        return launch.with_strokes_on_the_rail(thrust, info.data)
 
     @field_validator("thermal")
     @classmethod
@@ -142,7 +142,7 @@ class Scene(shown.Shown, ends.Timed, Table):
     @classmethod
     def _of_fitting_interval(cls, output: OutputTable, info: ValidationInfo):
         duration = info.data.get("duration")
-        ends.require(info.data, output)
+        launch.require_samples(info.data, output)
         if duration is not None and not output.fits(duration):
             raise within(
                 "interval",
@@ -155,7 +155,7 @@ class Scene(shown.Shown, ends.Timed, Table):
 
     @model_validator(mode="after")
     def _ends_beyond_a_pad(self):
-        travel.require_way(self)
+        launch.require_way(self)
         return self
 
     def replace(self, overrides: Mapping[str, Any]) -> "Scene":
@@ -273,7 +273,7 @@ class Scene(shown.Shown, ends.Timed, Table):
         the rail does not end behind every pad, the sampling interval fits the duration, and strokes
         end on the rail."""
         expands = self.thermal is None or self.rail.material.expansion is not None
-        return expands and ends.fits(self)
+        return expands and launch.fits(self)
 
     def absent_effects(self) -> list[str]:
         """Dotted keys of the effect tables that this scene does not have.

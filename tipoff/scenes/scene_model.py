@@ -5,12 +5,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tipoff.mechanics.estimates import stop
+from tipoff.mechanics.laws.hold_down import HoldDown
 from tipoff.mechanics.laws.initial import Initial
 from tipoff.mechanics.laws.platform import Platform
 from tipoff.mechanics.model import Faces, Model, Payload, Plate
-from tipoff.scenes import stop
+from tipoff.scenes import launch
 from tipoff.scenes.body import inverse, tensor
-from tipoff.scenes.effects import registry, spring, thrust_offset
+from tipoff.scenes.effects import hold_down, registry, spring, thrust_offset
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
 
@@ -74,7 +76,7 @@ def built(scene: Scene, earlier: Built | None = None) -> Built:
         thrust_offset=thrust_offset.record(
             scene.thrust_offset, scene.mass_offset, scene.thrust.arm
         ),
-        hold_down=stop.record(scene),
+        hold_down=_hold_down(scene),
         contact=kept("contact", lambda: scene.contact.record() if scene.contact else None),
         interface_stiffness=scene.contact.series_stiffness() if scene.contact else None,
         # Friction without contact has no normal force, so it is absent too.
@@ -108,6 +110,17 @@ def in_scene_axes(scene: Scene, nominal: Faces) -> Faces:
 def _payload(scene: Scene) -> Payload:
     inertia = tensor(scene.payload.inertia)
     return Payload(scene.payload.mass, inertia, inverse(inertia), (0.0, 0.0, 0.0))
+
+
+def _hold_down(scene: Scene) -> HoldDown | None:
+    """Latch and stop, None if nothing is held after the ignition. Raises SceneError as
+    ``hold_down.require``."""
+    hold_down.require(scene)
+    along = launch.of(scene)
+    time = stop.release_time(along)
+    centre = scene.platform.mass_centre if scene.platform is not None else None
+    line = (0.0, 0.0) if centre is None else (-centre.y, -centre.z)
+    return HoldDown(time, line, time > along.latched) if time > 0.0 else None
 
 
 def _plate(scene: Scene, nominal: Faces, platform: Platform | None) -> Plate:

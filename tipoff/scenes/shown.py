@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tipoff.cards import Carded
+from tipoff.mechanics.estimates import ends
 from tipoff.mechanics.laws import thrust as thrust_law
-from tipoff.scenes import ends
+from tipoff.scenes import launch
 from tipoff.scenes.effects.measured_table import MeasuredTable
 from tipoff.scenes.effects.spring import PushedTable
 from tipoff.scenes.units import duration
@@ -51,7 +52,7 @@ class Shown(Carded):
         from tipoff import plots  # slow to load
 
         time = np.linspace(0.0, self.expected_end, _PLOTTED)
-        force = thrust_law.sample(ends.over_time(self), time)
+        force = thrust_law.sample(ends.over_time(launch.of(self)), time)
         across = ("time after ignition (ms)", 1e3 * time)
         return plots.lines(across, "thrust (N)", [("thrust", force)], self.name, axes)
 

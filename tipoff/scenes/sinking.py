@@ -19,8 +19,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tipoff.mechanics.estimates import ends
 from tipoff.mechanics.laws import thrust
-from tipoff.scenes import ends, moments
+from tipoff.scenes import launch, moments
 from tipoff.scenes.effects import registry
 
 _STRAIN = 0.01  # of a pad's shortest side
@@ -46,7 +47,7 @@ class _Spring(NamedTuple):
 
 def load(scene) -> float:
     """Largest static load (N) of one pad face across the axis, see the module docstring."""
-    peak = float(thrust.peak(ends.over_time(scene), scene.time_limit))
+    peak = float(thrust.peak(ends.over_time(launch.of(scene)), scene.time_limit))
     tilt = scene.thrust_offset.misalignment.axial if scene.thrust_offset is not None else 0.0
     force = registry.body_force(scene)
     weight = scene.payload.mass * float(np.hypot(force.y, force.z)) if force is not None else 0.0

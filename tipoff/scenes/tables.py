@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, field_validator
 
+from tipoff.mechanics.run_limits import MOST_SAMPLES
 from tipoff.scenes.body import InertiaTensor
 from tipoff.scenes.rounding import ROUNDING
 from tipoff.scenes.table import Table, at_least_one, limited
@@ -17,8 +18,6 @@ from tipoff.scenes.units import (
     PositiveRate,
     PositiveTime,
 )
-
-MOST_SAMPLES = 1_000_000  # after ignition: a gigabyte of curves
 
 _Names = Annotated[tuple[str, ...], limited]
 Normal = Literal["+y", "-y", "+z", "-z"]

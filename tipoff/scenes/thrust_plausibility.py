@@ -11,8 +11,9 @@ and after burn-out; any other reading adds to the impulse.
 
 import numpy as np
 
+from tipoff.mechanics.estimates import ends
 from tipoff.mechanics.laws import thrust as thrust_law
-from tipoff.scenes import ends
+from tipoff.scenes import launch
 from tipoff.scenes.effects.load_cell import Level
 from tipoff.scenes.effects.measured import FIT_IMPULSE, MeasuredCurve
 from tipoff.scenes.rounding import at_most, below
@@ -44,10 +45,11 @@ def warnings(scene) -> list[str]:
 def _of_size(scene) -> list[str]:
     """A thrust that is too strong or too weak for its mass and rail."""
     keys = "thrust, payload.mass"
-    record, speed = ends.over_time(scene), ends.speed_change(scene)
+    along = launch.of(scene)
+    record, speed = ends.over_time(along), ends.speed_change(along)
     limit = max(thrust_law.last(record), 1e-9)
     strongest = thrust_law.peak(record, limit) / scene.payload.mass
-    leaves = ends.exit_speed(scene)
+    leaves = ends.exit_speed(along)
     if speed < 0.0:
         return [
             f"{keys}: the impulse is {thrust_law.impulse(record, limit):.4g} N s, away from the open "
@@ -56,7 +58,7 @@ def _of_size(scene) -> list[str]:
     said = (
         f"{speed:.4g} m/s by the thrust"
         + ("" if leaves is None else f", {leaves:.4g} m/s at the exit")
-        + f" after {1e3 * ends.way(scene):.4g} mm, {strongest / _GRAVITY:.4g} g at the peak of "
+        + f" after {1e3 * along.way:.4g} mm, {strongest / _GRAVITY:.4g} g at the peak of "
         f"{strongest * scene.payload.mass:.4g} N on {scene.payload.mass:.4g} kg"
     )
     rocket = scene.thrust.reaction == "exhaust" and at_most(strongest, HARDEST_ROCKET)
@@ -64,7 +66,7 @@ def _of_size(scene) -> list[str]:
     if below(FASTEST, judged) or below(HARDEST, strongest):
         allowed = f"plausible up to {FASTEST:g} m/s and {HARDEST / _GRAVITY:g} g"
         return [f"{keys}: {said}; {allowed}{_meant(scene, speed, strongest, weaker=True)}"]
-    if speed > 0.0 and below(speed, SLOWEST) and not ends.is_driven_otherwise(scene):
+    if speed > 0.0 and below(speed, SLOWEST) and not ends.is_driven_otherwise(along):
         allowed = f"plausible from {SLOWEST:g} m/s on"
         return [f"{keys}: {said}; {allowed}{_meant(scene, speed, strongest, weaker=False)}"]
     return []

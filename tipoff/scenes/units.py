@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypedDict, Unpack
 
 from pydantic import BeforeValidator, Field, ValidationInfo
 
+from tipoff.mechanics.run_limits import LONGEST
 from tipoff.scenes.rounding import on
 
 if TYPE_CHECKING:
@@ -220,7 +221,6 @@ Time = quantity("s")
 NonNegativeMass = quantity("kg", ge=0.0)
 NonNegativeTime = quantity("s", ge=0.0)
 PositiveTime = quantity("s", gt=0.0)
-LONGEST = 3600.0  # s, of a run
 FINEST_ELEMENTS, COARSEST_ELEMENTS = 5e-5, 0.1  # m
 Duration = quantity("s", gt=0.0, le=LONGEST)  # an ejection takes milliseconds, a slow one minutes
 Mass = quantity("kg", gt=0.0)

@@ -14,7 +14,8 @@ from tipoff.lowfi.dynamics import cases
 from tipoff.mechanics import ending, outcome
 from tipoff.mechanics.model_names import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
-from tipoff.scenes import scene_model
+from tipoff.mechanics.run_limits import SETTLE_WINDOW
+from tipoff.scenes import launch
 from tipoff.scenes.scene import Scene
 
 TOLERANCES: tuple[float, ...] = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
@@ -66,7 +67,7 @@ class Population:
         tight = self.many(rows, Numerics(relative_tolerance=_TIGHT, modes=self.modes))
         self.rates = tight.rate.values
         self.scenes = [base.replace(row) for row in rows]
-        marks = outcome.milestones(base, scene_model.build(base))
+        marks = outcome.milestones(launch.of(base), base.time_limit)
         self.starts = [outcome.window_start(float(at), marks) for at in tight.exit_time.values]
 
     def many(self, rows, numerics):
@@ -201,7 +202,7 @@ class PlainRungeKutta:
         for scene, start in zip(self.population.scenes, self.population.starts):
             count = max(1, round(scene.output.interval / dt))
             interval = dt * count
-            samples = int(np.ceil((start + outcome.SETTLE_WINDOW) / interval)) + _AROUND
+            samples = int(np.ceil((start + SETTLE_WINDOW) / interval)) + _AROUND
             arguments, rows = oracle.prepared(scene, count, samples, interval)
             jobs.append(((*arguments, rows), rows, interval))
         return jobs
@@ -240,7 +241,7 @@ class SolveIvp:
             def slope(time, state, system=system, inertias=inertias):
                 return oracle.slope_of(system, *inertias, time, state)
 
-            window = np.linspace(start, start + outcome.SETTLE_WINDOW, _IN_WINDOW)
+            window = np.linspace(start, start + SETTLE_WINDOW, _IN_WINDOW)
             solution = solve_ivp(
                 slope,
                 (0.0, window[-1]),
@@ -275,7 +276,7 @@ def settled_mean(time: np.ndarray, rates: np.ndarray, start: float) -> np.ndarra
     spline."""
     if not np.isfinite(rates).all():
         return np.full(3, np.nan)
-    end = start + outcome.SETTLE_WINDOW
+    end = start + SETTLE_WINDOW
     first, last = np.searchsorted(time, [start, end])
     near = slice(max(first - _AROUND, 0), last + _AROUND)
-    return CubicSpline(time[near], rates[near]).integrate(start, end) / outcome.SETTLE_WINDOW
+    return CubicSpline(time[near], rates[near]).integrate(start, end) / SETTLE_WINDOW

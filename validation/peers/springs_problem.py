@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff import lowfi
-from tipoff.mechanics import outcome
 from tipoff.mechanics.model_names import SPRINGS
+from tipoff.mechanics.run_limits import SETTLE_WINDOW
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import scene_model
 from tipoff.scenes.scene import Scene, load
@@ -121,8 +121,8 @@ def rates(found: Trajectory) -> np.ndarray:
 def settled(time: np.ndarray, rate: np.ndarray, start: float) -> np.ndarray:
     """Mean (3,) deg/s of samples ``rate`` (n,3) rad/s at ``time`` (n,) s over the settled window from
     ``start`` (s), the rate linear between samples."""
-    end = start + outcome.SETTLE_WINDOW
+    end = start + SETTLE_WINDOW
     inside = (time > start) & (time < end)
     grid = np.concatenate([[start], time[inside], [end]])
     values = np.column_stack([np.interp(grid, time, column) for column in rate.T])
-    return np.rad2deg(np.trapezoid(values, grid, axis=0) / outcome.SETTLE_WINDOW)
+    return np.rad2deg(np.trapezoid(values, grid, axis=0) / SETTLE_WINDOW)

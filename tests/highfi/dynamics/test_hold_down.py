@@ -7,9 +7,9 @@ from scipy.integrate import quad
 from tests.highfi.support import COARSE, tiny
 from tipoff import highfi
 from tipoff.mechanics.laws.thrust import sample
-from tipoff.mechanics.outcome import EXIT_WINDOW
+from tipoff.mechanics.run_limits import EXIT_WINDOW
 from tipoff.results import unfinished
-from tipoff.scenes import ends
+from tipoff.scenes import launch
 from tipoff.scenes.effects.hold_down import release_time
 
 
@@ -43,7 +43,7 @@ def test_a_rocket_rests_on_its_stop_until_its_motor_burns(angle):
     late = {"kind": "constant", "force": 9e3, "start": 5e-3, "duration": 0.1}
     absent = {"friction": None, "thrust_offset": None, "platform": None, "duration": None}
     asked = tiny(**absent, thrust=late, gravity={"x": -9.81 * np.sin(angle)})
-    run, pull, way = highfi.run(asked, COARSE), 9.81 * np.sin(angle), ends.way(asked)
+    run, pull, way = highfi.run(asked, COARSE), 9.81 * np.sin(angle), launch.of(asked).way
     assert np.abs(run.velocity[run.time < late["start"]]).max() < 1e-12
     push = late["force"] / asked.payload.mass - pull
     error = push * run.cost["dt_s"]

@@ -10,7 +10,7 @@ from tipoff import lowfi
 from tipoff.lowfi import Numerics
 from tipoff.lowfi.ensemble.batch import Family
 from tipoff.results import unfinished
-from tipoff.scenes import SceneError, ends, load
+from tipoff.scenes import SceneError, launch, load
 from tipoff.scenes.effects.hold_down import release_time
 
 MASS, PEAK, WIDTH, CENTRE = 20.0, 4000.0, 2e-3, 6e-3
@@ -126,7 +126,7 @@ def test_a_rocket_rests_on_its_stop_until_its_motor_burns(angle):
     """From rest its speed at the end of the rail is sqrt(2 a s). Control: without latch and stop it falls
     until then, by d = g t^2 / 2, and has the speed sqrt((g t)^2 + 2 a (s + d))."""
     asked = on_slope(angle)
-    pull, way, start = G * np.sin(angle), ends.way(asked), LATE["start"]
+    pull, way, start = G * np.sin(angle), launch.of(asked).way, LATE["start"]
     push = LATE["force"] / MASS - pull
     run = lowfi.run(asked, "springs")
     assert np.abs(run.velocity[run.time < start]).max() < 1e-12

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from tests.scenes.support import refused, small, write
+from tipoff.mechanics.estimates import ends
 from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.mechanics.laws.pushers import energy_given_up
-from tipoff.scenes import ends, parse, scene_model
+from tipoff.scenes import launch, parse, scene_model
 from tipoff.scenes.effects.push_file import read_push
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.variation import Variations
@@ -218,9 +219,9 @@ def test_the_estimate_over_time_is_a_quarter_of_an_oscillation():
     """Without friction: time arccos(1 - s/a) / w and speed a w sin(w t), with a = P/k, w2 = k/m."""
     scene = parse(spring())
     mass, w, a = scene.payload.mass, math.sqrt(2e3 / scene.payload.mass), 0.05
-    law, end = ends.over_time(scene), math.acos(1.0 - 0.04 / a) / w
+    law, end = ends.over_time(launch.of(scene)), math.acos(1.0 - 0.04 / a) / w
     assert thrust_law.last(law) == pytest.approx(end, rel=1e-5)
     speed = a * w * math.sin(w * end)
     assert thrust_law.impulse(law, 1.0) / mass == pytest.approx(speed, rel=1e-5)
-    assert ends.exit_speed(scene) == pytest.approx(speed, rel=1e-4)
-    assert ends.spring_impulses(scene)[0] == pytest.approx(mass * speed, rel=1e-5)
+    assert ends.exit_speed(launch.of(scene)) == pytest.approx(speed, rel=1e-4)
+    assert ends.spring_impulses(launch.of(scene))[0] == pytest.approx(mass * speed, rel=1e-5)

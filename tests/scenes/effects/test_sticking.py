@@ -5,14 +5,14 @@ import pytest
 from tests.scenes.support import CONTACT, FRICTION, STICKING, small
 from tipoff.mechanics.laws.friction import Friction
 from tipoff.mechanics.laws.sticking import Sticking
-from tipoff.scenes import ends, load, parse, scene_model
+from tipoff.scenes import launch, load, parse, scene_model
 
 
 def test_record():
     scene = parse(small(contact=CONTACT, friction=STICKING))
     found = scene_model.build(scene)
     assert found.friction == pytest.approx(Sticking(0.4, 0.3, 1e7, 1e4, 1e-6))
-    assert ends.slow(scene) == 0.01
+    assert launch.of(scene).slow == 0.01
 
 
 def test_a_table_without_a_law_is_two_step():

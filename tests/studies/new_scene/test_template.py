@@ -9,7 +9,7 @@ import tipoff
 from tests.lowfi.support import IMMOVABLE, WEIGHTLESS
 from tipoff import lowfi, scenes
 from tipoff.results import unfinished
-from tipoff.scenes import SceneError, implausible, uncertainty
+from tipoff.scenes import SceneError, implausible, launch, uncertainty
 from tipoff.studies.cli import app
 from tipoff.studies.new_scene import template
 from tipoff.studies.new_scene.template import Numbers
@@ -44,7 +44,7 @@ def test_it_holds_the_numbers_and_is_plausible(launcher):
     assert scene.payload.size == pytest.approx(numbers.size, rel=1e-5)
     assert scene.contact.clearance == pytest.approx(numbers.clearance, rel=1e-5)
     assert scene.thrust.peak == numbers.thrust
-    assert unfinished.way_to_exit(scene) == pytest.approx(numbers.rail_length, rel=1e-5)
+    assert launch.of(scene).way == pytest.approx(numbers.rail_length, rel=1e-5)
     assert implausible.of_all_conditions(scene) == []
 
 
@@ -119,7 +119,7 @@ def test_four_long_pads_reach_as_far_as_eight_and_hold_the_payload(tmp_path):
     """The payload turns by less than the clearance allows a body between the ends of its pads.
     Control: pads as short as those of two stations let it turn by more."""
     four, eight = (_scene(Numbers(pads=count), tmp_path) for count in (4, 8))
-    assert unfinished.way_to_exit(four) == pytest.approx(unfinished.way_to_exit(eight), rel=1e-9)
+    assert launch.of(four).way == pytest.approx(launch.of(eight).way, rel=1e-9)
     assert implausible.of_all_conditions(four) == []
     held = 2.0 * four.contact.clearance / four.pads[0].length
     tilted = four.replace({"thrust_offset.misalignment.axial": "2 deg"})

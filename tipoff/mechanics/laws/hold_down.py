@@ -13,4 +13,4 @@ class HoldDown(NamedTuple):
 
     release: float  # s, time of the release
     line: tuple  # (2,) m, places along Y and Z of the line on which it acts, in platform axes
-    is_stop: bool  # whether it is released when the payload leaves its stop (``scenes.stop``)
+    is_stop: bool  # whether it is released when the payload leaves its stop

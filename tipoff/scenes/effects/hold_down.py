@@ -1,6 +1,6 @@
 """Hold-down: a latch between platform and payload, which holds the travel along the rail until the
 thrust first reaches a value. Absent table: no latch, but a stop where the weight pulls the payload back
-(``scenes.stop``).
+(``mechanics.estimates.stop``).
 
 The latch acts in both directions (``mechanics.laws.hold_down``).
 """

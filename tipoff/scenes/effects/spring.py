@@ -157,22 +157,6 @@ class PushedTable(Table):
         """Kernel record of the thrust over time, which is absent."""
         return Thrust(pulses=None, curve=None)
 
-    def net_force(self, s: np.ndarray) -> np.ndarray:
-        """Sum of all forces less their friction (N) at the same travel ``s`` (n,) m of all springs,
-        up to their strokes."""
-        total = np.zeros(np.shape(s))
-        for push, held in self.pushes():
-            own = np.interp(s, push.travel, push.force) - held
-            total += np.where(s <= push.travel[-1], own, 0.0)
-        return total
-
-    def moving_mass(self, s: np.ndarray) -> np.ndarray:
-        """Sum of the masses (kg) of all pushers within their strokes at the travel ``s`` (n,) m."""
-        total = np.zeros(np.shape(s))
-        for spring, *_ in self.places():
-            total += np.where(s <= spring.push().travel[-1], spring.mass, 0.0)
-        return total
-
     def peak(self) -> float:
         """Largest sum of all forces (N) at equal travel."""
         knots = np.unique(np.concatenate([push.travel for push, _ in self.pushes()]))

@@ -135,7 +135,7 @@ def _pushes(found: Calibrated, interval: float, release: int, source: str) -> li
 
 def spans(sheet: Sheet, found: Calibrated, events: Events, source: str) -> Spans:
     """The windows. Raises SceneError if the log does not contain them, or if they are too short."""
-    from tipoff.mechanics.outcome import SETTLE_DELAY, SETTLE_WINDOW
+    from tipoff.mechanics.run_limits import SETTLE_DELAY, SETTLE_WINDOW
 
     interval = float(found.time[1] - found.time[0])
     ask, guard = sheet.windows, max(reach(sheet.channel_class), _GUARDED * interval)

@@ -4,7 +4,7 @@ import math
 
 from tipoff.mechanics import instant
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS
-from tipoff.mechanics.outcome import EXIT_WINDOW, SETTLE_WINDOW
+from tipoff.mechanics.run_limits import EXIT_WINDOW, SETTLE_WINDOW
 from tipoff.studies.nominal.spread import QUANTITIES, Range, Spread
 from tipoff.studies.nominal.stage import Nominal
 from tipoff.studies.populations.answers import RATES, TOTAL_RATE, Quantity

@@ -8,9 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.mechanics import ledger
+from tipoff.mechanics.estimates import ends
 from tipoff.mechanics.laws import thrust as thrust_law
 from tipoff.results.trajectory import Trajectory
-from tipoff.scenes import ends
+from tipoff.scenes import launch
 from tipoff.scenes.scene import Scene
 from tipoff.studies.convergence.contact_loads import by_pad
 from tipoff.studies.render.chart import Chart, Line, Panel
@@ -43,7 +44,7 @@ _COLOURS = {"highfi": NAVY, "compliant": VERMILION, "calibrated": AMBER}
 def thrust_curve(scene: Scene) -> Chart:
     """Thrust until the expected end of the run."""
     time = np.linspace(0.0, scene.expected_end, 600)
-    force = thrust_law.sample(ends.over_time(scene), time)
+    force = thrust_law.sample(ends.over_time(launch.of(scene)), time)
     line = Line(1e3 * time, 1e-3 * force, name="thrust", colour=NAVY, width=2.0, legend=False)
     return Chart(
         "thrust", [Panel("", _MILLISECONDS, y_label="thrust (kN)", lines=[line])], height=260

@@ -10,12 +10,12 @@ from pydantic import TypeAdapter
 
 from tipoff.lowfi.numerics import AUTO, Numerics
 from tipoff.mechanics import instant
+from tipoff.mechanics.estimates import stop
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.mechanics.rail_compliance import DEGREE
 from tipoff.results import hand_over
 from tipoff.results.trajectory import Trajectory
-from tipoff.scenes import stop
-from tipoff.scenes.effects import hold_down
+from tipoff.scenes import launch
 from tipoff.scenes.faults import Fault, InputError, SceneError
 from tipoff.scenes.scene import Scene, catalog
 from tipoff.scenes.units import duration
@@ -247,11 +247,12 @@ def lines(row: Single, made_with: str, study: Study) -> list[str]:
 
 def _stop(scene: Scene) -> list[str]:
     """How long the payload rests on its stop, without a latch that holds it longer."""
-    if not stop.is_there(scene) or hold_down.release_time(scene) == stop.release_time(scene) > 0.0:
+    along = launch.of(scene)
+    left = stop.release_time(along)
+    if not stop.is_there(along) or along.latched == left > 0.0:
         return []
-    left = stop.release_time(scene)
     until = f"until {duration(left, 4)}: then" if math.isfinite(left) else "to the end: never"
-    weight = f"the thrust exceeds its weight along the rail, {stop.weight(scene):.4g} N"
+    weight = f"the thrust exceeds its weight along the rail, {stop.weight(along):.4g} N"
     return [f"  stop          the payload rests on a stop behind it {until} {weight}"]
 
 

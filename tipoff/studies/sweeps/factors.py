@@ -11,8 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.lowfi.ensemble.rows import Listed, numbers
+from tipoff.mechanics.estimates import ends
 from tipoff.mechanics.laws import thrust
-from tipoff.scenes import ends, moments, scene_model
+from tipoff.scenes import launch, moments, scene_model
 from tipoff.scenes.scene import Scene
 
 
@@ -68,7 +69,9 @@ def free_rates(
     table = Listed(rows)
     inputs = dict(zip(table.keys, numbers(table.keys, rows).T))
     impulse = float(
-        thrust.impulse(ends.over_time(scene), scene.time_limit if until is None else until)
+        thrust.impulse(
+            ends.over_time(launch.of(scene)), scene.time_limit if until is None else until
+        )
     )
     return (
         moments.moment_impulses(scene, inputs, impulse)

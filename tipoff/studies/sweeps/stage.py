@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from tipoff.mechanics.instant import EXIT
-from tipoff.mechanics.outcome import EXIT_WINDOW
+from tipoff.mechanics.run_limits import EXIT_WINDOW
 from tipoff.studies import published
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate

@@ -9,12 +9,14 @@ and the inertia of their pushers, of mass m in all: f - m (g F + p) of the rest 
 in a cell of s with constant force.
 """
 
+from collections.abc import Iterator
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
+from tipoff.mechanics.laws.pushers import Pushers
 from tipoff.mechanics.laws.thrust import Curve
-from tipoff.scenes.effects.spring import PushedTable
 
 _CELLS = 1000
 
@@ -27,14 +29,14 @@ class Pushed(NamedTuple):
     speed: np.ndarray  # (k,) m/s
 
 
-def motion(table: PushedTable, gain: float, pull: float, begun: float) -> Pushed:
+def motion(pushers: Pushers, gain: float, pull: float, begun: float) -> Pushed:
     """Motion from zero travel at the speed ``begun`` (m/s), with ``gain`` (1/kg) and ``pull``
     (m/s2). A payload that does not start stays where it is."""
-    knots = np.concatenate([push.travel for push, _ in table.pushes()])
+    knots = pushers.travel
     # Closely spaced at the start, where the speed grows with the root of the travel.
     travel = np.unique(np.append(knots.max() * np.linspace(0.0, 1.0, _CELLS + 1) ** 2, knots))
     middle, steps = 0.5 * (travel[1:] + travel[:-1]), np.diff(travel)
-    gained = np.cumsum((gain * net_force(table, middle, gain, pull) + pull) * steps)
+    gained = np.cumsum((gain * net_force(pushers, middle, gain, pull) + pull) * steps)
     squares = max(begun, 0.0) ** 2 + 2.0 * np.concatenate([[0.0], gained])
     stands = np.flatnonzero(squares[1:] <= 0.0)
     count = stands[0] + 1 if stands.size else travel.size
@@ -43,17 +45,35 @@ def motion(table: PushedTable, gain: float, pull: float, begun: float) -> Pushed
     return Pushed(time, travel[:count], speed)
 
 
-def net_force(table: PushedTable, s: np.ndarray, gain: float, pull: float) -> np.ndarray:
-    """Force (n,) N of all springs on the payload at the travel ``s`` (n,) m."""
-    mass = table.moving_mass(s)
-    return (table.net_force(s) - mass * pull) / (1.0 + gain * mass)
+def net_force(pushers: Pushers, s: np.ndarray, gain: float, pull: float) -> np.ndarray:
+    """Force (n,) N of all springs on the payload at the travel ``s`` (n,) m, up to their strokes."""
+    total, moving = np.zeros(np.shape(s)), np.zeros(np.shape(s))
+    for travel, force, held, mass in each(pushers):
+        pushes = s <= travel[-1]
+        total += np.where(pushes, np.interp(s, travel, force) - held, 0.0)
+        moving += np.where(pushes, mass, 0.0)
+    return (total - moving * pull) / (1.0 + gain * moving)
 
 
-def over_time(table: PushedTable, gain: float, pull: float, begun: float) -> Curve:
+def each(pushers: Pushers) -> Iterator[tuple[np.ndarray, np.ndarray, float, float]]:
+    """Travel (k,) m and force (k,) N at the knots, friction (N) and moving mass (kg) of each pusher."""
+    for i, (first, after) in enumerate(pairwise(pushers.first)):
+        mass = 0.0 if pushers.mass is None else pushers.mass[i]
+        yield pushers.travel[first:after], pushers.force[first:after], pushers.friction[i], mass
+
+
+def energy(pushers: Pushers) -> float:
+    """Energy (J) of all springs over their strokes, less the loss by the friction of their pushers."""
+    given = float(sum(pushers.energy[pushers.first[1:] - 1]))
+    lost = float(sum(held * travel[-1] for travel, _, held, _ in each(pushers)))
+    return given - lost
+
+
+def over_time(pushers: Pushers, gain: float, pull: float, begun: float) -> Curve:
     """Sum of all forces (N) over time (s) in this motion; of n >= 2 points."""
-    found = motion(table, gain, pull, begun)
-    before = net_force(table, found.travel, gain, pull)
-    after = net_force(table, np.nextafter(found.travel, np.inf), gain, pull)
+    found = motion(pushers, gain, pull, begun)
+    before = net_force(pushers, found.travel, gain, pull)
+    after = net_force(pushers, np.nextafter(found.travel, np.inf), gain, pull)
     jumps = before != after
     times = np.repeat(found.time, 1 + jumps)
     forces = np.repeat(before, 1 + jumps)
@@ -63,19 +83,19 @@ def over_time(table: PushedTable, gain: float, pull: float, begun: float) -> Cur
     return Curve(times, forces)
 
 
-def impulses(table: PushedTable, gain: float, pull: float, begun: float) -> np.ndarray:
+def impulses(pushers: Pushers, gain: float, pull: float, begun: float) -> np.ndarray:
     """Impulse (n,) N s of each spring in this motion."""
-    found = motion(table, gain, pull, begun)
+    found = motion(pushers, gain, pull, begun)
     middle = 0.5 * (found.travel[1:] + found.travel[:-1])
-    gained = gain * net_force(table, middle, gain, pull) + pull
+    gained = gain * net_force(pushers, middle, gain, pull) + pull
     return np.array(
         [
             np.where(
-                middle <= push.travel[-1],
-                np.interp(middle, push.travel, push.force) - held - spring.mass * gained,
+                middle <= travel[-1],
+                np.interp(middle, travel, force) - held - mass * gained,
                 0.0,
             )
             @ np.diff(found.time)
-            for (push, held), (spring, *_) in zip(table.pushes(), table.places())
+            for travel, force, held, mass in each(pushers)
         ]
     )

@@ -14,57 +14,35 @@ import math
 
 import numpy as np
 
+from tipoff.mechanics.estimates import pushed
+from tipoff.mechanics.estimates.launch import Launch
 from tipoff.mechanics.laws import thrust as thrust_law
-from tipoff.mechanics.laws.hold_down import HoldDown
-from tipoff.scenes import pushed
-from tipoff.scenes.effects import hold_down, registry, thrust_offset
-from tipoff.scenes.effects.spring import PushedTable
 
 HOP = 1e-4  # m
 
 
-def is_there(scene) -> bool:
-    """Whether the payload of ``scene`` rests on a stop at ignition. A latch that opens at ignition,
-    ``hold_down.release`` of zero, takes the stop away."""
-    first, latch = scene.initial, scene.hold_down
-    rests = first is None or first.velocity.x == 0.0
-    return _pull(scene) < 0.0 and rests and (latch is None or latch.release > 0.0)
+def is_there(launch: Launch) -> bool:
+    """Whether the payload rests on a stop at ignition."""
+    return launch.pull < 0.0 and launch.rests
 
 
-def _pull(scene) -> float:
-    """Acceleration (m/s2) of the payload along fixed rails by the body forces; zero on a free platform."""
-    force = registry.body_force(scene)
-    return force.x if force is not None and scene.platform is None else 0.0
-
-
-def weight(scene) -> float:
+def weight(launch: Launch) -> float:
     """Force (N) of the body forces on the payload, back along fixed rails."""
-    return -scene.payload.mass * _pull(scene)
+    return -launch.mass * launch.pull
 
 
-def record(scene) -> HoldDown | None:
-    """Kernel record of latch and stop, None if nothing is held after the ignition. Raises SceneError as
-    ``hold_down.require``."""
-    hold_down.require(scene)
-    time, latched = release_time(scene), hold_down.release_time(scene)
-    centre = scene.platform.mass_centre if scene.platform is not None else None
-    line = (0.0, 0.0) if centre is None else (-centre.y, -centre.z)
-    return HoldDown(time, line, time > latched) if time > 0.0 else None
-
-
-def release_time(scene) -> float:
+def release_time(launch: Launch) -> float:
     """Time (s) at which neither a latch nor a stop holds the payload any more; infinite if the thrust is
     too small."""
-    latched = hold_down.release_time(scene)
-    if latched == math.inf or not is_there(scene):
+    latched = launch.latched
+    if latched == math.inf or not is_there(launch):
         return latched
-    pull, gain = _pull(scene), 1.0 / scene.payload.mass
-    if isinstance(scene.thrust, PushedTable):
-        push = pushed.net_force(scene.thrust, np.zeros(1), gain, pull)
+    pull, gain = launch.pull, 1.0 / launch.mass
+    if launch.pushers is not None:
+        push = pushed.net_force(launch.pushers, np.zeros(1), gain, pull)
         return 0.0 if gain * float(push[0]) + pull > 0.0 else math.inf
-    line = thrust_offset.record(scene.thrust_offset, scene.mass_offset, scene.thrust.arm)
-    along = gain * (line.direction[0] if line is not None else 1.0)
-    return _left(scene.thrust.record(), along, pull, latched) if along > 0.0 else math.inf
+    along = gain * launch.along
+    return _left(launch.thrust, along, pull, latched) if along > 0.0 else math.inf
 
 
 def _left(thrust: thrust_law.Thrust, gain: float, pull: float, latched: float) -> float:
