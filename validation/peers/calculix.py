@@ -19,7 +19,7 @@ import numpy as np
 
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.mechanics.laws.mount_stiffness import MountStiffness
-from validation.peers.case import PeerMissing
+from validation.peers.case import PeerMissing, Unfinished, require_count, require_finished
 
 LINEAR, QUADRATIC = "C3D8I", "C3D20R"
 # Corners of the edges in the order of the middle nodes of C3D20.
@@ -34,6 +34,7 @@ _PER_LINE = 16
 _LAYER = 1e-5  # m, thickness of the layer that stands for a joint
 _WEAK = 1e-3  # of its stiffness across: along the layer
 _TIMEOUT = 3600.0  # s
+_CODE, _DONE = "CalculiX", "Job finished"
 
 
 class Solid(NamedTuple):
@@ -50,18 +51,20 @@ class Answer(NamedTuple):
     text: str
     cpu_s: float
 
-    def table(self, title: str) -> np.ndarray:
-        """The numbers below the last line that starts with ``title``. Raises KeyError."""
-        return self.tables(title)[-1]
-
-    def tables(self, title: str) -> list[np.ndarray]:
-        """The numbers below each line that starts with ``title``. Raises KeyError."""
-        found, lines = [], self.text.splitlines()
-        for number, line in enumerate(lines):
-            if line.strip().startswith(title):
-                found.append(_numbers(lines[number + 1 :]))
-        if not found:
-            raise KeyError(title)
+    def table(self, title: str, rows: int, time: float | None = None) -> np.ndarray:
+        """The numbers below the last line that starts with ``title``. Raises Unfinished unless they
+        are as many ``rows`` as asked, are finite, and belong to the ``time`` (s) that was asked."""
+        lines = self.text.splitlines()
+        places = [place for place, line in enumerate(lines) if line.strip().startswith(title)]
+        if not places:
+            raise Unfinished(f"{_CODE} printed no {title}")
+        found = _numbers(lines[places[-1] + 1 :])
+        require_count(_CODE, f"rows of {title}", len(found), rows)
+        if time is not None:
+            stated = re.search(r"time\s+([-+.\dE]+)\s*$", lines[places[-1]])
+            reached = float(stated[1]) if stated else np.nan
+            require_finished(_CODE, reached, time)
+        require_finished(_CODE, 0.0, 0.0, found)
         return found
 
 
@@ -229,7 +232,7 @@ def pressure(of: Solid, facets: np.ndarray, value: float) -> str:
 
 
 def run(deck: str) -> Answer:
-    """Solve ``deck`` on one thread in a folder of its own. Raises PeerMissing, and RuntimeError
+    """Solve ``deck`` on one thread in a folder of its own. Raises PeerMissing, and Unfinished
     with the last lines of CalculiX if it fails."""
     program = _program()
     with tempfile.TemporaryDirectory() as folder:
@@ -240,13 +243,14 @@ def run(deck: str) -> Answer:
             cwd=folder,
             capture_output=True,
             text=True,
-            timeout=_TIMEOUT,
+            timeout=_TIMEOUT,  # which raises an error of its own
             env=os.environ | {"OMP_NUM_THREADS": "1"},
         )
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         printed = Path(folder, "job.dat")
-        if said.returncode or "*ERROR" in said.stdout or not printed.is_file():
-            raise RuntimeError(f"CalculiX failed:\n{said.stdout[-2000:]}")
+        whole = "*ERROR" not in said.stdout and _DONE in said.stdout and printed.is_file()
+        if said.returncode or not whole:
+            raise Unfinished(f"{_CODE}: exit code {said.returncode}:\n{said.stdout[-2000:]}")
         text = printed.read_text()
     cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     return Answer(text, cpu)

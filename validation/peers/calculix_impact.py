@@ -75,8 +75,8 @@ def there(chosen: Setting) -> dict[str, float]:
     """The quantities of ``impact_problem.solve``."""
     bar, moved = read(case.bar(chosen.size)), block()
     answer = calculix.run(_deck(bar, moved, chosen))
-    velocity = answer.table("velocities")[:, 1:]
-    place = answer.table("displacements")[:, 1:] + moved.points
+    velocity = answer.table("velocities", len(moved.points), case.DURATION)[:, 1:]
+    place = answer.table("displacements", len(moved.points), case.DURATION)[:, 1:] + moved.points
     share = moved.mass / moved.mass.sum()
     centre, mean = share @ place, share @ velocity
     apart, drift = place - centre, velocity - mean

@@ -68,7 +68,7 @@ def there(name: str, chosen: Setting) -> dict[str, float]:
     deck += f"*STEP\n*FREQUENCY\n{MODES}\n*END STEP\n"
     answer = calculix.run(deck)
     # mode, eigenvalue, rad/s, Hz, its imaginary part
-    found = answer.table("E I G E N V A L U E   O U T P U T")[:MODES, 3]
+    found = answer.table("E I G E N V A L U E   O U T P U T", MODES)[:, 3]
     named = _named("lumped", found) | {"cpu_s": answer.cpu_s}
     return named | (_named("with bubbles", found) if _has_same_mass(chosen) else {})
 

@@ -5,9 +5,39 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+import numpy as np
+
 
 class PeerMissing(RuntimeError):
     """The peer is not installed here; the message says how to install it."""
+
+
+class Unfinished(RuntimeError):
+    """A run that did not do what was asked, of a peer or of ours; the message says what."""
+
+
+def require_finished(code: str, time: float, asked: float, *numbers: Any) -> None:
+    """Raise Unfinished unless the ``code`` reached the ``time`` (s) that was ``asked`` and all its
+    ``numbers`` (arrays) are finite."""
+    if not abs(time - asked) <= _ROUNDED * abs(asked):
+        raise Unfinished(f"{code} ended at {time:.9g} s, asked was {asked:.9g} s")
+    if not all(np.isfinite(each).all() for each in numbers):
+        raise Unfinished(f"{code} has values that are not finite")
+
+
+def require_count(code: str, what: str, found: int, asked: int) -> None:
+    """Raise Unfinished unless a ``code`` has as many of ``what`` as were asked."""
+    if found != asked:
+        raise Unfinished(f"{code} has {found:,} {what}, asked were {asked:,}")
+
+
+def require_ours(run: Any, status: str, until: float | None = None) -> None:
+    """Raise Unfinished unless a ``run`` of ours has the ``status``, no message, and the end ``until``
+    (s)."""
+    if run.status != status or run.message:
+        raise Unfinished(f"{OURS}: {run.status}, asked was {status}; {run.message}")
+    if until is not None:
+        require_finished(OURS, float(run.time[-1]), until)
 
 
 class Point(NamedTuple):
@@ -21,6 +51,7 @@ class Point(NamedTuple):
 
 OURS = "tipoff"
 _LONG = 2.0  # s
+_ROUNDED = 1e-6  # relative, of an end time: seven digits are printed
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from validation.peers.case import PeerMissing
+from validation.peers.case import PeerMissing, require_count, require_finished
 from validation.peers.springs_problem import Problem
 
 FIXED, ADAPTIVE = "RK44", "DOPRI5"
@@ -157,12 +157,14 @@ def run(problem: Problem, law: Law, method: str, setting: float, until: float) -
     )
     system.Assemble()
     began = clock.thread_time()
-    system.SolveDynamic(
-        _settings(exudyn, method, setting, until),
-        solverType=getattr(exudyn.DynamicSolverType, method),
-    )
+    chosen = _settings(exudyn, method, setting, until)
+    system.SolveDynamic(chosen, solverType=getattr(exudyn.DynamicSolverType, method))
     spent = clock.thread_time() - began
     table = system.GetSensorStoredData(sensor)
+    steps = chosen.timeIntegration
+    require_finished("Exudyn", float(table[-1, 0]), steps.endTime, table)
+    if method == FIXED:
+        require_count("Exudyn", "steps", len(table) - 1, steps.numberOfSteps)
     return Samples(table[:, 0], table[:, 1:4], spent)
 
 

@@ -16,6 +16,7 @@ from tipoff import highfi
 from tipoff.highfi.mesh.rail_mesh import boundary_facets
 from tipoff.meshes import bricks, msh
 from tipoff.scenes import parse
+from validation.peers.case import require_ours
 
 LENGTH, WIDTH, DEPTH = 0.072, 0.024, 0.012  # m, the bar along x, y and z
 DENSITY, MODULUS, RATIO = 2810.0, 72e9, 0.33
@@ -62,8 +63,7 @@ def solve(size: float, factor: float) -> dict[str, float]:
         path = Path(folder, "bar.msh")
         msh.save(bar(size), path)
         found = highfi.run(_scene(path, factor), highfi.Numerics(element_size=size))
-    if found.message:
-        raise RuntimeError(found.message)
+    require_ours(found, "time_limit", DURATION)
     velocity, rate = found.velocity[-1], found.rate[-1]
     return {
         "rebound": float(velocity[2]),

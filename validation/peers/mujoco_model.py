@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from validation.peers.case import PeerMissing
+from validation.peers.case import PeerMissing, require_finished
 from validation.peers.springs_problem import Problem
 
 IMPEDANCE = 1e-4
@@ -85,6 +85,8 @@ def run(problem: Problem, law: dict, friction: float, step: float, until: float)
     finally:
         mujoco.set_mjcb_control(None)
     spent = clock.thread_time() - began
+    # MuJoCo starts again from time 0 after a bad step
+    require_finished("MuJoCo", float(data.time), step * count, rate, data.qvel)
     return Samples(step * np.arange(count + 1), rate, data.qvel[:3].copy(), spent)
 
 

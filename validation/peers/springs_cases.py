@@ -8,7 +8,7 @@ import numpy as np
 from tipoff import lowfi
 from tipoff.mechanics.model_names import SPRINGS
 from validation.peers import exudyn_model, mujoco_model
-from validation.peers.case import OURS, Case, Point
+from validation.peers.case import OURS, Case, Point, require_ours
 from validation.peers.springs_problem import (
     AXES,
     CONDITIONS,
@@ -157,6 +157,8 @@ def _median(condition: str, law: str, friction: bool, numerics: lowfi.Numerics) 
     chosen = scene(condition, law, friction)
     lowfi.run(chosen, SPRINGS, numerics=numerics)  # compiles
     runs = [lowfi.run(chosen, SPRINGS, numerics=numerics) for _ in range(_REPEATS)]
+    for run in runs:
+        require_ours(run, "exited")
     return statistics.median(run.cost["cpu_s"] for run in runs)
 
 

@@ -17,6 +17,7 @@ from tipoff.mechanics.run_limits import SETTLE_WINDOW
 from tipoff.results.trajectory import Trajectory
 from tipoff.scenes import scene_model
 from tipoff.scenes.scene import Scene, load
+from validation.peers.case import require_ours
 
 # Conditions of the catalogue in which pads touch and 1 um of clearance changes little.
 CONDITIONS = ("phi0", "phi15", "phi35", "phi60", "phi90", "h1", "h2", "h3", "h4", "h10")
@@ -102,7 +103,9 @@ def problem(condition: str, law: str, friction: bool) -> Problem:
 def solved(condition: str, law: str, friction: bool, tolerance: float = TIGHT) -> Trajectory:
     """Our own run."""
     numerics = lowfi.Numerics(relative_tolerance=tolerance)
-    return lowfi.run(scene(condition, law, friction), SPRINGS, numerics=numerics)
+    found = lowfi.run(scene(condition, law, friction), SPRINGS, numerics=numerics)
+    require_ours(found, "exited")
+    return found
 
 
 @cache

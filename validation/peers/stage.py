@@ -11,6 +11,7 @@ from tipoff.files import read_json, write_json
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.workspace import machine
 from tipoff.workspace.progress import say
+from tipoff.workspace.study import StudyError
 from validation.peers import (
     calculix,
     calculix_event,
@@ -22,7 +23,15 @@ from validation.peers import (
     quadratic,
     springs_cases,
 )
-from validation.peers.case import Case, Peer, PeerMissing, timed
+from validation.peers.case import (
+    OURS,
+    Case,
+    Peer,
+    PeerMissing,
+    Unfinished,
+    require_finished,
+    timed,
+)
 
 KEPT = Path(__file__).parent / "kept"
 PEERS = (
@@ -45,7 +54,7 @@ PEERS = (
 def run(out: Path, names: Iterable[str] = ()) -> dict:
     """Solve the cases of all peers, or of the named ones; writes ``out``/peers/<peer>.json. A peer
     that is not installed is a ``missing`` row, and its old file stays. Raises SceneError for an
-    unknown name of a peer."""
+    unknown name of a peer, and StudyError for a run that did not do what was asked."""
     wanted, folder, rows = {name.lower() for name in names}, Path(out) / "peers", []
     known = [peer.name for peer in PEERS]
     if unknown := sorted(wanted - {name.lower() for name in known}):
@@ -91,7 +100,11 @@ def _solved(peer: Peer) -> dict:
 
 def _case(case: Case) -> dict:
     say(f"  {case.title}")
-    rows = [row for setting in case.settings for row in _rows(case, setting)]
+    try:
+        rows = [row for setting in case.settings for row in _rows(case, setting)]
+        work = [point._asdict() for point in case.work()] if case.work else []
+    except Unfinished as fault:
+        raise StudyError(f"{case.title}: {fault}") from fault
     return {
         "name": case.name,
         "title": case.title,
@@ -100,13 +113,21 @@ def _case(case: Case) -> dict:
         "unmatched": case.unmatched,
         "rows": rows,
         "error_of": case.error_of,
-        "work": [point._asdict() for point in case.work()] if case.work else [],
+        "work": work,
     }
 
 
 def _rows(case: Case, setting: str) -> list[dict]:
     ours, ours_cpu = timed(lambda: case.ours(setting))
     theirs, theirs_cpu = timed(lambda: case.theirs(setting))
+    quantities = [quantity for quantity in case.units if quantity in ours]
+    lacking = [quantity for quantity in quantities if quantity not in theirs]
+    if lacking or not quantities:
+        raise Unfinished(f"no {', '.join(lacking or case.units)}")
+    require_finished(OURS, 0.0, 0.0, [ours[quantity] for quantity in quantities])
+    require_finished("the other code", 0.0, 0.0, [theirs[quantity] for quantity in quantities])
+    if not (ours_cpu > 0.0 and theirs_cpu > 0.0):
+        raise Unfinished(f"times of {ours_cpu:g} s and {theirs_cpu:g} s")
     return [
         {
             "setting": setting,
@@ -118,8 +139,7 @@ def _rows(case: Case, setting: str) -> list[dict]:
             "ours_cpu_s": ours_cpu,
             "theirs_cpu_s": theirs_cpu,
         }
-        for quantity in case.units
-        if quantity in ours
+        for quantity in quantities
     ]
 
 

@@ -1,7 +1,10 @@
 """What is written for other codes, and what is said of one that is missing."""
 
 import importlib.util
+import os
 import shutil
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,7 +17,7 @@ from tipoff.scenes import load
 from tipoff.scenes.faults import SceneError
 from tipoff.studies.render import document
 from tipoff.workspace.settings import defaults
-from tipoff.workspace.study import Study
+from tipoff.workspace.study import Study, StudyError
 from validation.peers import (
     calculix,
     calculix_impact,
@@ -27,7 +30,7 @@ from validation.peers import (
     springs_problem,
     stage,
 )
-from validation.peers.case import PeerMissing
+from validation.peers.case import Case, Peer, PeerMissing, Unfinished, require_ours
 
 LINES = [np.array([0.0, 1.0, 3.0]), np.array([0.0, 1.0]), np.array([0.0, 2.0])]
 
@@ -75,12 +78,89 @@ def test_a_deck_has_16_numbers_a_line_and_20_digits_a_number(two_bricks):
     assert max(len(word) for words in fields for word in words) <= 20
 
 
+TABLE = (
+    " displacements (vx,vy,vz) for set A and time  {}\n\n  1  1.5E-01 2.0E+00\n  2  3.0 {}\n\n x\n"
+)
+
+
 def test_tables_are_read_by_their_titles():
-    text = " displacements (vx,vy,vz) for set A and time  1.0\n\n  1  1.5E-01 2.0E+00\n  2  3.0 4.0\n\n x\n"
-    answer = calculix.Answer(text, 0.0)
-    np.testing.assert_array_equal(answer.table("displacements"), [[1, 0.15, 2.0], [2, 3.0, 4.0]])
-    with pytest.raises(KeyError):
-        answer.table("stresses")
+    answer = calculix.Answer(TABLE.format("1.0", "4.0"), 0.0)
+    found = answer.table("displacements", 2, 1.0)
+    np.testing.assert_array_equal(found, [[1, 0.15, 2.0], [2, 3.0, 4.0]])
+
+
+@pytest.mark.parametrize(
+    "time, last, title, rows, words",
+    [
+        ("1.0", "4.0", "stresses", 2, "printed no stresses"),
+        ("1.0", "4.0", "displacements", 3, "has 2 rows of displacements, asked were 3"),
+        ("0.5000000E+00", "4.0", "displacements", 2, "ended at 0.5 s, asked was 1 s"),
+        ("unknown", "4.0", "displacements", 2, "ended at nan s"),
+        ("1.0", "NaN", "displacements", 2, "values that are not finite"),
+    ],
+)
+def test_a_table_of_a_run_that_did_not_finish_is_refused(time, last, title, rows, words):
+    with pytest.raises(Unfinished, match=words):
+        calculix.Answer(TABLE.format(time, last), 0.0).table(title, rows, 1.0)
+
+
+@pytest.mark.parametrize(
+    "script, words",
+    [
+        ("echo ' Job finished'; touch job.dat; exit 1", "exit code 1"),
+        ("echo ' Job finished'", "exit code 0"),
+        ("touch job.dat; echo ' STEP 1'", "STEP 1"),
+        ("touch job.dat; echo '*ERROR in u_calloc'; echo ' Job finished'", "u_calloc"),
+    ],
+    ids=["exit code", "no result", "no end", "error"],
+)
+def test_a_program_that_does_not_finish_is_refused_in_words(tmp_path, monkeypatch, script, words):
+    """Control: the same program that finishes."""
+    program = tmp_path / "ccx"
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    for text in (script, "echo ' Job finished'; echo x > job.dat"):
+        program.write_text(f"#!/bin/sh\n{text}\n")
+        program.chmod(0o755)
+        if text == script:
+            with pytest.raises(Unfinished, match=words):
+                calculix.run("deck")
+    assert calculix.run("deck").text == "x\n"
+
+
+@pytest.mark.parametrize(
+    "theirs, words",
+    [
+        ({"force": 1.0}, "no speed"),
+        ({"force": 1.0, "speed": float("nan"), "cpu_s": 1.0}, "not finite"),
+        ({"force": 1.0, "speed": 2.0, "cpu_s": 0.0}, "times of 1 s and 0 s"),
+    ],
+)
+def test_a_peer_that_did_not_do_what_was_asked_ends_the_study_in_words(monkeypatch, theirs, words):
+    units = {"force": "N", "speed": "m/s"}
+    case = Case(
+        name="made-up",
+        title="A case",
+        inputs=dict,
+        matched="",
+        unmatched="",
+        settings=("one",),
+        units=units,
+        ours=lambda setting: {"force": 1.0, "speed": 2.0, "cpu_s": 1.0},
+        theirs=lambda setting: theirs,
+        within=lambda setting, quantity: 0.1,
+    )
+    peer = Peer("Scales", "a balance", lambda: "1", lambda: (case,))
+    monkeypatch.setattr(stage, "PEERS", (peer,))
+    with pytest.raises(StudyError, match=f"A case: .*{words}"):
+        stage.run(Path("nowhere"))
+
+
+def test_our_runs_end_where_they_were_asked_to():
+    run = SimpleNamespace(status="exited", message="", time=np.array([0.0, 0.04]))
+    require_ours(run, "exited", 0.04)
+    for wrong in ({"status": "diverged"}, {"message": "a promise is broken"}, {"time": [0.03]}):
+        with pytest.raises(Unfinished):
+            require_ours(SimpleNamespace(**vars(run) | wrong), "exited", 0.04)
 
 
 def test_a_missing_code_is_a_row_that_says_how_to_install_it(tmp_path, monkeypatch):
