@@ -27,7 +27,7 @@ QUICK = tests/test_layers.py tests/test_sources.py tests/scenes tests/mechanics 
   tests/workspace/test_models.py tests/studies/report
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest curves paper recovery report view pictures peers convergence rails full-report bench docs examples examples-ready check coverage hooks test test-slow fuzz clean
+.PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest curves paper recovery report view pictures peers convergence rails full-report bench docs examples examples-ready check coverage hooks test test-slow fuzz wheel clean
 
 help: ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-14s %s\n", $$1, $$2}' Makefile
@@ -150,6 +150,17 @@ test-slow: $(READY) ## every test
 fuzz: $(READY) ## 10,000 mutants of scenes, meshes, solids, tables and logs, then kills and full disks (COUNT=500 for fewer)
 	.venv/bin/python -m tests.warm
 	.venv/bin/python -m tests.fuzz $(if $(COUNT),--count $(COUNT))
+
+# The kernels are compiled for a level of processors instead of this one, and lie in the package.
+wheel: $(READY) ## dist/: a wheel with compiled kernels for this Python and Linux on x86-64-v3, and a source distribution (10 minutes)
+	rm -rf build dist tipoff/kernels/made
+	.venv/bin/python -c "from setuptools.build_meta import build_sdist; build_sdist('dist')"
+	NUMBA_CPU_NAME=x86-64-v3 NUMBA_CPU_FEATURES= NUMBA_CACHE_DIR=$(CURDIR)/build/made .venv/bin/python -m tests.warm
+	NUMBA_CPU_NAME=x86-64-v3 NUMBA_CPU_FEATURES= NUMBA_CACHE_DIR=$(CURDIR)/build/made $(TIPOFF) run --condition phi35 --out build/out
+	mkdir tipoff/kernels/made && cp -r build/made/kernels/tipoff.* tipoff/kernels/made
+	.venv/bin/python -c "import sys; from setuptools.build_meta import build_wheel; tag = f'--python-tag=cp{sys.version_info[0]}{sys.version_info[1]}'; \
+	  build_wheel('dist', {'--build-option': [tag, '--plat-name=manylinux_2_28_x86_64']})"
+	rm -rf build tipoff/kernels/made
 
 clean: ## remove results and caches; the environment stays
 	rm -rf out build docs/_build *.egg-info .pytest_cache .hypothesis

@@ -8,6 +8,7 @@ import pytest
 from numba.core.caching import IndexDataCacheFile
 
 from tipoff import files
+from tipoff.kernels import cached
 from tipoff.kernels.cached import KernelCache
 
 OURS, THEIRS = ("types of ours",), ("types of theirs",)
@@ -37,8 +38,11 @@ def other():
 class Processor:
     """What the name of a file takes from the generator of machine code."""
 
+    def __init__(self, *kind):
+        self._kind = kind or ("a processor", "its features")
+
     def magic_tuple(self):
-        return "x86_64", "a processor", "its features"
+        return "x86_64", *self._kind
 
 
 class Kept:
@@ -47,9 +51,11 @@ class Kept:
     def __init__(self, function=one):
         self.cache = KernelCache(function)
 
-    def save(self, types, code, dynamic=False):
+    def save(self, types, code, dynamic=False, processor=None):
         library = mock.Mock(has_dynamic_globals=dynamic)
-        compiled = mock.Mock(library=library, codegen=Processor(), **{"_reduce.return_value": code})
+        compiled = mock.Mock(
+            library=library, codegen=processor or Processor(), **{"_reduce.return_value": code}
+        )
         self.cache.save_overload(types, compiled)
 
     def load(self, types):
@@ -129,3 +135,40 @@ def test_a_kernel_is_used_although_the_disk_is_full(monkeypatch):
     monkeypatch.setattr(files.os, "fsync", mock.Mock(side_effect=OSError(28, "full")))
     Kept().save(OURS, "ours")
     assert Kept().load(OURS) is None
+
+
+@pytest.fixture
+def made(monkeypatch, tmp_path):
+    """A package that has a kernel for a level of processors, and an empty cache of the user."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "builder"))
+    Kept().save(OURS, "made", processor=Processor(cached.LEVEL, ""))
+    (tmp_path / "builder" / "kernels").rename(tmp_path / "made")
+    monkeypatch.setattr(cached, "MADE", tmp_path / "made")
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "user"))
+    has = dict.fromkeys(cached.FEATURES, True)
+    monkeypatch.setattr(cached.binding, "get_host_cpu_features", lambda: has)
+    cached.is_made_for_this_processor.cache_clear()
+    yield has
+    cached.is_made_for_this_processor.cache_clear()
+
+
+def test_a_kernel_of_the_package_is_used_before_one_is_compiled(made):
+    """Control: of another kernel, and of other types, there is none."""
+    assert Kept().load(OURS) == "made" and cached.is_made(one)
+    assert Kept().load(THEIRS) is None and Kept(other).load(OURS) is None
+    assert not cached.is_made(other)
+    Kept().save(OURS, "for this processor")
+    assert Kept().load(OURS) == "for this processor"
+
+
+def test_an_older_processor_runs_no_kernel_of_the_package(made):
+    made["avx2"] = False
+    assert Kept().load(OURS) is None and not cached.is_made(one)
+
+
+def test_a_damaged_kernel_of_the_package_is_not_run(made, capsys):
+    (path,) = cached.MADE.glob("*/*.nbc")
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+    assert Kept().load(OURS) is None and "is compiled again" in capsys.readouterr().err

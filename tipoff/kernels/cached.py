@@ -9,6 +9,9 @@ This takes the place of ``numba.njit(cache=True)``, which keeps wrong code (Numb
   ran the code of other types, 11 compiled again. Here the name of a file follows from the types.
 - It runs a file with a damaged byte. Here such a file counts as missing.
 - A full disk ends the program. Here the kernel is not kept.
+
+A wheel of `make wheel` has the kernels of all time loops, compiled for processors of the level
+x86-64-v3 (2013 and later). They are used where the cache of the user has none.
 """
 
 import contextlib
@@ -18,6 +21,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from llvmlite import binding
 from numba import cloudpickle, types
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
@@ -28,6 +32,10 @@ from tipoff.kernels import called
 
 # Numba's own format is a pickle.
 _FILES: Cache[tuple] = binary(dumps, lambda path: cloudpickle.loads(path.read_bytes()))
+# Kernels in a wheel, and the name of their kind of processor with the features that it must have.
+MADE = Path(__file__).parent / "made"
+LEVEL = "x86-64-v3"
+FEATURES = ("avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe", "xsave")
 
 
 class KernelCache:
@@ -36,8 +44,7 @@ class KernelCache:
 
     def __init__(self, function: Callable):
         self._function = function
-        self._module = function.__module__
-        self._name = f"{self._module.rpartition('.')[2]}.{function.__qualname__}"
+        self._name = f"{function.__module__.rpartition('.')[2]}.{function.__qualname__}"
 
     @property
     def cache_path(self) -> str:
@@ -47,14 +54,19 @@ class KernelCache:
     @functools.cached_property
     def _folder(self) -> Path:
         # at first use, when the modules of all called kernels are loaded
-        return _folder() / f"{self._module}-{called.digest(self._function)}"
+        return _folder() / folder_name(self._function)
 
     def stored(self, arguments: tuple, codegen: Any) -> Any:
         """The data from which Numba rebuilds the code for these types of ``arguments``, or None."""
-        key = _key(arguments, codegen)
-        found = _FILES.get(*self._place(key), "the kernel is compiled again")
-        # different types can have the same name
-        return found[1] if found is not None and found[0] == key else None
+        places = [(self._folder, _key(arguments, codegen))]
+        if is_made_for_this_processor() and (MADE / self._folder.name).is_dir():
+            places.append((MADE / self._folder.name, _key(arguments, codegen, LEVEL)))
+        for folder, key in places:
+            found = _FILES.get(*self._place(folder, key), "the kernel is compiled again")
+            # different types can have the same name
+            if found is not None and found[0] == key:
+                return found[1]
+        return None
 
     def load_overload(self, arguments: tuple, context: Any) -> Any:
         """The code for these types of ``arguments``, ready to run in this process, or None."""
@@ -69,17 +81,36 @@ class KernelCache:
             return
         key = _key(arguments, compiled.codegen)
         with contextlib.suppress(OSError):
-            _FILES.put(*self._place(key), (key, compiled._reduce()))
+            _FILES.put(*self._place(self._folder, key), (key, compiled._reduce()))
 
-    def _place(self, key: tuple) -> tuple[Path, str]:
-        """The file, and its digest."""
+    def _place(self, folder: Path, key: tuple) -> tuple[Path, str]:
+        """The file in a ``folder``, and its digest."""
         digest = hashlib.sha256(repr(key).encode()).hexdigest()
-        return self._folder / f"{self._name}-{digest[:16]}.nbc", digest
+        return folder / f"{self._name}-{digest[:16]}.nbc", digest
 
 
-def _key(arguments: tuple, codegen: Any) -> tuple:
-    """Types of the arguments, names of the members of records among them, kind of processor."""
-    return tuple(arguments), tuple(map(_members, arguments)), codegen.magic_tuple()
+@functools.cache
+def is_made_for_this_processor() -> bool:
+    """Whether the package has compiled kernels that this processor can run."""
+    return MADE.is_dir() and all(map(binding.get_host_cpu_features().get, FEATURES))
+
+
+def is_made(function: Callable) -> bool:
+    """Whether the package has kernels of the present code of ``function`` for this processor."""
+    return is_made_for_this_processor() and (MADE / folder_name(function)).is_dir()
+
+
+def folder_name(function: Callable) -> str:
+    """Name of the folder of all kernels of a ``function``."""
+    return f"{function.__module__}-{called.digest(function)}"
+
+
+def _key(arguments: tuple, codegen: Any, level: str | None = None) -> tuple:
+    """Types of the arguments, names of the members of records among them, kind of processor: that of
+    the code generator, or a ``level``."""
+    system, *processor = codegen.magic_tuple()
+    kind = (system, level, "") if level else (system, *processor)
+    return tuple(arguments), tuple(map(_members, arguments)), kind
 
 
 def _members(kind: Any) -> tuple:

@@ -14,7 +14,7 @@ from typing import Any
 
 from tipoff import cache, sources
 from tipoff.files import content_hash
-from tipoff.kernels import called
+from tipoff.kernels import cached, called
 from tipoff.mechanics.model_names import COMPLIANT
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.scenes.scene import Scene
@@ -73,8 +73,8 @@ def remember(run: Run) -> None:
 
 
 def are_there(run: Run) -> bool:
-    """Whether ``remember`` has marked these kernels."""
-    return _MARKS.get(*mark(run), _AGAIN) is not None
+    """Whether the package has these kernels, or ``remember`` has marked them."""
+    return cached.is_made(_loop(run.fidelity)) or _MARKS.get(*mark(run), _AGAIN) is not None
 
 
 def mark(run: Run) -> tuple[Path, str]:
@@ -94,12 +94,15 @@ def _mark(folder: Path, *kernels: Any) -> tuple[Path, str]:
 @functools.cache
 def _code(fidelity: str) -> str:
     """Digest of the code of a time loop."""
-    loop: Any
+    return called.digest(_loop(fidelity))
+
+
+def _loop(fidelity: str) -> Any:
     if fidelity == "highfi":
         from tipoff.highfi.dynamics.step import perform as loop
     else:
         from tipoff.lowfi.dynamics.integrate import integrate as loop
-    return called.digest(loop)
+    return loop
 
 
 def _not_compiled(scene: Scene) -> tuple[str, ...]:
