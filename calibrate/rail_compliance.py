@@ -167,7 +167,7 @@ def kept_file(scene: Scene, folder: Path, element_size: float, degree: int = DEG
 
 
 def _key(scene: Scene, element_size: float, degree: int) -> str:
-    program = sources.program(__name__, libraries=scene.rail.libraries())
+    program = sources.of_runs(__name__, libraries=scene.rail.libraries())
     return content_hash(made_from(scene), element_size, degree, program)
 
 

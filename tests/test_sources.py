@@ -144,3 +144,64 @@ def test_one_study_does_not_make_another_again(project):
     edit(project / "tipoff" / "studies" / "limits" / "stage.py", "NAME = ", "OTHER, NAME = 1, ")
     changed = [a != b for a, b in zip(before, digests(*STAGES))]
     assert [name.split(".")[-2] for name, new in zip(STAGES, changed) if new] == ["limits"]
+
+
+RUNS = ("tipoff.highfi", "tipoff.lowfi", "tipoff.calibration.rail_compliance")
+
+
+def runs() -> list[str]:
+    """What the keys of runs have of the code."""
+    return [sources.of_runs(module) for module in RUNS]
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        ("scenes/sections/dxf.py", "LINE, ARC and LWPOLYLINE are read", "Other words"),
+        ("scenes/thrust_files/rasp.py", "raise ValueError", "raise TypeError"),
+        ("scenes/suggestions.py", "def ", "def _other(): pass\n\n\ndef "),
+        ("results/unfinished.py", "stuck on the rail", "held"),
+        ("scenes/effects/thermal.py", "Mean change of temperature", "Other words"),
+        ("scenes/effects/friction.py", '"""', '"""Other words. '),
+    ],
+)
+def test_words_and_readers_forget_no_run(project, file, old, new):
+    """What a reader makes of a file is part of the hash of a scene. The stages that show it are made
+    again."""
+    before = runs()
+    edit(project / "tipoff" / file, old, new)
+    assert runs() == before
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "forgotten"),
+    [
+        ("mechanics/laws/friction.py", "3.0", "3.0000001", RUNS),
+        ("mechanics/laws/thrust.py", "-0.5 * x", "-0.6 * x", RUNS),
+        ("scenes/effects/thermal.py", "0.5 * (rail.start", "0.6 * (rail.start", RUNS),
+        ("scenes/effects/spring.py", "last = max(self.preload", "last = min(self.preload", RUNS),
+        ("scenes/scene_model.py", "pad.length / 2", "pad.length / 3", RUNS),
+        ("mechanics/estimates/ends.py", "_MARGIN = 1.25", "_MARGIN = 1.5", RUNS),
+        ("scenes/sections/outline.py", "SAME = ", "OTHER = SAME = ", RUNS),
+        ("lowfi/dynamics/step.py", "_GROW = 0.9", "_GROW = 0.8", RUNS[1:2]),
+    ],
+)
+def test_what_determines_numbers_forgets_runs(project, file, old, new, forgotten):
+    """Control of the readers: a law, how a table becomes its record, and an estimate of the end."""
+    before = dict(zip(RUNS, runs()))
+    edit(project / "tipoff" / file, old, new)
+    after = dict(zip(RUNS, runs()))
+    assert [module for module in RUNS if after[module] != before[module]] == list(forgotten)
+
+
+def test_readers_are_modules_whose_results_solvers_do_not_use():
+    """A solver names of a reader only the class of an error and its words."""
+    assert all(sources.path(name) for name in sources.READERS)
+    kept = set(sources.closure(*RUNS, without=sources.READERS))
+    beyond = {
+        (name, reader)
+        for name in kept
+        if name.split(".")[1] in ("highfi", "lowfi", "calibration", "mechanics", "kernels")
+        for reader in sources.used_by(name) & set(sources.READERS)
+    }
+    assert {reader for _, reader in beyond} == {"tipoff.scenes.faults"}

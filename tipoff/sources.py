@@ -22,6 +22,21 @@ ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = "tipoff"
 WITH_CODE = (PACKAGE, "tests", "validation")  # the last two also have kernels
 LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "scikit-fem")  # they may change last bits
+# Modules that determine no number of a run: they read files to values, which the hash of a scene has, or
+# make words of a scene or of a run.
+READERS = (
+    *(
+        f"tipoff.scenes.{name}"
+        for name in (
+            *("csv_file", "faults", "instrument_table", "names", "pads", "plausibility"),
+            *("plausible_ranges", "provenance", "reading", "roles", "sections.dxf"),
+            *("sections.part21", "sections.step", "sections.step_solid", "shown", "sinking"),
+            *("suggestions", "thrust_files.rasp", "thrust_files.reader", "thrust_files.record"),
+            *("thrust_files.rocksim", "thrust_files.table", "thrust_plausibility", "unchanged"),
+        )
+    ),
+    *("tipoff.results.hand_over", "tipoff.results.shown"),
+)
 # Inputs of a Source besides its file: syntax trees differ between versions of Python.
 _RULES = content_hash(sys.version_info[:2], Path(__file__).read_text(encoding="utf-8"))
 _DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
@@ -45,9 +60,9 @@ class Source(NamedTuple):
 
 
 @functools.cache
-def digest(*modules: str) -> str:
-    """Hexadecimal SHA-256 of the code on which ``modules`` (dotted names) depend."""
-    parts = [f"{name} {source(name).code}" for name in closure(*modules)]
+def digest(*modules: str, without: tuple[str, ...] = ()) -> str:
+    """Hexadecimal SHA-256 of the code on which ``modules`` (dotted names) depend, as ``closure``."""
+    parts = [f"{name} {source(name).code}" for name in closure(*modules, without=without)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
 
@@ -56,6 +71,13 @@ def program(*modules: str, libraries: Sequence[str] = ()) -> str:
     besides their inputs: the code, and the versions of ``LIBRARIES`` and of further
     ``libraries``."""
     return content_hash(digest(*modules), [version(name) for name in (*LIBRARIES, *libraries)])
+
+
+def of_runs(*modules: str, libraries: Sequence[str] = ()) -> str:
+    """``program`` of modules that make runs of scenes. ``READERS`` do not count, because the hash of a
+    scene has what they read."""
+    code = digest(*modules, without=READERS)
+    return content_hash(code, [version(name) for name in (*LIBRARIES, *libraries)])
 
 
 @functools.cache  # reading the metadata takes longer than a run of the surrogate
@@ -69,14 +91,15 @@ def version(library: str) -> str:
         return "not installed"
 
 
-def closure(*modules: str) -> list[str]:
+def closure(*modules: str, without: tuple[str, ...] = ()) -> list[str]:
     """Dotted names of ``modules`` and of all modules of the project on which they depend, in
-    alphabetical order. Raises ModuleNotFoundError for a module that the project does not have."""
+    alphabetical order. Those in ``without``, and what only they need, are left out. Raises
+    ModuleNotFoundError for a module that the project does not have."""
     found: set[str] = set()
     waiting = list(modules)
     while waiting:
         name = waiting.pop()
-        if name in found:
+        if name in found or name in without:
             continue
         if path(name) is None:
             raise ModuleNotFoundError(f"the project has no module {name}")

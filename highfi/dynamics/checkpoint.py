@@ -56,7 +56,7 @@ class Checkpoint:
         self.header = {
             "scene": loop.setup.scene.hash,
             "numerics": numerics.as_dict(),
-            "program": sources.program("tipoff.highfi"),
+            "program": sources.of_runs("tipoff.highfi"),
             "system": digest(arrays({"constants": loop.stepper.constants()})),
         }
 

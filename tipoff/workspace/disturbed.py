@@ -37,7 +37,7 @@ _KEPT: cache.Cache[Disturbed] = cache.documents(asdict, _loaded)
 
 def kept(store: Store, run: Run, nominal: Trajectory, clearance_change: float) -> Disturbed:
     """As ``of``, read from the ``store`` if it is there with the same key, else computed and stored."""
-    key = content_hash(run.key, clearance_change, sources.program(__name__))
+    key = content_hash(run.key, clearance_change, sources.of_runs(__name__))
     return _KEPT.get_or_make(
         store.path(run).with_suffix(".disturbed.json"),
         key,

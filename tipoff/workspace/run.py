@@ -46,7 +46,7 @@ class Run:
             asdict(self.numerics),
             used,
             self.compliance.hash if self.compliance else None,
-            sources.program(f"tipoff.{self.fidelity}", libraries=libraries),
+            sources.of_runs(f"tipoff.{self.fidelity}", libraries=libraries),
         )
 
 
