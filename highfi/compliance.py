@@ -18,6 +18,7 @@ patterns, so that a full set of them gives C::
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -25,7 +26,7 @@ import numpy as np
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.rail import drawn_walls
 from tipoff.highfi.simulation import prepare
-from tipoff.highfi.statics import inputs, joint_terms
+from tipoff.highfi.statics import inputs, joint_terms, nodal
 from tipoff.highfi.statics.held import HeldRail, distinct
 from tipoff.highfi.statics.places import Patches, one_of, part_of_wall, pressed_together
 from tipoff.mechanics.laws.thermal import FIELDS
@@ -106,13 +107,11 @@ def condense(
     own = inputs.of(scene)
     held = held or rails(scene, element_size)
     count = of_degree.count(degree)
-    found = of_rails(held, own.faces, own.reach, stations, count, modes, DRAGGED, joints)
-    inverse = np.linalg.pinv(found.gram, rcond=_SINGULAR, hermitian=True)
-    middle, size = found.part[..., 0], found.part[..., 1]
-    place = np.stack([-middle, np.ones_like(size)], axis=-1) / size[..., None]
-    whole = on_part(place, degree).swapaxes(-1, -2)
-    first = np.linalg.pinv(found.gram[..., :DRAGGED, :DRAGGED], rcond=_SINGULAR, hermitian=True)
-    inverse, first = whole @ inverse, whole[..., :DRAGGED, :DRAGGED] @ first
+    placed = _placed(held, own.faces, own.reach, stations, count, DRAGGED)
+    if not joints and (known := _by_nodes(scene, placed, modes)):
+        return replace(known, drawn=_drawn(scene, element_size))
+    found = _solved(placed, modes, joints)
+    inverse, first = _inverses(found.gram, found.part, degree)
     pressed, rubbed = found.near[..., :count], found.near[..., :DRAGGED, count:]
     dragged = pairs.on_both_sides(first, rubbed, found.rail)
     warm = np.einsum("siab,sibt->tsia", inverse, found.warm)
@@ -135,6 +134,39 @@ def condense(
         ),
         drawn=_drawn(scene, element_size),
         dragged=0.5 * (dragged + pairs.transposed(dragged, found.rail)),
+    )
+
+
+def _inverses(gram: np.ndarray, part: np.ndarray, degree: int) -> tuple[np.ndarray, np.ndarray]:
+    """Matrices (s,f,p,p) from mean displacements to patterns of whole faces, for all patterns and for
+    those that friction drags; ``gram`` and ``part`` as in ``Compliance``."""
+    inverse = np.linalg.pinv(gram, rcond=_SINGULAR, hermitian=True)
+    middle, size = part[..., 0], part[..., 1]
+    place = np.stack([-middle, np.ones_like(size)], axis=-1) / size[..., None]
+    whole = on_part(place, degree).swapaxes(-1, -2)
+    first = np.linalg.pinv(gram[..., :DRAGGED, :DRAGGED], rcond=_SINGULAR, hermitian=True)
+    return whole @ inverse, whole[..., :DRAGGED, :DRAGGED] @ first
+
+
+def _by_nodes(scene: Scene, placed: "_Placed", modes: int) -> RailCompliance | None:
+    """The compliance of a long rail from that of the nodes under its pads; None for other rails."""
+    if len(placed.under) != 1:
+        return None
+    rail, patches, places = placed.under[0]
+    inverses = _inverses(placed.gram, placed.part, of_degree.degree_of(placed.gram.shape[-1]))
+    found = nodal.of(rail, patches, places, inverses, placed.middle, modes)
+    if found is None:
+        return None
+    nodes, frequency = found
+    return RailCompliance(
+        travel=placed.travel,
+        rail=placed.rail,
+        half=placed.half,
+        frequency=np.tile(frequency, (placed.rail.max() + 1, 1)),
+        made_for=digest(scene),
+        part=placed.part,
+        nodes=nodes,
+        **nodes.tables(placed.rail)._asdict(),
     )
 
 
@@ -237,19 +269,41 @@ def of_rails(
     if not 1 <= patterns <= (most := of_degree.count(MOST_DEGREE)):
         raise ValueError(f"patterns: given {patterns!r}, expected 1 to {most}")
     stations = np.asarray(travel, dtype=float)
+    return _solved(_placed(held, faces, reach, stations, patterns, dragged), modes, joints)
+
+
+class _Placed(NamedTuple):
+    """Faces at stations on their rails; arrays as in ``Compliance``."""
+
+    travel: np.ndarray
+    gram: np.ndarray
+    part: np.ndarray
+    rail: np.ndarray
+    half: np.ndarray
+    # rails under a face, with their places (s,f) under the faces of each of their images
+    under: list[tuple[HeldRail, Patches, list[np.ndarray]]]
+    middle: float  # m, X between the ends of the walls
+    dragged: int  # patterns of traction along X
+
+
+def _placed(
+    held: Sequence[HeldRail],
+    faces: Faces,
+    reach: tuple[float, float],
+    stations: np.ndarray,
+    patterns: int,
+    dragged: int,
+) -> _Placed:
     count = faces.axis.size
     half = half_sizes(faces)
     gram = np.zeros((stations.size, count, patterns, patterns))
-    middle = faces.centre[:, 0] + stations[:, None]
+    pressed = faces.centre[:, 0] + stations[:, None]
     part = np.stack(
-        [part_of_wall(x, long, reach, patterns) for x, long in zip(middle.T, half[:, 0])], axis=1
+        [part_of_wall(x, long, reach, patterns) for x, long in zip(pressed.T, half[:, 0])], axis=1
     )
-    part = (part - np.stack([middle, np.zeros_like(middle)], axis=-1)) / half[:, :1]
+    part = (part - np.stack([pressed, np.zeros_like(pressed)], axis=-1)) / half[:, :1]
     part[..., 0] = part[..., 0].clip(-FARTHEST, FARTHEST)
-    rail_of, shape = np.full(count, -1), np.zeros((stations.size, count, patterns, modes))
-    frequencies: list[np.ndarray] = []
-    parts: list[joint_terms.Part] = []
-    warm = np.zeros((stations.size, count, patterns, FIELDS))
+    rail_of = np.full(count, -1)
     under: list[tuple[HeldRail, Patches, list[np.ndarray]]] = []
     rails = 0
     for rail in held:
@@ -257,24 +311,35 @@ def of_rails(
         places = [patches.under(faces, half, signs, reach, stations) for signs in rail.images]
         if patches.found:
             under.append((rail, patches, places))
+        grams = np.array([patch.gram for patch in patches.found] + [np.zeros((patterns, patterns))])
         for number in places:
+            gram += grams[number]
             here = (number >= 0).any(axis=0)
             rail_of[here] = rails
             rails += bool(here.any())
-    beside = pairs.beside(rail_of)
-    near = np.zeros((stations.size, *beside.shape, patterns, patterns + dragged))
-    for solved_before, (rail, patches, places) in enumerate(under):
+    middle = 0.5 * (reach[0] + reach[1])
+    return _Placed(stations, gram, part, rail_of, half, under, middle, dragged)
+
+
+def _solved(own: _Placed, modes: int, joints: bool) -> Compliance:
+    """As ``of_rails``."""
+    stations, count, patterns = own.gram.shape[:3]
+    shape = np.zeros((stations, count, patterns, modes))
+    frequencies: list[np.ndarray] = []
+    parts: list[joint_terms.Part] = []
+    warm = np.zeros((stations, count, patterns, FIELDS))
+    beside = pairs.beside(own.rail)
+    near = np.zeros((stations, *beside.shape, patterns, patterns + own.dragged))
+    for solved_before, (rail, patches, places) in enumerate(own.under):
         # An additional last place without response, for faces without a wall (number -1).
         together, number_of = pressed_together(places, len(patches.found), beside)
-        with one_of(solved_before, len(under)):
+        with one_of(solved_before, len(own.under)):
             answer, heated, frequency, swung, terms = patches.solved(
-                rail, 0.5 * (reach[0] + reach[1]), modes, together, joints
+                rail, own.middle, modes, together, joints
             )
         between = np.pad(answer, [(0, 1), (0, 0), (0, 0)])
         heated, swung = (np.pad(moved, [(0, 1), (0, 0), (0, 0)]) for moved in (heated, swung))
-        grams = np.array([patch.gram for patch in patches.found] + [np.zeros((patterns, patterns))])
         for number, signs in zip(places, rail.images):
-            gram += grams[number]
             # the fields linear in y and z change sign with the image
             warm += heated[number] * np.r_[1.0, signs, 1.0]
             near += between[number_of(number)]
@@ -284,14 +349,14 @@ def of_rails(
                 if terms is not None:
                     parts.append(joint_terms.Part(number, signs, terms))
     return Compliance(
-        travel=stations,
+        travel=own.travel,
         near=near,
-        gram=gram,
-        part=part,
-        rail=rail_of,
-        half=half,
+        gram=own.gram,
+        part=own.part,
+        rail=own.rail,
+        half=own.half,
         frequency=np.array(frequencies).reshape(len(frequencies), modes),
         shape=shape,
         warm=warm,
-        joints=joint_terms.together(parts, patterns, dragged) if parts else None,
+        joints=joint_terms.together(parts, patterns, own.dragged) if parts else None,
     )

@@ -20,7 +20,7 @@ Source: Golub and Van Loan, Matrix Computations, 4th ed. 2013, section 4.5.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -165,25 +165,73 @@ class Chain(Layered):
         one, number = np.unique(sorted_pairs, axis=0, return_inverse=True)
         found = np.zeros((len(one), width, width))
         walls = _Walls(self._parts, places.loaded)
-        begins, ends = begin[one], places.end[one]
-        together = self._together(begins, walls)
-        inverse = np.zeros((0, 0))
-        for first in reversed(range(0, len(sizes), together)):
-            for each in reversed(range(first, min(first + together, len(sizes)))):
-                inverse = self._inverse_at(each, inverse)
-                walls.keep(each, inverse)
-            here = np.flatnonzero((first <= begins[:, 1]) & (begins[:, 1] < first + together))
-            if here.size:
-                asked = _covered(begins[here, 0], ends[here, 0], len(sizes))
-                front, last = min(first, int(begins[here, 0].min())), int(ends[here].max())
-                between = self._between(walls, front, first, last, asked)
-                found[here] = places.products(
-                    one[here], between, walls.starts[front], walls.starts[first]
-                )
-            walls.forget(int(ends[begins[:, 1] < first].max(initial=-1)))
-            report(1.0 - first / len(sizes))
+        for here, between, front, first in self._swept(walls, begin[one], places.end[one], report):
+            found[here] = places.products(
+                one[here], between, walls.starts[front], walls.starts[first]
+            )
         every = found[number.reshape(-1)]
         return np.where(turned[:, None, None], every.transpose(0, 2, 1), every)
+
+    def placed(self, freedoms: np.ndarray) -> np.ndarray:
+        """Place of each of ``freedoms`` (u,) in the order of the layers."""
+        place = np.empty(len(self._order), dtype=np.int64)
+        place[self._order] = np.arange(place.size)
+        return place[freedoms]
+
+    def numbers(self, placed: np.ndarray) -> np.ndarray:
+        """Numbers of the degrees of freedom at these places."""
+        return self._order[placed]
+
+    def layer(self, placed: np.ndarray) -> np.ndarray:
+        """Layer of each place."""
+        starts = [part.start for part in self._parts]
+        return np.searchsorted(starts, placed, side="right") - 1
+
+    def blocks(
+        self, loaded: np.ndarray, layers: np.ndarray, report: Callable[[float], None]
+    ) -> np.ndarray:
+        """Displacements (q,w,w) m/N of the degrees of freedom ``loaded`` (u,), by their places
+        (``placed``), ascending, in the first of two ``layers`` (q,2), under unit forces on those in the
+        second, which is no earlier one. Layers with fewer than w have zeros."""
+        walls = _Walls(self._parts, loaded)
+        width = int(np.diff(walls.starts).max())
+        found = np.zeros((len(layers), width, width))
+        for here, between, front, first in self._swept(walls, layers, layers, report):
+            for number in here:
+                rows, columns = (
+                    slice(
+                        walls.starts[layer] - walls.starts[origin],
+                        walls.starts[layer + 1] - walls.starts[origin],
+                    )
+                    for layer, origin in zip(layers[number], (front, first))
+                )
+                part = between[rows, columns]
+                found[number, : part.shape[0], : part.shape[1]] = part
+        return found
+
+    def _swept(
+        self,
+        walls: "_Walls",
+        begins: np.ndarray,
+        ends: np.ndarray,
+        report: Callable[[float], None],
+    ) -> Iterator[tuple[np.ndarray, np.ndarray, int, int]]:
+        """For pairs of places with the first layers ``begins`` (q,2), that of the second no earlier, and
+        the last layers ``ends`` (q,2), block by block of layers: numbers of pairs, the displacements
+        (``_between``) that they need, and the first layers of its rows and of its columns."""
+        together, inverse = self._together(begins, walls), np.zeros((0, 0))
+        count = len(self._parts)
+        for first in reversed(range(0, count, together)):
+            for layer in reversed(range(first, min(first + together, count))):
+                inverse = self._inverse_at(layer, inverse)
+                walls.keep(layer, inverse)
+            here = np.flatnonzero((first <= begins[:, 1]) & (begins[:, 1] < first + together))
+            if here.size:
+                asked = _covered(begins[here, 0], ends[here, 0], count)
+                front, last = min(first, int(begins[here, 0].min())), int(ends[here].max())
+                yield here, self._between(walls, front, first, last, asked), front, first
+            walls.forget(int(ends[begins[:, 1] < first].max(initial=-1)))
+            report(1.0 - first / count)
 
     def _together(self, begins: np.ndarray, walls: "_Walls") -> int:
         """Number of layers in a block with the least work: the columns of its layers pass through half of

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from contextvars import ContextVar
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_array, csc_array, hstack
@@ -13,6 +14,7 @@ from tipoff.highfi.contact import surface
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.state.threads import processors
 from tipoff.highfi.statics import joint_terms, thermal
+from tipoff.highfi.statics.chain import Chain
 from tipoff.highfi.statics.held import HeldRail
 from tipoff.highfi.statics.pressure import Pressed, Wall
 from tipoff.highfi.statics.solve import Clamped, one_thread
@@ -56,6 +58,18 @@ def one_of(number: int, count: int) -> Iterator[None]:
     whole = reported()
     with progress_to(lambda fraction, *part: whole((number + fraction) / count, *part)):
         yield
+
+
+class Lines(NamedTuple):
+    """Places on at most n nodes, in ``lines`` across the rail with the same number of nodes each. A place
+    with fewer repeats its first node, without load."""
+
+    lines: int
+    normal: (
+        np.ndarray
+    )  # (p,n) places (``Chain.placed``) of the degrees of freedom normal to the wall
+    along: np.ndarray  # (p,n) and along X
+    load: np.ndarray  # (p,c,n) of each pattern, positive along the normal of the face
 
 
 class Patches:
@@ -143,6 +157,39 @@ class Patches:
             (loads.T @ shape).reshape(*under, modes),
             terms,
         )
+
+    def toward(self, place: int) -> float:
+        """Sign of the axis normal to the wall in which a pad presses a place."""
+        return self._direction[place][1]
+
+    def by_lines(self, free: np.ndarray, chain: Chain) -> "Lines | None":
+        """All places with their nodes by layers of the ``chain`` over the ``free`` (3n,) degrees of
+        freedom; None if layers under a place have different numbers of nodes, or a node is fixed."""
+        number = np.cumsum(free) - 1
+        sizes = [patch.node.size for patch in self.found]
+        axis = np.array([axis for axis, _ in self._direction])
+        node = np.concatenate([patch.node for patch in self.found])
+        normal, along = 3 * node + np.repeat(axis, sizes), 3 * node
+        if not (free[normal].all() and free[along].all()):
+            return None
+        normal, along = chain.placed(number[normal]), chain.placed(number[along])
+        place = np.repeat(np.arange(len(sizes)), sizes)
+        order = np.lexsort((normal, place))
+        layer = chain.layer(normal[order])
+        line = np.flatnonzero((np.diff(place, prepend=-1) != 0) | (np.diff(layer, prepend=-1) != 0))
+        width = np.unique(np.diff([*line, layer.size]))
+        if width.size > 1:
+            return None
+        most = max(sizes)
+        first = np.cumsum([0, *sizes[:-1]])
+        slot = np.arange(layer.size) - np.repeat(first, sizes)
+        found = np.repeat(order[first, None], most, axis=1)
+        found[place, slot] = order
+        load = np.zeros((len(sizes), self._patterns, most))
+        toward = np.repeat([sign for _, sign in self._direction], sizes)
+        every = np.concatenate([patch.load for patch in self.found], axis=1) * toward
+        load[place, :, slot] = every[:, order].T
+        return Lines(most // int(width[0]), normal[found], along[found], load)
 
     def loads(self, friction: bool = False) -> csc_array:
         """Nodal loads (3n,mp) of all patterns at all places, or the tractions (3n,md) along X."""

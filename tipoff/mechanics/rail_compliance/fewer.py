@@ -24,6 +24,7 @@ def of_first(own: Any, count: int) -> dict[str, Any]:
         "warm": None if own.warm is None else np.einsum("siab,tsib->tsia", onto, own.warm),
         "joints": None,
         "find_joints": None,
+        "nodes": None,
     }
 
 

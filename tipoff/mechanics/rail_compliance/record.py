@@ -19,6 +19,7 @@ from tipoff.mechanics.rail_compliance import (
     stored,
 )
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST, JointTerms
+from tipoff.mechanics.rail_compliance.nodal import Nodal
 from tipoff.mechanics.rail_compliance.shown import Shown
 from tipoff.mechanics.rail_compliance.stations import between_faces, breaks, cubic
 
@@ -69,6 +70,8 @@ class RailCompliance(Shown):
     #: patterns, for a unit of pressure in each and a coefficient of 1. None for walls that friction
     #: does not move.
     dragged: np.ndarray | None = None
+    #: Nodes of a long rail, from which its tables follow (``nodal``); they are in its file instead.
+    nodes: Nodal | None = None
     #: Computes ``joints``, None for rigid mounts.
     find_joints: Callable[[], JointTerms | None] | None = None
 
@@ -138,6 +141,7 @@ class RailCompliance(Shown):
             joints=None,
             find_joints=None,
             dragged=dragged,
+            nodes=None,
         )
 
     def finding(self, joints: Callable[[], JointTerms | None]) -> "RailCompliance":
@@ -275,7 +279,9 @@ class RailCompliance(Shown):
 
     def rigid(self) -> "RailCompliance":
         """The same walls without flexibility: only their offsets, for springs."""
-        return replace(self, flexibility=None, dragged=None, element_size=None, uncertainty=None)
+        return replace(
+            self, flexibility=None, dragged=None, nodes=None, element_size=None, uncertainty=None
+        )
 
     def moved(self, amounts: np.ndarray) -> np.ndarray:
         """Thermal offset T (s,f,p) m under ``amounts`` (t,) of the fields of temperature."""

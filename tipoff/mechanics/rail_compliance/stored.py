@@ -10,20 +10,24 @@ import numpy as np
 
 from tipoff.files import require_whole
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
+from tipoff.mechanics.rail_compliance.nodal import Nodal, Tables
 
 _PLAIN = ("made_for", "element_size", "frequency_uncertainty", "not_known")  # no arrays
-_JOINTS = "joints."  # prefix of the names of the joint terms in a file
+# prefixes of the names of the joint terms and of the nodes in a file
+_JOINTS, _NODES = "joints.", "nodes."
 
 
 def content(fields: Mapping[str, Any]) -> bytes:
     """The file of the ``fields`` of a ``RailCompliance`` that are not None, without its digest."""
     known = {name: value for name, value in fields.items() if value is not None}
-    return _written(known | _named(known.pop("joints", None)))
+    if (nodes := known.pop("nodes", None)) is not None:
+        known = {name: value for name, value in known.items() if name not in Tables._fields}
+    return _written(known | _named(known.pop("joints", None), _JOINTS) | _named(nodes, _NODES))
 
 
 def content_of_joints(terms: JointTerms) -> bytes:
     """The file of ``terms`` alone, without its digest."""
-    return _written(_named(terms))
+    return _written(_named(terms, _JOINTS))
 
 
 def read(path: str | Path) -> dict[str, Any]:
@@ -32,6 +36,9 @@ def read(path: str | Path) -> dict[str, Any]:
     found: dict[str, Any] = _arrays(path)
     if any(name.startswith(_JOINTS) for name in found):
         found["joints"] = _joints(found)
+    if any(name.startswith(_NODES) for name in found):
+        nodes = Nodal(*(found.pop(f"{_NODES}{name}") for name in Nodal._fields))
+        found |= nodes.tables(found["rail"])._asdict() | {"nodes": nodes}
     return found | {name: found[name].item() for name in {*_PLAIN} & {*found}}
 
 
@@ -46,9 +53,9 @@ def _arrays(path: str | Path) -> dict[str, np.ndarray]:
         return dict(found)
 
 
-def _named(terms: JointTerms | None) -> dict[str, np.ndarray]:
+def _named(terms: JointTerms | Nodal | None, prefix: str) -> dict[str, np.ndarray]:
     parts = terms._asdict() if terms is not None else {}
-    return {f"{_JOINTS}{name}": part for name, part in parts.items()}
+    return {f"{prefix}{name}": part for name, part in parts.items()}
 
 
 def _joints(found: dict[str, Any]) -> JointTerms:
