@@ -220,48 +220,6 @@ def largest_change(compliance, face, change):
 
 
 @kernel
-def deepest(compliance, face, displacement):
-    """Largest p (m) of all cells, and xi and eta of that cell on the pad. Off the wall, they are
-    those of the whole face, so that a contact in the step in which it leaves is found."""
-    aside, relief, largest, along, across = (
-        compliance.workspace.lever[face, ASIDE],
-        compliance.relief[face],
-        -np.inf,
-        0.0,
-        0.0,
-    )
-    for row in range(compliance.node.size):
-        xi, _, crown = row_place(compliance, face, row)
-        fill_row(compliance, face, xi, displacement)
-        for column in range(compliance.node.size):
-            eta = compliance.node[column] + aside
-            p = along_row(compliance.workspace, eta) - relief * (crown + compliance.crown[column])
-            if p > largest:
-                largest, along, across = p, xi, compliance.node[column]
-    return largest, along, across
-
-
-@kernel
-def deepest_at_rest(compliance, face, displacement):
-    """As ``deepest`` for a wall whose ``displacement`` is zero: p is then a sum of a part along and
-    a part across the pad. The value has the bits of ``deepest``."""
-    lever, relief = compliance.workspace.lever[face], compliance.relief[face]
-    along, across, by_xi, by_eta, crown = 0.0, 0.0, -np.inf, -np.inf, 0.0
-    column = 0
-    for i in range(compliance.node.size):
-        xi, _, row_crown = row_place(compliance, face, i)
-        if lever[BY_XI] * xi - relief * row_crown > by_xi:
-            along, crown, by_xi = xi, row_crown, lever[BY_XI] * xi - relief * row_crown
-        place = compliance.node[i]
-        if lever[BY_ETA] * place - relief * compliance.crown[i] > by_eta:
-            across, column = place, i
-            by_eta = lever[BY_ETA] * place - relief * compliance.crown[i]
-    fill_row(compliance, face, along, displacement)
-    p = along_row(compliance.workspace, across + lever[ASIDE])
-    return p - relief * (crown + compliance.crown[column]), along, across
-
-
-@kernel
 def stored(compliance, face):
     """Energy (J) in the interface of the face."""
     relief, stiffness = compliance.relief[face], cell_stiffness(compliance, face)

@@ -48,6 +48,20 @@ def evaluate(modes, rail, face, station, way, changes, state):
 
 
 @kernel
+def is_at_rest(modes, rail, face, state):
+    """Whether the modes of ``rail`` are at rest and straight; then no mode moves the wall under
+    ``face``."""
+    if modes.square.size > 0:
+        count = modes.square.shape[1]
+        first, rates = STATE_SIZE + rail * count, STATE_SIZE + modes.square.size + rail * count
+        for i in range(count):
+            if state[first + i] != 0.0 or state[rates + i] != 0.0:
+                return False
+        modes.speed[face, :] = 0.0
+    return True
+
+
+@kernel
 def to_whole(modes, face, part):
     """Replace the values under ``face``, in the patterns of a ``part`` of it, by those of the whole
     face."""

@@ -64,6 +64,8 @@ class Modes(NamedTuple):
     levels: tuple  # (d+1,) as in ``Workspace``
     reach: np.ndarray  # (f, n) 1/kg^0.5, bound of the displacement of a point under a face
     shape: np.ndarray  # (f, n, p) 1/kg^0.5, workspace: shapes at the faces
+    # (f, n, p) N/(m kg^0.5), workspace: forces by a unit of each mode on a pad at rest, no wall yielding
+    pressed: np.ndarray
     offset: np.ndarray  # (f, p) m, workspace: displacement
     slope: np.ndarray  # (f, p) workspace: its derivative along the rail
     speed: np.ndarray  # (f, p) m/s, workspace: its rate
@@ -249,6 +251,7 @@ def _modes(found: data.RailCompliance, cubic: np.ndarray, damping: Damping | Non
         cubic=cubic,
         reach=np.abs(on_parts @ found.shape[..., :count]).sum(axis=2).max(axis=0),
         shape=zeros((faces, count, patterns)),
+        pressed=zeros((faces, count, patterns)),
         offset=zeros(by_pattern),
         slope=zeros(by_pattern),
         speed=zeros(by_pattern),

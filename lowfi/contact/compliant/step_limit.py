@@ -112,24 +112,30 @@ def _add_modes(modes, workspace, count):
     number = 0
     if modes.square.size > 0:
         number, size = modes.square.shape[1], patterns.count(workspace.levels)
+        _fill_pressed(modes, workspace, count)
         for row in range(count * size):
             for i in range(number):
                 total, first = 0.0, row % size * size
                 for j in range(count):
                     face, block = workspace.order[j], workspace.flexibility[row // size, j]
                     for c in range(size):
-                        total += block[first + c] * _pressure(modes, workspace, face, c, i)
+                        total += block[first + c] * modes.pressed[face, i, c]
                 workspace.right[row, count * _RIGID + i] = total
     return number
 
 
 @kernel
-def _pressure(modes, workspace, face, a, i):
-    """dP_a for a unit of mode i on an otherwise rigid wall."""
-    value = 0.0
-    for b in range(patterns.count(workspace.levels)):
-        value += workspace.stiffness[face, a, b] * modes.shape[face, i, b]
-    return value
+def _fill_pressed(modes, workspace, count):
+    """Fill ``Modes.pressed`` of the first ``count`` faces in order."""
+    size = patterns.count(workspace.levels)
+    for k in range(count):
+        face = workspace.order[k]
+        for i in range(modes.square.shape[1]):
+            for a in range(size):
+                value = 0.0
+                for b in range(size):
+                    value += workspace.stiffness[face, a, b] * modes.shape[face, i, b]
+                modes.pressed[face, i, a] = value
 
 
 @kernel
@@ -142,7 +148,7 @@ def _trace_of_modes(modes, workspace, count, first):
             face = workspace.order[k]
             for a in range(size):
                 for i in range(modes.square.shape[1]):
-                    total += _pressure(modes, workspace, face, a, i) * (
+                    total += modes.pressed[face, i, a] * (
                         modes.shape[face, i, a] - workspace.right[k * size + a, first + i]
                     )
     return total

@@ -7,15 +7,14 @@ from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant import drawn_walls, thermal_offset
 from tipoff.lowfi.contact.compliant.cells import (
-    deepest,
-    deepest_at_rest,
     drawn_slope,
     drift_of_depth,
     take_lever,
 )
+from tipoff.lowfi.contact.compliant.deepest import deepest, deepest_at_rest
 from tipoff.lowfi.contact.compliant.free_vibration import note_reach
 from tipoff.lowfi.contact.compliant.loads import energy as energy_of_rail
-from tipoff.lowfi.contact.compliant.modes import speed_at
+from tipoff.lowfi.contact.compliant.modes import is_at_rest, speed_at
 from tipoff.lowfi.contact.compliant.parts import way_to_jump
 from tipoff.lowfi.contact.compliant.record import ASIDE, MIDDLE, SHIFT
 from tipoff.lowfi.contact.compliant.solution import follow, solve, solve_unless
@@ -64,7 +63,7 @@ def _deepest(compliance, faces, face, count, touching, place, turn, state):
         take_lever(compliance, faces, face, place, turn)
         if (
             count == 0
-            and compliance.modes.square.size == 0
+            and is_at_rest(compliance.modes, compliance.rail[face], face, state)
             and not thermal_offset.is_warm(compliance.thermal_offset)
         ):
             displacement[:] = 0.0

@@ -32,7 +32,8 @@ from tipoff.highfi.simulation import prepare
 from tipoff.highfi.statics import assembly
 from tipoff.kernels import rotation
 from tipoff.lowfi import state as slot
-from tipoff.lowfi.contact.compliant import cells, solution, step_limit
+from tipoff.lowfi.contact.compliant import cells, deepest, solution, step_limit
+from tipoff.lowfi.contact.compliant.record import ASIDE, BY_ETA, BY_XI, DEPTH, PART, SHIFT, SPAN
 from tipoff.mechanics.rail_compliance import PATTERNS
 from tipoff.scenes import scene_model
 
@@ -200,9 +201,45 @@ def test_the_deepest_cell_of_a_wall_at_rest(reference):
         place, turn = seen_from_platform(system.platform, system.payload, state)
         for face in range(len(system.faces)):
             cells.take_lever(compliance, system.faces, face, place, turn)
-            depth, *where = cells.deepest(compliance, face, nothing)
-            found, *there = cells.deepest_at_rest(compliance, face, nothing)
+            depth, *where = deepest.deepest(compliance, face, nothing)
+            found, *there = deepest.deepest_at_rest(compliance, face, nothing)
             assert found == depth and there == where
+
+
+def depths(compliance, face, displacement):
+    """p (c, c) m of all cells of a face in rows along xi, and xi (c,) of the rows, by arrays."""
+    lever, node = compliance.workspace.lever[face], compliance.node
+    middle, span = (lever[PART], lever[SPAN]) if lever[SPAN] else (0.0, 1.0)
+    xi, half = middle + span * node, span / node.size
+    ahead, beyond = (xi + lever[SHIFT])[:, None], (node + lever[ASIDE])[None]
+    powers = [(n - j, j) for n in range(6) for j in range(n + 1)][: displacement.size]
+    wall = sum(u * ahead**i * beyond**j for u, (i, j) in zip(displacement, powers))
+    crown = ((xi + half) ** 5 - (xi - half) ** 5)[:, None] / (10.0 * half) + compliance.crown[None]
+    flat = lever[DEPTH] + lever[BY_XI] * xi[:, None] + lever[BY_ETA] * node[None]
+    return flat - compliance.relief[face] * crown - wall, xi
+
+
+def test_the_deepest_cell_of_a_bent_wall(reference):
+    """It is the one that arrays of all cells find, where it is in any row. Control: the row that is
+    deepest in its middle often has another one."""
+    _, model, system = reference
+    random, compliance, others = np.random.default_rng(3), system.compliance, 0
+    for size in 10.0 ** random.uniform(-7.0, -3.0, 100):
+        offset = random.choice((-1.0, 1.0), 2) * CLEARANCE + size * random.standard_normal(2)
+        pose = relative(
+            model, random.uniform(-0.01, 0.22), offset, 5.0 * size * random.standard_normal(3)
+        )
+        place, turn = seen_from_platform(system.platform, system.payload, state_of(model, pose))
+        for face in range(len(system.faces)):
+            cells.take_lever(compliance, system.faces, face, place, turn)
+            bent = size * random.standard_normal(PATTERNS)
+            depth, along, across = deepest.deepest(compliance, face, bent)
+            p, xi = depths(compliance, face, bent)
+            row, column = np.argmin(np.abs(xi - along)), np.argmin(np.abs(compliance.node - across))
+            assert depth == pytest.approx(p.max(), abs=1e-15)
+            assert p[row, column] == pytest.approx(p.max(), abs=1e-15)
+            others += p[np.argmax(p[:, compliance.node.size // 2])].max() < p.max()
+    assert others > 100
 
 
 def pressed_elements(scene, face, travel, aside=0.0, points_per_edge=4):
