@@ -55,8 +55,13 @@ def solved(
         {"compile_s": 0.0, "compile_cpu_s": 0.0, "kernel_s": 0.0},
     )
 
+    first: SingleRun | None = None
+
     def made(asked: Numerics, watches: bool = False) -> SingleRun:
-        return integrated(SingleRun(scene, asked, compliance, watches=watches), progress, spent)
+        nonlocal first
+        run_ = SingleRun(scene, asked, compliance, watches=watches, like=first)
+        first = first or run_
+        return integrated(run_, progress, spent)
 
     why = ""
     if numerics.degree == AUTO and compliance is not None:

@@ -34,7 +34,7 @@ class SingleRun:
     """State of a run in progress and its samples; the last has the number ``end``. A ``whole`` run
     continues to the end of the scene even if exit and jam are settled. It keeps the promises of
     ``numerics``, with the steps of ``finer`` ones if given. A run without modes that ``watches``
-    them finds their effect."""
+    them finds their effect. A run ``like`` another one of the same scene has the same records of it."""
 
     reruns, discarded = 0, 0  # runs of the scene before this one, and their steps
 
@@ -45,18 +45,22 @@ class SingleRun:
         compliance: RailCompliance | None = None,
         finer: Numerics | None = None,
         watches: bool = False,
+        like: "SingleRun | None" = None,
     ):
         self.scene, self.numerics, self.compliance = scene, numerics, compliance
         self.watches, self.modes = watches, numerics.count
         self.promised = promises_of(numerics)
         self.used = finer or numerics
-        self.model = model = scene_model.build(scene)
+        self.model: scene_model.Model = like.model if like else scene_model.build(scene)
+        model = self.model
         self.interval = scene.output.interval
         self.end = scene.output.last(scene.time_limit)
         self.expected = scene.output.last(scene.expected_end)
-        marks = outcome.milestones(launch.of(scene), scene.time_limit)
-        self.system, self.plan, self.tolerance, self.marks, self.loop, self.cases = prepare(
-            scene, [model], marks, self.used, self.promised, compliance, watches
+        self.marks: outcome.Milestones = (
+            like.marks if like else outcome.milestones(launch.of(scene), scene.time_limit)
+        )
+        self.system, self.plan, self.tolerance, _, self.loop, self.cases = prepare(
+            scene, [model], self.marks, self.used, self.promised, compliance, watches
         )
         first = min(self.end + 1, _ROWS)
         self.rows, self.forces = (
@@ -228,6 +232,7 @@ def improved(first: SingleRun, progress: Callable[[float], None] | None = None) 
             first.compliance,
             numerics,
             first.watches,
+            first,
         )
         finer.reruns, finer.discarded = reruns, best.discarded + int(best.loop.counts.steps)
         finer.begin()

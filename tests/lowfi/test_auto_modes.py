@@ -18,7 +18,7 @@ from tipoff import highfi, lowfi
 from tipoff.lowfi import Numerics, modes
 from tipoff.lowfi.single_run import SingleRun
 from tipoff.mechanics.rail_compliance import RailCompliance
-from tipoff.scenes import load
+from tipoff.scenes import load, scene_model
 
 STEEL = {"density": 7850.0, "youngs_modulus": 210e9, "poisson_ratio": 0.3}
 TITANIUM = {"density": 4430.0, "youngs_modulus": 113.8e9, "poisson_ratio": 0.342}
@@ -100,6 +100,22 @@ def test_neglected_modes_move_the_rates_by_a_fiftieth_of_a_degree_at_most():
     assert modes.needed(rest) == modes.needed(rest[:0]) == 0
 
 
+@pytest.mark.parametrize("condition", ["phi0", "phi15", "phi35", "phi60", "phi90", "h1"])
+def test_the_estimate_has_the_size_of_the_effect(condition):
+    """Of all modes: magnitudes of contacts and modes are added, so it is above most effects.
+    Control: without the contacts it is zero."""
+    asked, compliance = REFERENCE.condition(condition), reference_compliance()
+    watched = SingleRun(asked, Numerics(modes=0), compliance, watches=True)
+    watched.begin()
+    assert not watched.neglected().any()
+    watched.integrate(None)
+    static, every = (
+        lowfi.run(asked, compliance=compliance, numerics=Numerics(modes=count)) for count in (0, 20)
+    )
+    effect = apart(every.outcome.rate, static.outcome.rate)
+    assert 0.25 < effect / np.degrees(watched.neglected().sum()) < 2.0
+
+
 def test_no_modes_where_none_matter():
     """The bits of a run without modes, and the reason."""
     asked, compliance = REFERENCE.condition("phi15"), reference_compliance()
@@ -161,6 +177,16 @@ def test_the_chosen_number_gives_the_bits_of_the_same_number_by_hand():
     assert 0 < count == auto.cost["modes"] and auto.cost["auto_runs"] >= 1
     assert f"{count} of 20 of each rail" in auto.numerics["modes_why"]
     np.testing.assert_array_equal(auto.rate, hand.rate)
+
+
+def test_the_runs_of_a_choice_share_the_records_of_their_scene(monkeypatch):
+    """Control: another call makes its own."""
+    made, build = [], scene_model.build
+    monkeypatch.setattr(scene_model, "build", lambda scene: made.append(scene) or build(scene))
+    asked, compliance = scene(STRIP), compliance_of(STRIP)
+    for calls in (1, 2):
+        assert lowfi.run(asked, compliance=compliance).cost["auto_runs"] >= 1
+        assert len(made) == calls
 
 
 def test_a_compliance_without_modes_says_so():

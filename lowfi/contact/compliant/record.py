@@ -172,7 +172,7 @@ def build(
         among[rail[rail >= 0]] = np.arange((rail >= 0).sum())
     edges = np.linspace(-1.0, 1.0, cells + 1)
     node, crown = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges**5) / (5.0 * np.diff(edges))
-    flexibility, shape = found.cubic(modes)
+    flexibility, shape, reach = found.cubic(modes)
     dragged = found.cubic_of_dragged if model.friction is not None else None
     return Compliance(
         cubic=flexibility,
@@ -192,7 +192,7 @@ def build(
         end=float(model.rail_end),
         node=node,
         crown=crown,
-        modes=_modes(found, shape, damping),
+        modes=_modes(found, shape, reach, damping),
         thermal_offset=_thermal_offset(found, model),
         drawn=_drawn(found, model),
         workspace=_workspace(
@@ -238,18 +238,19 @@ def states(compliance: Compliance | None) -> int:
     return 2 * compliance.modes.square.size if compliance is not None else 0
 
 
-def _modes(found: data.RailCompliance, cubic: np.ndarray, damping: Damping | None) -> Modes:
+def _modes(
+    found: data.RailCompliance, cubic: np.ndarray, reach: np.ndarray, damping: Damping | None
+) -> Modes:
     count = cubic.shape[2]
     square = found.frequency[:, :count] ** 2
     by_pattern = found.shape.shape[1:3]
     faces, patterns = by_pattern
-    on_parts = found.on_part.swapaxes(-1, -2)
     return Modes(
         levels=tuple(range(found.degree + 1)),
         square=square,
         drag=drag_of(square, damping),
         cubic=cubic,
-        reach=np.abs(on_parts @ found.shape[..., :count]).sum(axis=2).max(axis=0),
+        reach=reach,
         shape=zeros((faces, count, patterns)),
         pressed=zeros((faces, count, patterns)),
         offset=zeros(by_pattern),

@@ -5,7 +5,8 @@ F(t) = sum_i P_i exp(-(t - t_i)^2 / (2 s_i^2))   begin <= t <= end,   or a piece
 
 import math
 from collections.abc import Callable
-from functools import partial
+from dataclasses import dataclass, field
+from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -204,6 +205,27 @@ def burnouts(thrust: Thrust, fractions: tuple[float, ...], duration: float) -> t
     The last grid point above is found first, then the crossing after it, by bisection to the last
     bit.
     """
+    return _burnouts(_Equal(_content(thrust), thrust), fractions, duration)
+
+
+@dataclass(frozen=True)
+class _Equal:
+    """A thrust; equal to others with the same ``content``."""
+
+    content: tuple
+    thrust: Thrust = field(compare=False)
+
+
+def _content(record: Any) -> Any:
+    """The bytes of nested records of arrays and numbers."""
+    if isinstance(record, tuple):
+        return tuple(_content(part) for part in record)
+    return record if record is None else np.asarray(record).tobytes()
+
+
+@lru_cache(maxsize=16)  # each run of the surrogate in a loop over scenes asks
+def _burnouts(equal: _Equal, fractions: tuple[float, ...], duration: float) -> tuple[float, ...]:
+    thrust = equal.thrust
     time, force = _grid(thrust, duration)
     return tuple(
         _last_above(thrust, time, force, fraction * force.max(), duration) for fraction in fractions

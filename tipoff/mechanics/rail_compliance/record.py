@@ -161,17 +161,17 @@ class RailCompliance(Shown):
             return self.find_joints()
         return self.joints
 
-    def cubic(self, modes: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    def cubic(self, modes: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Flexibility (s-1,f,m,4,p p) between each face and the ``members`` of its rail, without the
         part of the first ``modes``, and their shapes (s-1,f,n,4,p), between stations: coefficients
         of the rising powers of the distance (m) from the one before, in the patterns of the parts of the
-        faces that have a wall. Raises ValueError as ``residual`` does."""
+        faces that have a wall. And the largest displacement (f,n) in a mode of a point under a face,
+        or more. Raises ValueError as ``residual`` does."""
         if modes not in self._cubics:
-            shape = self.cubic_of(self.shape[..., :modes])
-            self._cubics[modes] = (
-                self._between_faces(self.residual(modes)),
-                np.ascontiguousarray(shape.transpose(0, 1, 3, 4, 2)),
-            )
+            shape, between = self.shape[..., :modes], self._between_faces(self.residual(modes))
+            along = np.ascontiguousarray(self.cubic_of(shape).transpose(0, 1, 3, 4, 2))
+            reach = np.abs(self.on_part.swapaxes(-1, -2) @ shape).sum(axis=2).max(axis=0)
+            self._cubics[modes] = between, along, reach
         return self._cubics[modes]
 
     def cubic_of(self, moved: np.ndarray) -> np.ndarray:
