@@ -20,7 +20,7 @@ PARALLEL = --numprocesses=auto --dist=loadfile --max-worker-restart=0
 # Tests that take a second or two each where kernels are compiled.
 QUICK = tests/test_layers.py tests/test_sources.py tests/scenes tests/mechanics tests/results tests/meshes \
   $(patsubst %,tests/highfi/%,elements mesh statics extruded contact/test_hertz.py test_compliance.py) \
-  $(patsubst %,tests/highfi/dynamics/test_%.py,stable_step waves bars) \
+  tests/highfi/statics/test_stable_step.py $(patsubst %,tests/highfi/dynamics/test_%.py,waves bars) \
   $(patsubst %,tests/lowfi/test_%.py,ejection flying numerics statuses tip_off) \
   $(patsubst %,tests/lowfi/contact/test_%.py,thermal_offset extreme_contacts friction) tests/lowfi/dynamics/test_momentum.py \
   tests/studies/test_names.py tests/studies/agreement tests/studies/cost/test_choice.py tests/studies/sweeps/test_knee.py \

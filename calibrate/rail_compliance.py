@@ -14,7 +14,7 @@ import numpy as np
 
 from tipoff import cache, sources
 from tipoff.files import content_hash, tell
-from tipoff.highfi.statics import inputs
+from tipoff.highfi.rail import inputs
 from tipoff.mechanics.rail_compliance import DEGREE, RailCompliance, content, stored
 from tipoff.mechanics.rail_compliance.joint_terms import JointTerms
 from tipoff.remaining import Remaining
@@ -116,7 +116,7 @@ def _kept_joints(scene: Scene, folder: Path, element_size: float, degree: int) -
 def _made(
     scene: Scene, element_size: float, degree: int, path: Path, say: Callable[[str], None]
 ) -> RailCompliance:
-    from tipoff.highfi.statics import places  # slow to load
+    from tipoff.highfi.rail import places  # slow to load
 
     say(
         f"rail compliance, once per rail and pads: {1e3 * element_size:g} mm elements, then "

@@ -24,11 +24,11 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.highfi.numerics import Numerics
-from tipoff.highfi.rail import drawn_walls
+from tipoff.highfi.rail import drawn_walls, inputs, nodal
+from tipoff.highfi.rail.places import Patches, one_of, part_of_wall, pressed_together
 from tipoff.highfi.simulation import prepare
-from tipoff.highfi.statics import inputs, joint_terms, nodal
+from tipoff.highfi.statics import joint_terms
 from tipoff.highfi.statics.held import HeldRail, distinct
-from tipoff.highfi.statics.places import Patches, one_of, part_of_wall, pressed_together
 from tipoff.mechanics.laws.thermal import FIELDS
 from tipoff.mechanics.model import Faces, half_sizes
 from tipoff.mechanics.rail_compliance import (

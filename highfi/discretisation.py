@@ -37,11 +37,12 @@ from tipoff.highfi.mesh import split
 from tipoff.highfi.mesh.cells import edge_lengths
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.rail import inputs
+from tipoff.highfi.rail.places import Patches, one_of, reported
 from tipoff.highfi.simulation import prepare
-from tipoff.highfi.statics import assembly, chain, inputs
+from tipoff.highfi.statics import assembly, chain
 from tipoff.highfi.statics.held import HeldRail
 from tipoff.highfi.statics.operator import internal_force
-from tipoff.highfi.statics.places import Patches, one_of, reported
 from tipoff.highfi.statics.solve import Clamped, one_thread
 from tipoff.mechanics.model import Faces, half_sizes
 from tipoff.mechanics.rail_compliance import RailCompliance

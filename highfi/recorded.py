@@ -4,10 +4,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tipoff.highfi.dynamics import pushers
+from tipoff.highfi.dynamics import monitor, pushers
 from tipoff.highfi.dynamics.stepper import Stepper, Taken
 from tipoff.highfi.state.records import TOTAL
-from tipoff.highfi.stress import monitor
 from tipoff.highfi.stress.peak import Peak, no_peak
 from tipoff.kernels import rotation
 

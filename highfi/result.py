@@ -3,11 +3,10 @@ ledgers."""
 
 import numpy as np
 
-from tipoff.highfi.dynamics import ending, samples
+from tipoff.highfi.dynamics import ending, monitor, samples
 from tipoff.highfi.dynamics.stepper import Stepper
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.recorded import Recorded
-from tipoff.highfi.stress import monitor
 from tipoff.mechanics import comoving, ledger, model_names, outcome
 from tipoff.mechanics.promises import FINITE_ELEMENTS, broken
 from tipoff.results.trajectory import Trajectory

@@ -6,14 +6,13 @@ from functools import cached_property
 
 import numpy as np
 
-from tipoff.highfi.dynamics import ending, linear_range, resting
+from tipoff.highfi.dynamics import ending, linear_range, monitor, resting
 from tipoff.highfi.dynamics.resting import Rails
 from tipoff.highfi.dynamics.step_size import STEPS_PER_CHECK, Stepping, raster_steps
 from tipoff.highfi.dynamics.system import System
 from tipoff.highfi.rail import spin
 from tipoff.highfi.state.records import Exit
 from tipoff.highfi.state.threads import Team, team_of
-from tipoff.highfi.stress import monitor
 from tipoff.mechanics import outcome
 from tipoff.scenes import launch
 from tipoff.scenes.scene import Scene

@@ -38,8 +38,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.highfi.dynamics.stable_step import critical_step
 from tipoff.highfi.dynamics.system import System
+from tipoff.highfi.statics.stable_step import critical_step
 from tipoff.mechanics.laws.pushers import SLOW
 from tipoff.mechanics.laws.structural_damping import Damping
 

@@ -7,7 +7,6 @@ elements.
 
 from dataclasses import asdict, dataclass
 
-from tipoff.highfi.dynamics import stable_step
 from tipoff.highfi.dynamics.step_limit import (
     contact_frequency_squared,
     damping_ratio,
@@ -17,6 +16,7 @@ from tipoff.highfi.dynamics.step_limit import (
 )
 from tipoff.highfi.dynamics.system import System
 from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.statics import stable_step
 from tipoff.scenes.scene import Scene
 
 RASTER = 5e-5  # s, default sampling interval of a scene

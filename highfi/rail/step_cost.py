@@ -11,12 +11,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from tipoff.highfi.dynamics import stable_step
 from tipoff.highfi.extruded import mesh as extruded
 from tipoff.highfi.mesh.cells import edge_lengths, jacobians, thickness
 from tipoff.highfi.mesh.rail_mesh import RailMesh, listed, slivers
 from tipoff.highfi.numerics import Numerics
-from tipoff.highfi.statics import assembly
+from tipoff.highfi.statics import assembly, stable_step
 from tipoff.meshes.bricks import CUBE
 from tipoff.scenes.rail_base import MaterialTable
 from tipoff.scenes.scene import Scene

@@ -12,7 +12,7 @@ from tipoff import calibration
 from tipoff.calibration import rail_compliance
 from tipoff.highfi import compliance as statics
 from tipoff.highfi import discretisation
-from tipoff.highfi.statics import places
+from tipoff.highfi.rail import places
 from tipoff.scenes import SceneError, load
 from tipoff.scenes.rail_compliance import digest
 from tipoff.scenes.scene import Scene

@@ -10,9 +10,9 @@ from scipy.sparse import csc_array
 from tests.highfi import sections, tets
 from tipoff.highfi import compliance, discretisation
 from tipoff.highfi.mesh import split
+from tipoff.highfi.rail.places import Patches
 from tipoff.highfi.statics import held
 from tipoff.highfi.statics.held import distinct
-from tipoff.highfi.statics.places import Patches
 from tipoff.highfi.statics.solve import Clamped
 from tipoff.scenes import load
 

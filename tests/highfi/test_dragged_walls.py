@@ -7,8 +7,9 @@ from scipy.sparse.linalg import splu
 from tests.highfi.support import tiny
 from tipoff import highfi
 from tipoff.highfi import compliance
-from tipoff.highfi.statics import assembly, inputs
-from tipoff.highfi.statics.places import Patches
+from tipoff.highfi.rail import inputs
+from tipoff.highfi.rail.places import Patches
+from tipoff.highfi.statics import assembly
 from tipoff.mechanics.rail_compliance import pairs
 from tipoff.scenes import load
 

@@ -32,7 +32,8 @@ from tipoff.scenes import keyword_files
 from tipoff.scenes.profile_rail import ProfileTable
 from tipoff.scenes.rail_base import DrawnTable, HeldBySpans
 from tipoff.scenes.rounding import at_most, below
-from tipoff.scenes.table import Table, at_least_one, is_absent, limited
+from tipoff.scenes.table import at_least_one, is_absent, limited
+from tipoff.scenes.tables import BoxTable
 from tipoff.scenes.units import SMALLEST_DIMENSION, Dimension, Length
 
 LARGEST_FILLET = 1.25  # of the thickness: the mesh has no good elements around a larger one
@@ -112,22 +113,6 @@ def _readable(file: str) -> str:
     except OSError as error:
         raise ValueError(f"a readable file ({error.strerror})") from error
     return file
-
-
-class BoxTable(Table):
-    """A box between two corners in scene axes (m); it is flat if two coordinates are equal."""
-
-    #: Corner with the smallest coordinates, in scene axes.
-    low: tuple[Length, Length, Length]
-    #: Corner with the largest coordinates, in scene axes.
-    high: tuple[Length, Length, Length]
-
-    @field_validator("high")
-    @classmethod
-    def _above(cls, high, info: ValidationInfo):
-        if any(below(above, least) for least, above in zip(info.data.get("low", high), high)):
-            raise ValueError("a corner whose coordinates are at least those of low")
-        return high
 
 
 _Boxes = Annotated[tuple[BoxTable, ...], limited, AfterValidator(at_least_one)]

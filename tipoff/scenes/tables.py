@@ -3,11 +3,11 @@
 import math
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, field_validator
+from pydantic import AfterValidator, ValidationInfo, field_validator
 
 from tipoff.mechanics.run_limits import MOST_SAMPLES
 from tipoff.scenes.body import InertiaTensor
-from tipoff.scenes.rounding import ROUNDING
+from tipoff.scenes.rounding import ROUNDING, below
 from tipoff.scenes.table import Table, at_least_one, limited
 from tipoff.scenes.units import (
     Length,
@@ -21,6 +21,22 @@ from tipoff.scenes.units import (
 
 _Names = Annotated[tuple[str, ...], limited]
 Normal = Literal["+y", "-y", "+z", "-z"]
+
+
+class BoxTable(Table):
+    """A box between two corners in scene axes (m); it is flat if two coordinates are equal."""
+
+    #: Corner with the smallest coordinates, in scene axes.
+    low: tuple[Length, Length, Length]
+    #: Corner with the largest coordinates, in scene axes.
+    high: tuple[Length, Length, Length]
+
+    @field_validator("high")
+    @classmethod
+    def _above(cls, high, info: ValidationInfo):
+        if any(below(above, least) for least, above in zip(info.data.get("low", high), high)):
+            raise ValueError("a corner whose coordinates are at least those of low")
+        return high
 
 
 class PayloadTable(Table):

@@ -12,9 +12,9 @@ import pytest
 from tests.exact import elasticity
 from tests.highfi.blocks import block
 from tests.highfi.leapfrog import driven
-from tipoff.highfi.dynamics import stable_step as timestep
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.statics import assembly
+from tipoff.highfi.statics import stable_step as timestep
 from tipoff.highfi.statics.operator import internal_force
 
 LENGTH, WIDTH, MODULUS, DENSITY = 0.5, 0.02, 72e9, 2810.0

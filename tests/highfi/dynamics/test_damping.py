@@ -10,10 +10,10 @@ import pytest
 from tests.exact import elasticity
 from tests.highfi.blocks import block, free_stiffness, highest_mode, modes
 from tests.highfi.support import NEUTRAL, loop_on, replace_constants
-from tipoff.highfi.dynamics import stable_step
 from tipoff.highfi.dynamics.step_limit import step_limit, used
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.simulation import Loop
+from tipoff.highfi.statics import stable_step
 from tipoff.mechanics.laws.structural_damping import Damping
 from tipoff.scenes import parse
 

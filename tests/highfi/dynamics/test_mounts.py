@@ -14,9 +14,9 @@ from tests.highfi.support import COARSE, assert_same_bits, begun, loop_on, tiny
 from tests.highfi.tets import split
 from tipoff import highfi
 from tipoff.highfi import Numerics
-from tipoff.highfi.dynamics import mounts, observe, stable_step
+from tipoff.highfi.dynamics import mounts, observe
 from tipoff.highfi.dynamics.checkpoint import Checkpoint, restore
-from tipoff.highfi.statics import assembly
+from tipoff.highfi.statics import assembly, stable_step
 from tipoff.highfi.statics import mounts as statics
 from tipoff.mechanics.laws.mount_stiffness import MountStiffness
 

@@ -7,8 +7,7 @@ import pytest
 from tests.exact import elasticity
 from tests.highfi.blocks import ALUMINIUM, block, without_bubbles
 from tests.highfi.leapfrog import driven
-from tipoff.highfi.dynamics import stable_step
-from tipoff.highfi.statics import assembly
+from tipoff.highfi.statics import assembly, stable_step
 
 LENGTH, WIDTH, HEIGHT, FORCE = 0.8, 0.02, 0.01, 50.0
 MODULUS, DENSITY = ALUMINIUM["youngs_modulus"], ALUMINIUM["density"]

@@ -7,9 +7,8 @@ from tests.exact import elasticity
 from tests.highfi import cylinder
 from tests.highfi.blocks import ALUMINIUM, block, modes
 from tests.highfi.leapfrog import driven, integrate
-from tipoff.highfi.dynamics import stable_step
 from tipoff.highfi.elements import hexahedron
-from tipoff.highfi.statics import assembly
+from tipoff.highfi.statics import assembly, stable_step
 
 NU = 0.3
 

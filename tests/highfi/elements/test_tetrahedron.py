@@ -10,10 +10,9 @@ from tests.highfi import tets
 from tests.highfi.blocks import ALUMINIUM, block, highest_mode
 from tests.highfi.elements.test_beams import BEAM, ELASTIC, FORCE, deflection, free_frequencies
 from tests.highfi.elements.test_hexahedron import PATCH_GRADIENT, bending_frequencies
-from tipoff.highfi.dynamics import stable_step
 from tipoff.highfi.elements import hexahedron, tetrahedron
 from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
-from tipoff.highfi.statics import assembly
+from tipoff.highfi.statics import assembly, stable_step
 from tipoff.highfi.statics.operator import internal_force
 
 COARSE = (20, 1, 1)  # cubes of six tetrahedra, one layer across the beam

@@ -7,9 +7,8 @@ import pytest
 from tests.exact import elasticity
 from tests.highfi.blocks import ALUMINIUM, block, free_stiffness, modes, static
 from tests.highfi.leapfrog import driven
-from tipoff.highfi.dynamics import stable_step
 from tipoff.highfi.mesh.rail_mesh import RailMesh, read
-from tipoff.highfi.statics import assembly
+from tipoff.highfi.statics import assembly, stable_step
 from tipoff.meshes import l_rail
 
 

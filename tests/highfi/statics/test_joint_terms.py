@@ -9,7 +9,7 @@ from tests.highfi.support import tiny
 from tipoff import highfi
 from tipoff.calibration import rail_compliance
 from tipoff.highfi import compliance
-from tipoff.highfi.statics import inputs
+from tipoff.highfi.rail import inputs
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.rail_compliance.joint_terms import LEAST, MOST
 from tipoff.scenes import SceneError

@@ -10,11 +10,12 @@ from tests.highfi.rail.test_own_rail import from_file, saved
 from tests.highfi.rail.test_tetrahedral_rail import PRESSED, cut
 from tests.highfi.support import COARSE, tiny
 from tipoff import highfi
+from tipoff.highfi.dynamics import monitor
 from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.elements import hexahedral_recovery, hexahedron
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.rail.geometry import geometry
-from tipoff.highfi.stress import gauge, monitor
+from tipoff.highfi.stress import gauge
 from tipoff.results.trajectory import Trajectory
 
 LAW = hexahedron.elasticity(72e9, 0.33)

@@ -17,7 +17,7 @@ from tests.studies import kept
 from tests.studies.shown import html
 from tipoff import scenes
 from tipoff.highfi import Numerics
-from tipoff.highfi.stress import monitor
+from tipoff.highfi.dynamics import monitor
 from tipoff.highfi.stress.peak import STRESS, no_peak
 from tipoff.results.trajectory import Trajectory
 from tipoff.studies.cli import app

@@ -18,8 +18,8 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import model_validator
 
-from tipoff.scenes.rail import BoxTable
 from tipoff.scenes.table import Table, limited
+from tipoff.scenes.tables import BoxTable
 from tipoff.scenes.units import Angle, PointingLimit, PositiveLength, PositiveRate, PositiveTime
 
 GRAVITATION = 3.986004418e14  # m3/s2, of the Earth

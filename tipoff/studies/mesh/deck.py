@@ -16,9 +16,10 @@ from scipy.sparse import csr_array, triu
 from tipoff.files import write_text
 from tipoff.highfi import compliance
 from tipoff.highfi.mesh.cells import HEXAHEDRON, kind
-from tipoff.highfi.statics import inputs, mounts
+from tipoff.highfi.rail import inputs
+from tipoff.highfi.rail.places import Patches
+from tipoff.highfi.statics import mounts
 from tipoff.highfi.statics.held import HeldRail
-from tipoff.highfi.statics.places import Patches
 from tipoff.mechanics.model import half_sizes
 from tipoff.scenes.scene import Scene
 

@@ -22,8 +22,7 @@ class _Rail:
 
     def __init__(self):
         from tipoff import highfi
-        from tipoff.highfi.dynamics import stable_step
-        from tipoff.highfi.statics import assembly
+        from tipoff.highfi.statics import assembly, stable_step
 
         scene = _scene()
         material = scene.rail.material
@@ -68,7 +67,7 @@ class _Rail:
 def step_above_the_limit() -> Verdict:
     """Steps 0.1 %, 1 % and 100 % above the limit are refused. A loop without this check diverges."""
     from tipoff import highfi
-    from tipoff.highfi.dynamics.stable_step import StepError
+    from tipoff.highfi.statics.stable_step import StepError
 
     rail, scene, refused = _Rail(), _scene().replace({"contact": None}), []
     for factor in (1.001, 1.01, 2.0):

@@ -17,7 +17,7 @@ import numpy as np
 
 from tipoff.highfi import compliance
 from tipoff.highfi.contact import surface
-from tipoff.highfi.statics import inputs
+from tipoff.highfi.rail import inputs
 from tipoff.mechanics.model import half_sizes
 from tipoff.scenes.scene import Scene
 

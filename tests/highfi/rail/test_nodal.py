@@ -7,7 +7,8 @@ import pytest
 from tipoff import scenes
 from tipoff.highfi import compliance
 from tipoff.highfi.mesh.rail_mesh import RailMesh
-from tipoff.highfi.statics import nodal, solve
+from tipoff.highfi.rail import nodal
+from tipoff.highfi.statics import solve
 from tipoff.highfi.statics.held import HeldRail
 from tipoff.mechanics.rail_compliance import RailCompliance, content
 from tipoff.mechanics.rail_compliance import nodal as kept

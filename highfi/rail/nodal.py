@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from tipoff.highfi.rail.places import Patches, reported
 from tipoff.highfi.statics import thermal
 from tipoff.highfi.statics.chain import Chain
 from tipoff.highfi.statics.held import HeldRail
-from tipoff.highfi.statics.places import Patches, reported
 from tipoff.highfi.statics.solve import one_thread
 from tipoff.mechanics.rail_compliance.nodal import Nodal, spanned
 

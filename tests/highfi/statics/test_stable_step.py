@@ -6,8 +6,7 @@ import pytest
 from tests.exact import elasticity
 from tests.highfi.blocks import ALUMINIUM, block, highest_mode
 from tests.highfi.leapfrog import integrate
-from tipoff.highfi.dynamics import stable_step
-from tipoff.highfi.statics import assembly
+from tipoff.highfi.statics import assembly, stable_step
 
 OVERSTEPS = (1.001, 1.01, 2.0)
 

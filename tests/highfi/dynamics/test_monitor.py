@@ -8,10 +8,11 @@ from tests.highfi.blocks import block
 from tests.highfi.elements.recovered import corner_matrix
 from tests.highfi.support import COARSE, assert_same_bits, begun, tiny
 from tipoff import highfi
+from tipoff.highfi.dynamics import monitor
 from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.elements import hexahedral_recovery, hexahedron
 from tipoff.highfi.numerics import Numerics
-from tipoff.highfi.stress import gauge, monitor, peaks
+from tipoff.highfi.stress import gauge, peaks
 from tipoff.highfi.stress.peak import ROTATION, STRAIN, STRESS, no_peak
 
 LAW = hexahedron.elasticity(72e9, 0.33)
