@@ -12,9 +12,11 @@ from tipoff.lowfi.numerics import Numerics
 from tipoff.scenes.scene import load
 from tipoff.studies.populations.population import TOLERANCE
 from tipoff.studies.render.table import Column, Table
+from validation.bench import done
 
 FINEST = 40  # cells along each edge of a pad, with the patterns of a single run
 MODES = 4  # of each rail: one number for all, because other modes are another change
+_MOST_OF_THEM = 0.9  # of the cases: those with rates in one row alone are others
 SHARES = (0.5, 0.9, 0.95)
 
 
@@ -46,6 +48,7 @@ def run(out: Path, scene: str, cases: int, element_size: float) -> dict:
             "degree": degree,
         }
         found = front.ensemble(asked, "paper", compliance=walls, count=cases, **numerics)
+        done.require(f"cases on {cells} cells", found.sizes["case"], cases)
         return found.rate.values
 
     finest, rows, shares = rates(FINEST, high), [], []
@@ -56,7 +59,14 @@ def run(out: Path, scene: str, cases: int, element_size: float) -> dict:
     known = np.isfinite([share for *_, share in shares]).all(axis=0)
     for cells, degree, share in shares:
         rows.append(asdict(Change(cells, degree, *np.quantile(share[known], SHARES).tolist())))
-    result = {"scene": scene, "cases": int(known.sum()), "element_size": element_size, "rows": rows}
+    done.require_at_least("cases with rates in all rows", float(known.mean()), _MOST_OF_THEM)
+    result = {
+        "scene": scene,
+        "cases": int(known.sum()),
+        "cases_asked": cases,
+        "element_size": element_size,
+        "rows": rows,
+    }
     write_json(Path(out) / "bench" / "cells.json", result)
     return result
 
@@ -70,7 +80,7 @@ def table(found: dict) -> Table:
         (Column("95 %", "%", ".2f", 100.0), "nineteen_twentieths"),
     )
     note = (
-        f"Scene {found['scene']}, {found['cases']} cases in elements of {1e3 * found['element_size']:g} mm, "
-        f"{MODES} modes of each rail. Change of the rates against {FINEST} cells."
+        f"Scene {found['scene']}, {found['cases']} of {found['cases_asked']} cases in elements of "
+        f"{1e3 * found['element_size']:g} mm, {MODES} modes of each rail. Change of the rates against {FINEST} cells."
     )
     return Table.of(found["rows"], columns, notes=(note,))

@@ -6,7 +6,10 @@ from collections.abc import Iterable
 import numpy as np
 
 from tipoff.results.trajectory import Trajectory
-from tipoff.workspace.errors import StudyError
+from tipoff.workspace.errors import FAILED, StudyError
+
+# ns per element and step on one thread: no processor does the 240 multiplications of an element in less
+SHORTEST = 0.5
 
 
 class NotDone(StudyError):
@@ -27,6 +30,18 @@ def rates(table) -> int:
 def runs(found: Iterable[Trajectory]) -> int:
     """Number of runs that took steps to the end of a settled window."""
     return sum(run.cost["steps"] > 0 and run.outcome.rate is not None for run in found)
+
+
+def require_run(what: str, run: Trajectory, settles: bool = True) -> None:
+    """Raise NotDone for a ``run`` that failed, took no step, did not settle although it ``settles``, or
+    that stepped its elements in less time than any processor needs."""
+    if run.status in FAILED or not run.cost["steps"] > 0:
+        raise NotDone(f"{what}: {run.status} after {run.cost['steps']:,} steps; {run.message}")
+    if settles:
+        require(f"settled runs of {what}", runs([run]), 1)
+    if stepped := run.cost.get("element_steps", 0):
+        spent = 1e9 * run.cost["cpu_s"] / stepped
+        require_at_least(f"ns per element and step of {what}", spent, SHORTEST)
 
 
 def require_at_least(what: str, value: float, least: float) -> None:

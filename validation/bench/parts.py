@@ -19,6 +19,7 @@ from tipoff.scenes.scene import load
 from tipoff.studies.render.table import Cells, Column, Table
 from tipoff.workspace import machine
 from tipoff.workspace.progress import say
+from validation.bench import done
 from validation.bench.reference import Again, pressed
 
 SIZES = (0.008, 0.004, 0.002, 0.001)  # m
@@ -54,7 +55,7 @@ def table(found: dict) -> Table:
     """All rows."""
     note = (
         "Parts of one step of the finite elements with all rails stepped and eight pad faces pressed, "
-        f"processor time of one thread, median of {found['repeats']} repeats. Samples and checks are "
+        f"processor time of one thread, median of {found['repeats']} repeats of {_STEPS} steps. Samples and checks are "
         "divided by the steps from one sample to the next, and are not in the time of the step."
     )
     return Table.of(found["rows"], _COLUMNS, notes=(note,))
@@ -78,7 +79,7 @@ def _measured(size: float, repeats: int) -> dict:
         "step": _steps(loop, lambda stepper: None),
         "free": _steps(loop, _wait),
         "loose": _steps(loose, _wait),
-        "bodies": _steps(loose, _rest),
+        "bodies": _steps(loose, _rest, stepped=False),
         "elements": _elements(loose),
         "sample": _sample(loop),
     }
@@ -87,9 +88,14 @@ def _measured(size: float, repeats: int) -> dict:
         for name, call in calls.items():
             times[name].append(1e6 * call())
     median = {name: statistics.median(values) for name, values in times.items()}
+    elements = len(system.mesh.cells)
+    for name in ("step", "free", "loose", "elements"):
+        spent = 1e3 * median[name] / elements
+        done.require_at_least(f"ns per element and step, {name}", spent, done.SHORTEST)
     return {
         "element_size_m": size,
-        "elements": len(system.mesh.cells),
+        "elements": elements,
+        "steps_timed": _STEPS,
         "step_us": median["step"],
         "elements_us": median["elements"],
         "nodes_us": median["loose"] - median["bodies"] - median["elements"],
@@ -119,9 +125,10 @@ def _rest(stepper) -> None:
     stepper.state.stepped.in_use[0] = 0
 
 
-def _steps(loop, change: Callable) -> Callable[[], float]:
-    """A call that gives the time (s) of a step from the start of ``loop`` on, after a ``change``."""
-    again = Again(loop)
+def _steps(loop, change: Callable, stepped: bool = True) -> Callable[[], float]:
+    """A call that gives the time (s) of a step from the start of ``loop`` on, after a ``change`` by which
+    all rails are ``stepped`` or none. Raises NotDone for other steps, or steps of other rails."""
+    again = Again(loop, stepped)
 
     def timed() -> float:
         again.rewind()
@@ -165,11 +172,13 @@ def _sample(loop) -> Callable[[], float]:
     stepper, recorded, team = loop.stepper, loop.recorded, loop.setup.team
 
     def timed() -> float:
-        began = time.thread_time()
+        rows, began = len(recorded.rows), time.thread_time()
         for _ in range(_CALLS):
             row = observe.sample(stepper.now, team, stepper.state, *stepper.moving())
             faults.fault(stepper, recorded, row)
             recorded.add_sample(stepper, row)
-        return (time.thread_time() - began) / _CALLS
+        spent = time.thread_time() - began
+        done.require("samples", len(recorded.rows) - rows, _CALLS)
+        return spent / _CALLS
 
     return timed

@@ -30,8 +30,6 @@ SIZES = (0.002, 0.001, 0.0005)  # m: 19,360, 154,880 and 1,239,040 elements of t
 _BASELINE_MOST = 160_000
 _WORK = 4e7  # elements times steps of one timed repeat
 _PRESSED = 1e-4  # s, shorter than the contact
-# ns per element and step on one thread: no processor does the 240 multiplications of an element in less
-_SHORTEST = 0.5
 
 
 def pressed(scene: Scene) -> Scene:
@@ -122,7 +120,7 @@ def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dic
     median = {name: statistics.median(values) for name, values in times.items()}
     for name, value in median.items():
         together = 1 if name in ("alone", "baseline") else processors()
-        done.require_at_least(f"ns per element and step, {name}", value * together, _SHORTEST)
+        done.require_at_least(f"ns per element and step, {name}", value * together, done.SHORTEST)
     state, threads = loops["pressed"].stepper.state, loops["pressed"].setup.team.size
     return {
         "elements": elements,
@@ -150,10 +148,11 @@ def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dic
 
 
 class Again:
-    """Makes steps of a loop; ``rewind`` returns to its start."""
+    """Makes steps of a loop, with all rails ``stepped`` or none; ``rewind`` returns to its start."""
 
-    def __init__(self, loop):
+    def __init__(self, loop, stepped: bool = True):
         self.loop = loop
+        self.nodes = int(loop.setup.system.rail.blocks[-1]) if stepped else 0
         self.start = {
             name: array.copy() for name, array in checkpoint.arrays(checkpoint.evolving(loop))
         }
@@ -162,14 +161,16 @@ class Again:
         """Make ``count`` steps; returns how many times all elements were stepped. Raises NotDone for
         other steps."""
         stepper, recorded = self.loop.stepper, self.loop.recorded
-        steps, parts, taken = stepper.steps, recorded.parts, 1
+        steps, parts, nodes, taken = stepper.steps, recorded.parts, recorded.node_steps, 1
         while taken and stepper.steps - steps < count:
             taken = stepper.steps
             left = min(count - (taken - steps), substeps.adapt(stepper))
             self.loop.advance_steps(left)
             taken = stepper.steps - taken
         done.require("steps of the reference", stepper.steps - steps, count)
-        return recorded.parts - parts
+        parts = recorded.parts - parts
+        done.require("nodes that were stepped", recorded.node_steps - nodes, parts * self.nodes)
+        return parts
 
     def rewind(self) -> None:
         """Back to the start: state, clock, substeps and counts."""

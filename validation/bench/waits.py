@@ -102,12 +102,14 @@ def _timed(name: str, call: Callable[[], object]) -> tuple[float, float]:
 
 def require_whole(name: str, found: object) -> None:
     """Raise NotDone for a result ``found`` of the call ``name`` that lacks a part: a run or a case
-    that did not settle, or a rail compliance without its uncertainty. A command that fails raises an
-    error of its own."""
+    that did not settle, a file that is not there, or a rail compliance without its uncertainty. A command
+    that fails raises an error of its own."""
     if isinstance(found, Trajectory):
         done.require(f"runs in '{name}'", done.runs([found]), 1)
     elif isinstance(found, Dataset):
         done.require(f"cases in '{name}'", done.rates(found), _CASES)
+    elif isinstance(found, Path):
+        done.require(f"files of '{name}'", found.is_file(), True)
     elif isinstance(found, RailCompliance) and found.not_known:
         raise done.NotDone(f"{name}: its uncertainty is not known: {found.not_known}")
 
@@ -126,7 +128,7 @@ def _calls(folder: Path) -> dict[str, Callable[[], object]]:
     rail = tipoff.compliance(scene)
     scenes = [load("reference").replace(row) for row in varied(20)]
     another, cases = itertools.cycle(scenes), varied(_CASES, seed=7)
-    long = long_rail(_LONG)
+    long = long_rail(_LONG).replace({"duration": None})  # until its rates have settled
     long_walls = tipoff.compliance(long, 4.0 * _ELEMENT)
     run = partial(tipoff.run, sensitivity=False)  # one run, without those that disturb it
     return {
@@ -153,13 +155,18 @@ def _files(folder: Path) -> dict[str, Callable[[], object]]:
     rows = (f"{time:.9f},{newton:.6f}\n" for time, newton in zip(at, force))
     text, numbers = "time_s,force_N\n" + "".join(rows), itertools.count(1)
 
+    def saved() -> Path:
+        path.unlink(missing_ok=True)
+        ended.save(path)
+        return path
+
     def with_log() -> Scene:
         # another last row each time: a curve that was read before is not read again
         log.write_text(f"{text}0.06,{next(numbers)}\n", encoding="utf-8")
         return load("tiny").replace({"thrust": {"kind": "measured", "file": str(log)}})
 
     return {
-        "Trajectory.save": lambda: ended.save(path),
+        "Trajectory.save": saved,
         "Trajectory.load": lambda: tipoff.Trajectory.load(path),
         f"scene with a new thrust log of {_LOG_ROWS:,} rows": with_log,
     }

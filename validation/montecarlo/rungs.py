@@ -24,8 +24,10 @@ from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.populations import draws, population
 from tipoff.studies.populations.draws import Kept, Rows
 from tipoff.studies.populations.population import Surrogate
+from tipoff.workspace.errors import FAILED
 from tipoff.workspace.run import Run, execute
 from tipoff.workspace.study import Study
+from validation.bench import done
 
 OTHERS = (
     Numerics(modes=FEWEST, degree=2),
@@ -136,9 +138,18 @@ def _springs(study: Study, model: Surrogate, rows: Rows) -> list[Rung]:
 
 def _seconds(requested: list[Run]) -> float:
     """Mean processor seconds of a run. Stored times may be of other days, and first runs include
-    the loading of kernels. So each run is made twice more, and the shorter time counts."""
-    times = ([execute(run).cost["cpu_s"] for run in requested] for _ in range(_REPEATS))
-    return statistics.fmean(map(min, *times))
+    the loading of kernels. So each run is made twice more, and the shorter time counts. A failed run
+    is no run to its end. Raises NotDone if all fail."""
+    rounds = [[execute(run) for run in requested] for _ in range(_REPEATS)]
+    times = []
+    for request, runs in zip(requested, zip(*rounds)):
+        if runs[0].status not in FAILED:
+            for run in runs:
+                done.require_run(request.label, run, settles=False)
+            times.append(min(run.cost["cpu_s"] for run in runs))
+    if not times:
+        raise done.NotDone(f"none of {len(requested)} runs took its steps to the end")
+    return statistics.fmean(times)
 
 
 def _wider(request: Run, count: int, change: float) -> Run:

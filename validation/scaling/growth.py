@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 
 from tipoff.mechanics.model_names import COMPLIANT, FINITE_ELEMENTS, SPRINGS
+from tipoff.results.trajectory import Trajectory
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.rail import MeshTable
 from tipoff.scenes.scene import Scene
@@ -33,6 +34,7 @@ from tipoff.workspace.progress import Board
 from tipoff.workspace.run import Run
 from tipoff.workspace.study import Study
 from tipoff.workspace.timing import timed
+from validation.bench import done
 from validation.scaling.results import (
     EffectTime,
     EffectTimes,
@@ -95,7 +97,7 @@ def elements(study: Study, name: str) -> MeshGrowth:
         study.store.fill("growth, elements", [run for group in wanted.values() for run in group])
     )
     points = [
-        _median([next(runs).cost for _ in group], "cpu_s", element_size_m=size)
+        _median([next(runs) for _ in group], "cpu_s", element_size_m=size)
         for size, group in wanted.items()
     ]
     law, finest = fitted(FINITE_ELEMENTS, points), fitted(FINITE_ELEMENTS, points[-2:])
@@ -111,12 +113,16 @@ def elements(study: Study, name: str) -> MeshGrowth:
     )
 
 
-def _median(costs: list[dict], time: str, n: int | None = None, **others: Any) -> Timing:
-    """Repeats of a run as one timing; default ``n``: the number of elements."""
+def _median(runs: list[Trajectory], time: str, n: int | None = None, **others: Any) -> Timing:
+    """Repeats of a run as one timing; default ``n``: the number of elements. Raises NotDone for a run
+    whose time says nothing."""
+    for run in runs:
+        done.require_run(f"a run of {n or run.cost.get('elements')}", run, settles=False)
+    costs = [run.cost for run in runs]
     seconds = statistics.median(cost[time] for cost in costs)
     steps = statistics.median(cost["steps"] for cost in costs)
     return Timing(
-        n=costs[0]["elements"] if n is None else n,
+        n=int(costs[0]["elements"]) if n is None else n,
         steps=steps,
         repeats=len(costs),
         time_s=seconds,
@@ -166,7 +172,7 @@ def over_pads(model: str, runs: list[Run], counts: list[int], board: Board) -> G
         rounds.append([timed(run)[0] for run in runs])
         progress((repeat + 1) / _REPEATS[fidelity])
     points = [
-        _median([found.cost for found in repeats], _TIME[fidelity], count, status=repeats[0].status)
+        _median(list(repeats), _TIME[fidelity], count, status=repeats[0].status)
         for count, repeats in zip(counts, zip(*rounds))
     ]
     law = fitted(model, points)

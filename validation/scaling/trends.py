@@ -20,9 +20,12 @@ from tipoff.scenes.faults import SceneError
 from tipoff.scenes.rail_base import HeldBySpans
 from tipoff.scenes.scene import Scene
 from tipoff.workspace.compiling import warm_up
+from tipoff.workspace.errors import FAILED
 from tipoff.workspace.progress import Board
 from tipoff.workspace.run import execute
 from tipoff.workspace.study import Study
+from tipoff.workspace.words import counted
+from validation.bench import done
 from validation.scaling.growth import coarse_walls, power_law
 from validation.scaling.results import Trend
 
@@ -87,7 +90,13 @@ def _over_cases_and_threads(study: Study, name: str, board: Board) -> list[Trend
 
     def call(count: int, threads: int) -> Callable[[], object]:
         pieces = [rows[begin : min(begin + PIECE, count)] for begin in range(0, count, PIECE)]
-        return lambda: sum(map(len, completed(family, pieces, threads)))
+
+        def run() -> None:
+            found = [case for piece in completed(family, pieces, threads) for case in piece]
+            stepped = sum(case.steps > 0 and case.status not in FAILED for case in found)
+            done.require(f"cases on {counted(threads, 'thread')}", stepped, count)
+
+        return run
 
     call(1, 1)()  # compiles its kernels
     of_cases = seconds([call(count, 1) for count in _CASES], time.process_time)
@@ -105,10 +114,20 @@ def _over_cases_and_threads(study: Study, name: str, board: Board) -> list[Trend
 def _of_reference_over_threads(study: Study, name: str, board: Board) -> Trend:
     run, threads = study.coarse(name), thread_counts()
     warm_up(run)
-    times = seconds(
-        [partial(execute, run, None, number) for number in threads],
-        time.perf_counter,
-    )
+
+    def call(number: int) -> Callable[[], object]:
+        def once() -> None:
+            found = execute(run, None, number)
+            done.require_run(
+                f"finite elements on {counted(number, 'thread')}", found, settles=False
+            )
+            ends.add((found.status, int(found.cost["steps"])))
+            done.require("ends of equal runs", len(ends), 1)
+
+        return once
+
+    ends: set[tuple[str, int]] = set()
+    times = seconds([call(number) for number in threads], time.perf_counter)
     board.finished(FINITE_ELEMENTS, f"up to {threads[-1]} threads timed")
     return _trend(FINITE_ELEMENTS, "threads", threads, times, -1.0)
 

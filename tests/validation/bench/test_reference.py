@@ -3,6 +3,7 @@ measured."""
 
 import functools
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,11 +13,16 @@ from typer.testing import CliRunner
 import tipoff
 from tipoff import highfi, lowfi
 from tipoff.highfi import Numerics
+from tipoff.highfi.dynamics.setup import set_up
+from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.stepper import Stepper, Taken
+from tipoff.highfi.dynamics.system import build
+from tipoff.highfi.simulation import Loop
 from tipoff.highfi.statics import assembly
 from tipoff.lowfi.dynamics import cases
 from tipoff.mechanics.ending import DONE
 from tipoff.mechanics.model_names import COMPLIANT
+from tipoff.mechanics.outcome import Outcome
 from tipoff.scenes import load
 from tipoff.studies import registry
 from tipoff.studies.report.assembly import render
@@ -127,6 +133,47 @@ def test_a_loop_that_returns_early_has_no_time(tmp_path, monkeypatch):
     monkeypatch.setattr(Stepper, "advance", lambda self, count: Taken(0, 0, 0.0, 0.0))
     with pytest.raises(NotDone, match="steps of the reference: 0 done, 5 asked for"):
         reference.run(tmp_path, (0.008,), repeats=1, steps=50)
+
+
+def test_steps_of_some_rails_alone_have_no_time(tmp_path, monkeypatch):
+    """Rails at rest are not stepped in a run. Control: all of them are, where there is a time."""
+    made = reference.Again(_loop())
+    made(3)
+    resting = reference.Again(_loop(), stepped=False)
+    with pytest.raises(NotDone, match=r"nodes that were stepped: [\d,]+ done, 0 asked for"):
+        resting(3)
+    part = _loop()
+    part.stepper.state.stepped.in_use[0] -= 1
+    with pytest.raises(NotDone, match="nodes that were stepped"):
+        reference.Again(part)(3)
+
+
+def _loop() -> Loop:
+    """Pressed rails of ``tiny`` in coarse elements at their start."""
+    scene, numerics = reference.pressed(load("tiny").condition("phi15")), Numerics(0.016)
+    system = build(scene, numerics, highfi.prepare(scene, numerics))
+    loop = Loop(set_up(scene, system, choose(system, scene, numerics), 1))
+    loop.begin()
+    return loop
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ({"status": "diverged"}, "diverged after 10 steps"),
+        ({"cost": {"steps": 0}}, "exited after 0 steps"),
+        ({"outcome": Outcome()}, "settled runs of it: 0 done, 1 asked for"),
+        ({"cost": {"steps": 10, "element_steps": 10**9, "cpu_s": 0.01}}, "0.01, less than 0.5"),
+    ],
+)
+def test_a_run_that_did_not_do_its_work_has_no_time(change, words):
+    """Control: one that did."""
+    cost = {"steps": 10, "element_steps": 1000, "cpu_s": 0.01}
+    rated = Outcome(rate=(0.0, 0.0, 0.0))
+    whole = {"status": "exited", "message": "", "cost": cost, "outcome": rated}
+    done.require_run("it", SimpleNamespace(**whole))
+    with pytest.raises(NotDone, match=words):
+        done.require_run("it", SimpleNamespace(**whole | change))
 
 
 def test_a_case_that_is_left_out_has_no_time():

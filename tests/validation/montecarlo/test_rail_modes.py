@@ -14,6 +14,7 @@ import pytest
 from tests.lowfi.compliance import REFERENCE, handmade
 from tests.studies.limits import in_memory
 from tests.studies.shown import html
+from tests.validation.montecarlo.test_rungs import ran
 from tipoff.lowfi.ensemble import fill, pilot, store
 from tipoff.lowfi.ensemble.batch import Case
 from tipoff.lowfi.numerics import AUTO
@@ -175,9 +176,7 @@ def test_each_draw_chooses_its_own_modes_beside_those_of_the_population(study, w
     of the population, one with all, one with more clearance, and three with other settings."""
     monkeypatch.setattr(Study, "rail_compliance", lambda *_, **__: VIBRATING)
     took = {0: 1e-3, 3: 2e-3, HELD: 3e-3, AUTO: 4e-3, 4: 5e-3}
-    monkeypatch.setattr(
-        rungs, "execute", lambda run: SimpleNamespace(cost={"cpu_s": took[run.numerics.modes]})
-    )
+    monkeypatch.setattr(rungs, "execute", lambda run: ran(took[run.numerics.modes]))
     runs = watch(3)
     montecarlo.run(study, OPTIONS)
     found = read(tails, study, Options(OPTIONS, 10))

@@ -17,6 +17,7 @@ from tipoff.studies.populations import draws
 from tipoff.studies.populations.population import Surrogate
 from tipoff.workspace.settings import Settings
 from tipoff.workspace.study import Study
+from validation.bench.done import NotDone
 from validation.montecarlo import ladder_page, paired_statistics, rungs
 from validation.montecarlo.rungs import OTHERS, Rung, Rungs
 
@@ -79,6 +80,11 @@ def test_more_clearance_keeps_the_modes_of_the_draw(study, found, rate):
     assert np.abs(np.subtract(wider, same)).max() > 1e-6
 
 
+def ran(cpu_s: float, status: str = "exited") -> SimpleNamespace:
+    """A run of this time."""
+    return SimpleNamespace(status=status, message="", cost={"cpu_s": cpu_s, "steps": 1})
+
+
 @pytest.fixture
 def untimed(monkeypatch):
     """No case runs for its time alone."""
@@ -89,7 +95,7 @@ def untimed(monkeypatch):
 def test_runs_of_the_population_are_not_made_again(study, compliance, untimed):
     """A number between none and all has a series of its own, whose runs are those beside the
     reference."""
-    untimed.setattr(rungs, "execute", lambda _: SimpleNamespace(cost={"cpu_s": 1e-3}))
+    untimed.setattr(rungs, "execute", lambda _: ran(1e-3))
     model = Surrogate(study.scene, None, compliance, 7)
     _, _, beside = draws.requests(study, model, ROWS, 1)
     assert not any(study.store.path(run).is_file() for run in beside)
@@ -118,13 +124,24 @@ def test_the_shorter_of_two_times_counts(study, compliance, untimed):
     def execute(run):
         made.append(run.label)
         first = made.count(run.label) == 1
-        return SimpleNamespace(cost={"cpu_s": 9.0 if first else 1e-3 * len(run.label)})
+        return ran(9.0 if first else 1e-3 * len(run.label))
 
     untimed.setattr(rungs, "execute", execute)
     found = rungs.run(study, Surrogate(study.scene, None, compliance, 0), ROWS)
     labels = [f"nominal-draw{place}-compliant-own-modes" for place in range(2)]
     assert found.own.cpu_s == pytest.approx(1e-3 * len(labels[0]))
     assert [label for label in made if label in labels] == 2 * labels
+
+
+def test_a_failed_run_has_no_time(study, compliance, untimed):
+    """Its time would be too short. Control: no other run is left."""
+    times = {"draw0": ran(1e-6, "diverged"), "draw1": ran(2e-3)}
+    untimed.setattr(rungs, "execute", lambda run: times[run.label.split("-")[1]])
+    found = rungs.run(study, Surrogate(study.scene, None, compliance, 0), ROWS)
+    assert found.own.cpu_s == pytest.approx(2e-3)
+    times["draw1"] = times["draw0"]
+    with pytest.raises(NotDone, match="none of 2 runs"):
+        rungs.run(study, Surrogate(study.scene, None, compliance, 0), ROWS)
 
 
 def test_other_settings_have_the_rates_of_single_runs(study, found, rate):
@@ -143,7 +160,7 @@ def test_other_settings_have_the_rates_of_single_runs(study, found, rate):
 
 def test_springs_are_a_rung_of_a_calibrated_study(study, compliance, untimed):
     """On the constants of the calibration."""
-    untimed.setattr(rungs, "execute", lambda _: SimpleNamespace(cost={"cpu_s": 1e-3}))
+    untimed.setattr(rungs, "execute", lambda _: ran(1e-3))
     untimed.setattr(rungs.calibrate, "stored", lambda _: {"key": "of this scene"})
     untimed.setattr(
         rungs.population, "surrogate", lambda study, name: Surrogate(study.scene, None, None)

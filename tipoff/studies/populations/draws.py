@@ -27,6 +27,7 @@ from tipoff.studies.agreement import growth
 from tipoff.studies.populations.population import TOLERANCE, Surrogate
 from tipoff.workspace import kernel_marks
 from tipoff.workspace.announcing import announce
+from tipoff.workspace.errors import FAILED, StudyError
 from tipoff.workspace.run import Run
 from tipoff.workspace.study import Study
 
@@ -126,14 +127,19 @@ def reference(study: Study, label: str, scene: Scene, element_size: float) -> Ru
 
 def seconds_per_case(model: Surrogate, rows: Rows) -> float:
     """Processor seconds of a population of the ``model``, with its modes, for a case of the
-    ``rows``, without compilation."""
+    ``rows`` that takes its steps, without compilation. Raises StudyError without any."""
     numerics = model.numerics(TOLERANCE)
     family = Family(model.scene, None, numerics, model.compliance)
 
     def once(part: Rows) -> float:
         began = time.process_time()
-        list(completed(family, [part], 1))
-        return (time.process_time() - began) / len(part)
+        (cases,) = completed(family, [part], 1)
+        spent = time.process_time() - began
+        # a refused case takes no time and no step
+        stepped = sum(case.steps > 0 and case.status not in FAILED for case in cases)
+        if not stepped:
+            raise StudyError(f"none of {len(part)} timed cases took its steps")
+        return spent / stepped
 
     like = Run(
         "lowfi",
