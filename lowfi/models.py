@@ -1,11 +1,11 @@
 """Options of the two models of the surrogate, ``compliant`` and ``springs``."""
 
-from tipoff.lowfi.contact import thermal_offset
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.model_names import COMPLIANT, SURROGATES
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.rail import GeometryTable, MeshTable
 from tipoff.scenes.rail_compliance import model_of
 from tipoff.scenes.scene import Scene
 
@@ -63,8 +63,7 @@ def require(
                 )
             )
         faults += [
-            (fault.key, fault.given, fault.expected)
-            for fault in thermal_offset.lacking(scene, compliance)
+            (fault.key, fault.given, fault.expected) for fault in _lacking(scene, compliance)
         ]
         if numerics is not None and numerics.count:
             faults.append(
@@ -76,3 +75,30 @@ def require(
             faults.append(("numerics.cells", str(numerics.cells), "none: springs have no cells"))
     if faults:
         raise SceneError([Fault(f"{scene.name}, model {model}", *fault) for fault in faults])
+
+
+def _lacking(scene: Scene, compliance: RailCompliance | None) -> list[Fault]:
+    """Faults of a scene without rail ``compliance`` whose walls are warm or from a file: this
+    package does not read files."""
+    if scene.contact is None or compliance is not None:
+        return []
+    faults = []
+    if scene.thermal is not None:
+        expected = (
+            "a rail compliance (tipoff.compliance(scene)), or its rigid() for contact springs"
+        )
+        faults.append(Fault(scene.name, "thermal", "no rail compliance", expected))
+    elif isinstance(scene.rail, (MeshTable, GeometryTable)):
+        expected = (
+            "tipoff.calibration.rail_compliance.walls(scene), the walls as the file draws them, or "
+            "tipoff.run, which finds them"
+        )
+        given = f"none, and a rail from {scene.rail.path().name}"
+        faults.append(Fault(scene.name, "compliance", given, expected))
+    return faults
+
+
+def require_walls(scene: Scene, compliance: RailCompliance | None) -> None:
+    """Raise SceneError with the faults of ``_lacking``."""
+    if faults := _lacking(scene, compliance):
+        raise SceneError(faults)

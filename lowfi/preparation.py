@@ -8,6 +8,7 @@ from tipoff.lowfi.contact import thermal_offset
 from tipoff.lowfi.contact.compliant import neglected, record
 from tipoff.lowfi.dynamics import cases, integrate, local_error, plan, settle
 from tipoff.lowfi.dynamics.loop import Loop, Plan
+from tipoff.lowfi.models import require_walls
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.model import Model
 from tipoff.mechanics.outcome import Milestones
@@ -44,7 +45,7 @@ def prepare(
     ``compliance`` is of another rail or lacks what the scene needs."""
     settled.require(scene)
     model, modes = models[0], numerics.count
-    thermal_offset.require(scene, compliance)
+    require_walls(scene, compliance)
     found = of_scene(compliance, scene) if compliance and scene.contact else None
     found = found.of_degree(numerics.known_degree or found.degree) if found else None
     common = system.build(

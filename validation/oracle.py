@@ -17,6 +17,7 @@ from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel, njit
 from tipoff.lowfi.contact import thermal_offset
 from tipoff.lowfi.faces import BACK, NUMBER, SIDE_MIDDLE, SIDE_REACH
+from tipoff.lowfi.models import require_walls
 from tipoff.lowfi.system import System, build
 from tipoff.mechanics.laws import contact as law
 from tipoff.mechanics.laws.body_force import acceleration
@@ -94,7 +95,7 @@ def prepared(
     platform_inertia = model.platform.inertia if model.platform is not None else np.eye(3)
     rows = np.zeros((samples + 1, _SIZE))
     rows[0] = _start(model)
-    thermal_offset.require(scene, compliance)
+    require_walls(scene, compliance)
     walls = of_scene(compliance, scene) if compliance and scene.contact else None
     return (
         build(model, thermal_offset=thermal_offset.under_pads(model, walls)),

@@ -22,9 +22,6 @@ from tipoff.kernels.reference import by_reference
 from tipoff.mechanics import drawn_walls
 from tipoff.mechanics.model import Model
 from tipoff.mechanics.rail_compliance import RailCompliance, cubic
-from tipoff.scenes.faults import Fault, SceneError
-from tipoff.scenes.rail import GeometryTable, MeshTable
-from tipoff.scenes.scene import Scene
 
 
 @by_reference
@@ -72,33 +69,6 @@ def _drawn_mean(
             for face, (first, half) in enumerate(zip(origin, model.faces.half_length))
         ]
     )
-
-
-def lacking(scene: Scene, compliance: RailCompliance | None) -> list[Fault]:
-    """Faults of a scene without rail ``compliance`` whose walls are warm or from a file: this
-    package does not read files."""
-    if scene.contact is None or compliance is not None:
-        return []
-    faults = []
-    if scene.thermal is not None:
-        expected = (
-            "a rail compliance (tipoff.compliance(scene)), or its rigid() for contact springs"
-        )
-        faults.append(Fault(scene.name, "thermal", "no rail compliance", expected))
-    elif isinstance(scene.rail, (MeshTable, GeometryTable)):
-        expected = (
-            "tipoff.calibration.rail_compliance.walls(scene), the walls as the file draws them, or "
-            "tipoff.run, which finds them"
-        )
-        given = f"none, and a rail from {scene.rail.path().name}"
-        faults.append(Fault(scene.name, "compliance", given, expected))
-    return faults
-
-
-def require(scene: Scene, compliance: RailCompliance | None) -> None:
-    """Raise SceneError with the faults of ``lacking``."""
-    if faults := lacking(scene, compliance):
-        raise SceneError(faults)
 
 
 @kernel

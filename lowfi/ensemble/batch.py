@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tipoff.lowfi.contact import thermal_offset
 from tipoff.lowfi.dynamics import cases, integrate
 from tipoff.lowfi.dynamics.loop import Sampling
 from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
+from tipoff.lowfi.models import require_walls
 from tipoff.lowfi.numerics import AUTO, Numerics, promises_of
 from tipoff.lowfi.preparation import prepare
 from tipoff.lowfi.simulation import solved
@@ -141,7 +141,7 @@ class Family:
             getattr(scene, name) is not getattr(base, name) for name in ("rail", "pads", "thermal")
         )
         if changed and scene.contact is not None:
-            thermal_offset.require(scene, self.compliance)
+            require_walls(scene, self.compliance)
             if self.compliance is not None:
                 rail_compliance.require(self.compliance, scene)
 
