@@ -15,7 +15,8 @@ from tipoff.mechanics.outcome import Milestones
 from tipoff.mechanics.promises import Promises
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes import settled
-from tipoff.scenes.rail_compliance import of_scene
+from tipoff.scenes.effects.friction import require_two_step
+from tipoff.scenes.rail_compliance import of_scene, require_modes
 from tipoff.scenes.scene import Scene
 
 
@@ -48,11 +49,17 @@ def prepare(
     require_walls(scene, compliance)
     found = of_scene(compliance, scene) if compliance and scene.contact else None
     found = found.of_degree(numerics.known_degree or found.degree) if found else None
+    damping = scene.rail.damping.record() if scene.rail.damping is not None else None
+    pressed = None
+    if found is not None and found.flexibility is not None:
+        require_two_step(scene)
+        require_modes(scene.name, found, modes)
+        pressed = record.build(found, model, cells=numerics.cells, modes=modes, damping=damping)
     common = system.build(
         model,
-        compliance=record.under_pads(scene, model, found, modes, numerics.cells),
+        compliance=pressed,
         thermal_offset=thermal_offset.under_pads(model, found),
-        neglected=neglected.watched(scene, found, watches),
+        neglected=neglected.watched(found, damping, watches),
     )
     steps, every = plan.make(model, scene.time_limit, numerics), cases.of_models(common, models)
     if model.initial.settled:

@@ -35,13 +35,13 @@ from tipoff.kernels.reference import by_reference
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.compliant import parts, patterns
 from tipoff.lowfi.contact.compliant.free_vibration import is_pressed, oscillated
-from tipoff.lowfi.contact.compliant.record import damping_of, drag_of
+from tipoff.lowfi.contact.compliant.record import drag_of
 from tipoff.lowfi.contact.compliant.solution import between_stations
 from tipoff.lowfi.contact.springs import outward, pad_point, relative_pose
 from tipoff.lowfi.contact.step_limit import inverse_mass
 from tipoff.lowfi.contact.wall_ends import CLOSING
+from tipoff.mechanics.laws.structural_damping import Damping
 from tipoff.mechanics.rail_compliance import RailCompliance
-from tipoff.scenes.scene import Scene
 
 MODE = np.dtype(
     [
@@ -70,16 +70,19 @@ class Neglected(NamedTuple):
     effect: np.ndarray  # (n,) rad/s, of the mode of this number on all rails
 
 
-def watched(scene: Scene, found: RailCompliance | None, watches: bool) -> Neglected | None:
-    """Record of the modes of the rail compliance ``found`` of ``scene``. If no run ``watches`` them,
-    it has no modes, so that the kernels are the same. None for rigid walls."""
+def watched(
+    found: RailCompliance | None, damping: Damping | None, watches: bool
+) -> Neglected | None:
+    """Record of the modes of the rail compliance ``found`` with the ``damping`` of its rails. If
+    no run ``watches`` them, it has no modes, so that the kernels are the same. None for rigid
+    walls."""
     if found is None or found.flexibility is None:
         return None
     if not watches:
         none = zeros((0, 0))
         return build(none, none, zeros((0, 0, 0, 0, 0)))
     square = found.frequency**2
-    return build(square, drag_of(square, damping_of(scene)), found.shapes)
+    return build(square, drag_of(square, damping), found.shapes)
 
 
 def build(square: np.ndarray, drag: np.ndarray, cubic: np.ndarray) -> Neglected:

@@ -12,9 +12,6 @@ from tipoff.mechanics import rail_compliance as data
 from tipoff.mechanics.laws.structural_damping import Damping
 from tipoff.mechanics.model import Model
 from tipoff.mechanics.rail_compliance.patterns import count
-from tipoff.scenes.effects.friction import require_two_step
-from tipoff.scenes.rail_compliance import require_modes
-from tipoff.scenes.scene import Scene
 
 # Columns of a face's lever: penetration (m) of its flat face at the middle, and its change per xi
 # and eta; distance of xi on the wall ahead of xi on the pad; middle and half length, in xi, of the part
@@ -121,28 +118,6 @@ class Compliance(NamedTuple):
     thermal_offset: ThermalOffset  # without stations for rails that are not warm
     drawn: DrawnWalls  # without places for walls that are straight as drawn
     workspace: Workspace
-
-
-def under_pads(
-    scene: Scene,
-    model: Model,
-    found: data.RailCompliance | None,
-    modes: int,
-    cells: int,
-) -> Compliance | None:
-    """Record of the compliance ``found`` of ``scene``, with so many vibrating ``modes`` of each
-    rail and ``cells`` along each edge of a face; None for rigid walls. Raises SceneError for a
-    compliance without these modes, and for friction with sticking."""
-    if found is None or found.flexibility is None:
-        return None
-    require_two_step(scene)
-    require_modes(scene.name, found, modes)
-    return build(found, model, cells=cells, modes=modes, damping=damping_of(scene))
-
-
-def damping_of(scene: Scene) -> Damping | None:
-    """Damping of the rails of ``scene``."""
-    return scene.rail.damping.record() if scene.rail.damping is not None else None
 
 
 def drag_of(square: np.ndarray, damping: Damping | None) -> np.ndarray:
