@@ -157,6 +157,8 @@ class Chain(Layered):
         sizes = [part.stop - part.start for part in self._parts]
         layer = np.repeat(np.arange(len(sizes)), sizes)
         places = LocalLoads(csc_array(csr_array(loads)[self._order]), width, layer)
+        if not places.loaded.size:
+            return np.zeros((len(pairs), width, width))
         begin = places.begin
         # The second place of a pair is that which begins later.
         turned = begin[pairs[:, 0]] > begin[pairs[:, 1]]

@@ -106,6 +106,19 @@ def test_displacements_under_places_are_those_of_dense_matrices(stiffness, share
     assert seen == sorted(seen) and seen[-1] == 1.0
 
 
+def test_places_without_a_load_do_not_move(stiffness):
+    """As over a mount alone, beside others and alone."""
+    order = chain.layers(csr_array(stiffness))
+    factor, loads = chain.Chain(stiffness, order), np.zeros((stiffness.shape[0], 2 * WIDTH))
+    pairs = np.array([[0, 0], [0, 1], [1, 0], [1, 1]])
+    assert not factor.under(csc_array(loads), pairs, WIDTH, lambda _: None).any()
+    loads[order[-2], :WIDTH] = 1.0
+    found = factor.under(csc_array(loads), pairs, WIDTH, lambda _: None)
+    own = loads[:, :WIDTH]
+    exact = own.T @ np.linalg.solve(stiffness.toarray(), own)
+    assert found[0] == pytest.approx(exact, rel=1e-6) and not found[1:].any()
+
+
 def test_both_factors_give_the_same_compliance(monkeypatch):
     def found():
         return compliance.of_rails(
