@@ -9,13 +9,12 @@ these.
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tipoff.highfi.compiled import compiled_effects
     from tipoff.highfi.compliance import condense
     from tipoff.highfi.dynamics.checkpoint import CheckpointError
     from tipoff.highfi.numerics import Numerics
     from tipoff.highfi.simulation import prepare, run
 
-__all__ = ["CheckpointError", "Numerics", "compiled_effects", "condense", "prepare", "run"]
+__all__ = ["CheckpointError", "Numerics", "condense", "prepare", "run"]
 
 
 def __getattr__(name: str) -> Any:
@@ -25,8 +24,6 @@ def __getattr__(name: str) -> Any:
             from tipoff.highfi.dynamics import checkpoint as module
         case "Numerics":
             from tipoff.highfi import numerics as module
-        case "compiled_effects":
-            from tipoff.highfi import compiled as module
         case "condense":
             from tipoff.highfi import compliance as module
         case "prepare" | "run":

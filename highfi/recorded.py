@@ -1,12 +1,13 @@
 """What is recorded of a run of the reference: its samples, why it stopped, and its costs."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from tipoff.highfi.dynamics import monitor, pushers
 from tipoff.highfi.dynamics.stepper import Stepper, Taken
-from tipoff.highfi.state.records import TOTAL
+from tipoff.highfi.state.records import COUNTED, TOTAL
 from tipoff.highfi.stress.peak import Peak, no_peak
 from tipoff.kernels import rotation
 
@@ -14,9 +15,10 @@ from tipoff.kernels import rotation
 def _work(stepper: Stepper) -> np.ndarray:
     """Work (2,) J since ignition. That of pushers comes from their potential; its difference from
     the integrated one counts as axial, because it is an error of the axial motion."""
-    found, law = stepper.state.work.copy(), stepper.setup.system.pushers
-    if law is not None and stepper.state.pushing is not None:
-        found["thrust"] += pushers.work(law, stepper.state.pushing) - found["thrust"][TOTAL]
+    found, pushing = stepper.state.work.copy(), stepper.state.pushing
+    if pushing.segment.size:
+        work = pushers.work(stepper.setup.system.pushers, pushing)
+        found["thrust"] += work - found["thrust"][TOTAL]
     return found
 
 
@@ -71,9 +73,10 @@ class Recorded:
         self.divided_steps += taken.whole if stepper.substeps > 1 else 0
         self.other_cpu += taken.other_cpu
 
-    def cost(self, stepper: Stepper) -> dict[str, float]:
+    def cost(self, stepper: Stepper) -> dict[str, Any]:
         """Steps, savings and neglected vibration of rails at rest, and the cost of friction.
-        ``element_steps``: elements that were stepped, summed over long steps and substeps."""
+        ``element_steps``: elements that were stepped, summed over long steps and substeps;
+        ``evaluations``: how often the law of each effect was evaluated, never for an absent one."""
         system = stepper.setup.system
         whole = max(stepper.steps, 1) * stepper.state.stepped.block.size
         elements, nodes = len(system.operator.cells), int(system.rail.blocks[-1])
@@ -85,5 +88,6 @@ class Recorded:
             "friction_divided_steps": self.divided_steps,
             "stepped_share": self.block_steps / whole,
             "element_steps": round(self.node_steps * elements / nodes),
+            "evaluations": dict(zip(COUNTED, stepper.state.evaluated.tolist())),
             "left_out_m": float(stepper.jolts.most[0]),
         }

@@ -17,17 +17,6 @@ from tipoff.lowfi.contact.springs import relative_pose
 from tipoff.lowfi.contact.step_limit import inverse_mass
 from tipoff.mechanics.laws import pushers as law
 
-_NONE = law.Pushers(
-    direction=np.zeros((0, 3)),
-    point=np.zeros((0, 3)),
-    origin=np.zeros(0),
-    first=np.zeros(1, dtype=np.int64),
-    travel=np.zeros(0),
-    force=np.zeros(0),
-    energy=np.zeros(0),
-    friction=np.zeros(0),
-    mass=None,
-)
 _NEAR = 1e-12  # m, distance from a knot at which it counts as passed
 
 
@@ -52,17 +41,15 @@ class Inertia(NamedTuple):
     pairs: np.ndarray  # (n,) N
 
 
-def pushing(pushers: law.Pushers | None) -> Pushing:
+def pushing(pushers: law.Pushers) -> Pushing:
     """A record for one run of ``pushers``, which may be none."""
-    pushers = pushers or _NONE
     count = len(pushers.point)
-    mass = np.zeros(0) if pushers.mass is None else pushers.mass
     return Pushing(
-        law=pushers._replace(mass=mass),
+        law=pushers,
         segment=np.zeros(count, dtype=np.int64),
         before=np.zeros(count),
         after=np.zeros(count),
-        inertia=_inertia(mass.size),
+        inertia=_inertia(pushers.mass.size),
     )
 
 

@@ -8,17 +8,16 @@ from tipoff.kernels.reference import by_reference
 from tipoff.lowfi import faces
 from tipoff.lowfi.contact.compliant.neglected import Neglected
 from tipoff.lowfi.contact.compliant.record import Compliance
-from tipoff.lowfi.contact.springs import SMOOTH
 from tipoff.lowfi.contact.thermal_offset import ThermalOffset
 from tipoff.lowfi.pushers import Pushing, pushing
 from tipoff.mechanics import ledger
+from tipoff.mechanics.absent import NO_FORCE, NO_LATCH, NO_PUSHERS, SMOOTH, Offset, offset
 from tipoff.mechanics.laws.body_force import BodyForce
 from tipoff.mechanics.laws.contact import NO_CONTACT, ContactLaw
 from tipoff.mechanics.laws.friction import Friction
 from tipoff.mechanics.laws.hold_down import HoldDown
 from tipoff.mechanics.laws.sticking import Sticking
 from tipoff.mechanics.laws.thrust import Thrust, complete
-from tipoff.mechanics.laws.thrust_offset import ThrustOffset
 from tipoff.mechanics.model import Model
 
 # Effects whose evaluations a run counts.
@@ -48,9 +47,7 @@ COUNTED = (
     "thermal",
     "thrust_offset",
 )
-NO_LATCH = HoldDown(release=-np.inf, line=(0.0, 0.0), is_stop=False)
 _NO_STICKING = Sticking(static=0.0, dynamic=0.0, stiffness=0.0, damping=0.0, capture_speed=1.0)
-_NO_FORCE = BodyForce(0.0, 0.0, 0.0)
 
 
 @by_reference
@@ -60,21 +57,6 @@ class Body(NamedTuple):
     mass: float  # kg
     inertia: np.ndarray  # (3, 3) kg m2, about the mass centre, in body axes
     inverse_inertia: np.ndarray  # (3, 3) 1/(kg m2)
-
-
-class Offset(NamedTuple):
-    """Line of action of the thrust, in body axes."""
-
-    acts: bool  # else the line is along the body's x axis through the mass centre
-    direction: tuple  # unit vector
-    arm: tuple  # m, from the actual mass centre
-
-
-def offset(thrust_offset: ThrustOffset | None) -> Offset:
-    """The line of action of a thrust."""
-    if thrust_offset is None:
-        return Offset(False, (1.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    return Offset(True, *thrust_offset)
 
 
 @by_reference
@@ -136,7 +118,7 @@ def build(
         rail_start=float(model.rail_start),
         rail_end=float(model.rail_end),
         thrust=complete(model.thrust),
-        pushing=pushing(model.pushers),
+        pushing=pushing(model.pushers or NO_PUSHERS),
         reacts_on_platform=model.reacts_on_platform,
         thrust_offset=offset(model.thrust_offset),
         hold_down=model.hold_down or NO_LATCH,
@@ -145,7 +127,7 @@ def build(
         has_contact=model.contact is not None or compliance is not None,
         is_compliant=True if compliance is not None else None,
         friction=friction if isinstance(friction, Friction) else SMOOTH,
-        body_force=model.body_force or _NO_FORCE,
+        body_force=model.body_force or NO_FORCE,
         evaluated=np.zeros(len(COUNTED), dtype=np.int64),
         neglected=neglected,
     )

@@ -3,15 +3,12 @@
 Loops of a family share most of their code, which a process compiles once.
 """
 
-from tests.highfi.contact.test_deformed_wall import Pressed
-from tests.highfi.dynamics.test_mounts import DAMPED, SOFT
-from tests.highfi.support import COARSE, begun, tiny
+from tests.highfi.contact.test_deformed_wall import RELIEF, Pressed, scene, wall
+from tests.highfi.support import COARSE, begun, loop_on, tiny
 from tests.lowfi.compliance import REFERENCE, reference_compliance
-from tests.pushed import SPRING
 from tipoff import highfi, lowfi
 from tipoff.mechanics.rail_compliance import LOW_DEGREE
 
-NO_FORCE = {"kind": "constant", "force": 0.0, "duration": 1e-3}
 FIXED = {"platform": None}
 FOUR = lowfi.Numerics(modes=4)
 
@@ -43,21 +40,6 @@ def fixed_rails() -> None:
     begun(tiny(platform=None))
 
 
-def fixed_rails_under_a_curve() -> None:
-    """The same, with the curve of a thrust that has no offset."""
-    begun(tiny(platform=None, thrust=NO_FORCE, thrust_offset=None))
-
-
-def damped_rails() -> None:
-    """The reference with structural damping."""
-    begun(tiny(**DAMPED))
-
-
-def rails_on_joints() -> None:
-    """The reference with soft mounts."""
-    begun(tiny(**SOFT))
-
-
 def hexahedra() -> None:
     """The reference on hexahedra that are no extrusion."""
     Pressed("twisted").energy((0.0, 0.0, 0.0))
@@ -66,6 +48,16 @@ def hexahedra() -> None:
 def tetrahedra() -> None:
     """The reference on tetrahedra."""
     Pressed("tetrahedra").energy((0.0, 0.0, 0.0))
+
+
+def hexahedra_on_a_fixed_platform() -> None:
+    """The same without a platform."""
+    loop_on(scene(RELIEF).replace(FIXED), wall("twisted")).stepper.evaluate()
+
+
+def tetrahedra_on_a_fixed_platform() -> None:
+    """The same without a platform."""
+    loop_on(scene(RELIEF).replace(FIXED), wall("tetrahedra")).stepper.evaluate()
 
 
 def springs() -> None:
@@ -78,21 +70,14 @@ def springs_on_a_fixed_platform() -> None:
     lowfi.run(REFERENCE.replace(FIXED), "springs")
 
 
-def pushed_from_rails() -> None:
-    """The same in the reference."""
-    begun(tiny(contact=None, friction=None, thrust=SPRING))
-
-
 COMPLIANT = (compliant, compliant_cases, compliant_on_a_fixed_platform)
 FINITE_ELEMENTS = (
     finite_elements,
     fixed_rails,
-    fixed_rails_under_a_curve,
-    damped_rails,
-    rails_on_joints,
     hexahedra,
     tetrahedra,
-    pushed_from_rails,
+    hexahedra_on_a_fixed_platform,
+    tetrahedra_on_a_fixed_platform,
 )
 SPRINGS = (springs, springs_on_a_fixed_platform)
 FAMILIES = (FINITE_ELEMENTS, COMPLIANT, SPRINGS)  # the longest first

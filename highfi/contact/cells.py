@@ -10,6 +10,7 @@ from tipoff.highfi.state.pose import Pose, triple
 from tipoff.highfi.state.records import Active, Surface
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined, kernel
+from tipoff.mechanics.absent import rubs
 from tipoff.mechanics.laws.friction import coefficient_over_speed
 from tipoff.mechanics.model import Faces
 
@@ -212,6 +213,7 @@ def press(touch, friction, face, place, spot):
     slope_x, slope_y = wall.slopes(surface, spot.facet, spot.r, spot.s, spot.height)
     # Outward gradient of the penetration.
     g = _in_frame(face.axis, -face.sign * slope_x, face.sign, -face.sign * slope_y)
+    touch.load.pressed += 1
     push = touch.interface_stiffness * face.area * spot.share * spot.penetration
     touch.load.stored += 0.5 * push * spot.penetration
     edge = 0.5 * touch.interface_stiffness * face.area * spot.penetration * spot.penetration
@@ -240,14 +242,15 @@ def _in_frame(axis, x, normal, across):
 
 @inlined
 def _friction_on_payload(friction, touch, node, g, arm, push):
-    """Friction force (N) on the payload; zero and not compiled when ``friction`` is None.
+    """Friction force (N) on the payload; zero without friction.
 
     Also sums its moment, and gives each node the opposite force and its damping (N s/m). ``g``:
     gradient of the penetration; ``push`` (N): normal force over the length of ``g``; ``node``:
     numbers and weights of the nodes.
     """
     drag = (0.0, 0.0, 0.0)
-    if friction is not None:
+    if rubs(friction):
+        touch.load.rubbed += 1
         nodes, weight = node
         active = touch.active
         slide = _sliding_velocity(touch, nodes, weight, arm)
@@ -331,7 +334,7 @@ def probe(touch, face):
 @inlined
 def rate_damping(touch, friction):
     """Largest damping / mass (1/s) of a node, for the stability check."""
-    if friction is not None:
+    if rubs(friction):
         active, load = touch.active, touch.load
         first = touch.surface.groups.first_node[touch.group]
         for k in range(first, first + active.node_count[touch.group]):

@@ -49,10 +49,11 @@ from tipoff.highfi.contact.cells import (
 )
 from tipoff.highfi.state.nodes import follow_frame
 from tipoff.highfi.state.pose import triple
-from tipoff.highfi.state.records import AWAY, OVER, UNKNOWN
+from tipoff.highfi.state.records import AWAY, CONTACT, FRICTION, OVER, UNKNOWN
 from tipoff.highfi.state.threads import take
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined, kernel
+from tipoff.mechanics.absent import rubs
 
 # m/s across the rail: a face this far from every facet is skipped until it could arrive
 FASTEST_APPROACH = 10.0
@@ -68,10 +69,10 @@ FASTEST_SLIDE = 1000.0
 
 
 @inlined
-def contact_forces(interface_stiffness, constants, state, active, pose, team):
+def contact_forces(constants, state, active, pose, team):
     """Fill ``state.contact``, ``state.loads``, ``state.face_force`` and ``active``; called by every
     thread of ``team``."""
-    if interface_stiffness is not None:
+    if constants.interface_stiffness > 0.0:
         group = take(team)
         while group < constants.surface.groups.first_face.size - 1:
             _forces_of_group(constants, state, active, pose, group)
@@ -112,6 +113,7 @@ def _clear(load):
         load.normal_force[i] = load.friction_force[i] = 0.0
         load.moment[i] = load.moment_on_rail[i] = load.friction_moment[i] = 0.0
     load.stored = load.damping_rate = 0.0
+    load.pressed = load.rubbed = 0
 
 
 @inlined
@@ -217,7 +219,7 @@ def _check_wall(touch, face, overlap):
 @kernel
 def collect_contact(rail, surface, state, active):
     """Sum up loads, move contact forces of moving nodes into the resistance and
-    ``state.reaction``."""
+    ``state.reaction``, and count the cells."""
     load = state.load[0]
     _clear(load)
     for group in range(surface.groups.first_face.size - 1):
@@ -225,6 +227,8 @@ def collect_contact(rail, surface, state, active):
         first = surface.groups.first_node[group]
         for k in range(first, first + active.node_count[group]):
             _collect_node(rail, state, active.node[k])
+    state.evaluated[CONTACT] += load.pressed
+    state.evaluated[FRICTION] += load.rubbed
 
 
 @inlined
@@ -237,6 +241,8 @@ def _add_load(total, part):
         total.friction_moment[i] += part.friction_moment[i]
     total.stored += part.stored
     total.damping_rate = max(total.damping_rate, part.damping_rate)
+    total.pressed += part.pressed
+    total.rubbed += part.rubbed
 
 
 @inlined
@@ -258,7 +264,7 @@ def friction_power(friction, constants, state, active, pose, acceleration, ahead
     """Power (W) of the present friction at the velocities of ``pose`` and at those of the nodes
     after a kick of ``ahead`` (s), with the ``acceleration`` (m/s2) of the body force."""
     power, load, groups = 0.0, state.load[0], constants.surface.groups
-    if friction is not None:
+    if rubs(friction):
         for i in range(3):
             power += (
                 load.friction_force[i] * pose.velocity[i] + load.friction_moment[i] * pose.rate[i]

@@ -48,41 +48,41 @@ class _Component(NamedTuple):
 
 
 @kernel
-def add_damping(damping, history, rail, state, block, dt, lanes):
-    """Add damping to the elastic force that nodes of ``block`` have as their resistance; not
-    compiled when ``damping`` is None.
+def add_damping(rail, state, block, dt, lanes):
+    """Add damping to the elastic force that nodes of ``block`` have as their resistance.
 
     ``lanes`` (4, LANES) is workspace for sums lane by lane, in an order that does not depend on the
     number of threads.
     """
-    if damping is not None:
-        drag, points = history.drag[block], rail.points.T
-        drag[:] = 0.0
-        history.loss[block] = 0.0
-        for i in range(3):
-            # The moment of a force along axis i about the other two.
-            j, k = (i + 1) % 3, (i + 2) % 3
-            component = _Component(
-                mass=rail.mass,
-                displacement=state.displacement.T[i],
-                before=history.displacement.T[i],
-                resistance=state.resistance.T[i],
-                elastic=history.elastic.T[i],
-                force=history.force.T[i],
-                stiff=damping.stiffness_time / dt,
-                heavy=damping.mass_rate / dt,
-                first=np.uint64(rail.blocks[block]),
-                last=np.uint64(rail.blocks[block + 1]),
-            )
-            lanes[:] = 0.0
-            _add_inertial(component, points[j], points[k], lanes)
-            _add_loss(component, lanes)
-            _damp_component(component)
-            for lane in range(LANES):
-                history.loss[block] += lanes[0, lane]
-                drag[i] += lanes[1, lane]
-                drag[3 + j] += lanes[3, lane]
-                drag[3 + k] -= lanes[2, lane]
+    history, damping = state.history, rail.damping
+    drag, points = history.drag[block], rail.points.T
+    drag[:] = 0.0
+    history.loss[block] = 0.0
+    for i in range(3):
+        # The moment of a force along axis i about the other two.
+        j, k = (i + 1) % 3, (i + 2) % 3
+        component = _Component(
+            mass=rail.mass,
+            displacement=state.displacement.T[i],
+            before=history.displacement.T[i],
+            resistance=state.resistance.T[i],
+            elastic=history.elastic.T[i],
+            force=history.force.T[i],
+            stiff=damping.stiffness_time / dt,
+            heavy=damping.mass_rate / dt,
+            first=np.uint64(rail.blocks[block]),
+            last=np.uint64(rail.blocks[block + 1]),
+        )
+        lanes[:] = 0.0
+        _add_inertial(component, points[j], points[k], lanes)
+        _add_loss(component, lanes)
+        _damp_component(component)
+        for lane in range(LANES):
+            history.loss[block] += lanes[0, lane]
+            drag[i] += lanes[1, lane]
+            drag[3 + j] += lanes[3, lane]
+            drag[3 + k] -= lanes[2, lane]
+    if rail.mounts.node.size > 0:
         damp_mounts(state.mounting, history, block, damping.stiffness_time / dt)
 
 
@@ -138,7 +138,7 @@ def _damp_component(component):
 def begin_damping(history, state):
     """Rails at rest in their frame: the present elastic force and places are those of the step
     before, too."""
-    if history is not None:
+    if history.loss.size > 0:
         for i in range(3):
             _copy(state.displacement.T[i], history.displacement.T[i])
             _copy(state.resistance.T[i], history.elastic.T[i])
@@ -158,8 +158,7 @@ def _copy(source, target):
 def collect_damping(history, state):
     """Add the damping forces on the frame, of the parts with m and of joints, to
     ``state.reaction``, and the energy dissipated over the step to ``state.work``."""
-    if history is not None:
-        for block in range(history.loss.size):
-            state.work[TOTAL].structural_damping += history.loss[block]
-            for i in range(6):
-                state.reaction[i] -= history.drag[block, i]
+    for block in range(history.loss.size):
+        state.work[TOTAL].structural_damping += history.loss[block]
+        for i in range(6):
+            state.reaction[i] -= history.drag[block, i]

@@ -10,21 +10,24 @@ from tipoff.highfi.dynamics.damping import add_damping
 from tipoff.highfi.dynamics.mounts import add_mounts
 from tipoff.highfi.extruded.kernel import column_force
 from tipoff.highfi.state.nodes import hold, move_nodes, sum_turning
+from tipoff.highfi.state.records import DAMPING, MOUNTS
 from tipoff.highfi.state.threads import barrier
 from tipoff.highfi.statics.operator import add_internal_force
 from tipoff.kernels.jit import entry, kernel
+from tipoff.mechanics.absent import damps
 
 
 @entry
 def elastic_force(rail, displacement, force, turn, mounting, team):
     """Set ``force`` (n,3) to K u (N), joints included, ``turn`` (b,3) to each block's part of the
-    sum of u x K u (N m), and ``mounting`` (b,6) to the sums of the joints (None without joints);
-    the work of one thread."""
+    sum of u x K u (N m), and ``mounting`` (b,6) to the sums of the joints, if there are joints; the
+    work of one thread."""
     for chunk in range(turn.shape[0]):
         _force_of_chunk(rail.columns, displacement, force, chunk, turn, team.lanes[0])
     _force_of_elements(rail.elements, rail, displacement, force, turn, team.lanes[0])
-    for block in range(turn.shape[0]):
-        add_mounts(rail.mounts, rail, displacement, force, block, turn[block], mounting)
+    if rail.mounts.node.size > 0:
+        for block in range(turn.shape[0]):
+            add_mounts(rail.mounts, rail, displacement, force, block, turn[block], mounting)
 
 
 @kernel
@@ -111,7 +114,7 @@ def _share(stepped, team, thread):
 def _load_chunk(columns, rail, state, chunk, lanes, dt):
     _force_of_chunk(columns, state.displacement, state.resistance, chunk, state.turning, lanes)
     _join(rail, state, chunk)
-    _damp(rail.damping, rail, state, chunk, dt, lanes)
+    _damp(rail, state, chunk, dt, lanes)
     hold(
         rail,
         state.resistance,
@@ -123,21 +126,24 @@ def _load_chunk(columns, rail, state, chunk, lanes, dt):
 
 @kernel
 def _join(rail, state, block):
-    add_mounts(
-        rail.mounts,
-        rail,
-        state.displacement,
-        state.resistance,
-        block,
-        state.turning[block],
-        state.mounting,
-    )
+    if rail.mounts.node.size > 0:
+        _count(state, MOUNTS, block)
+        add_mounts(
+            rail.mounts,
+            rail,
+            state.displacement,
+            state.resistance,
+            block,
+            state.turning[block],
+            state.mounting,
+        )
 
 
 @kernel
-def _damp(damping, rail, state, block, dt, lanes):
-    if damping is not None:
-        add_damping(damping, state.history, rail, state, block, dt, lanes)
+def _damp(rail, state, block, dt, lanes):
+    if damps(rail.damping):
+        _count(state, DAMPING, block)
+        add_damping(rail, state, block, dt, lanes)
         sum_turning(
             state.displacement,
             state.resistance,
@@ -146,6 +152,12 @@ def _damp(damping, rail, state, block, dt, lanes):
             lanes,
             state.turning[block],
         )
+
+
+@kernel
+def _count(state, effect, block):
+    """Count the evaluation of an effect of all blocks, at the first one, which one thread loads."""
+    state.evaluated[effect] += block == state.stepped.block[0]
 
 
 @kernel
@@ -210,5 +222,5 @@ def _load_slabs(elements, rail, state, team, thread, dt):
         )
         for block in range(thread, state.turning.shape[0], team.size):
             _join(rail, state, block)
-            _damp(rail.damping, rail, state, block, dt, lanes)
+            _damp(rail, state, block, dt, lanes)
         hold_blocks(rail, state, thread, team.size)

@@ -6,7 +6,7 @@ exact to half a step.
 """
 
 from tipoff.highfi.dynamics.pushers import Arm, kick_pair, mobility, present_speed
-from tipoff.highfi.state.records import AXIAL, TOTAL
+from tipoff.highfi.state.records import AXIAL, HOLD_DOWN, TOTAL
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined, kernel
 
@@ -14,14 +14,14 @@ from tipoff.kernels.jit import inlined, kernel
 @inlined
 def hold(latch, constants, state, pose, time, dt):
     """Hold the payload at the end of the kick of ``time`` (s) over ``dt`` (s)."""
-    if latch is not None:
-        state.holding[0] = 0.0
-        if time < latch.release:
-            arm = _arm(latch, constants.frame, state, pose)
-            speed = present_speed(constants, state, arm)
-            size = -speed / mobility(constants, state, arm, arm)
-            kick_pair(constants, state, arm, size)
-            state.holding[0] = size / dt
+    state.holding[0] = 0.0
+    if time < latch.release:
+        state.evaluated[HOLD_DOWN] += 1
+        arm = _arm(latch, constants.frame, state, pose)
+        speed = present_speed(constants, state, arm)
+        size = -speed / mobility(constants, state, arm, arm)
+        kick_pair(constants, state, arm, size)
+        state.holding[0] = size / dt
 
 
 @kernel
@@ -44,7 +44,6 @@ def _on_platform(frame, state, out):
 def work_of_hold_down(latch, constants, state, pose, axial_speed, half):
     """Add the work of the last force over ``half`` a step (s). ``axial_speed`` (m/s) as in
     ``pushers.work_of_pushers``."""
-    if latch is not None:
-        arm, force = _arm(latch, constants.frame, state, pose), half * state.holding[0]
-        state.work[TOTAL].thrust += force * present_speed(constants, state, arm)
-        state.work[AXIAL].thrust += force * arm.direction[0] * axial_speed
+    arm, force = _arm(latch, constants.frame, state, pose), half * state.holding[0]
+    state.work[TOTAL].thrust += force * present_speed(constants, state, arm)
+    state.work[AXIAL].thrust += force * arm.direction[0] * axial_speed

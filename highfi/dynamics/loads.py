@@ -10,25 +10,20 @@ from tipoff.highfi.contact.pads import friction_power
 from tipoff.highfi.dynamics.hold_down import work_of_hold_down
 from tipoff.highfi.dynamics.pushers import work_of_pushers
 from tipoff.highfi.state.pose import body_matrix, body_rate, origin_of_frame, triple
-from tipoff.highfi.state.records import AXIAL, TOTAL
+from tipoff.highfi.state.records import AXIAL, BODY_FORCE, THRUST_OFFSET, TOTAL
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined, kernel
+from tipoff.mechanics.absent import pulls
 from tipoff.mechanics.laws.thrust import magnitude
 
 
 @kernel
 def line_of_action(arm, offset):
-    """Thrust direction and arm in body axes; axial through the mass centre when ``offset`` is
-    None."""
+    """Thrust direction and arm in body axes; axial through the mass centre without an ``offset``."""
     line = ((1.0, 0.0, 0.0), (-arm, 0.0, 0.0))
-    if offset is not None:
-        line = _offset_line(offset)
+    if offset.acts:
+        line = offset.direction, offset.arm
     return line
-
-
-@kernel
-def _offset_line(offset):
-    return offset.direction, offset.arm
 
 
 @inlined
@@ -36,6 +31,7 @@ def thrust_load(constants, state, time):
     """Thrust force (N), moment about the payload's mass centre (N m) and point of application (m),
     in inertial axes."""
     direction, arm = line_of_action(constants.drive.arm, constants.thrust_offset)
+    state.evaluated[THRUST_OFFSET] += constants.thrust_offset.acts
     turn = body_matrix(state.payload)
     push = magnitude(constants.thrust.pulses, constants.thrust.curve, time)
     force = rotation.rotate(turn, (push * direction[0], push * direction[1], push * direction[2]))
@@ -45,10 +41,11 @@ def thrust_load(constants, state, time):
 
 
 @kernel
-def body_force_in_frame(body_force, pose):
+def body_force_in_frame(body_force, state, pose):
     """Acceleration (m/s2) by the body force in frame axes; zero without one."""
     acceleration = (0.0, 0.0, 0.0)
-    if body_force is not None:
+    if pulls(body_force):
+        state.evaluated[BODY_FORCE] += 1
         acceleration = rotation.unrotate(pose.frame, triple(body_force))
     return acceleration
 
@@ -56,7 +53,7 @@ def body_force_in_frame(body_force, pose):
 @kernel
 def accelerate(body_force, body, dt):
     """Advance the velocity of a rigid body over ``dt`` by the body force."""
-    if body_force is not None:
+    if pulls(body_force):
         for i in range(3):
             body.velocity[i] += dt * body_force[i]
 
@@ -82,29 +79,19 @@ def add_work(constants, state, active, pose, thrust, ahead):
     drag = rotation.rotate(pose.frame, triple(load.friction_force))[0]
     axial.contact_axial += half * normal * v[0]
     axial.friction -= half * drag * v[0]
-    acceleration = body_force_in_frame(constants.body_force, pose)
+    acceleration = body_force_in_frame(constants.body_force, state, pose)
     total.friction -= half * friction_power(
         constants.friction, constants, state, active, pose, acceleration, ahead
     )
-    _pusher_work(constants.pushers, constants, state, pose)
-    _hold_down_work(constants.hold_down, constants, state, pose)
+    if state.pushing.segment.size > 0:
+        speed = _axial_speed(constants.frame, state, pose.frame)
+        work_of_pushers(constants.pushers, constants.frame, state, pose, speed, half)
+    if state.holding[0] != 0.0:
+        speed = _axial_speed(constants.frame, state, pose.frame)
+        work_of_hold_down(constants.hold_down, constants, state, pose, speed, half)
     _platform_work(constants.frame, constants, state, pose.frame, thrust, (normal, drag))
-    _body_force_work(constants.body_force, constants, state, pose.frame)
-
-
-@inlined
-def _pusher_work(pushers, constants, state, pose):
-    if pushers is not None:
-        speed = _axial_speed(constants.frame, state, pose.frame)
-        half = 0.5 * constants.dt
-        work_of_pushers(pushers, constants.frame, state, pose, speed, half)
-
-
-@inlined
-def _hold_down_work(latch, constants, state, pose):
-    if latch is not None:
-        speed = _axial_speed(constants.frame, state, pose.frame)
-        work_of_hold_down(latch, constants, state, pose, speed, 0.5 * constants.dt)
+    if pulls(constants.body_force):
+        _body_force_work(constants.body_force, constants, state, pose.frame)
 
 
 @kernel
@@ -143,15 +130,12 @@ def _from_origin(state, point):
 
 @inlined
 def _body_force_work(body_force, constants, state, base):
-    if body_force is not None:
-        half, mass, v = 0.5 * constants.dt, constants.payload.mass, state.payload.velocity
-        g = triple(body_force)
-        momentum = rotation.rotate(base, triple(state.rail_momentum))
-        state.work[TOTAL].body_force += half * (
-            mass * rotation.dot(g, v) + rotation.dot(g, momentum)
-        )
-        state.work[AXIAL].body_force += half * mass * g[0] * v[0]
-        _body_force_work_on_platform(constants.frame, half, g, state, base)
+    half, mass, v = 0.5 * constants.dt, constants.payload.mass, state.payload.velocity
+    g = triple(body_force)
+    momentum = rotation.rotate(base, triple(state.rail_momentum))
+    state.work[TOTAL].body_force += half * (mass * rotation.dot(g, v) + rotation.dot(g, momentum))
+    state.work[AXIAL].body_force += half * mass * g[0] * v[0]
+    _body_force_work_on_platform(constants.frame, half, g, state, base)
 
 
 @inlined
@@ -179,19 +163,18 @@ def add_external_impulse(frame, constants, state, pose, thrust, reaction, dt):
     if frame is not None:
         if not constants.drive.reacts_on_platform:
             _add(state.impulse, force, rotation.cross(point, force), dt)
-    _add_body_force(constants.body_force, constants, state, pose, dt)
+    if pulls(constants.body_force):
+        _add_body_force(triple(constants.body_force), constants, state, pose, dt)
 
 
 @inlined
-def _add_body_force(body_force, constants, state, pose, dt):
-    if body_force is not None:
-        g, drive = triple(body_force), constants.drive
-        payload = triple(state.payload.position)
-        _add_weight(state.impulse, g, constants.payload.mass, payload, dt)
-        if drive.moving_mass > 0.0:
-            place = _centre_of_rails(constants.frame, drive, state, pose)
-            _add_weight(state.impulse, g, drive.moving_mass, place, dt)
-        _add_platform_weight(constants.frame, state, g, dt)
+def _add_body_force(g, constants, state, pose, dt):
+    payload, drive = triple(state.payload.position), constants.drive
+    _add_weight(state.impulse, g, constants.payload.mass, payload, dt)
+    if drive.moving_mass > 0.0:
+        place = _centre_of_rails(constants.frame, drive, state, pose)
+        _add_weight(state.impulse, g, drive.moving_mass, place, dt)
+    _add_platform_weight(constants.frame, state, g, dt)
 
 
 @kernel

@@ -20,11 +20,11 @@ from tipoff.kernels.jit import kernel
 _ROUNDING = 1e-14  # of the largest number; a smaller one off the diagonals is zero
 
 
-def build(matrix: csr_array | None, number: np.ndarray, blocks: np.ndarray) -> Mounts | None:
+def build(matrix: csr_array | None, number: np.ndarray, blocks: np.ndarray) -> Mounts:
     """Kernel record of the stiffness ``matrix`` (3n,3n) N/m between mesh nodes with the ``number``
-    (n,) in the nodal arrays, and the first node (b+1,) of the ``blocks``; None without joints."""
+    (n,) in the nodal arrays, and the first node (b+1,) of the ``blocks``; no nodes without joints."""
     if matrix is None:
-        return None
+        return _none(blocks.size)
     by_node = matrix.tobsr(blocksize=(3, 3))
     own = np.flatnonzero(np.diff(by_node.indptr))
     own = own[np.argsort(number[own])]
@@ -52,24 +52,36 @@ def build(matrix: csr_array | None, number: np.ndarray, blocks: np.ndarray) -> M
     )
 
 
+def _none(blocks: int) -> Mounts:
+    none, one = np.zeros(0, dtype=np.uint32), np.zeros(1, dtype=np.uint64)
+    return Mounts(
+        node=none,
+        first_node=np.zeros(blocks, dtype=np.uint64),
+        first=one,
+        neighbour=none,
+        stiffness=np.zeros((0, 3)),
+        first_mixed=one,
+        mixed_neighbour=none,
+        mixed_stiffness=np.zeros((0, 3, 3)),
+    )
+
+
 @kernel
 def add_mounts(mounts, rail, displacement, force, block, turn, total):
     """Add S u to the ``force`` of the nodes of ``block``, their u x S u to ``turn`` (3,), and set
-    ``total`` (b,6) of the block to the resultant of S u and its moment about the frame's origin;
-    not compiled when ``mounts`` is None."""
-    if mounts is not None:
-        # numbers, because the compiler cannot know that arrays do not overlap
-        turning, resultant, whole = triple(turn), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-        for k in range(mounts.first_node[block], mounts.first_node[block + 1]):
-            node, f = mounts.node[k], _force(mounts, displacement, k)
-            turning = plus(turning, rotation.cross(triple(displacement[node]), f))
-            resultant = plus(resultant, f)
-            whole = plus(whole, rotation.cross(triple(rail.points[node]), f))
-            for i in range(3):
-                force[node, i] += f[i]
+    ``total`` (b,6) of the block to the resultant of S u and its moment about the frame's origin."""
+    # numbers, because the compiler cannot know that arrays do not overlap
+    turning, resultant, whole = triple(turn), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    for k in range(mounts.first_node[block], mounts.first_node[block + 1]):
+        node, f = mounts.node[k], _force(mounts, displacement, k)
+        turning = plus(turning, rotation.cross(triple(displacement[node]), f))
+        resultant = plus(resultant, f)
+        whole = plus(whole, rotation.cross(triple(rail.points[node]), f))
         for i in range(3):
-            turn[i] = turning[i]
-            total[block, i], total[block, 3 + i] = resultant[i], whole[i]
+            force[node, i] += f[i]
+    for i in range(3):
+        turn[i] = turning[i]
+        total[block, i], total[block, 3 + i] = resultant[i], whole[i]
 
 
 @kernel
@@ -90,28 +102,26 @@ def _force(mounts, displacement, k):
 
 
 @kernel
-def collect_mounts(mounting, state):
+def collect_mounts(mounts, state):
     """Add the forces of the joints on the frame to ``state.reaction``."""
-    if mounting is not None:
-        for block in range(mounting.shape[0]):
+    if mounts.node.size > 0:
+        for block in range(state.mounting.shape[0]):
             for i in range(6):
-                state.reaction[i] -= mounting[block, i]
+                state.reaction[i] -= state.mounting[block, i]
 
 
 @kernel
 def damp_mounts(mounting, history, block, stiff):
     """Add the resultant of the damping of the joints, ``stiff`` (beta / dt) times the change of
     their force over the step, to ``history.drag``; ``begin_mounts`` sets the force before."""
-    if mounting is not None:
-        for i in range(6):
-            history.drag[block, i] += stiff * (mounting[block, i] - history.mounting[block, i])
-            history.mounting[block, i] = mounting[block, i]
+    for i in range(6):
+        history.drag[block, i] += stiff * (mounting[block, i] - history.mounting[block, i])
+        history.mounting[block, i] = mounting[block, i]
 
 
 @kernel
 def begin_mounts(mounting, history):
     """Set the forces of the step before to the present ones: rails at rest in their frame."""
-    if mounting is not None:
-        for block in range(mounting.shape[0]):
-            for i in range(6):
-                history.mounting[block, i] = mounting[block, i]
+    for block in range(mounting.shape[0]):
+        for i in range(6):
+            history.mounting[block, i] = mounting[block, i]

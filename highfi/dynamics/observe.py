@@ -52,7 +52,6 @@ def restore(system, state: records.State, saved: Moving) -> None:
 
 
 def _changed(system, state):
-    inertia = state.pushing and state.pushing.inertia
     return (
         state.payload.velocity,
         state.payload.spin,
@@ -61,7 +60,7 @@ def _changed(system, state):
         state.velocity[system.nodes],
         state.rail_momentum,
         state.impulse,
-        np.zeros((4, 0)) if inertia is None else inertia.values,
+        state.pushing.inertia.values,
     )
 
 
@@ -102,10 +101,8 @@ def strain(system, state: records.State, team) -> float:
     if part.start == part.stop:
         return 0.0
     force = zeros(state.displacement.shape, order="F")
-    mounting = None if state.mounting is None else np.empty_like(state.mounting)
-    elastic_force(
-        system.rail, state.displacement, force, np.empty_like(state.turning), mounting, team
-    )
+    turn, mounting = np.empty_like(state.turning), np.empty_like(state.mounting)
+    elastic_force(system.rail, state.displacement, force, turn, mounting, team)
     # Not a BLAS product: with several runs on one machine, its threads would wait for each
     # other.
     return 0.5 * float((state.displacement * force).sum())

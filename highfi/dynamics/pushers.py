@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.highfi.state.pose import body_matrix, body_rate, triple
-from tipoff.highfi.state.records import AXIAL, TOTAL, Inertia, Pushing
+from tipoff.highfi.state.records import AXIAL, PUSHERS, TOTAL, Inertia, Pushing
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined, kernel
 from tipoff.mechanics.laws import pushers as law
@@ -34,10 +34,8 @@ class Arm(NamedTuple):
     on_platform: tuple  # m, from the mass centre of the rigid part
 
 
-def new_state(pushers: law.Pushers | None) -> Pushing | None:
+def new_state(pushers: law.Pushers) -> Pushing:
     """Values before the first evaluation."""
-    if pushers is None:
-        return None
     count = len(pushers.point)
     return Pushing(
         segment=np.full(count, -1),
@@ -45,13 +43,11 @@ def new_state(pushers: law.Pushers | None) -> Pushing | None:
         force=np.zeros(count),
         friction=np.zeros(count),
         begun=np.zeros(1),
-        inertia=_inertia(pushers.mass, count),
+        inertia=_inertia(pushers.mass.size),
     )
 
 
-def _inertia(mass: np.ndarray | None, count: int) -> Inertia | None:
-    if mass is None:
-        return None
+def _inertia(count: int) -> Inertia:
     return Inertia(
         values=np.zeros((4, count)),
         kept=np.zeros(count),
@@ -63,23 +59,22 @@ def _inertia(mass: np.ndarray | None, count: int) -> Inertia | None:
 @inlined
 def begin_pushers(pushers, frame, state, pose):
     """Forces at ignition, at the first call only."""
-    if pushers is not None:
-        pushing = state.pushing
-        for i in range(pushing.segment.size):
-            if pushing.segment[i] < 0:
-                s = law.travel(pushers, i, pose.centre, pose.turn)
-                segment = law.segment_at(pushers, i, s)
-                pushing.segment[i], pushing.travel[i] = segment, s
-                pushing.begun[0] += law.given_up(pushers, i, segment, s)
-                speed = _speed(pushers, i, frame, state, pose)
-                pushing.force[i] = law.force(pushers, i, segment, s)
-                pushing.friction[i] = law.friction(pushers, i, segment, speed)
-                _begin_inertia(pushing.inertia, i, speed, segment == law.last_segment(pushers, i))
+    pushing = state.pushing
+    for i in range(pushing.segment.size):
+        if pushing.segment[i] < 0:
+            s = law.travel(pushers, i, pose.centre, pose.turn)
+            segment = law.segment_at(pushers, i, s)
+            pushing.segment[i], pushing.travel[i] = segment, s
+            pushing.begun[0] += law.given_up(pushers, i, segment, s)
+            speed = _speed(pushers, i, frame, state, pose)
+            pushing.force[i] = law.force(pushers, i, segment, s)
+            pushing.friction[i] = law.friction(pushers, i, segment, speed)
+            _begin_inertia(pushing.inertia, i, speed, segment == law.last_segment(pushers, i))
 
 
 @kernel
 def _begin_inertia(inertia, i, speed, is_off):
-    if inertia is not None:
+    if inertia.pairs.size > 0:
         inertia.values[SPEED, i] = np.nan if is_off else speed
         inertia.values[SHARE, i] = 1.0
 
@@ -87,9 +82,9 @@ def _begin_inertia(inertia, i, speed, is_off):
 @inlined
 def load_pushers(pushers, frame, state, pose):
     """Forces at the places that a step has reached."""
-    if pushers is not None:
-        for i in range(state.pushing.segment.size):
-            _load(pushers, i, frame, state, pose)
+    for i in range(state.pushing.segment.size):
+        state.evaluated[PUSHERS] += 1
+        _load(pushers, i, frame, state, pose)
 
 
 @kernel
@@ -119,14 +114,14 @@ def _load(pushers, i, frame, state, pose):
 
 @kernel
 def _share(inertia, i, share):
-    if inertia is not None:
+    if inertia.pairs.size > 0:
         inertia.values[SHARE, i] = share
 
 
 @kernel
 def _stop(inertia, mass, i):
     """Keep the kinetic energy of a pusher at its stop."""
-    if inertia is not None:
+    if inertia.pairs.size > 0:
         speed = inertia.values[SPEED, i]
         if speed == speed:
             inertia.kept[i] = 0.5 * mass[i] * speed * speed
@@ -176,43 +171,42 @@ def _along(direction, arm, velocity, rate):
 @inlined
 def kick_pushers(pushers, constants, state, pose, dt):
     """Advance the velocities of the bodies over ``dt`` by the pushers; adds the external impulse."""
-    if pushers is not None:
-        for i in range(state.pushing.segment.size):
-            size = dt * (state.pushing.force[i] - state.pushing.friction[i])
-            if size != 0.0:
-                kick_pair(constants, state, _arm(pushers, i, constants.frame, state, pose), size)
+    for i in range(state.pushing.segment.size):
+        size = dt * (state.pushing.force[i] - state.pushing.friction[i])
+        if size != 0.0:
+            kick_pair(constants, state, _arm(pushers, i, constants.frame, state, pose), size)
+    if pushers.mass.size > 0:
         _resist(state.pushing.inertia, pushers.mass, pushers, constants, state, pose, dt)
 
 
 @kernel
 def _resist(inertia, mass, pushers, constants, state, pose, dt):
     """Kick the bodies by the pairs that change the speeds of the pushers."""
-    if inertia is not None:
-        frame = constants.frame
-        for i in range(mass.size):
-            inertia.pairs[i] = 0.0
+    frame = constants.frame
+    for i in range(mass.size):
+        inertia.pairs[i] = 0.0
+        for j in range(mass.size):
+            inertia.matrix[i, j] = 1.0 if i == j else 0.0
+        if inertia.values[SPEED, i] == inertia.values[SPEED, i]:
+            now = _present_speed(pushers, i, constants, state, pose)
+            share, one = inertia.values[SHARE, i], _arm(pushers, i, frame, state, pose)
+            own = dt * (state.pushing.force[i] - state.pushing.friction[i])
+            own *= mobility(constants, state, one, one)
+            gained = own + share * (now - inertia.values[SPEED, i] - own)
+            inertia.pairs[i] = mass[i] * gained
             for j in range(mass.size):
-                inertia.matrix[i, j] = 1.0 if i == j else 0.0
-            if inertia.values[SPEED, i] == inertia.values[SPEED, i]:
-                now = _present_speed(pushers, i, constants, state, pose)
-                share, one = inertia.values[SHARE, i], _arm(pushers, i, frame, state, pose)
-                own = dt * (state.pushing.force[i] - state.pushing.friction[i])
-                own *= mobility(constants, state, one, one)
-                gained = own + share * (now - inertia.values[SPEED, i] - own)
-                inertia.pairs[i] = mass[i] * gained
-                for j in range(mass.size):
-                    if inertia.values[SPEED, j] == inertia.values[SPEED, j]:
-                        other = _arm(pushers, j, frame, state, pose)
-                        resisted = mass[i] * mobility(constants, state, one, other)
-                        inertia.matrix[i, j] += resisted if i == j else share * resisted
-        law.solve(inertia.matrix, inertia.pairs)
-        for i in range(mass.size):
-            if inertia.values[SPEED, i] == inertia.values[SPEED, i]:
-                kick_pair(constants, state, _arm(pushers, i, frame, state, pose), -inertia.pairs[i])
-                inertia.values[FORCE, i] = inertia.pairs[i] / dt
-                if mass[i] > 0.0:
-                    inertia.values[GAINED, i] = inertia.pairs[i] / mass[i]
-                    inertia.values[SPEED, i] += inertia.values[GAINED, i]
+                if inertia.values[SPEED, j] == inertia.values[SPEED, j]:
+                    other = _arm(pushers, j, frame, state, pose)
+                    resisted = mass[i] * mobility(constants, state, one, other)
+                    inertia.matrix[i, j] += resisted if i == j else share * resisted
+    law.solve(inertia.matrix, inertia.pairs)
+    for i in range(mass.size):
+        if inertia.values[SPEED, i] == inertia.values[SPEED, i]:
+            kick_pair(constants, state, _arm(pushers, i, frame, state, pose), -inertia.pairs[i])
+            inertia.values[FORCE, i] = inertia.pairs[i] / dt
+            if mass[i] > 0.0:
+                inertia.values[GAINED, i] = inertia.pairs[i] / mass[i]
+                inertia.values[SPEED, i] += inertia.values[GAINED, i]
 
 
 @kernel
@@ -285,24 +279,23 @@ def _kick_back(frame, state, arm, push):
 def work_of_pushers(pushers, frame, state, pose, axial_speed, half):
     """Add the work of all pushers over ``half`` a step (s) at the velocities of ``pose``.
     ``axial_speed`` (m/s): X velocity of the payload's mass centre relative to the platform's."""
-    if pushers is not None:
-        total, axial = state.work[TOTAL], state.work[AXIAL]
-        for i in range(state.pushing.segment.size):
-            speed = _speed(pushers, i, frame, state, pose)
-            along = rotation.rotate(pose.frame, law.direction_of(pushers, i))[0] * axial_speed
-            force, held = half * state.pushing.force[i], half * state.pushing.friction[i]
-            force -= half * _inertial_force(state.pushing.inertia, i)
-            total.thrust += force * speed
-            axial.thrust += force * along
-            total.friction += held * speed
-            axial.friction += held * along
+    total, axial = state.work[TOTAL], state.work[AXIAL]
+    for i in range(state.pushing.segment.size):
+        speed = _speed(pushers, i, frame, state, pose)
+        along = rotation.rotate(pose.frame, law.direction_of(pushers, i))[0] * axial_speed
+        force, held = half * state.pushing.force[i], half * state.pushing.friction[i]
+        force -= half * _inertial_force(state.pushing.inertia, i)
+        total.thrust += force * speed
+        axial.thrust += force * along
+        total.friction += held * speed
+        axial.friction += held * along
 
 
 @kernel
 def _inertial_force(inertia, i):
     """Force (N) that accelerates pusher ``i``, as in the last kick."""
     force = 0.0
-    if inertia is not None:
+    if inertia.pairs.size > 0:
         force = inertia.values[FORCE, i]
     return force
 
@@ -314,10 +307,8 @@ def work(pushers: law.Pushers, pushing: Pushing) -> float:
     return given_up - float(pushing.begun[0]) - _kinetic(pushers.mass, pushing.inertia)
 
 
-def _kinetic(mass: np.ndarray | None, inertia: Inertia | None) -> float:
+def _kinetic(mass: np.ndarray, inertia: Inertia) -> float:
     """Kinetic energy (J) that pushers have, or have kept, at the present places."""
-    if mass is None or inertia is None:
-        return 0.0
     before, gained, *_ = inertia.values
     speed = np.where(np.isfinite(before), before + 0.5 * gained, 0.0)
     return float(inertia.kept.sum() + (0.5 * mass * speed**2).sum())

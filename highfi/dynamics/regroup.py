@@ -98,9 +98,8 @@ def _reactions(state: State, blocks: np.ndarray) -> np.ndarray:
     """Contribution (6,) of ``blocks`` to ``State.reaction``."""
     found = state.clamping[blocks].sum(axis=0)
     found[3:] -= state.turning[blocks].sum(axis=0)
-    if state.mounting is not None:
-        found -= state.mounting[blocks].sum(axis=0)
-    if state.history is not None:
+    found -= state.mounting[blocks].sum(axis=0)
+    if state.history.loss.size:
         found -= state.history.drag[blocks].sum(axis=0)
     return found
 
@@ -114,16 +113,14 @@ def _still(system: System, state: State, blocks: np.ndarray) -> None:
     for part in _parts(system, blocks):
         for array in (state.displacement, state.velocity, state.resistance):
             array[part] = 0.0
-        if state.history is not None:
+        if state.history.loss.size:
             for array in (state.history.displacement, state.history.elastic, state.history.force):
                 array[part] = 0.0
     for sums in (state.turning, state.clamping, state.mounting):
-        if sums is not None:
+        sums[blocks] = 0.0
+    if state.history.loss.size:
+        for sums in (state.history.drag, state.history.loss, state.history.mounting):
             sums[blocks] = 0.0
-    if state.history is not None:
-        state.history.drag[blocks], state.history.loss[blocks] = 0.0, 0.0
-        if state.history.mounting is not None:
-            state.history.mounting[blocks] = 0.0
 
 
 def _wake(
@@ -147,12 +144,11 @@ def _load(system: System, state: State, blocks: np.ndarray, team) -> None:
     if not state.displacement.any():
         return
     force, turn = zeros(state.displacement.shape, order="F"), np.empty_like(state.turning)
-    joints = None if state.mounting is None else np.empty_like(state.mounting)
+    joints = np.zeros_like(state.mounting)
     elastic_force(system.rail, state.displacement, force, turn, joints, team)
     for block, part in zip(blocks, _parts(system, blocks)):
         state.turning[block], state.resistance[part] = turn[block], force[part]
-        if state.mounting is not None and joints is not None:
-            state.mounting[block] = joints[block]
+        state.mounting[block] = joints[block]
         _keep(state, block, part)
         held = system.rail.clamped[
             system.rail.first_clamped[block] : system.rail.first_clamped[block + 1]
@@ -165,11 +161,10 @@ def _load(system: System, state: State, blocks: np.ndarray, team) -> None:
 
 def _keep(state: State, block: int, part: slice) -> None:
     """Set the forces and places of the step before to the present ones."""
-    if state.history is not None:
+    if state.history.loss.size:
         state.history.displacement[part] = state.displacement[part]
         state.history.elastic[part] = state.resistance[part]
-        if state.history.mounting is not None and state.mounting is not None:
-            state.history.mounting[block] = state.mounting[block]
+        state.history.mounting[block] = state.mounting[block]
 
 
 def _balance(now: System, state: State, before: _Motion, centre: np.ndarray, team) -> None:

@@ -44,6 +44,7 @@ from tipoff.highfi.dynamics.mounts import collect_mounts
 from tipoff.highfi.dynamics.pushers import begin_pushers, kick_pushers, load_pushers
 from tipoff.highfi.state.nodes import kick_nodes
 from tipoff.highfi.state.pose import drift_body, less, plus, pose_in_frame, small_turn, triple
+from tipoff.highfi.state.records import PLATFORM
 from tipoff.highfi.state.threads import barrier, reset_queue
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import entry, inlined, kernel
@@ -92,8 +93,8 @@ def _evaluate(constants, state, active, team):
     hold_blocks(rail, state, 0, 1)
     pose = pose_in_frame(state, constants.payload, constants.frame)
     reset_queue(team)
-    contact_forces(constants.interface_stiffness, constants, state, active, pose, team)
-    collect(constants.interface_stiffness, constants, state, active)
+    contact_forces(constants, state, active, pose, team)
+    collect(constants, state, active)
     begin_pushers(constants.pushers, constants.frame, state, pose)
 
 
@@ -104,22 +105,22 @@ def _kick(constants, state, task):
     thrust = thrust_load(constants, state, task.first_step * unit)
     _kick_bodies(constants, state, pose, thrust, task.span)
     hold(constants.hold_down, constants, state, pose, task.first_step * unit, task.span)
-    acceleration = body_force_in_frame(constants.body_force, pose)
+    acceleration = body_force_in_frame(constants.body_force, state, pose)
     inverse_mass = constants.rail.inverse_mass
     kick_nodes(inverse_mass, state.velocity, state.resistance, acceleration, task.span)
 
 
 @inlined
-def collect(interface_stiffness, constants, state, active):
+def collect(constants, state, active):
     """Sum ``state.reaction``, and add contact to the resistance."""
     state.reaction[:] = 0.0
     for part in range(state.turning.shape[0]):
         for i in range(3):
             state.reaction[i] += state.clamping[part, i]
             state.reaction[3 + i] += state.clamping[part, 3 + i] - state.turning[part, i]
-    collect_mounts(state.mounting, state)
+    collect_mounts(constants.rail.mounts, state)
     collect_damping(state.history, state)
-    if interface_stiffness is not None:
+    if constants.interface_stiffness > 0.0:
         collect_contact(constants.rail, constants.surface, state, active)
 
 
@@ -134,7 +135,7 @@ def _kick_bodies(constants, state, pose, thrust, dt):
     force = rotation.rotate(pose.frame, less(on_rail, total))
     couple = rotation.rotate(pose.frame, less(load.moment_on_rail, moment))
     add_external_impulse(constants.frame, constants, state, pose, thrust, (force, couple), dt)
-    acceleration = body_force_in_frame(constants.body_force, pose)
+    acceleration = body_force_in_frame(constants.body_force, state, pose)
     for i in range(3):
         state.rail_momentum[i] += dt * (total[i] + constants.drive.moving_mass * acceleration[i])
     _kick_payload(constants, state, pose, thrust, dt)
@@ -176,7 +177,7 @@ def _kick_platform(frame, constants, state, pose, rails, thrust, dt):
 @inlined
 def drift_bodies(constants, state, pose):
     """Advance the places of the bodies over a step; fills ``state.motion`` for the nodes."""
-    dt, acceleration = constants.dt, body_force_in_frame(constants.body_force, pose)
+    dt, acceleration = constants.dt, body_force_in_frame(constants.body_force, state, pose)
     for i in range(3):
         state.motion.acceleration[i] = acceleration[i]
     drift_body(state.payload, constants.payload.inverse_inertia, dt)
@@ -188,6 +189,7 @@ def drift_bodies(constants, state, pose):
 @kernel
 def _drift_frame(frame, drive, state, pose, dt):
     if frame is not None:
+        state.evaluated[PLATFORM] += 1
         motion = state.motion
         velocity = rotation.unrotate(pose.frame, triple(state.platform.velocity))
         rate = rotation.unrotate(pose.frame, drift_body(state.platform, frame.inverse_inertia, dt))
@@ -231,11 +233,11 @@ def _advance(constants, state, active, book, team, thread, task):
         barrier(team)
         move_and_load(rail, frame, state, team, thread, dt)
         pose = pose_in_frame(state, constants.payload, frame)
-        contact_forces(constants.interface_stiffness, constants, state, active, pose, team)
+        contact_forces(constants, state, active, pose, team)
         finish_load(rail, state, team, thread, dt)
         barrier(team)
         if thread == 0:
-            collect(constants.interface_stiffness, constants, state, active)
+            collect(constants, state, active)
             load_pushers(constants.pushers, frame, state, pose)
             thrust = thrust_load(constants, state, (n + task.stride) * unit)
             add_work(constants, state, active, pose, thrust, 0.0)

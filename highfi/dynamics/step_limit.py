@@ -68,7 +68,7 @@ def of_pushers(system: System) -> Bound:
     """Bounds of the contribution of spring pushers: the sums of their slopes of force over travel,
     and of friction over speed, times the inverse mass of payload and platform at their points."""
     pushers, payload, frame = system.pushers, system.model.payload, system.frame
-    if pushers is None:
+    if not len(pushers.point):
         return Bound(0.0, 0.0)
     reach = (pushers.point**2).sum(axis=1)
     inverse = 1.0 / payload.mass + reach * np.linalg.eigvalsh(payload.inverse_inertia)[-1]
@@ -84,17 +84,15 @@ def of_pushers(system: System) -> Bound:
     return Bound(float(steepest @ inverse), float(pushers.friction @ inverse) / SLOW)
 
 
-def damping_ratio(damping: Damping | None, rail: float, contact: float, more: float = 0.0) -> float:
+def damping_ratio(damping: Damping, rail: float, contact: float, more: float = 0.0) -> float:
     """Ratio z for the limit ``critical_step(w, z)`` of rails with the highest frequency ``rail``
     (rad/s), a ``contact`` contribution (1/s2) to its square, w^2 = rail^2 + contact, and ``more``
     damping (1/s)."""
-    rates = more
-    if damping is not None:
-        rates += damping.mass_rate + damping.stiffness_time * rail**2
+    rates = more + (damping.mass_rate + damping.stiffness_time * rail**2)
     return float(0.5 * rates / np.sqrt(rail**2 + contact)) if rates else 0.0
 
 
-def step_limit(damping: Damping | None, rail: float, contact: float, more: float = 0.0) -> float:
+def step_limit(damping: Damping, rail: float, contact: float, more: float = 0.0) -> float:
     """Largest stable step (s) without friction at the rails; see ``damping_ratio``."""
     ratio = damping_ratio(damping, rail, contact, more)
     return critical_step(float(np.sqrt(rail**2 + contact)), ratio)

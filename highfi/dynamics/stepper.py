@@ -11,6 +11,8 @@ from tipoff.highfi.dynamics.step import ADVANCE, EVALUATE, KICK, OPEN, Task, per
 from tipoff.highfi.dynamics.system import System, initial_state
 from tipoff.highfi.state import records
 from tipoff.highfi.state.threads import Team
+from tipoff.mechanics.absent import NO_FORCE, NO_LATCH, SMOOTH, offset
+from tipoff.mechanics.laws.thrust import complete
 
 
 class Taken(NamedTuple):
@@ -93,13 +95,13 @@ class Stepper:
             payload=m.payload,
             frame=s.frame,
             drive=s.drive,
-            thrust=m.thrust,
+            thrust=complete(m.thrust),
             pushers=s.pushers,
-            thrust_offset=m.thrust_offset,
-            hold_down=s.hold_down,
-            interface_stiffness=m.interface_stiffness,
-            friction=m.friction,  # type: ignore[arg-type]  # sticking is refused by prepare
-            body_force=m.body_force,
+            thrust_offset=offset(m.thrust_offset),
+            hold_down=s.hold_down or NO_LATCH,
+            interface_stiffness=m.interface_stiffness or 0.0,
+            friction=m.friction or SMOOTH,  # type: ignore[arg-type]  # prepare refuses sticking
+            body_force=m.body_force or NO_FORCE,
             exit=self.setup.exit,
             milestones=self.setup.milestones,
             dt=self.step,

@@ -14,6 +14,7 @@ from tipoff.highfi.statics import assembly, thermal
 from tipoff.kernels import rotation
 from tipoff.kernels.memory import zeros
 from tipoff.mechanics import comoving
+from tipoff.mechanics.absent import NO_DAMPING, NO_PUSHERS
 from tipoff.mechanics.laws.hold_down import HoldDown
 from tipoff.mechanics.laws.pushers import Pushers
 from tipoff.mechanics.laws.structural_damping import Damping
@@ -25,6 +26,7 @@ from tipoff.scenes.scene import Scene
 
 _MOST_SLABS = 64
 _SAME = 1e-9  # m: two places closer than this are the same
+_FEWEST = (2, 3)  # shape of a nodal array of no use; Numba takes columns of fewer nodes for rows
 
 
 class System(NamedTuple):
@@ -42,7 +44,7 @@ class System(NamedTuple):
     faces: Faces
     frame: records.Frame | None  # None: fixed platform
     drive: records.Drive
-    pushers: Pushers | None  # in frame axes from the frame's origin
+    pushers: Pushers  # in frame axes from the frame's origin; none without
     hold_down: HoldDown | None  # in frame axes from the frame's origin
     origin: np.ndarray  # (3,) m, the frame's origin at ignition in scene axes
     body_offset: np.ndarray  # (3,) m, from the frame's origin to the platform's mass centre
@@ -63,7 +65,7 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     # In the model, walls are relative to the platform's mass centre; in the loop, to the frame's
     # origin.
     faces = model.faces._replace(wall=model.faces.wall + offset[model.faces.axis])
-    damping = scene.rail.damping.record() if scene.rail.damping else None
+    damping = scene.rail.damping.record() if scene.rail.damping else NO_DAMPING
     rail, number = _rail(mesh.points - origin, operator, damping)
     masses = np.where(rail.inverse_mass > 0.0, rail.mass, 0.0)
     surfaces = {name: number[facets] for name, facets in mesh.surfaces.items()}
@@ -90,7 +92,7 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
         faces=faces,
         frame=frame,
         drive=drive,
-        pushers=_from_origin(model.pushers, offset),
+        pushers=_from_origin(model.pushers or NO_PUSHERS, offset),
         hold_down=_latch_from_origin(model.hold_down, offset),
         origin=origin,
         body_offset=offset,
@@ -98,11 +100,9 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     )
 
 
-def _from_origin(found: Pushers | None, offset: np.ndarray) -> Pushers | None:
+def _from_origin(found: Pushers, offset: np.ndarray) -> Pushers:
     """Pushers with places from the frame's origin, ``offset`` (3,) m from which the platform's mass
     centre is."""
-    if found is None:
-        return None
     return found._replace(origin=found.origin + found.direction @ offset)
 
 
@@ -133,7 +133,7 @@ def _warmed(
 
 
 def _rail(
-    points: np.ndarray, operator: assembly.Operator, damping: Damping | None
+    points: np.ndarray, operator: assembly.Operator, damping: Damping
 ) -> tuple[records.Rail, np.ndarray]:
     """Nodal arrays in the numbering of the loop, and the number (n,) of each mesh node in it."""
     found = extruded.find(points, operator)
@@ -272,7 +272,7 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
         contact=np.zeros(nodes),
         turning=np.zeros((blocks, 3)),
         clamping=np.zeros((blocks, 6)),
-        mounting=None if system.rail.mounts is None else np.zeros((blocks, 6)),
+        mounting=np.zeros((blocks, 6)),
         reaction=np.zeros(6),
         motion=records.Motion(
             velocity=np.zeros(3), turn=np.zeros(9), rate=np.zeros(3), acceleration=np.zeros(3)
@@ -286,7 +286,8 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
         face_force=np.zeros((system.faces.axis.size, 3)),
         history=_history(system.rail, nodes, blocks),
         pushing=pushers.new_state(system.pushers),
-        holding=None if system.hold_down is None else np.zeros(1),
+        holding=np.zeros(1),
+        evaluated=np.zeros(len(records.COUNTED), dtype=np.int64),
     )
     return state, _active(system, groups)
 
@@ -308,14 +309,14 @@ def _active(system: System, groups: int) -> records.Active:
     )
 
 
-def _history(rail: records.Rail, nodes: tuple[int, ...], blocks: int) -> records.History | None:
-    if rail.damping is None:
-        return None
+def _history(rail: records.Rail, nodes: tuple[int, ...], blocks: int) -> records.History:
+    if not any(rail.damping):
+        nodes, blocks = _FEWEST, 0
     return records.History(
         elastic=zeros(nodes, order="F"),
         displacement=zeros(nodes, order="F"),
         force=zeros(nodes, order="F"),
         drag=np.zeros((blocks, 6)),
         loss=np.zeros(blocks),
-        mounting=None if rail.mounts is None else np.zeros((blocks, 6)),
+        mounting=np.zeros((blocks, 6)),
     )

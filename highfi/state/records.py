@@ -15,16 +15,41 @@ import numpy as np
 
 from tipoff.highfi.extruded.mesh import Columns
 from tipoff.kernels.reference import by_reference
+from tipoff.mechanics import ledger
+from tipoff.mechanics.absent import Offset
 from tipoff.mechanics.laws.body_force import BodyForce
 from tipoff.mechanics.laws.friction import Friction
 from tipoff.mechanics.laws.hold_down import HoldDown
 from tipoff.mechanics.laws.pushers import Pushers
 from tipoff.mechanics.laws.structural_damping import Damping
 from tipoff.mechanics.laws.thrust import Thrust
-from tipoff.mechanics.laws.thrust_offset import ThrustOffset
-from tipoff.mechanics.ledger import BODY_FORCE, ENTRIES
 from tipoff.mechanics.model import Faces, Payload
 from tipoff.mechanics.outcome import Milestones
+
+# Effects whose evaluations a run counts. Mass offset, initial state and temperature have no law: they
+# only change numbers.
+(
+    BODY_FORCE,
+    CONTACT,
+    FRICTION,
+    HOLD_DOWN,
+    PLATFORM,
+    PUSHERS,
+    DAMPING,
+    MOUNTS,
+    THRUST_OFFSET,
+) = range(9)
+COUNTED = (
+    ledger.BODY_FORCE,
+    "contact",
+    "friction",
+    "hold_down",
+    "platform",
+    "pushers",
+    "rail.damping",
+    "rail.mount_stiffness",
+    "thrust_offset",
+)
 
 
 @by_reference
@@ -66,8 +91,8 @@ class Rail(NamedTuple):
     columns: Columns | None  # of an extruded mesh
     elements: Elements | None  # of any other mesh
     blocks: np.ndarray  # (b+1,) first node of each block, the nodes that are processed together
-    damping: Damping | None
-    mounts: Mounts | None  # None: rigid mounts
+    damping: Damping
+    mounts: Mounts  # without nodes: rigid mounts
 
 
 @by_reference
@@ -146,7 +171,8 @@ class Exit(NamedTuple):
 
 @by_reference
 class Constants(NamedTuple):
-    """Constant records of a run; None for an effect that the scene does not have."""
+    """Constant records of a run. The kernels skip an absent effect by its record (``mechanics.absent``).
+    None is a type of its own, for which kernels are compiled: a fixed platform and the elements."""
 
     rail: Rail
     surface: Surface
@@ -155,12 +181,12 @@ class Constants(NamedTuple):
     frame: Frame | None  # None: fixed platform
     drive: Drive
     thrust: Thrust  # over time
-    pushers: Pushers | None  # thrust over travel, in frame axes from the frame's origin
-    thrust_offset: ThrustOffset | None
-    hold_down: HoldDown | None  # its line in frame axes from the frame's origin
-    interface_stiffness: float | None  # N/m3, contact pressure over penetration
-    friction: Friction | None
-    body_force: BodyForce | None
+    pushers: Pushers  # thrust over travel, in frame axes from the frame's origin
+    thrust_offset: Offset
+    hold_down: HoldDown  # its line in frame axes from the frame's origin
+    interface_stiffness: float  # N/m3, contact pressure over penetration; zero without contact
+    friction: Friction
+    body_force: BodyForce
     exit: Exit
     milestones: Milestones
     dt: float  # s
@@ -189,7 +215,7 @@ class Motion(NamedTuple):
 
 @by_reference
 class History(NamedTuple):
-    """Values that structural damping stores from one step to the next."""
+    """Values that structural damping stores from one step to the next; without it, for no block."""
 
     elastic: np.ndarray  # (n,3) N, K u
     displacement: np.ndarray  # (n,3) m
@@ -198,7 +224,7 @@ class History(NamedTuple):
     # proportional to mass, and of joints
     drag: np.ndarray
     loss: np.ndarray  # (b,) J, energy dissipated over the step
-    mounting: np.ndarray | None  # (b,6) N and N m, ``State.mounting`` one step ago
+    mounting: np.ndarray  # (b,6) N and N m, ``State.mounting`` one step ago
 
 
 @by_reference
@@ -222,7 +248,7 @@ class Pushing(NamedTuple):
     force: np.ndarray  # (n,) N, of the springs
     friction: np.ndarray  # (n,) N, of the pushers, against the motion
     begun: np.ndarray  # (1,) J, given up from zero travel to ignition
-    inertia: "Inertia | None"  # None if no pusher has mass
+    inertia: Inertia  # of none if no pusher has mass
 
 
 @by_reference
@@ -246,7 +272,7 @@ class State(NamedTuple):
     contact: np.ndarray  # (n,3) N, until it is added to the resistance, then zero
     turning: np.ndarray  # (b,3) N m, sum of u x resistance before contact
     clamping: np.ndarray  # (b,6) N and N m, resistance of the clamped nodes and its moment
-    mounting: np.ndarray | None  # (b,6) N and N m, force of the joints and its moment
+    mounting: np.ndarray  # (b,6) N and N m, force of the joints and its moment
     reaction: np.ndarray  # (6,) N and N m, minus the resistance of all moving nodes and its moment
     motion: Motion
     rail_momentum: np.ndarray  # (3,) kg m/s, sum of m w over the moving nodes
@@ -256,9 +282,10 @@ class State(NamedTuple):
     work: np.ndarray  # (2,) WORK since ignition, see TOTAL and AXIAL
     impulse: np.ndarray  # (6,) N s and N m s, external, about the scene origin
     face_force: np.ndarray  # (f,3) N on the payload in frame axes
-    history: History | None  # None without structural damping
-    pushing: Pushing | None  # None without spring pushers
-    holding: np.ndarray | None  # (1,) N, last force of the hold-down on the payload; None without
+    history: History
+    pushing: Pushing
+    holding: np.ndarray  # (1,) N, last force of the hold-down on the payload
+    evaluated: np.ndarray  # (c,) how often the law of each effect of ``COUNTED`` was evaluated
 
 
 @by_reference
@@ -291,12 +318,16 @@ LOAD = np.dtype(
         ("friction_moment", float, 3),  # N m, about the payload's mass centre
         ("stored", float),  # J
         ("damping_rate", float),  # 1/s, largest friction damping / mass of a node
+        ("pressed", np.int64),  # cells with contact
+        ("rubbed", np.int64),  # cells with friction
     ]
 )
 
 # Work (J) by the entries of the energy ledger; state entries stay zero. Rows of State.work: total,
 # and axial part.
-WORK = np.dtype([("body_force" if name == BODY_FORCE else name, float) for name in ENTRIES])
+WORK = np.dtype(
+    [("body_force" if name == ledger.BODY_FORCE else name, float) for name in ledger.ENTRIES]
+)
 TOTAL, AXIAL = 0, 1
 
 # A face that struck an edge or the back of a wall; zero before that.

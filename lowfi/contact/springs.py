@@ -17,10 +17,9 @@ from tipoff.kernels.jit import kernel
 from tipoff.lowfi.contact.thermal_offset import offset_and_slope
 from tipoff.lowfi.faces import NORMAL_Y, NORMAL_Z, NUMBER, WALL
 from tipoff.lowfi.state import velocity_at
+from tipoff.mechanics.absent import rubs
 from tipoff.mechanics.laws import contact as law
-from tipoff.mechanics.laws.friction import Friction, coefficient_over_speed
-
-SMOOTH = Friction(static=0.0, dynamic=0.0, static_speed=1.0, dynamic_speed=2.0)  # no friction
+from tipoff.mechanics.laws.friction import coefficient_over_speed
 
 
 class Load(NamedTuple):
@@ -219,12 +218,6 @@ def relative_velocity(platform, body, base, point):
         w = velocity_at(base, point)
         return (u[0] - w[0], u[1] - w[1], u[2] - w[2])
     return u
-
-
-@kernel
-def rubs(friction):
-    """Whether there is two-step friction."""
-    return friction.static > 0.0 or friction.dynamic > 0.0
 
 
 @kernel

@@ -19,15 +19,14 @@ from tipoff.kernels import rotation
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.springs import (
-    SMOOTH,
     gradient,
     load,
     outward,
     penetration,
     relative_pose,
-    rubs,
 )
 from tipoff.lowfi.contact.stick_slip import STICKS, acts, heading
+from tipoff.mechanics.absent import SMOOTH, rubs
 from tipoff.mechanics.laws import contact as law
 from tipoff.mechanics.laws.friction import coefficient_over_speed
 

@@ -12,9 +12,9 @@ import numpy as np
 
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state
-from tipoff.lowfi.contact.springs import rubs
 from tipoff.lowfi.faces import CENTRE, WALL
-from tipoff.lowfi.system import NO_LATCH, Body, Contact, Offset, System, offset
+from tipoff.lowfi.system import Body, Contact, System
+from tipoff.mechanics.absent import NO_LATCH, Offset, offset, rubs
 from tipoff.mechanics.ending import BOOK_SIZE
 from tipoff.mechanics.laws.friction import Friction
 from tipoff.mechanics.laws.hold_down import HoldDown

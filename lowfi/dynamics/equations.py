@@ -25,12 +25,13 @@ from tipoff.lowfi.contact.compliant.loads import load as compliant_load
 from tipoff.lowfi.contact.compliant.modes import vibrate
 from tipoff.lowfi.contact.compliant.solution import solve
 from tipoff.lowfi.contact.compliant.thermal_offset import is_warm
-from tipoff.lowfi.contact.springs import load, penetration, relative_pose, rubs
+from tipoff.lowfi.contact.springs import load, penetration, relative_pose
 from tipoff.lowfi.hold_down import hold
 from tipoff.lowfi.pusher_inertia import resist
 from tipoff.lowfi.pushers import place_of, push_of, slip_at
 from tipoff.lowfi.state import IMPULSE, PAYLOAD, PLACE, PLATFORM, QUATERNION, SPIN, TURN, VELOCITY
 from tipoff.lowfi.system import Body
+from tipoff.mechanics.absent import pulls, rubs
 from tipoff.mechanics.laws.friction import Friction
 from tipoff.mechanics.laws.pushers import direction_of
 from tipoff.mechanics.laws.thrust import magnitude
@@ -232,7 +233,7 @@ def _drive(force, point, bodies, out):
 @kernel
 def add_body_force(force, mass, bodies, out):
     """Add the body force on the payload of ``mass`` (kg), and on the platform."""
-    if force.x != 0.0 or force.y != 0.0 or force.z != 0.0:
+    if pulls(force):
         bodies.evaluated[effects.BODY_FORCE] += 1
         _add_body_force(force, mass, PAYLOAD, bodies.payload, out)
         _add_body_force_on_platform(force, bodies.platform, bodies, out)

@@ -18,7 +18,7 @@ from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip
 from tipoff.lowfi.contact.compliant.free_vibration import cannot_touch
 from tipoff.lowfi.contact.compliant.survey import depth as depth_in_compliance
-from tipoff.lowfi.contact.springs import SMOOTH, across, along, load, penetration, relative_pose
+from tipoff.lowfi.contact.springs import across, along, load, penetration, relative_pose
 from tipoff.lowfi.contact.wall_ends import (
     ALONG,
     BEYOND,
@@ -39,6 +39,7 @@ from tipoff.lowfi.contact.wall_ends import (
 from tipoff.lowfi.dynamics.dormand_prince import interpolate
 from tipoff.lowfi.dynamics.survey import margin, pull
 from tipoff.lowfi.faces import SIDE_MIDDLE, SIDE_REACH
+from tipoff.mechanics.absent import SMOOTH
 
 _NEAR = 1e-7  # pull that counts as zero
 

@@ -4,8 +4,9 @@ their springs (law: ``lowfi.contact.stick_slip``)."""
 from tipoff.kernels.jit import kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip as law
-from tipoff.lowfi.contact.springs import SMOOTH, load, penetration, relative_pose
+from tipoff.lowfi.contact.springs import load, penetration, relative_pose
 from tipoff.lowfi.contact.wall_ends import MARGIN, MODE, OPEN
+from tipoff.mechanics.absent import SMOOTH
 
 
 @kernel

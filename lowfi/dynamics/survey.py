@@ -7,7 +7,6 @@ from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip
 from tipoff.lowfi.contact.compliant.survey import survey as survey_compliance
 from tipoff.lowfi.contact.springs import (
-    SMOOTH,
     across,
     along,
     approach,
@@ -36,6 +35,7 @@ from tipoff.lowfi.contact.wall_ends import (
     strikes,
 )
 from tipoff.lowfi.faces import BACK, SIDE_MIDDLE
+from tipoff.mechanics.absent import SMOOTH
 from tipoff.mechanics.laws.contact import stored_energy
 
 

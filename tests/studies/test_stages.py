@@ -9,8 +9,8 @@ import pytest
 from tests.studies.cost.made import point
 from tipoff import scenes
 from tipoff.files import write_json
-from tipoff.highfi.compiled import LAWS as highfi_laws
 from tipoff.highfi.mesh.facets import area
+from tipoff.highfi.state.records import COUNTED as COUNTED_BY_REFERENCE
 from tipoff.lowfi.system import COUNTED
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.studies.ablation import stage as ablation
@@ -70,8 +70,7 @@ def test_ablation_takes_every_effect_away_once():
     assert "without thermal" not in ablation.variants(
         scene.replace({"rail.material.expansion": None})
     )
-    # Every effect with a law of its own is counted in the surrogate, and looked for in the compiled
-    # kernels of the reference;
+    # Every effect with a law of its own is counted in both models;
     # sticking is a second law of friction and pushers one of the thrust, the reference feels
     # temperature before its kernels run, and the surrogate has damping and mounts in its modes and
     # its rail compliance.
@@ -81,7 +80,9 @@ def test_ablation_takes_every_effect_away_once():
         "rail.damping",
         "rail.mount_stiffness",
     } == set(effects)
-    assert (set(highfi_laws) - {"pushers"}) | {"mass_offset", "initial", "thermal"} == set(effects)
+    assert (set(COUNTED_BY_REFERENCE) - {"pushers"}) | {"mass_offset", "initial", "thermal"} == set(
+        effects
+    )
 
 
 def test_surrogate_is_timed_by_turns(monkeypatch, tmp_path):

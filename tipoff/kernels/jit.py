@@ -1,4 +1,4 @@
-"""Decorators that make compiled kernels of functions, and a test of the content of a compiled kernel."""
+"""Decorators that make compiled kernels of functions."""
 
 import functools
 from collections.abc import Callable
@@ -191,27 +191,3 @@ else:
     # The same for functions in the loops of finite elements, which LLVM would not always inline: 5
     # % of their time.
     inlined = functools.partial(_Part, forceinline=True)
-
-
-def machine_code(kernel, arguments: tuple) -> bytes:
-    """Object code of ``kernel`` for the types of ``arguments``: the code that runs.
-
-    It is read from the disk cache, since Numba keeps no copy of loaded code. Raises RuntimeError
-    without a cache.
-    """
-    types = tuple(numba.typeof(argument) for argument in arguments)
-    kernel.compile(types)
-    stored = kernel._cache.stored(types, kernel.targetctx.codegen())
-    if stored is None:
-        raise RuntimeError(f"no compiled {kernel.__name__} in {kernel._cache.cache_path}")
-    (_, _, (code, _)), *_ = stored
-    return code
-
-
-def contains(code: bytes, function) -> bool:
-    """Whether object ``code`` holds the compiled ``function``, called or inlined. Numba leaves one
-    symbol for each function, with the lengths of its module and name, so that the match is
-    exact."""
-    python = function.py_func
-    parts = (*python.__module__.split("."), *python.__qualname__.split("."))
-    return ("NumbaEnv" + "".join(f"{len(part)}{part}" for part in parts) + "B").encode() in code

@@ -121,7 +121,7 @@ class Trajectory(Carded, Completed):
     #: Relative errors of the balances.
     checks: dict[str, float]
     #: wall_s, compile_s, steps, dt_s and values of the model.
-    cost: dict[str, float]
+    cost: dict[str, Any]
     #: Resolved inputs.
     scene: dict
     message: str = field(default_factory=str)

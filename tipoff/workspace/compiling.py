@@ -1,6 +1,6 @@
 """Compile kernels in parallel processes, before the runs that need them.
 
-In one process Numba compiles one kernel at a time, so threads that make runs with different effects
+In one process Numba compiles one kernel at a time, so threads that make runs with different kernels
 would wait for each other.
 """
 
@@ -32,7 +32,7 @@ def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
     """Compile the kernels of ``runs`` that no earlier call has compiled, ``workers`` at a time,
     with progress under ``title`` on standard error.
 
-    Runs with the same model and the same effects count as one. With one worker, or one kernel, this
+    Runs with the same kernels count as one. With one worker, or one kernel, this
     does nothing: the run compiles its kernel itself, and so does one whose warm-up fails. The same
     in a script of the user, because each process would begin by running the script again.
     """

@@ -1,8 +1,9 @@
 """Marks in the cache of the kernels that runs have compiled, so that a user is told before the
 first run that must wait for compilation.
 
-The surrogate has few kernels: one for each kind of contact, of platform (free or fixed), degree of
-the patterns, and walls of springs (straight or not). They skip the effects that a scene does not have.
+There are few kernels, because they skip the effects that a scene does not have. The reference has one
+for each kind of elements and of platform (free or fixed). The surrogate has one for each kind of contact
+and of platform, degree of the patterns, and walls of springs (straight or not).
 """
 
 import functools
@@ -16,8 +17,6 @@ from tipoff import cache, sources
 from tipoff.files import content_hash
 from tipoff.kernels import cached, called
 from tipoff.mechanics.model_names import COMPLIANT
-from tipoff.scenes.effects.registry import EFFECTS
-from tipoff.scenes.scene import Scene
 from tipoff.workspace.progress import say
 from tipoff.workspace.run import Run
 
@@ -80,9 +79,10 @@ def are_there(run: Run) -> bool:
 def mark(run: Run) -> tuple[Path, str]:
     """The file of the mark of the kernels of ``run``, and its key."""
     folder, code = sources.cache_folder() / "kernels", _code(run.fidelity)
+    is_fixed = run.scene.platform is None
     if run.fidelity == "highfi":
-        return _mark(folder, code, run.model, _not_compiled(run.scene))
-    return _mark(folder, code, run.scene.platform is None, _degree(run), _is_at_offset_walls(run))
+        return _mark(folder, code, is_fixed, type(run.scene.rail).__name__)
+    return _mark(folder, code, is_fixed, _degree(run), _is_at_offset_walls(run))
 
 
 @functools.cache  # a run of the surrogate asks three times
@@ -103,16 +103,6 @@ def _loop(fidelity: str) -> Any:
     else:
         from tipoff.lowfi.dynamics.integrate import integrate as loop
     return loop
-
-
-def _not_compiled(scene: Scene) -> tuple[str, ...]:
-    """Effects without code in the kernels of ``scene``: absent ones, and body forces if a free
-    platform falls with the payload (``mechanics.comoving``)."""
-    falls = scene.platform is not None
-    absent = scene.absent_effects()
-    return tuple(
-        item.key for item in EFFECTS if item.key in absent or (falls and item.is_body_force)
-    )
 
 
 def _is_at_offset_walls(run: Run) -> bool:

@@ -165,12 +165,6 @@ def test_a_resume_that_forgets_the_step_before_is_seen(scene):
     assert (finished(second).rate[-1] != whole("columns", scene).rate[-1]).any()
 
 
-def test_damping_is_compiled_only_where_the_scene_has_it():
-    present, without = (highfi.compiled_effects(tiny(**change), COARSE) for change in (DAMPED, {}))
-    assert present["rail.damping"] and not without["rail.damping"]
-    assert {**present, "rail.damping": False} == without
-
-
 @pytest.mark.parametrize(
     "scene", [SOON, pytest.param(EARLY, marks=pytest.mark.slow)], ids=["soon", "early"]
 )

@@ -12,6 +12,7 @@ from tipoff import lowfi
 from tipoff.lowfi import state, system
 from tipoff.lowfi.contact import springs
 from tipoff.lowfi.faces import FACE_SIZE
+from tipoff.mechanics.absent import SMOOTH
 from tipoff.mechanics.laws import contact as law
 from tipoff.scenes import scene_model
 
@@ -39,7 +40,7 @@ def test_impact_spot_values(p_mm, closing, force):
     face[:7] = 0.0, 0.0, -0.1, 0.0, -1.0, 0.1, 0.0
     found = springs.load(
         contact,
-        springs.SMOOTH,
+        SMOOTH,
         None,
         face,
         p_mm * 1e-3,

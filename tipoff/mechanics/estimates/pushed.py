@@ -58,7 +58,7 @@ def net_force(pushers: Pushers, s: np.ndarray, gain: float, pull: float) -> np.n
 def each(pushers: Pushers) -> Iterator[tuple[np.ndarray, np.ndarray, float, float]]:
     """Travel (k,) m and force (k,) N at the knots, friction (N) and moving mass (kg) of each pusher."""
     for i, (first, after) in enumerate(pairwise(pushers.first)):
-        mass = 0.0 if pushers.mass is None else pushers.mass[i]
+        mass = pushers.mass[i] if pushers.mass.size else 0.0
         yield pushers.travel[first:after], pushers.force[first:after], pushers.friction[i], mass
 
 

@@ -49,7 +49,7 @@ class Pushers(NamedTuple):
     force: np.ndarray  # (k,) N
     energy: np.ndarray  # (k,) J, given up from zero travel to each knot
     friction: np.ndarray  # (n,) N
-    mass: np.ndarray | None  # (n,) kg, of the moving parts; None if none has one
+    mass: np.ndarray  # (n,) kg, of the moving parts; empty if none has one
 
 
 @kernel

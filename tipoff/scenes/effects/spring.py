@@ -289,7 +289,7 @@ def record(thrust, thrust_offset, mass_offset, platform) -> Pushers | None:
         force=np.concatenate([push.force for push in pushes]),
         energy=np.concatenate([push.energy() for push in pushes]),
         friction=np.array([held for _, held in thrust.pushes()]),
-        mass=mass if mass.any() else None,
+        mass=mass if mass.any() else np.zeros(0),
     )
 
 

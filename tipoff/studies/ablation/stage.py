@@ -170,7 +170,7 @@ def _rows(
             ns_per_step=1e9 * seconds / max(run.cost["steps"], 1),
             settled_rate_deg_s=_degrees(run.outcome.rate),
             settled_rate_change_deg_s=_change(run.outcome.rate, baseline),
-            evaluated=tuple(evaluated(item)),
+            evaluated=tuple(evaluated(item, run)),
         )
         for line, item, run, seconds in zip(lines, requested, runs, times)
     ]
@@ -186,13 +186,10 @@ def _change(rate: Sequence[float] | None, baseline: Sequence[float] | None) -> R
     return _degrees([own - other for own, other in zip(rate, baseline)])
 
 
-def evaluated(run: Run) -> list[str]:
-    """Effects whose laws ``run`` evaluates. The kernel of the reference has no code of others."""
-    found: dict[str, int] | dict[str, bool]
+def evaluated(run: Run, result: Trajectory) -> list[str]:
+    """Effects whose laws ``run``, which has this ``result``, evaluates."""
     if run.fidelity == "highfi":
-        from tipoff import highfi
-
-        found = highfi.compiled_effects(run.scene, run.numerics)
+        found = result.cost["evaluations"]
     else:
         from tipoff import lowfi
 
