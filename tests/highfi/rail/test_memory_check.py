@@ -15,7 +15,7 @@ from tipoff.highfi.rail.geometry import geometry
 from tipoff.highfi.rail.scene_mesh import make_mesh
 from tipoff.meshes import l_rail
 from tipoff.scenes import SceneError, load
-from tipoff.studies.runs import command as commands
+from tipoff.studies.single.command import run
 from validation.bench.command import bench
 
 MEMINFO = "MemTotal:       16000000 kB\nMemFree:         1000000 kB\nMemAvailable:    8000000 kB\n"
@@ -155,13 +155,17 @@ def test_a_solid_is_not_filled_where_its_elements_do_not_fit(
         mesh_of(scene, 1e-5)
 
 
-@pytest.mark.parametrize("command", [commands.highfi, bench])
-def test_commands_report_it_without_a_traceback(tmp_path, monkeypatch, command):
+@pytest.mark.parametrize(
+    "command, options", [(run, ["--all", "--model", "finite-elements"]), (bench, [])]
+)
+def test_commands_report_it_without_a_traceback(tmp_path, monkeypatch, command, options):
     monkeypatch.setattr(memory_estimate, "available", lambda: 100_000_000)
     simulation.MESHES.clear()
     app = typer.Typer()
     app.command()(command)
-    result = CliRunner().invoke(app, ["--element-size", "1", "--out", str(tmp_path / "out")])
+    result = CliRunner().invoke(
+        app, [*options, "--element-size", "1", "--out", str(tmp_path / "out")]
+    )
     assert result.exit_code == 2
     assert (
         "GB of memory" in result.stderr
