@@ -147,19 +147,23 @@ def test_the_errors_are_inputs_of_the_scene():
 
 @pytest.mark.slow
 def test_a_straight_launch_is_the_same_in_both_models():
-    """Without errors of the thrust the launch is symmetric: no roll, no yaw. Speed and pitch rate at the
-    exit agree to 0.1 % and 1 %, on the same elements of 10 by 30 mm. Control: on rails that do not give
-    way the pitch rate differs by a tenth."""
+    """Without errors of the thrust the launch is symmetric: no roll, no yaw. The speed at the exit agrees
+    to 0.1 %, on the same elements of 10 by 30 mm. The rocket rattles in its play, and 1 um of play changes
+    the pitch rate by up to a tenth; that of the reference lies among twelve neighbours of the surrogate,
+    with a margin of half their spread. Control: on rails that do not give way it lies outside."""
     scene = SCENE.replace({"thrust_offset.misalignment.axial": 0.0})
-    compliance = highfi.condense(scene, 0.01)
-    numerics = lowfi.Numerics(modes=0)
-    surrogate = lowfi.run(scene, "compliant", compliance=compliance, numerics=numerics).outcome
-    reference = highfi.run(scene, highfi.Numerics(element_size=0.01)).outcome
-    assert surrogate.exit_velocity[0] == pytest.approx(reference.exit_velocity[0], rel=1e-3)
-    (_, pitch, _), (x, y, z) = np.degrees([reference.exit_rate, surrogate.exit_rate])
-    assert y == pytest.approx(pitch, rel=0.01) and max(abs(x), abs(z)) < 1e-3
+
+    def values(run) -> np.ndarray:
+        roll, pitch, yaw = np.degrees(run.outcome.exit_rate)
+        assert max(abs(roll), abs(yaw)) < 1e-3
+        return np.array([run.outcome.exit_velocity[0], pitch])
+
+    found, low, high = both_models(scene, highfi.condense(scene, 0.01), 0.01, values)
+    assert low[0] == pytest.approx(found[0], rel=1e-3) == high[0]
+    margin = 0.5 * (high[1] - low[1])
+    assert low[1] - margin < found[1] < high[1] + margin
     # Control:
-    assert abs(tip_off(scene)[1] / pitch - 1.0) > 0.1
+    assert not low[1] - margin < tip_off(scene)[1] < high[1] + margin
 
 
 @pytest.mark.slow

@@ -312,7 +312,7 @@ def test_what_does_not_match_the_scene_is_said(tmp_path):
     notes = " ".join(found.tests[0].notes)
     assert (
         "scene reference, the simulated cases to tiny" in notes
-        and "simulated cases after 12 to 12 ms" in notes
+        and "simulated cases after 12 ms to 12 ms" in notes
     )
 
 

@@ -216,7 +216,9 @@ def test_page_says_what_would_show_more(viewed):
         and found["collection"] in shown
     )
     without = Page(study.scene, study.folder, {}, Runs({}, {}, {}), {})
-    assert "tipoff highfi --scene tiny --out" in html(section.draw(without))
+    assert "tipoff run --all --model finite-elements --scene tiny --out" in html(
+        section.draw(without)
+    )
 
 
 def test_page_warns_and_escapes():

@@ -44,7 +44,7 @@ def found(kept):
 
 def test_what_is_written_is_whole_and_not_made_again(study, kept, found, monkeypatch):
     assert found.counts == {"asked": 1500, "ok": 1500, "refused": 0, "failed": 0}
-    assert found.model == "compliant, without contact"
+    assert found.model == "compliant or springs, which are the same without contact"
     assert [item.name for item in found.quantities] == [item.name for item in answers.ALL]
     figures = [
         f"figures/montecarlo-{name}.{kind}"
