@@ -156,8 +156,10 @@ def _damp(rail, state, block, dt, lanes):
 
 @kernel
 def _count(state, effect, block):
-    """Count the evaluation of an effect of all blocks, at the first one, which one thread loads."""
-    state.evaluated[effect] += block == state.stepped.block[0]
+    """Count the evaluation of an effect of all blocks, at the first one, which one thread loads. Others
+    must not write: adding zero could undo the count of that thread."""
+    if block == state.stepped.block[0]:
+        state.evaluated[effect] += 1
 
 
 @kernel
