@@ -157,6 +157,7 @@ wheel: $(READY) ## dist/: a wheel with compiled kernels for this Python and Linu
 	.venv/bin/python -c "from setuptools.build_meta import build_sdist; build_sdist('dist')"
 	NUMBA_CPU_NAME=x86-64-v3 NUMBA_CPU_FEATURES= NUMBA_CACHE_DIR=$(CURDIR)/build/made .venv/bin/python -m tests.warm
 	NUMBA_CPU_NAME=x86-64-v3 NUMBA_CPU_FEATURES= NUMBA_CACHE_DIR=$(CURDIR)/build/made $(TIPOFF) run --condition phi35 --out build/out
+	NUMBA_CPU_NAME=x86-64-v3 NUMBA_CPU_FEATURES= NUMBA_CACHE_DIR=$(CURDIR)/build/made $(TIPOFF) ensemble --scene rocket_rail --cases 4 --out build/out
 	mkdir tipoff/kernels/made && cp -r build/made/kernels/tipoff.* tipoff/kernels/made
 	.venv/bin/python -c "import sys; from setuptools.build_meta import build_wheel; tag = f'--python-tag=cp{sys.version_info[0]}{sys.version_info[1]}'; \
 	  build_wheel('dist', {'--build-option': [tag, '--plat-name=manylinux_2_28_x86_64']})"
