@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import kernel
 from tipoff.lowfi.contact.compliant import patterns
 from tipoff.lowfi.contact.compliant.cells import along_row, fill_row, row_place
 from tipoff.lowfi.contact.compliant.record import ASIDE, BY_ETA, BY_XI
@@ -31,7 +31,7 @@ def deepest(compliance, face, displacement):
     return largest, along, across
 
 
-@inlined
+@kernel
 def _keep_best_row(compliance, face, displacement):
     """Keep the row of cells that is deepest in its middle, in ``Workspace.counted``; returns minus
     its crown (m), less by more than rounding."""
@@ -48,7 +48,7 @@ def _keep_best_row(compliance, face, displacement):
     return base
 
 
-@inlined
+@kernel
 def _most_above_kept_row(workspace, reach):
     """Upper bound (m) of the difference between the filled and the kept row for eta' of a size up to
     ``reach``, without the crown along the row."""
