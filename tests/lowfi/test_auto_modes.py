@@ -116,6 +116,38 @@ def test_the_estimate_has_the_size_of_the_effect(condition):
     assert 0.25 < effect / np.degrees(watched.neglected().sum()) < 2.0
 
 
+CONDITIONS = ("phi0", "phi15", "phi35", "phi60", "phi90", "h1")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name, smallest, largest",
+    [
+        ("titanium", 0.3, 0.4),
+        ("tiny", 0.3, 0.9),
+        ("clamped", 0.3, 1.7),
+        ("thin", 0.3, 1.8),
+        ("reference", 0.2, 3.7),
+    ],
+)
+def test_effect_of_all_modes_over_its_estimate(name, smallest, largest):
+    """The table in docs/rail_modes.md."""
+    scene = load(name)
+    compliance = highfi.condense(scene, 8e-3)
+    found = []
+    for condition in CONDITIONS:
+        asked = scene.condition(condition)
+        watched = SingleRun(asked, Numerics(modes=0), compliance, watches=True)
+        watched.begin()
+        watched.integrate(None)
+        static, every = (
+            lowfi.run(asked, compliance=compliance, numerics=Numerics(modes=count)).outcome
+            for count in (0, 20)
+        )
+        found.append(apart(every.rate, static.rate) / np.degrees(watched.neglected().sum()))
+    assert [round(min(found), 1), round(max(found), 1)] == [smallest, largest]
+
+
 def test_no_modes_where_none_matter():
     """The bits of a run without modes, and the reason."""
     asked, compliance = REFERENCE.condition("phi15"), reference_compliance()

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tipoff.studies import registry
+from tipoff.studies.commands import running
 from validation import STUDIES
 
 NAMES = ("montecarlo", "paper", "recovery", "scaling", "bench", "peers")
@@ -42,10 +43,13 @@ def test_options_without_effect_are_refused():
 
 def test_added_studies_are_on_the_page(monkeypatch):
     monkeypatch.setattr(registry, "ADDED", [])
-    monkeypatch.setattr(registry, "PROGRAMS", {})
+    monkeypatch.setattr(running, "PROGRAMS", programs := {})
+    monkeypatch.setattr(registry, "PROGRAMS", programs)
     before = [section.anchor for section in registry.sections()]
     registry.add(*STUDIES, program="python -m validation")
     registry.add(*STUDIES, program="python -m validation")
     after = [section.anchor for section in registry.sections()]
     assert after[: len(before)] == before
+    assert running.program("paper --scene tiny") == "python -m validation"
+    assert running.program("run --all") == "tipoff"
     assert after[len(before) :] == ["montecarlo", "tails", *NAMES[1:]]

@@ -92,7 +92,8 @@ def waits(
         from validation.bench import waits
 
         earlier = read_json(against) if against else None
-        found = waits.run(out, repeats, tuple(length) if length else waits.LENGTHS, cold)
+        rails = {"lengths": tuple(length), "slots": ()} if length else {}
+        found = waits.run(out, repeats, cold=cold, **rails)
         return Output(found, lambda found: [waits.table(found, earlier)])
 
     guarded(work, json_)

@@ -15,7 +15,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -36,6 +36,8 @@ from validation.bench.methods import varied
 
 LENGTHS = (0.25, 0.5, 1.0, 2.0, 4.0)  # m, of rails whose compliance is timed
 _ELEMENT = 2e-3  # m, of these rails
+SLOTS = (1.0, 2.0, 4.0, 8.0, 12.0)  # m, of T-slot rails
+_SLOT_ELEMENT, _APART = 2e-2, 0.78  # m: of these rails, and from one of their mounts to the next
 _LONG = 1.2  # m, of the rails of a run with all modes
 _LOG_ROWS = 100_000
 _CASES = 2000
@@ -49,10 +51,15 @@ class Wait:
     wall_ms: float
     cpu_ms: float
     repeats: int
+    file_mb: float | None = None  # of a rail compliance
 
 
 def run(
-    out: Path, repeats: int = 15, lengths: tuple[float, ...] = LENGTHS, cold: bool = False
+    out: Path,
+    repeats: int = 15,
+    lengths: tuple[float, ...] = LENGTHS,
+    slots: tuple[float, ...] = SLOTS,
+    cold: bool = False,
 ) -> dict:
     """``rows``, one for each call; writes ``out``/bench/waits.json. With ``cold``, also the first
     run, the first report and ``limits``, which take half an hour."""
@@ -60,8 +67,7 @@ def run(
     for group in (_calls, _files, _shell):
         with TemporaryDirectory() as folder:
             rows += _by_turns(group(Path(folder)), repeats)
-    for length in lengths:
-        rows.append(_rail(length))
+    rows += [_rail(length) for length in lengths] + [_slot(length) for length in slots]
     if cold:
         with TemporaryDirectory() as folder:
             rows += [_once(name, call) for name, call in _cold(Path(folder)).items()]
@@ -203,7 +209,30 @@ def _rail(length: float) -> Wait:
 
     scene = long_rail(length)
     name = f"compliance, {length:g} m in {1e3 * _ELEMENT:g} mm elements"
-    return _once(name, lambda: rail_compliance.compliance(scene, _ELEMENT))
+    return _compliance(name, lambda: rail_compliance.compliance(scene, _ELEMENT))
+
+
+def _slot(length: float) -> Wait:
+    """Compliance of a T-slot rail of this ``length`` (m), without its uncertainty."""
+    from tipoff import highfi
+
+    scene = long_slot(length)
+    name = f"compliance, {length:g} m of T-slot in {1e3 * _SLOT_ELEMENT:g} mm elements"
+    return _compliance(name, lambda: highfi.condense(scene, _SLOT_ELEMENT))
+
+
+def _compliance(name: str, call: Callable[[], RailCompliance]) -> Wait:
+    found: list[RailCompliance] = []
+
+    def kept() -> RailCompliance:
+        found.append(call())
+        return found[0]
+
+    row = _once(name, kept)
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "compliance.npz"
+        found[0].save(path)
+        return replace(row, file_mb=1e-6 * path.stat().st_size)
 
 
 def long_rail(length: float) -> Scene:
@@ -214,6 +243,16 @@ def long_rail(length: float) -> Scene:
     starts = np.arange(first.start, scene.rail.start + length - 0.02, 0.1)
     mounts = [{"start": float(start), "end": float(start) + 0.02} for start in starts]
     return scene.replace({"rail.end": scene.rail.start + length, "rail.mounts": mounts})
+
+
+def long_slot(length: float) -> Scene:
+    """The scene ``rocket_rail`` on a rail of this ``length`` (m), with at least three mounts."""
+    scene = load("rocket_rail")
+    count = max(3, round(length / _APART) + 1)
+    middles = np.linspace(0.09, length - 0.27, count)
+    mounts = [{"start": float(at - 0.03), "end": float(at + 0.03)} for at in middles]
+    ends = {"rail.end": scene.rail.start + length, "rail.mounts": mounts}
+    return scene.replace(ends | {"duration": 30.0})
 
 
 def table(found: dict, earlier: dict | None = None) -> Table:
@@ -227,6 +266,7 @@ def table(found: dict, earlier: dict | None = None) -> Table:
         *((((Column("before", "ms", ".3g")), "before_ms"),) if before else ()),
         (Column("wall", "ms", ".3g"), "wall_ms"),
         (Column("processor", "ms", ".3g"), "cpu_ms"),
+        (Column("file", "MB", ".3g"), "file_mb"),
         (Column("repeats", form="d"), "repeats"),
     )
     note = (

@@ -1,5 +1,6 @@
 """How long a person waits: the table, the rails, and the command on one rail."""
 
+import numpy as np
 import pytest
 
 from tipoff.files import read_json
@@ -7,7 +8,7 @@ from tipoff.studies.render import document
 from validation.bench import waits
 from validation.bench.command import waits as command
 
-ROW = {"call": "run", "wall_ms": 2.5, "cpu_ms": 2.0, "repeats": 3}
+ROW = {"call": "run", "wall_ms": 2.5, "cpu_ms": 2.0, "repeats": 3, "file_mb": None}
 FOUND = {"rows": [ROW], "hardware": {"cores": 2, "processor": "any"}}
 
 
@@ -25,6 +26,14 @@ def test_a_long_rail_is_held_along_its_length(length):
     rail = waits.long_rail(length).rail
     ends = [span.end for span in rail.mounts]
     assert rail.end - rail.start == pytest.approx(length) and 0.0 < rail.end - max(ends) < 0.1
+
+
+@pytest.mark.parametrize("length", waits.SLOTS)
+def test_a_long_slot_is_held_along_its_length(length):
+    rail = waits.long_slot(length).rail
+    starts = [span.start for span in rail.mounts]
+    assert rail.end - rail.start == pytest.approx(length) and len(starts) >= 3
+    assert starts[0] < 0.1 and 0.0 < length - starts[-1] < 0.4 and max(np.diff(starts)) < 0.85
 
 
 @pytest.mark.slow
